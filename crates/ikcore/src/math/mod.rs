@@ -1,0 +1,8 @@
+//! Rotations, rigid transforms, fast sines and the one bounded step. Plain arrays where it is hot, nalgebra elsewhere.
+
+pub mod box_step;
+pub mod pose;
+pub mod sincos;
+pub mod so3;
+
+pub use pose::Pose;

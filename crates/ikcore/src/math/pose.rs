@@ -1,0 +1,65 @@
+//! Rigid transforms: the type, and the check that a 4x4 matrix is one.
+
+use nalgebra::{IsometryMatrix3, Matrix3, Matrix4, Rotation3, Translation3, Vector3};
+
+use crate::error::{Error, Result};
+
+/// A rigid transform: rotation matrix and translation (m).
+pub type Pose = IsometryMatrix3<f64>;
+
+/// How far R'R may be from the identity, entry by entry, for R to pass as a rotation.
+const ORTHOGONALITY_TOLERANCE: f64 = 1e-6;
+
+/// A transform from its parts; `rotation` must be a rotation matrix.
+pub fn from_parts(translation: [f64; 3], rotation: Matrix3<f64>) -> Pose {
+    Pose::from_parts(Translation3::from(translation), Rotation3::from_matrix_unchecked(rotation))
+}
+
+/// A pure translation (m).
+pub fn translation(x: f64, y: f64, z: f64) -> Pose {
+    from_parts([x, y, z], Matrix3::identity())
+}
+
+/// A pure rotation by `angle` (rad) about a unit `axis`.
+pub fn rotation(axis: Vector3<f64>, angle: f64) -> Pose {
+    let axis = nalgebra::Unit::new_unchecked(axis);
+    Pose::from_parts(Translation3::identity(), Rotation3::from_axis_angle(&axis, angle))
+}
+
+/// The rotation of fixed-axis roll, pitch and yaw (rad), R = Rz(yaw) Ry(pitch) Rx(roll), as URDF has it.
+pub fn from_rpy(rpy: [f64; 3], translation: [f64; 3]) -> Pose {
+    Pose::from_parts(Translation3::from(translation), Rotation3::from_euler_angles(rpy[0], rpy[1], rpy[2]))
+}
+
+/// Reads a homogeneous 4x4 matrix; `what` names it in errors.
+///
+/// # Errors
+/// [`Error::NotFinite`] for NaN or infinity; [`Error::NotRigid`] where the last row is not (0, 0, 0, 1), or the
+/// rotation is not orthonormal to 1e-6 or is a reflection. What is within 1e-6 is orthonormalised.
+pub fn from_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<Pose> {
+    crate::error::require_finite(what, matrix.as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))?;
+    let not_rigid = |problem: String| Error::NotRigid { what: what.into(), problem };
+    let last_row = matrix.row(3);
+    if (last_row[0], last_row[1], last_row[2], last_row[3]) != (0.0, 0.0, 0.0, 1.0) {
+        let row = last_row.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+        return Err(not_rigid(format!("its last row is ({row}), not (0, 0, 0, 1)")));
+    }
+    let rotation = matrix.fixed_view::<3, 3>(0, 0).into_owned();
+    let deviation = (rotation.transpose() * rotation - Matrix3::identity()).amax();
+    if deviation > ORTHOGONALITY_TOLERANCE {
+        return Err(not_rigid(format!("R'R differs from the identity by {deviation:.3e}")));
+    }
+    if rotation.determinant() < 0.0 {
+        return Err(not_rigid("its rotation is a reflection (determinant -1)".into()));
+    }
+    let translation = matrix.fixed_view::<3, 1>(0, 3).into_owned();
+    Ok(from_parts(translation.into(), orthonormalized(rotation)))
+}
+
+/// Gram-Schmidt on a matrix that is a rotation up to rounding; the identity on one that already is exact.
+fn orthonormalized(r: Matrix3<f64>) -> Matrix3<f64> {
+    let x = r.column(0).normalize();
+    let y = r.column(1) - x * x.dot(&r.column(1));
+    let y = y.normalize();
+    Matrix3::from_columns(&[x, y, x.cross(&y)])
+}

@@ -1,0 +1,101 @@
+//! Describes a serial chain from base to tip, element by element; [`ChainBuilder::build`] checks it and makes a [`Robot`].
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use super::joint::{Joint, JointKind};
+use super::model::Robot;
+use crate::error::Result;
+use crate::math::Pose;
+
+/// One element between base and tip, in order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) enum Element {
+    /// A constant transform.
+    Fixed(Pose),
+    /// A motion about or along `axis` (unit length) by `scale * q[joint] + offset`.
+    Moving { axis: Vector3<f64>, turns: bool, joint: usize, scale: f64, offset: f64 },
+    /// The frame reached here is that of a link.
+    Link(String),
+}
+
+/// How far a moving element goes for a value q of the independent joint that drives it: `scale * q + offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive {
+    /// Factor on q; -1 for a joint passed from its child to its parent, a mimic joint's multiplier.
+    pub scale: f64,
+    /// Constant added (rad or m).
+    pub offset: f64,
+}
+
+impl Drive {
+    /// The joint's own value.
+    pub const DIRECT: Self = Self { scale: 1.0, offset: 0.0 };
+}
+
+/// The description of a robot: independent joints in order, and the elements from base to tip.
+///
+/// ```
+/// use ikcore::nalgebra::Vector3;
+/// use ikcore::math::pose;
+/// use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind};
+///
+/// let mut arm = ChainBuilder::new("pendulum", "base");
+/// let swing = arm.add_joint(Joint::new("swing", JointKind::Continuous));
+/// arm.moving(swing, JointKind::Continuous, Vector3::y(), Drive::DIRECT);
+/// arm.fixed(pose::translation(0.0, 0.0, -1.0));
+/// arm.link("bob");
+/// let robot = arm.build()?;
+/// assert_eq!(robot.dof(), 1);
+/// # Ok::<(), ikcore::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ChainBuilder {
+    pub(super) name: String,
+    pub(super) joints: Vec<Joint>,
+    pub(super) elements: Vec<Element>,
+}
+
+impl ChainBuilder {
+    /// An empty chain that starts in the frame of link `base_link`.
+    pub fn new(name: impl Into<String>, base_link: impl Into<String>) -> Self {
+        Self { name: name.into(), joints: Vec::new(), elements: vec![Element::Link(base_link.into())] }
+    }
+
+    /// Adds an independent joint and returns its index in q. It moves nothing until [`moving`](Self::moving) uses it.
+    pub fn add_joint(&mut self, joint: Joint) -> usize {
+        self.joints.push(joint);
+        self.joints.len() - 1
+    }
+
+    /// The independent joint of this index, to narrow its limits.
+    pub fn joint_mut(&mut self, index: usize) -> &mut Joint {
+        &mut self.joints[index]
+    }
+
+    /// Appends a constant transform.
+    pub fn fixed(&mut self, transform: Pose) {
+        self.elements.push(Element::Fixed(transform));
+    }
+
+    /// Appends a motion about or along `axis` (any length but zero), driven by independent joint `joint`.
+    pub fn moving(&mut self, joint: usize, kind: JointKind, axis: Vector3<f64>, drive: Drive) {
+        let Drive { scale, offset } = drive;
+        self.elements.push(Element::Moving { axis: axis.normalize(), turns: kind.turns(), joint, scale, offset });
+    }
+
+    /// Names the frame reached so far. The last frame named is the tip.
+    pub fn link(&mut self, name: impl Into<String>) {
+        self.elements.push(Element::Link(name.into()));
+    }
+
+    /// Checks the description and makes the robot.
+    ///
+    /// # Errors
+    /// [`Error::InvalidRobot`](crate::Error::InvalidRobot) for no joints, too many, or a joint or link named twice;
+    /// [`Error::EmptyRange`](crate::Error::EmptyRange), [`Error::NegativeLimit`](crate::Error::NegativeLimit) or
+    /// [`Error::NotFinite`](crate::Error::NotFinite) for impossible limits or transforms.
+    pub fn build(self) -> Result<Robot> {
+        Robot::new(self)
+    }
+}

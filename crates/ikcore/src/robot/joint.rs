@@ -1,0 +1,77 @@
+//! A joint as the caller sees it.
+
+use serde::{Deserialize, Serialize};
+
+/// How a joint moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum JointKind {
+    /// Turns about its axis between two limits (rad).
+    Revolute,
+    /// Turns about its axis without end (rad).
+    Continuous,
+    /// Slides along its axis between two limits (m).
+    Prismatic,
+}
+
+impl JointKind {
+    /// The name as URDF writes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Revolute => "revolute",
+            Self::Continuous => "continuous",
+            Self::Prismatic => "prismatic",
+        }
+    }
+
+    /// Whether the joint turns rather than slides.
+    pub fn turns(self) -> bool {
+        self != Self::Prismatic
+    }
+}
+
+/// An independent joint: one entry of q.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Joint {
+    /// Its name, unique in the robot.
+    pub name: String,
+    /// How it moves.
+    pub kind: JointKind,
+    /// Lower position limit (rad or m); minus infinity where there is none.
+    pub lower: f64,
+    /// Upper position limit (rad or m); infinity where there is none.
+    pub upper: f64,
+    /// Velocity limit (rad/s or m/s); infinity where unknown, zero locks the joint.
+    pub velocity: f64,
+}
+
+/// Half-width of the range from which an unlimited sliding joint is sampled (m).
+const UNLIMITED_SLIDE: f64 = 1.0;
+
+impl Joint {
+    /// A joint without limits.
+    pub fn new(name: impl Into<String>, kind: JointKind) -> Self {
+        let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
+        Self { name: name.into(), kind, lower, upper, velocity: f64::INFINITY }
+    }
+
+    /// The same joint between these position limits (rad or m).
+    pub fn with_range(self, lower: f64, upper: f64) -> Self {
+        Self { lower, upper, ..self }
+    }
+
+    /// The same joint with this velocity limit (rad/s or m/s).
+    pub fn with_velocity(self, velocity: f64) -> Self {
+        Self { velocity, ..self }
+    }
+
+    /// The finite range from which random configurations are drawn: one turn, or 2 m, wide on an open side.
+    pub fn sampling_range(&self) -> (f64, f64) {
+        let reach = if self.kind.turns() { std::f64::consts::PI } else { UNLIMITED_SLIDE };
+        match (self.lower.is_finite(), self.upper.is_finite()) {
+            (true, true) => (self.lower, self.upper),
+            (true, false) => (self.lower, self.lower + 2.0 * reach),
+            (false, true) => (self.upper - 2.0 * reach, self.upper),
+            (false, false) => (-reach, reach),
+        }
+    }
+}
