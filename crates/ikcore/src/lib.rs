@@ -1,17 +1,17 @@
 //! The core of beetle-ik.
 
 pub mod error;
-pub mod math;
 pub mod ik;
 pub mod limits;
+pub mod math;
 pub mod objective;
+pub mod path;
 pub mod problem;
 pub mod rng;
 pub mod robot;
 pub mod solver;
 pub mod task;
 pub mod tracking;
-
 
 pub use error::{Error, Result};
 pub use nalgebra;
