@@ -3,7 +3,7 @@
 use super::arm::{Arm, degrees, row};
 use crate::robot::dh::Dh::{Modified, Standard};
 
-/// LBR iiwa 14 R820: dimensions, ranges and speeds of the data sheet, to the end of the media flange. Joint 4 counts
+/// LBR iiwa 14 R820: dimensions, ranges and speeds of the data sheet, to the flange. Joint 4 counts
 /// as on the real arm, against the sense of joint 2.
 pub(super) const IIWA14: Arm = Arm {
     convention: Standard,

@@ -73,10 +73,11 @@ fn kind(document: &Document, index: usize) -> Result<JointKind> {
         JointType::Continuous => Ok(JointKind::Continuous),
         JointType::Prismatic => Ok(JointKind::Prismatic),
         _ => {
+            let (name, kind) = (&joint.name, format!("{:?}", joint.joint_type).to_lowercase());
             let problem = format!(
-                "joint '{}' is neither revolute, continuous, prismatic, fixed nor mimic: take base and tip on one side of \
-                 it, such as base '{}'",
-                joint.name, joint.child.link
+                "joint '{name}' is {kind}, and a chain takes only revolute, continuous, prismatic, fixed and mimic joints: \
+                 take base and tip on one side of it, such as base '{}'",
+                joint.child.link
             );
             Err(document.error_at(index, problem))
         }

@@ -26,7 +26,7 @@ pub(super) fn not_xml(error: &roxmltree::Error) -> Error {
             format!("xacro is not expanded: {EXPAND}")
         }
         roxmltree::Error::UnknownNamespace(prefix, _) => {
-            format!("the prefix of '{prefix}:' is not declared: add xmlns:{prefix}=\"{prefix}\" to <robot>")
+            format!("the namespace prefix '{prefix}' is not declared: add xmlns:{prefix}=\"{prefix}\" to <robot>")
         }
         _ => format!("not XML: {error}"),
     };
