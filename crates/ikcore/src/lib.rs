@@ -2,7 +2,16 @@
 
 pub mod error;
 pub mod math;
+pub mod ik;
+pub mod limits;
+pub mod objective;
+pub mod problem;
+pub mod rng;
 pub mod robot;
+pub mod solver;
+pub mod task;
+pub mod tracking;
+
 
 pub use error::{Error, Result};
 pub use nalgebra;

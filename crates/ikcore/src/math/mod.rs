@@ -9,3 +9,6 @@ pub mod so3;
 
 pub use frame::Frame;
 pub use pose::Pose;
+
+/// The largest number of independent joints, and of moving elements, of a robot.
+pub const MAX_DOF: usize = 32;
