@@ -56,7 +56,7 @@ fn robot(links: &[&str], joints: &[(&str, &str, &str, &str, &str)]) -> String {
     }
     for (name, kind, parent, child, rest) in joints {
         xml += &format!(
-            "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{child}\"/>{rest}</joint>\n"
+            "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>{rest}</joint>\n"
         );
     }
     xml + "</robot>"
@@ -260,17 +260,20 @@ fn joints_that_cannot_be() {
         (
             "type=\"prismatic\"",
             "type=\"Prismatic\"",
-            "line 11: joint 'b' has the unknown type 'Prismatic' (did you mean 'prismatic'?); types: revolute, continuous, prismatic, fixed, floating, planar, spherical",
+            "line 11: joint 'b' has the unknown type 'Prismatic' (did you mean 'prismatic'?); \
+             types: revolute, continuous, prismatic, fixed, floating, planar, spherical",
         ),
         (
             "type=\"revolute\"",
             "type=\"floating\"",
-            "line 5: joint 'a' is floating, and a chain takes only revolute, continuous, prismatic, fixed and mimic joints: take base and tip on one side of it, such as base 'upper'",
+            "line 5: joint 'a' is floating, \
+             and a chain takes only revolute, continuous, prismatic, fixed and mimic joints: \
+             take base and tip on one side of it, such as base 'upper'",
         ),
         (
             "<origin xyz=\"0 0 1\"/>",
             "<origin quat_xyzw=\"0 0 0 1\"/>",
-            "line 12: origin quat_xyzw of joint 'b' is not supported: write its rotation as rpy",
+            "line 12: origin quat_xyzw of joint 'b' is not supported: write it as rpy",
         ),
         (
             "<axis xyz=\"0 0 -2\"/>",
@@ -370,7 +373,10 @@ proptest! {
     /// Whatever happens to a file on its way, the answer is a robot or an error.
     #[test]
     fn no_text_makes_it_panic(
-        cuts in prop::collection::vec((any::<prop::sample::Index>(), 0..12_usize, "[<>/\"'&; a-c0-9.eE=${}\n-]{0,6}"), 1..4),
+        cuts in prop::collection::vec(
+            (any::<prop::sample::Index>(), 0..12_usize, "[<>/\"'&; a-c0-9.eE=${}\n-]{0,6}"),
+            1..4,
+        ),
     ) {
         let mut text: Vec<char> = ARM.replace("<axis xyz=\"0 0 -2\"/>", "<mimic joint=\"a\"/>").chars().collect();
         for (at, length, insertion) in cuts {

@@ -3,8 +3,8 @@
 use super::arm::{Arm, degrees, row};
 use crate::robot::dh::Dh::{Modified, Standard};
 
-/// LBR iiwa 14 R820: dimensions, ranges and speeds of the data sheet, to the flange. Joint 4 counts
-/// as on the real arm, against the sense of joint 2.
+/// LBR iiwa 14 R820: dimensions, ranges and speeds of the data sheet, to the flange. Joint 4 counts as on the
+/// real arm, against the sense of joint 2.
 pub(super) const IIWA14: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,
@@ -52,9 +52,9 @@ pub(super) const KR210: Arm = Arm {
     flange: 0.0,
 };
 
-/// KR 210 R2700 extra as printed in Table 1 of Yuan et al. 2016, "Autonomous path planning solution for industrial robot manipulator using
-/// backpropagation algorithm": the
-/// maker's geometry with the paper's own zero of joint 3 and ranges of joints 2 and 3. Speeds are not printed there.
+/// KR 210 R2700 extra as printed in Table 1 of Yuan et al. 2016, "Autonomous path planning solution for industrial
+/// robot manipulator using backpropagation algorithm": the maker's geometry with the paper's own zero of joint 3 and
+/// range of joint 2. Speeds are not printed there.
 pub(super) const KR210_YUAN2016: Arm = Arm {
     convention: Modified,
     base_roll: 0.0,

@@ -75,8 +75,8 @@ fn kind(document: &Document, index: usize) -> Result<JointKind> {
         _ => {
             let (name, kind) = (&joint.name, format!("{:?}", joint.joint_type).to_lowercase());
             let problem = format!(
-                "joint '{name}' is {kind}, and a chain takes only revolute, continuous, prismatic, fixed and mimic joints: \
-                 take base and tip on one side of it, such as base '{}'",
+                "joint '{name}' is {kind}, and a chain takes only revolute, continuous, prismatic, fixed and mimic \
+                 joints: take base and tip on one side of it, such as base '{}'",
                 joint.child.link
             );
             Err(document.error_at(index, problem))

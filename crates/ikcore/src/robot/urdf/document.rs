@@ -87,7 +87,8 @@ fn reduced_joint(joint: Node, name: &str) -> Result<String> {
     Ok(format!(
         "<joint name=\"{name}\" type=\"{kind}\">\
          <origin xyz=\"{x} {y} {z}\" rpy=\"{roll} {pitch} {yaw}\"/><parent link=\"{parent}\"/><child link=\"{child}\"/>\
-         <axis xyz=\"{i} {j} {k}\"/><limit lower=\"{lower}\" upper=\"{upper}\" velocity=\"{velocity}\"/>{mimic}</joint>",
+         <axis xyz=\"{i} {j} {k}\"/>\
+         <limit lower=\"{lower}\" upper=\"{upper}\" velocity=\"{velocity}\"/>{mimic}</joint>",
         name = escaped(name),
     ))
 }
@@ -105,10 +106,9 @@ fn joint_type<'a>(joint: Node<'a, '_>, owner: &str) -> Result<&'a str> {
 fn rotation(joint: Node, owner: &str) -> Result<[f64; 3]> {
     let rpy = vector(joint, "origin", "rpy", owner)?;
     match xml::children(joint, "origin").next() {
-        Some(origin) if rpy.is_none() && origin.has_attribute("quat_xyzw") => Err(xml::error_at(
-            origin,
-            format!("origin quat_xyzw of {owner} is not supported: write its rotation as rpy"),
-        )),
+        Some(origin) if rpy.is_none() && origin.has_attribute("quat_xyzw") => {
+            Err(xml::error_at(origin, format!("origin quat_xyzw of {owner} is not supported: write it as rpy")))
+        }
         _ => Ok(rpy.unwrap_or_default()),
     }
 }

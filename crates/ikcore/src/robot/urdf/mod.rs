@@ -17,16 +17,16 @@ use crate::error::{Error, Result};
 impl Robot {
     /// Reads a robot from a URDF file, or from the XML itself (a string that contains `<`).
     ///
-    /// `base` and `tip` are link names; None is the root, and the only leaf below `base`. `base` need not be an ancestor
-    /// of `tip`: joints between them that are passed from child to parent move by -q. Poses are in the frame of `base`.
+    /// `base` and `tip` are link names; None is the root, and the only leaf below `base`. `base` need not be an
+    /// ancestor of `tip`: joints that are passed from child to parent move by -q. Poses are in the frame of `base`.
     ///
     /// The independent joints stand in chain order. A mimic joint on the chain follows its master, and its own limits
     /// narrow the master's; a master that is not on the chain is an independent joint in the place of its first
     /// follower. Only joints on the chain, and masters, are judged: an odd gripper does not spoil an arm.
     ///
-    /// Limits: where a revolute or prismatic joint gives neither `lower` nor `upper` it is unlimited (URDF's default of
-    /// zero for both would lock it); where it gives one, the other is zero, as URDF has it. Without `velocity` the speed
-    /// is unlimited; an explicit zero locks the joint. The soft limits of `<safety_controller>` are ignored.
+    /// Limits: where a revolute or prismatic joint gives neither `lower` nor `upper` it is unlimited (URDF's default
+    /// of zero for both would lock it); where it gives one, the other is zero, as URDF has it. Without `velocity` the
+    /// speed is unlimited; an explicit zero locks the joint. Soft limits (`<safety_controller>`) are ignored.
     ///
     /// # Errors
     /// [`Error::Unreadable`] for a file; [`Error::Urdf`], with the line where there is one, for text that is no URDF;
