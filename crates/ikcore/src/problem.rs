@@ -3,7 +3,10 @@
 use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
-use crate::task::{Target, TipError, Tolerance};
+use crate::task::{SquaredError, Target, TipError, Tolerance};
+
+/// Configurations side by side in vector registers: four doubles fill one of AVX2.
+const LANES: usize = 4;
 
 /// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
 #[derive(Debug, Clone, Copy)]
@@ -21,32 +24,12 @@ impl<'a> Problem<'a> {
 
     /// The errors at `q`, by forward kinematics.
     pub fn verify(&self, q: &[f64]) -> TipError {
-        self.target.error(self.robot, q)
+        self.target.error(self.robot, q).into()
     }
 
     #[inline]
-    fn score(&self, error: &TipError) -> Score {
-        Score { value: error.value(), solved: error.within(&self.tolerance) }
-    }
-
-    /// Scores rows from `done` on in groups of `W` while there are so many; returns how many are done then.
-    #[inline]
-    fn evaluate_lanes<const W: usize>(
-        &self,
-        target: &[f64; 3],
-        qs: &[f64],
-        out: &mut [Score],
-        mut done: usize,
-    ) -> usize {
-        let n = self.robot.dof();
-        while out.len() - done >= W {
-            let rows: [&[f64]; W] = std::array::from_fn(|w| &qs[(done + w) * n..(done + w + 1) * n]);
-            for tip in self.robot.tip_positions(&rows) {
-                out[done] = self.score(&TipError::of_position(target, &tip));
-                done += 1;
-            }
-        }
-        done
+    fn score(&self, error: SquaredError) -> Score {
+        Score { value: error.sum(), solved: error.within(&self.tolerance) }
     }
 }
 
@@ -57,18 +40,18 @@ impl Objective for Problem<'_> {
 
     #[inline]
     fn evaluate(&mut self, q: &[f64]) -> Score {
-        self.score(&self.target.error(self.robot, q))
+        self.score(self.target.error(self.robot, q))
     }
 
-    /// Positions go through the kinematics four and two at a time.
     fn evaluate_all(&mut self, qs: &[f64], out: &mut [Score]) {
         let n = self.dimension();
-        let mut done = 0;
-        if let Target::Position(target) = self.target {
-            done = self.evaluate_lanes::<4>(target, qs, out, done);
-            done = self.evaluate_lanes::<2>(target, qs, out, done);
+        let mut groups = out.chunks_exact_mut(LANES);
+        for (scores, group) in groups.by_ref().zip(qs.chunks_exact(LANES * n)) {
+            let errors = self.target.errors::<LANES>(self.robot, group);
+            scores.iter_mut().zip(errors).for_each(|(score, error)| *score = self.score(error));
         }
-        for (q, score) in qs.chunks_exact(n).zip(out).skip(done) {
+        let rest = groups.into_remainder();
+        for (score, q) in rest.iter_mut().rev().zip(qs.rchunks_exact(n)) {
             *score = self.evaluate(q);
         }
     }
@@ -86,6 +69,6 @@ impl LeastSquares for Problem<'_> {
     #[inline]
     fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> Score {
         let error = self.target.linearize(self.robot, q, out);
-        self.score(&error)
+        self.score(error)
     }
 }

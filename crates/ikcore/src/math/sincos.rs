@@ -32,20 +32,20 @@ const LARGEST: f64 = 8e5;
 /// 1.5 * 2^52: adding it rounds to an integer, which then sits in the lowest bits.
 const ROUNDER: f64 = 6755399441055744.0;
 
-/// (sines, cosines) of `angles` (rad).
+/// Writes sines and cosines of `angles` (rad); all three are equally long.
 #[inline(always)]
-pub fn sincos<A: Arithmetic, const N: usize>(angles: &[f64; N]) -> ([f64; N], [f64; N]) {
-    let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
-    for i in 0..N {
+pub fn sincos<A: Arithmetic>(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
+    let mut all_small = true;
+    for i in 0..angles.len() {
         (sines[i], cosines[i]) = sincos_one::<A>(angles[i]);
+        // False for NaN too, which the standard library leaves NaN.
+        all_small &= angles[i].abs() <= LARGEST;
     }
-    // Not (|x| <= LARGEST), so that NaN goes this way too and stays NaN.
-    if !angles.iter().all(|x| x.abs() <= LARGEST) {
-        for i in 0..N {
+    if !all_small {
+        for i in 0..angles.len() {
             (sines[i], cosines[i]) = angles[i].sin_cos();
         }
     }
-    (sines, cosines)
 }
 
 #[inline(always)]
@@ -77,11 +77,17 @@ mod tests {
     use super::super::arithmetic::{Fused, Separate};
     use super::*;
 
+    fn sincos_of<A: Arithmetic, const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
+        let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
+        sincos::<A>(&angles, &mut sines, &mut cosines);
+        (sines, cosines)
+    }
+
     fn worst_error<A: Arithmetic>() -> f64 {
         let mut worst: f64 = 0.0;
         for k in -200_000..=200_000 {
             let x = f64::from(k) * 3.7e-4;
-            let ([s], [c]) = sincos::<A, 1>(&[x]);
+            let ([s], [c]) = sincos_of::<A, 1>([x]);
             worst = worst.max((s - x.sin()).abs()).max((c - x.cos()).abs());
         }
         worst
@@ -95,15 +101,15 @@ mod tests {
 
     #[test]
     fn exact_at_zero_and_right_at_quarter_turns() {
-        let ([s], [c]) = sincos::<Separate, 1>(&[0.0]);
+        let ([s], [c]) = sincos_of::<Separate, 1>([0.0]);
         assert_eq!((s, c), (0.0, 1.0));
-        let ([s], [c]) = sincos::<Separate, 1>(&[std::f64::consts::FRAC_PI_2]);
+        let ([s], [c]) = sincos_of::<Separate, 1>([std::f64::consts::FRAC_PI_2]);
         assert!((s - 1.0).abs() < 1e-16 && (c - 6.123233995736766e-17).abs() < 1e-17);
     }
 
     #[test]
     fn huge_angles_and_nan_keep_their_meaning() {
-        let (s, c) = sincos::<Separate, 3>(&[1e9, 0.3, f64::NAN]);
+        let (s, c) = sincos_of::<Separate, 3>([1e9, 0.3, f64::NAN]);
         assert_eq!((s[0], c[0]), 1e9_f64.sin_cos());
         assert!(s[2].is_nan() && c[2].is_nan() && (s[1] - 0.3_f64.sin()).abs() < 1e-16);
     }

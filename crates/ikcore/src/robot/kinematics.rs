@@ -58,10 +58,10 @@ impl Chain {
         dispatch!(self, tip_position(self, q))
     }
 
-    /// The tip's positions (m) at `W` configurations side by side; lane by lane the same bits as
+    /// The tip's positions (m) at `W` configurations, stored one after another; lane by lane the same bits as
     /// [`tip_position`](Self::tip_position).
     #[inline]
-    pub fn tip_positions<const W: usize>(&self, qs: &[&[f64]; W]) -> [[f64; 3]; W] {
+    pub fn tip_positions<const W: usize>(&self, qs: &[f64]) -> [[f64; W]; 3] {
         dispatch!(self, tip_positions(self, qs), W)
     }
 
@@ -95,10 +95,7 @@ mod fused {
     }
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn tip_positions<const N: usize, const L: usize, const W: usize>(
-        chain: &Chain,
-        qs: &[&[f64]; W],
-    ) -> [[f64; 3]; W] {
+    pub fn tip_positions<const N: usize, const L: usize, const W: usize>(chain: &Chain, qs: &[f64]) -> [[f64; W]; 3] {
         super::tip_positions::<Fused, N, L, W>(chain, qs)
     }
 
@@ -122,7 +119,8 @@ fn motions<A: Arithmetic, const L: usize>(chain: &Chain, q: &[f64]) -> ([f64; L]
         angles[i] = A::mul_add(motion.turn_scale, value, motion.turn_offset);
         slides[i] = A::mul_add(motion.slide_scale, value, motion.slide_offset);
     }
-    let (sines, cosines) = sincos::<A, L>(&angles);
+    let (mut sines, mut cosines) = ([0.0; L], [0.0; L]);
+    sincos::<A>(&angles, &mut sines, &mut cosines);
     (sines, cosines, slides)
 }
 
@@ -158,36 +156,45 @@ fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q:
     let (sines, cosines, slides) = motions::<A, L>(chain, q);
     let mut point = chain.tip.origin;
     for i in (0..N).rev() {
-        let [x, y, z] = point;
-        let turned = [A::mul_add(cosines[i], x, -sines[i] * y), A::mul_add(sines[i], x, cosines[i] * y), z + slides[i]];
-        point = chain.stages[i].place::<A>(&turned);
+        // Turning the frame instead of the point keeps the turn off the critical path from point to point.
+        let stage = chain.stages[i].turned::<A>(sines[i], cosines[i]);
+        point = stage.place::<A>(&[point[0], point[1], point[2] + slides[i]]);
     }
     point
 }
 
-/// [`tip_position`] for `W` configurations at once; every operation is done for all lanes before the next.
+/// [`tip_position`] for `W` configurations at once, coordinate by coordinate.
 #[inline(always)]
 fn tip_positions<A: Arithmetic, const N: usize, const L: usize, const W: usize>(
     chain: &Chain,
-    qs: &[&[f64]; W],
-) -> [[f64; 3]; W] {
-    let origin = chain.tip.origin;
-    let (mut x, mut y, mut z) = ([origin[0]; W], [origin[1]; W], [origin[2]; W]);
-    for i in (0..N).rev() {
-        let (motion, stage) = (&chain.motions[i], &chain.stages[i]);
-        let value: [f64; W] = std::array::from_fn(|w| qs[w][motion.joint]);
-        let angle = value.map(|q| A::mul_add(motion.turn_scale, q, motion.turn_offset));
-        let (sine, cosine) = sincos::<A, W>(&angle);
+    qs: &[f64],
+) -> [[f64; W]; 3] {
+    let rows: [&[f64]; W] = std::array::from_fn(|w| &qs[w * (qs.len() / W)..]);
+    let (mut angles, mut slides) = ([[0.0; W]; N], [[0.0; W]; N]);
+    for (i, motion) in chain.motions[..N].iter().enumerate() {
         for w in 0..W {
-            let turned = [
-                A::mul_add(cosine[w], x[w], -sine[w] * y[w]),
-                A::mul_add(sine[w], x[w], cosine[w] * y[w]),
-                z[w] + A::mul_add(motion.slide_scale, value[w], motion.slide_offset),
-            ];
-            [x[w], y[w], z[w]] = stage.place::<A>(&turned);
+            let value = rows[w][motion.joint];
+            angles[i][w] = A::mul_add(motion.turn_scale, value, motion.turn_offset);
+            slides[i][w] = A::mul_add(motion.slide_scale, value, motion.slide_offset);
         }
     }
-    std::array::from_fn(|w| [x[w], y[w], z[w]])
+    let (mut sines, mut cosines) = ([[0.0; W]; N], [[0.0; W]; N]);
+    sincos::<A>(angles.as_flattened(), sines.as_flattened_mut(), cosines.as_flattened_mut());
+    let mut point = chain.tip.origin.map(|coordinate| [coordinate; W]);
+    for i in (0..N).rev() {
+        let (sine, cosine, stage) = (&sines[i], &cosines[i], &chain.stages[i]);
+        let [x, y, z] = &stage.axes;
+        let [px, py, pz] = point;
+        let slid: [f64; W] = std::array::from_fn(|w| pz[w] + slides[i][w]);
+        for k in 0..3 {
+            let new_x: [f64; W] = std::array::from_fn(|w| A::mul_add(sine[w], y[k], cosine[w] * x[k]));
+            let new_y: [f64; W] = std::array::from_fn(|w| A::mul_add(-sine[w], x[k], cosine[w] * y[k]));
+            let first: [f64; W] = std::array::from_fn(|w| A::mul_add(new_x[w], px[w], stage.origin[k]));
+            let rest: [f64; W] = std::array::from_fn(|w| A::mul_add(new_y[w], py[w], z[k] * slid[w]));
+            point[k] = std::array::from_fn(|w| first[w] + rest[w]);
+        }
+    }
+    point
 }
 
 #[inline(always)]

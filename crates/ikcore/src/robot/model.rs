@@ -158,9 +158,10 @@ impl Robot {
         self.chain.tip_position(q)
     }
 
-    /// Positions of the tip (m) at `W` configurations side by side; the same bits as one by one.
+    /// Positions of the tip (m) at `W` configurations stored one after another, (x, y, z) by configuration; the same bits
+    /// as one by one.
     #[inline]
-    pub fn tip_positions<const W: usize>(&self, qs: &[&[f64]; W]) -> [[f64; 3]; W] {
+    pub fn tip_positions<const W: usize>(&self, qs: &[f64]) -> [[f64; W]; 3] {
         self.chain.tip_positions(qs)
     }
 

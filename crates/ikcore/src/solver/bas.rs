@@ -165,7 +165,8 @@ impl<O: Objective + ?Sized> Solver<O> for Bas {
             for (beetle, value) in beetles.chunks_exact(n).zip(values).take(count) {
                 // vi) record
                 if value < pass_value {
-                    (pass_best, pass_value) = (Point::from_slice(beetle), value);
+                    pass_best.copy_from_slice(beetle);
+                    pass_value = value;
                 }
                 // vii) update the location
                 match self.variant {

@@ -1,7 +1,5 @@
 //! Between solver and objective: counts, clips, checks, and keeps the best.
 
-use smallvec::SmallVec;
-
 use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Point, Score};
 use crate::rng::LazyRng;
 
@@ -35,8 +33,20 @@ pub struct Best {
     pub solved: bool,
 }
 
+impl Best {
+    #[cold]
+    fn replace(&mut self, x: &[f64], value: f64, solved: bool) {
+        self.x.resize(x.len(), 0.0);
+        self.x.copy_from_slice(x);
+        (self.value, self.solved) = (value, solved);
+    }
+}
+
 /// Evaluations between two looks at the monitor and the clock: some ten microseconds of forward kinematics.
 const POLL_EVERY: usize = 256;
+
+/// Points handed to the objective at once.
+const CHUNK: usize = 16;
 
 /// A budgeted view of an objective in a box.
 pub struct Evaluator<'a, O: ?Sized> {
@@ -51,7 +61,7 @@ pub struct Evaluator<'a, O: ?Sized> {
     best: Best,
     attempt_value: f64,
     attempts: usize,
-    scores: SmallVec<[Score; 8]>,
+    dimension: usize,
 }
 
 impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
@@ -64,6 +74,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         monitor: &'a mut dyn Monitor,
     ) -> Self {
         Self {
+            dimension: objective.dimension(),
             objective,
             bounds,
             stop,
@@ -75,13 +86,12 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             best: Best { x: Point::new(), value: f64::INFINITY, solved: false },
             attempt_value: f64::INFINITY,
             attempts: 1,
-            scores: SmallVec::new(),
         }
     }
 
     /// Number of entries of a point.
     pub fn dimension(&self) -> usize {
-        self.objective.dimension()
+        self.dimension
     }
 
     /// The box.
@@ -138,18 +148,17 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     /// # Errors
     /// As for one point; with a budget for some of them only, the first ones are evaluated before the halt.
     pub fn evaluate_all(&mut self, xs: &mut [f64], values: &mut [f64]) -> Result<(), Halt> {
-        let n = self.dimension();
         let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
         self.spend(affordable)?;
-        let xs = &mut xs[..affordable * n];
-        xs.chunks_exact_mut(n).for_each(|x| self.bounds.clip(x));
-        let mut scores = std::mem::take(&mut self.scores);
-        scores.resize(affordable, Score { value: f64::INFINITY, solved: false });
-        self.objective.evaluate_all(xs, &mut scores);
-        for ((x, score), value) in xs.chunks_exact(n).zip(&scores).zip(values.iter_mut()) {
-            *value = self.record(x, *score);
+        let mut scores = [Score { value: f64::INFINITY, solved: false }; CHUNK];
+        for (xs, values) in xs.chunks_mut(CHUNK * self.dimension).zip(values[..affordable].chunks_mut(CHUNK)) {
+            let (xs, scores) = (&mut xs[..values.len() * self.dimension], &mut scores[..values.len()]);
+            xs.chunks_exact_mut(self.dimension).for_each(|x| self.bounds.clip(x));
+            self.objective.evaluate_all(xs, scores);
+            for ((x, score), value) in xs.chunks_exact(self.dimension).zip(scores).zip(values) {
+                *value = self.record(x, *score);
+            }
         }
-        self.scores = scores;
         if affordable < values.len() { Err(Halt::Budget) } else { Ok(()) }
     }
 
@@ -203,9 +212,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         let solved = score.solved && value.is_finite();
         let better = (solved && !self.best.solved) || (solved == self.best.solved && value < self.best.value);
         if better || self.best.x.is_empty() {
-            self.best.x.clear();
-            self.best.x.extend_from_slice(x);
-            (self.best.value, self.best.solved) = (value, solved);
+            self.best.replace(x, value, solved);
         }
         value
     }

@@ -1,6 +1,6 @@
 //! The tip at a point: r = p - p_d, dr/dq = linear rows of the geometric Jacobian.
 
-use super::TipError;
+use super::SquaredError;
 use crate::math::Frame;
 use crate::objective::Linearization;
 
@@ -10,13 +10,20 @@ pub fn residual(target: &[f64; 3], tip: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| tip[k] - target[k])
 }
 
+/// The squared distance.
+#[inline(always)]
+pub fn error(target: &[f64; 3], tip: &[f64; 3]) -> SquaredError {
+    let [x, y, z] = residual(target, tip);
+    SquaredError { position: x * x + y * y + z * z, rotation: None }
+}
+
 /// Residual and derivative from the tip's geometric Jacobian, which stands in `out`; the angular rows are emptied.
 #[inline]
-pub fn linearize(target: &[f64; 3], tip: &Frame, dof: usize, out: &mut Linearization) -> TipError {
+pub fn linearize(target: &[f64; 3], tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
     let [x, y, z] = residual(target, &tip.origin);
     out.residual = [x, y, z, 0.0, 0.0, 0.0];
     for column in &mut out.columns[..dof] {
         column[3..].fill(0.0);
     }
-    TipError::of_position(target, &tip.origin)
+    error(target, &tip.origin)
 }

@@ -3,7 +3,7 @@
 use super::TrackOptions;
 use crate::error::{Result, require_positive};
 use crate::limits::{Field, LimitAt, Limits};
-use crate::objective::{Bounds, LeastSquares, Point};
+use crate::objective::{Bounds, LeastSquares, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
@@ -105,10 +105,11 @@ impl<'a> Session<'a> {
 
     /// Stands still and takes the error to `target` as what the first tick has to beat.
     pub fn begin(&mut self, target: &Target) -> Step {
-        let problem = Problem::new(self.robot, target, self.tolerance);
+        let mut problem = Problem::new(self.robot, target, self.tolerance);
+        let score = problem.evaluate(&self.q);
         let error = problem.verify(&self.q);
-        self.last_value = Some(error.value());
-        let status = if error.within(&self.tolerance) { Status::Solved } else { Status::Improved };
+        self.last_value = Some(score.value);
+        let status = if score.solved { Status::Solved } else { Status::Improved };
         let position = self.robot.tip_position(&self.q);
         Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false }
     }
