@@ -14,3 +14,6 @@ pub mod ticks;
 pub use frame::Frame;
 pub use knots::Knots;
 pub use pose::Pose;
+
+/// The largest number of independent joints, and of moving elements, of a robot.
+pub const MAX_DOF: usize = 32;

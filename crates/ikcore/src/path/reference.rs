@@ -5,6 +5,7 @@ use nalgebra::Matrix3;
 use super::orientation::check_rotations;
 use super::polyline::check_points;
 use crate::error::{Error, Result, require_positive};
+use crate::math::{Pose, pose};
 
 /// Positions, and where wanted rotations, at the ticks t_i = i dt: row 0 is where to start, row i where to be at the end
 /// of tick i.
@@ -59,5 +60,10 @@ impl Reference {
     /// Rotation of row `i`, if there are rotations.
     pub fn rotation(&self, i: usize) -> Option<Matrix3<f64>> {
         self.rotations.as_ref().map(|rotations| rotations[i])
+    }
+
+    /// Position and rotation of row `i`, if there are rotations.
+    pub fn pose(&self, i: usize) -> Option<Pose> {
+        self.rotation(i).map(|rotation| pose::from_parts(self.position(i), rotation))
     }
 }

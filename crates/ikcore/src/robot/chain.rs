@@ -42,6 +42,9 @@ pub(super) struct Chain {
 /// Numbers of stages that kernels are compiled for. Chains are padded up to the next one.
 pub(super) const SIZES: [usize; 8] = [4, 5, 6, 7, 8, 12, 16, 32];
 
+/// Sines are taken four at a time: a remainder of one to three costs as much as all the rest (measured).
+const LANES: usize = 4;
+
 impl Chain {
     /// Folds `elements` between `base` and `tool`. The number of moving elements has been checked.
     pub fn new(elements: &[Element], base: &Pose, tool: &Pose) -> Self {
@@ -71,7 +74,7 @@ impl Chain {
         chain.moving = chain.stages.len();
         let padded = SIZES.into_iter().find(|size| *size >= chain.moving).unwrap_or(chain.moving);
         chain.stages.resize(padded, Frame::IDENTITY);
-        chain.motions.resize(padded, Motion::NONE);
+        chain.motions.resize(padded.next_multiple_of(LANES), Motion::NONE);
         chain
     }
 }

@@ -12,34 +12,34 @@ use crate::math::sincos::sincos;
 /// Columns of a 6 x n matrix, one per joint: linear rows (m per rad or m), then angular rows; the first n are in use.
 pub type Columns = [[f64; 6]; MAX_DOF];
 
-/// Calls `$kernel::<A, N>` for the chain's padded size, fused where the machine can.
+/// Calls `$kernel::<A, N, L>` for the chain's padded size, fused where the machine can.
 macro_rules! dispatch {
     ($chain:expr, $kernel:ident ( $($argument:expr),* )) => {{
         macro_rules! by_size {
             ($call:ident) => {
                 match $chain.stages.len() {
-                    4 => $call!(4), 5 => $call!(5), 6 => $call!(6), 7 => $call!(7), 8 => $call!(8),
-                    12 => $call!(12), 16 => $call!(16), _ => $call!(32),
+                    4 => $call!(4, 4), 5 => $call!(5, 8), 6 => $call!(6, 8), 7 => $call!(7, 8), 8 => $call!(8, 8),
+                    12 => $call!(12, 12), 16 => $call!(16, 16), _ => $call!(32, 32),
                 }
             };
         }
         #[cfg(target_arch = "x86_64")]
         {
-            macro_rules! portable { ($n:literal) => { $kernel::<Separate, $n>($($argument),*) }; }
+            macro_rules! portable { ($n:literal, $l:literal) => { $kernel::<Separate, $n, $l>($($argument),*) }; }
             macro_rules! fused {
                 // SAFETY: reached only where `has_fused` found the instructions.
-                ($n:literal) => { unsafe { fused::$kernel::<$n>($($argument),*) } };
+                ($n:literal, $l:literal) => { unsafe { fused::$kernel::<$n, $l>($($argument),*) } };
             }
             if crate::math::arithmetic::has_fused() { by_size!(fused) } else { by_size!(portable) }
         }
         #[cfg(target_arch = "aarch64")]
         {
-            macro_rules! native { ($n:literal) => { $kernel::<Fused, $n>($($argument),*) }; }
+            macro_rules! native { ($n:literal, $l:literal) => { $kernel::<Fused, $n, $l>($($argument),*) }; }
             by_size!(native)
         }
         #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
         {
-            macro_rules! portable { ($n:literal) => { $kernel::<Separate, $n>($($argument),*) }; }
+            macro_rules! portable { ($n:literal, $l:literal) => { $kernel::<Separate, $n, $l>($($argument),*) }; }
             by_size!(portable)
         }
     }};
@@ -78,44 +78,44 @@ mod fused {
     use super::{Chain, Columns, Frame, Fused, MAX_DOF};
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn tip<const N: usize>(chain: &Chain, q: &[f64]) -> Frame {
-        super::tip::<Fused, N>(chain, q)
+    pub fn tip<const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
+        super::tip::<Fused, N, L>(chain, q)
     }
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn tip_position<const N: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
-        super::tip_position::<Fused, N>(chain, q)
+    pub fn tip_position<const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
+        super::tip_position::<Fused, N, L>(chain, q)
     }
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn jacobian<const N: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
-        super::jacobian::<Fused, N>(chain, q, columns)
+    pub fn jacobian<const N: usize, const L: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
+        super::jacobian::<Fused, N, L>(chain, q, columns)
     }
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn stage_frames<const N: usize>(chain: &Chain, q: &[f64], reached: &mut [Frame; MAX_DOF + 1]) {
-        super::stage_frames::<Fused, N>(chain, q, reached);
+    pub fn stage_frames<const N: usize, const L: usize>(chain: &Chain, q: &[f64], reached: &mut [Frame; MAX_DOF + 1]) {
+        super::stage_frames::<Fused, N, L>(chain, q, reached);
     }
 }
 
 /// Sines, cosines and slides (m) of all stages.
 #[inline(always)]
-fn motions<A: Arithmetic, const N: usize>(chain: &Chain, q: &[f64]) -> ([f64; N], [f64; N], [f64; N]) {
-    let (mut angles, mut slides) = ([0.0; N], [0.0; N]);
-    for (i, motion) in chain.motions[..N].iter().enumerate() {
+fn motions<A: Arithmetic, const L: usize>(chain: &Chain, q: &[f64]) -> ([f64; L], [f64; L], [f64; L]) {
+    let (mut angles, mut slides) = ([0.0; L], [0.0; L]);
+    for (i, motion) in chain.motions[..L].iter().enumerate() {
         let value = q[motion.joint];
         angles[i] = A::mul_add(motion.turn_scale, value, motion.turn_offset);
         slides[i] = A::mul_add(motion.slide_scale, value, motion.slide_offset);
     }
-    let (sines, cosines) = sincos::<A, N>(&angles);
+    let (sines, cosines) = sincos::<A, L>(&angles);
     (sines, cosines, slides)
 }
 
 /// Walks the chain from the base; `visit(i, frame)` sees the frame in which stage i moves, slid but not yet turned
 /// (its origin lies on the axis, its z axis is the axis). Returns the tip's frame.
 #[inline(always)]
-fn pass<A: Arithmetic, const N: usize>(chain: &Chain, q: &[f64], mut visit: impl FnMut(usize, &Frame)) -> Frame {
-    let (sines, cosines, slides) = motions::<A, N>(chain, q);
+fn pass<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64], mut visit: impl FnMut(usize, &Frame)) -> Frame {
+    let (sines, cosines, slides) = motions::<A, L>(chain, q);
     let mut frame = chain.stages[0];
     for i in 0..N {
         if i > 0 {
@@ -130,13 +130,13 @@ fn pass<A: Arithmetic, const N: usize>(chain: &Chain, q: &[f64], mut visit: impl
 }
 
 #[inline(always)]
-fn tip<A: Arithmetic, const N: usize>(chain: &Chain, q: &[f64]) -> Frame {
-    pass::<A, N>(chain, q, |_, _| ())
+fn tip<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
+    pass::<A, N, L>(chain, q, |_, _| ())
 }
 
 #[inline(always)]
-fn tip_position<A: Arithmetic, const N: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
-    let (sines, cosines, slides) = motions::<A, N>(chain, q);
+fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
+    let (sines, cosines, slides) = motions::<A, L>(chain, q);
     let mut point = chain.tip.origin;
     for i in (0..N).rev() {
         let [x, y, z] = point;
@@ -147,9 +147,9 @@ fn tip_position<A: Arithmetic, const N: usize>(chain: &Chain, q: &[f64]) -> [f64
 }
 
 #[inline(always)]
-fn jacobian<A: Arithmetic, const N: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
+fn jacobian<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
     let (mut axes, mut origins) = ([[0.0; 3]; N], [[0.0; 3]; N]);
-    let tip = pass::<A, N>(chain, q, |i, frame| {
+    let tip = pass::<A, N, L>(chain, q, |i, frame| {
         axes[i] = frame.axes[2];
         origins[i] = frame.origin;
     });
@@ -174,7 +174,7 @@ fn jacobian<A: Arithmetic, const N: usize>(chain: &Chain, q: &[f64], columns: &m
 }
 
 #[inline(always)]
-fn stage_frames<A: Arithmetic, const N: usize>(chain: &Chain, q: &[f64], reached: &mut [Frame; MAX_DOF + 1]) {
-    let (sines, cosines, _) = motions::<A, N>(chain, q);
-    pass::<A, N>(chain, q, |i, frame| reached[i + 1] = frame.turned::<A>(sines[i], cosines[i]));
+fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64], reached: &mut [Frame; MAX_DOF + 1]) {
+    let (sines, cosines, _) = motions::<A, L>(chain, q);
+    pass::<A, N, L>(chain, q, |i, frame| reached[i + 1] = frame.turned::<A>(sines[i], cosines[i]));
 }

@@ -11,5 +11,4 @@ pub use joint::{Joint, JointKind};
 pub use kinematics::Columns;
 pub use model::Robot;
 
-/// The largest number of independent joints, and of moving elements, of a robot.
-pub const MAX_DOF: usize = 32;
+use crate::math::MAX_DOF;

@@ -11,6 +11,7 @@ use super::joint::Joint;
 use super::{Columns, MAX_DOF};
 use crate::error::{Error, Result, require_finite};
 use crate::math::{Frame, Pose};
+use crate::rng::LazyRng;
 
 /// A robot arm: a serial chain from base to tip.
 ///
@@ -161,6 +162,12 @@ impl Robot {
     #[inline]
     pub fn tip_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
         self.chain.jacobian(q, columns)
+    }
+
+    /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).
+    pub fn random_configurations(&self, count: usize, rng: &mut LazyRng) -> Vec<f64> {
+        let ranges: Vec<_> = self.joints().iter().map(Joint::sampling_range).collect();
+        (0..count).flat_map(|_| ranges.iter()).map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect()
     }
 
     /// The robot as bytes, for storing and for copying between processes.

@@ -1,0 +1,58 @@
+//! A robot and a target as something to minimise.
+
+use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
+use crate::rng::LazyRng;
+use crate::robot::Robot;
+use crate::task::{Target, TipError, Tolerance};
+
+/// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
+#[derive(Debug, Clone, Copy)]
+pub struct Problem<'a> {
+    robot: &'a Robot,
+    target: &'a Target,
+    tolerance: Tolerance,
+}
+
+impl<'a> Problem<'a> {
+    /// The problem of bringing the tip of `robot` to `target`.
+    pub fn new(robot: &'a Robot, target: &'a Target, tolerance: Tolerance) -> Self {
+        Self { robot, target, tolerance }
+    }
+
+    /// The errors at `q`, by forward kinematics.
+    pub fn verify(&self, q: &[f64]) -> TipError {
+        self.target.error(self.robot, q)
+    }
+
+    #[inline]
+    fn score(&self, error: &TipError) -> Score {
+        Score { value: error.value(), solved: error.within(&self.tolerance) }
+    }
+}
+
+impl Objective for Problem<'_> {
+    fn dimension(&self) -> usize {
+        self.robot.dof()
+    }
+
+    #[inline]
+    fn evaluate(&mut self, q: &[f64]) -> Score {
+        self.score(&self.target.error(self.robot, q))
+    }
+
+    /// Uniform in the box; a side without a limit is drawn from the joint's sampling range.
+    fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
+        for (i, joint) in self.robot.joints().iter().enumerate() {
+            let (lower, upper) = joint.sampling_range_within(bounds.lower()[i], bounds.upper()[i]);
+            q[i] = rng.uniform_in(lower, upper);
+        }
+    }
+}
+
+impl LeastSquares for Problem<'_> {
+    #[inline]
+    fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> Score {
+        let error = self.target.linearize(self.robot, q, out);
+        self.score(&error)
+    }
+}
