@@ -59,7 +59,7 @@ impl Curve for Samples {
         let (row, elapsed) = knots.locate(t);
         let (from, to) = (rotations[row], rotations[row + 1]);
         // The quaternion's power is exact for the smallest angles too, where slerp's arc cosine is not.
-        let reached = from * from.rotation_to(&to).powf(elapsed / knots.span(row));
+        let reached = from.rotation_to(&to).powf(elapsed / knots.span(row)) * from;
         Some(reached.to_rotation_matrix().into_inner())
     }
 }
