@@ -81,7 +81,9 @@ impl Bounds {
             return Err(Error::WrongLength { what: "upper".into(), expected, got: upper.len() });
         }
         match lower.iter().zip(upper).position(|(l, u)| l.is_nan() || u.is_nan() || l > u) {
-            Some(i) => Err(Error::out_of_range(format!("lower[{i}]"), &format!("at most upper[{i}] = {}", upper[i]), lower[i])),
+            Some(i) => {
+                Err(Error::out_of_range(format!("lower[{i}]"), &format!("at most upper[{i}] = {}", upper[i]), lower[i]))
+            }
             None => Ok(Self { lower: lower.into(), upper: upper.into() }),
         }
     }

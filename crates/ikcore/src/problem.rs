@@ -28,6 +28,26 @@ impl<'a> Problem<'a> {
     fn score(&self, error: &TipError) -> Score {
         Score { value: error.value(), solved: error.within(&self.tolerance) }
     }
+
+    /// Scores rows from `done` on in groups of `W` while there are so many; returns how many are done then.
+    #[inline]
+    fn evaluate_lanes<const W: usize>(
+        &self,
+        target: &[f64; 3],
+        qs: &[f64],
+        out: &mut [Score],
+        mut done: usize,
+    ) -> usize {
+        let n = self.robot.dof();
+        while out.len() - done >= W {
+            let rows: [&[f64]; W] = std::array::from_fn(|w| &qs[(done + w) * n..(done + w + 1) * n]);
+            for tip in self.robot.tip_positions(&rows) {
+                out[done] = self.score(&TipError::of_position(target, &tip));
+                done += 1;
+            }
+        }
+        done
+    }
 }
 
 impl Objective for Problem<'_> {
@@ -38,6 +58,19 @@ impl Objective for Problem<'_> {
     #[inline]
     fn evaluate(&mut self, q: &[f64]) -> Score {
         self.score(&self.target.error(self.robot, q))
+    }
+
+    /// Positions go through the kinematics four and two at a time.
+    fn evaluate_all(&mut self, qs: &[f64], out: &mut [Score]) {
+        let n = self.dimension();
+        let mut done = 0;
+        if let Target::Position(target) = self.target {
+            done = self.evaluate_lanes::<4>(target, qs, out, done);
+            done = self.evaluate_lanes::<2>(target, qs, out, done);
+        }
+        for (q, score) in qs.chunks_exact(n).zip(out).skip(done) {
+            *score = self.evaluate(q);
+        }
     }
 
     /// Uniform in the box; a side without a limit is drawn from the joint's sampling range.

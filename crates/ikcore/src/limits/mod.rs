@@ -133,11 +133,9 @@ impl Limits {
     pub fn require_none(&self, fields: &[Field], method: &str, remedy: &str) -> Result<()> {
         match fields.iter().find(|field| self.is_finite(**field)) {
             None => Ok(()),
-            Some(field) => Err(Error::UnsupportedLimit {
-                field: field.to_string(),
-                method: method.into(),
-                remedy: remedy.into(),
-            }),
+            Some(field) => {
+                Err(Error::UnsupportedLimit { field: field.to_string(), method: method.into(), remedy: remedy.into() })
+            }
         }
     }
 
@@ -172,7 +170,13 @@ impl Limits {
         for (i, joint) in self.joints.iter().enumerate() {
             let (lower, upper) = (self.lower[i].at(t), self.upper[i].at(t));
             if !(lower <= q[i] && q[i] <= upper) {
-                return Err(Error::OutsideLimits { what: what.into(), joint: joint.clone(), value: q[i], lower, upper });
+                return Err(Error::OutsideLimits {
+                    what: what.into(),
+                    joint: joint.clone(),
+                    value: q[i],
+                    lower,
+                    upper,
+                });
             }
         }
         Ok(())

@@ -67,7 +67,8 @@ mod tests {
 
     fn slider(lower: f64, upper: f64, velocity: f64) -> Robot {
         let mut chain = ChainBuilder::new("slider", "base");
-        let joint = chain.add_joint(Joint::new("x", JointKind::Prismatic).with_range(lower, upper).with_velocity(velocity));
+        let joint =
+            chain.add_joint(Joint::new("x", JointKind::Prismatic).with_range(lower, upper).with_velocity(velocity));
         chain.moving(joint, JointKind::Prismatic, Vector3::x(), Drive::DIRECT);
         chain.fixed(pose::translation(0.0, 0.0, 0.1));
         chain.link("tip");

@@ -104,11 +104,16 @@ mod tests {
     #[test]
     fn logarithm_of_exponential_is_the_rotation_vector() {
         for axis in directions() {
-            for angle in [0.0, 1e-12, 1e-7, 1e-3, 0.5, 2.0, 2.69, 2.7, 3.0, 3.141, 3.1415926, std::f64::consts::PI - 1e-10] {
+            for angle in
+                [0.0, 1e-12, 1e-7, 1e-3, 0.5, 2.0, 2.69, 2.7, 3.0, 3.141, 3.1415926, std::f64::consts::PI - 1e-10]
+            {
                 let target = Rotation3::from_euler_angles(0.4, -1.1, 2.0);
                 let turned = Rotation3::new(axis * angle) * target;
                 let phi = Vector3::from(rotation_between(&frame(target), &frame(turned)));
-                assert!((phi - axis * angle).norm() < 3e-15 + 1e-15 * angle / (3.15 - angle).max(1e-3), "{axis} {angle} {phi}");
+                assert!(
+                    (phi - axis * angle).norm() < 3e-15 + 1e-15 * angle / (3.15 - angle).max(1e-3),
+                    "{axis} {angle} {phi}"
+                );
             }
         }
     }

@@ -14,7 +14,7 @@ pub type Columns = [[f64; 6]; MAX_DOF];
 
 /// Calls `$kernel::<A, N, L>` for the chain's padded size, fused where the machine can.
 macro_rules! dispatch {
-    ($chain:expr, $kernel:ident ( $($argument:expr),* )) => {{
+    ($chain:expr, $kernel:ident ( $($argument:expr),* ) $(, $lanes:ident)?) => {{
         macro_rules! by_size {
             ($call:ident) => {
                 match $chain.stages.len() {
@@ -25,21 +25,21 @@ macro_rules! dispatch {
         }
         #[cfg(target_arch = "x86_64")]
         {
-            macro_rules! portable { ($n:literal, $l:literal) => { $kernel::<Separate, $n, $l>($($argument),*) }; }
+            macro_rules! portable { ($n:literal, $l:literal) => { $kernel::<Separate, $n, $l $(, $lanes)?>($($argument),*) }; }
             macro_rules! fused {
                 // SAFETY: reached only where `has_fused` found the instructions.
-                ($n:literal, $l:literal) => { unsafe { fused::$kernel::<$n, $l>($($argument),*) } };
+                ($n:literal, $l:literal) => { unsafe { fused::$kernel::<$n, $l $(, $lanes)?>($($argument),*) } };
             }
             if crate::math::arithmetic::has_fused() { by_size!(fused) } else { by_size!(portable) }
         }
         #[cfg(target_arch = "aarch64")]
         {
-            macro_rules! native { ($n:literal, $l:literal) => { $kernel::<Fused, $n, $l>($($argument),*) }; }
+            macro_rules! native { ($n:literal, $l:literal) => { $kernel::<Fused, $n, $l $(, $lanes)?>($($argument),*) }; }
             by_size!(native)
         }
         #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
         {
-            macro_rules! portable { ($n:literal, $l:literal) => { $kernel::<Separate, $n, $l>($($argument),*) }; }
+            macro_rules! portable { ($n:literal, $l:literal) => { $kernel::<Separate, $n, $l $(, $lanes)?>($($argument),*) }; }
             by_size!(portable)
         }
     }};
@@ -56,6 +56,13 @@ impl Chain {
     #[inline]
     pub fn tip_position(&self, q: &[f64]) -> [f64; 3] {
         dispatch!(self, tip_position(self, q))
+    }
+
+    /// The tip's positions (m) at `W` configurations side by side; lane by lane the same bits as
+    /// [`tip_position`](Self::tip_position).
+    #[inline]
+    pub fn tip_positions<const W: usize>(&self, qs: &[&[f64]; W]) -> [[f64; 3]; W] {
+        dispatch!(self, tip_positions(self, qs), W)
     }
 
     /// The tip's frame and the geometric Jacobian at the tip, world axes, linear rows before angular rows.
@@ -88,6 +95,14 @@ mod fused {
     }
 
     #[target_feature(enable = "avx2,fma")]
+    pub fn tip_positions<const N: usize, const L: usize, const W: usize>(
+        chain: &Chain,
+        qs: &[&[f64]; W],
+    ) -> [[f64; 3]; W] {
+        super::tip_positions::<Fused, N, L, W>(chain, qs)
+    }
+
+    #[target_feature(enable = "avx2,fma")]
     pub fn jacobian<const N: usize, const L: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
         super::jacobian::<Fused, N, L>(chain, q, columns)
     }
@@ -114,7 +129,11 @@ fn motions<A: Arithmetic, const L: usize>(chain: &Chain, q: &[f64]) -> ([f64; L]
 /// Walks the chain from the base; `visit(i, frame)` sees the frame in which stage i moves, slid but not yet turned
 /// (its origin lies on the axis, its z axis is the axis). Returns the tip's frame.
 #[inline(always)]
-fn pass<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64], mut visit: impl FnMut(usize, &Frame)) -> Frame {
+fn pass<A: Arithmetic, const N: usize, const L: usize>(
+    chain: &Chain,
+    q: &[f64],
+    mut visit: impl FnMut(usize, &Frame),
+) -> Frame {
     let (sines, cosines, slides) = motions::<A, L>(chain, q);
     let mut frame = chain.stages[0];
     for i in 0..N {
@@ -146,6 +165,31 @@ fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q:
     point
 }
 
+/// [`tip_position`] for `W` configurations at once; every operation is done for all lanes before the next.
+#[inline(always)]
+fn tip_positions<A: Arithmetic, const N: usize, const L: usize, const W: usize>(
+    chain: &Chain,
+    qs: &[&[f64]; W],
+) -> [[f64; 3]; W] {
+    let origin = chain.tip.origin;
+    let (mut x, mut y, mut z) = ([origin[0]; W], [origin[1]; W], [origin[2]; W]);
+    for i in (0..N).rev() {
+        let (motion, stage) = (&chain.motions[i], &chain.stages[i]);
+        let value: [f64; W] = std::array::from_fn(|w| qs[w][motion.joint]);
+        let angle = value.map(|q| A::mul_add(motion.turn_scale, q, motion.turn_offset));
+        let (sine, cosine) = sincos::<A, W>(&angle);
+        for w in 0..W {
+            let turned = [
+                A::mul_add(cosine[w], x[w], -sine[w] * y[w]),
+                A::mul_add(sine[w], x[w], cosine[w] * y[w]),
+                z[w] + A::mul_add(motion.slide_scale, value[w], motion.slide_offset),
+            ];
+            [x[w], y[w], z[w]] = stage.place::<A>(&turned);
+        }
+    }
+    std::array::from_fn(|w| [x[w], y[w], z[w]])
+}
+
 #[inline(always)]
 fn jacobian<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
     let (mut axes, mut origins) = ([[0.0; 3]; N], [[0.0; 3]; N]);
@@ -174,7 +218,11 @@ fn jacobian<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f
 }
 
 #[inline(always)]
-fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64], reached: &mut [Frame; MAX_DOF + 1]) {
+fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(
+    chain: &Chain,
+    q: &[f64],
+    reached: &mut [Frame; MAX_DOF + 1],
+) {
     let (sines, cosines, _) = motions::<A, L>(chain, q);
     pass::<A, N, L>(chain, q, |i, frame| reached[i + 1] = frame.turned::<A>(sines[i], cosines[i]));
 }

@@ -158,6 +158,12 @@ impl Robot {
         self.chain.tip_position(q)
     }
 
+    /// Positions of the tip (m) at `W` configurations side by side; the same bits as one by one.
+    #[inline]
+    pub fn tip_positions<const W: usize>(&self, qs: &[&[f64]; W]) -> [[f64; 3]; W] {
+        self.chain.tip_positions(qs)
+    }
+
     /// Tip and Jacobian in one pass, without the check: `q` has one finite entry per joint.
     #[inline]
     pub fn tip_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {

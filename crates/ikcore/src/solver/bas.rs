@@ -9,6 +9,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use smallvec::SmallVec;
+
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result, require_positive};
@@ -97,6 +99,18 @@ pub struct State {
     base: Point,
     base_value: f64,
     passes: usize,
+    group: Group,
+}
+
+/// Explorations of a star do not depend on each other, so that four at a time go to the objective.
+const LARGEST_GROUP: usize = 4;
+
+/// Room for a group of explorations, one after another.
+#[derive(Debug, Clone)]
+struct Group {
+    directions: SmallVec<[f64; LARGEST_GROUP * 8]>,
+    antennae: SmallVec<[f64; 2 * LARGEST_GROUP * 8]>,
+    beetles: SmallVec<[f64; LARGEST_GROUP * 8]>,
 }
 
 impl<O: Objective + ?Sized> Solver<O> for Bas {
@@ -105,7 +119,13 @@ impl<O: Objective + ?Sized> Solver<O> for Bas {
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
         let mut base = Point::from_slice(x0);
         let base_value = evaluator.evaluate(&mut base)?;
-        Ok(State { base, base_value, passes: 0 })
+        let entries = self.group() * base.len();
+        let group = Group {
+            directions: SmallVec::from_elem(0.0, entries),
+            antennae: SmallVec::from_elem(0.0, 2 * entries),
+            beetles: SmallVec::from_elem(0.0, entries),
+        };
+        Ok(State { base, base_value, passes: 0, group })
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
@@ -114,39 +134,53 @@ impl<O: Objective + ?Sized> Solver<O> for Bas {
         }
         state.passes += 1;
         let n = state.base.len();
-        let mut b = Point::from_elem(0.0, n);
-        let mut antennae = Point::from_elem(0.0, 2 * n);
         let (mut current, mut current_value) = (state.base.clone(), state.base_value);
         let (mut pass_best, mut pass_value) = (current.clone(), f64::INFINITY);
         let mut lambda = self.antenna_length(state.base_value);
-        for _ in 0..self.explorations {
-            // i) a random direction, ii) to iv) smell at the antennae, eq. (8) to (10)
-            evaluator.rng().direction(&mut b);
-            for k in 0..n {
-                antennae[k] = current[k] + lambda * b[k];
-                antennae[n + k] = current[k] - lambda * b[k];
+        let mut explored = 0;
+        while explored < self.explorations {
+            let count = self.group().min(self.explorations - explored);
+            explored += count;
+            // i) random directions, ii) to iv) smell at the antennae, eq. (8) to (10)
+            let Group { directions, antennae, beetles } = &mut state.group;
+            for e in 0..count {
+                let b = &mut directions[e * n..(e + 1) * n];
+                evaluator.rng().direction(b);
+                for k in 0..n {
+                    antennae[2 * e * n + k] = current[k] + lambda * b[k];
+                    antennae[(2 * e + 1) * n + k] = current[k] - lambda * b[k];
+                }
             }
-            let [left, right] = evaluator.evaluate_pair(&mut antennae)?;
+            let mut smells = [0.0; 2 * LARGEST_GROUP];
+            evaluator.evaluate_all(&mut antennae[..2 * count * n], &mut smells[..2 * count])?;
             // v) move towards the lower value, eq. (11) and (13); equal smells leave the beetle where it is
-            let delta = self.c2 * lambda * sign(left - right);
-            let mut beetle = current.clone();
-            beetle.iter_mut().zip(&b).for_each(|(x, b)| *x -= delta * b);
-            // vi) record
-            let value = evaluator.evaluate(&mut beetle)?;
-            if value < pass_value {
-                (pass_best, pass_value) = (beetle.clone(), value);
+            for e in 0..count {
+                let delta = self.c2 * lambda * sign(smells[2 * e] - smells[2 * e + 1]);
+                for k in 0..n {
+                    beetles[e * n + k] = current[k] - delta * directions[e * n + k];
+                }
             }
-            // vii) update the location
-            match self.variant {
-                Variant::Star => {}
-                Variant::Chain => current = beetle,
-                Variant::Greedy => {
-                    evaluator.check_solved()?;
-                    if value < current_value {
-                        (current, current_value) = (beetle, value);
+            let mut values = [0.0; LARGEST_GROUP];
+            evaluator.evaluate_all(&mut beetles[..count * n], &mut values[..count])?;
+            for (beetle, value) in beetles.chunks_exact(n).zip(values).take(count) {
+                // vi) record
+                if value < pass_value {
+                    (pass_best, pass_value) = (Point::from_slice(beetle), value);
+                }
+                // vii) update the location
+                match self.variant {
+                    Variant::Star => {}
+                    Variant::Chain => current.copy_from_slice(beetle),
+                    Variant::Greedy if value < current_value => {
+                        current.copy_from_slice(beetle);
+                        current_value = value;
                         lambda = self.antenna_length(value);
                     }
+                    Variant::Greedy => {}
                 }
+            }
+            if self.variant == Variant::Greedy {
+                evaluator.check_solved()?;
             }
         }
         // Line 15; a pass that found nothing better starts again from the same place.
@@ -158,6 +192,11 @@ impl<O: Objective + ?Sized> Solver<O> for Bas {
 }
 
 impl Bas {
+    /// Explorations that start from the same point.
+    fn group(&self) -> usize {
+        if self.variant == Variant::Star { LARGEST_GROUP } else { 1 }
+    }
+
     /// lambda = c1 sqrt(o), eq. (12); where the start has no finite value, a unit antenna.
     fn antenna_length(&self, value: f64) -> f64 {
         self.c1 * if value.is_finite() { value.sqrt() } else { 1.0 }

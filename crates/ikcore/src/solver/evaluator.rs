@@ -1,5 +1,7 @@
 //! Between solver and objective: counts, clips, checks, and keeps the best.
 
+use smallvec::SmallVec;
+
 use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Point, Score};
 use crate::rng::LazyRng;
 
@@ -49,6 +51,7 @@ pub struct Evaluator<'a, O: ?Sized> {
     best: Best,
     attempt_value: f64,
     attempts: usize,
+    scores: SmallVec<[Score; 8]>,
 }
 
 impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
@@ -72,6 +75,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             best: Best { x: Point::new(), value: f64::INFINITY, solved: false },
             attempt_value: f64::INFINITY,
             attempts: 1,
+            scores: SmallVec::new(),
         }
     }
 
@@ -129,24 +133,24 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         Ok(self.record(x, score))
     }
 
-    /// [`evaluate`](Self::evaluate) for the two antennae of a beetle, in one call of the objective.
+    /// Clips the points stored one after another in `xs`, and writes the value of each.
     ///
     /// # Errors
-    /// As for one point; with a budget for one only, that one is evaluated before the halt.
-    #[inline]
-    pub fn evaluate_pair(&mut self, pair: &mut [f64]) -> Result<[f64; 2], Halt> {
+    /// As for one point; with a budget for some of them only, the first ones are evaluated before the halt.
+    pub fn evaluate_all(&mut self, xs: &mut [f64], values: &mut [f64]) -> Result<(), Halt> {
         let n = self.dimension();
-        let (first, second) = pair.split_at_mut(n);
-        if self.evaluations + 2 > self.stop.max_evaluations {
-            self.evaluate(first)?;
-            return Err(Halt::Budget);
+        let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
+        self.spend(affordable)?;
+        let xs = &mut xs[..affordable * n];
+        xs.chunks_exact_mut(n).for_each(|x| self.bounds.clip(x));
+        let mut scores = std::mem::take(&mut self.scores);
+        scores.resize(affordable, Score { value: f64::INFINITY, solved: false });
+        self.objective.evaluate_all(xs, &mut scores);
+        for ((x, score), value) in xs.chunks_exact(n).zip(&scores).zip(values.iter_mut()) {
+            *value = self.record(x, *score);
         }
-        self.spend(2)?;
-        self.bounds.clip(first);
-        self.bounds.clip(second);
-        let mut scores = [Score { value: f64::INFINITY, solved: false }; 2];
-        self.objective.evaluate_all(pair, &mut scores);
-        Ok([self.record(&pair[..n], scores[0]), self.record(&pair[n..], scores[1])])
+        self.scores = scores;
+        if affordable < values.len() { Err(Halt::Budget) } else { Ok(()) }
     }
 
     /// What the driver asks after every step: is it time to stop?

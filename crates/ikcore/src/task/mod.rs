@@ -57,6 +57,12 @@ pub struct TipError {
 }
 
 impl TipError {
+    /// The error of a tip whose orientation does not matter.
+    #[inline]
+    pub fn of_position(target: &[f64; 3], tip: &[f64; 3]) -> Self {
+        Self { position: so3::norm(&position::residual(target, tip)), rotation: f64::NAN }
+    }
+
     /// The sum of squares that solvers minimise.
     pub fn value(&self) -> f64 {
         // max() drops the NaN of an orientation that was not asked for.
@@ -107,10 +113,7 @@ impl Target {
     #[inline]
     pub fn error(&self, robot: &Robot, q: &[f64]) -> TipError {
         match self {
-            Self::Position(target) => {
-                let position = so3::norm(&position::residual(target, &robot.tip_position(q)));
-                TipError { position, rotation: f64::NAN }
-            }
+            Self::Position(target) => TipError::of_position(target, &robot.tip_position(q)),
             Self::Pose(target) => {
                 let tip = robot.tip(q);
                 TipError {

@@ -4,8 +4,8 @@
 //! exact at any distance from the target, not only near it.
 
 use super::{TipError, position};
-use crate::math::so3::{self, InverseLeftJacobian};
 use crate::math::Frame;
+use crate::math::so3::{self, InverseLeftJacobian};
 use crate::objective::Linearization;
 
 /// Residual and derivative from the tip's geometric Jacobian, which stands in `out`.

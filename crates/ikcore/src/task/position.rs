@@ -1,7 +1,7 @@
 //! The tip at a point: r = p - p_d, dr/dq = linear rows of the geometric Jacobian.
 
 use super::TipError;
-use crate::math::{Frame, so3};
+use crate::math::Frame;
 use crate::objective::Linearization;
 
 /// p - p_d (m).
@@ -18,5 +18,5 @@ pub fn linearize(target: &[f64; 3], tip: &Frame, dof: usize, out: &mut Lineariza
     for column in &mut out.columns[..dof] {
         column[3..].fill(0.0);
     }
-    TipError { position: so3::norm(&[x, y, z]), rotation: f64::NAN }
+    TipError::of_position(target, &tip.origin)
 }

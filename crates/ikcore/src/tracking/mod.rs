@@ -106,10 +106,8 @@ fn first_configuration(
         joint.upper = at_start(Field::Upper).nth(i).unwrap_or(joint.upper);
     })?;
     // Tighter than the band, so that the track does not begin at its edge.
-    let tolerance = Tolerance {
-        position: 0.1 * options.tolerance.position,
-        rotation: 0.1 * options.tolerance.rotation,
-    };
+    let tolerance =
+        Tolerance { position: 0.1 * options.tolerance.position, rotation: 0.1 * options.tolerance.rotation };
     let options = SolveOptions { tolerance, seed: options.seed, ..SolveOptions::default() };
     Ok(solve(&constant, &target(reference, 0), &options, monitor)?.q.to_vec())
 }

@@ -148,8 +148,12 @@ impl Record {
         let since = self.time[joined];
         let outside = self.step_status[joined..].iter().filter(|s| **s != Status::Solved).count();
         match self.status {
-            Status::Solved => format!("in the band of {band:.3e} m from t = {since} s on; worst error there {:.3e} m", worst(joined)),
-            Status::Interrupted => format!("interrupted at t = {} s: {}", self.time[rows - 1], Status::Interrupted.advice()),
+            Status::Solved => {
+                format!("in the band of {band:.3e} m from t = {since} s on; worst error there {:.3e} m", worst(joined))
+            }
+            Status::Interrupted => {
+                format!("interrupted at t = {} s: {}", self.time[rows - 1], Status::Interrupted.advice())
+            }
             _ => format!(
                 "joined the path at t = {since} s, then outside the band of {band:.3e} m in {outside} of {} steps, by up to {:.3e} m: {advice}",
                 rows - 1,
