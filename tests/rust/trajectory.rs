@@ -1,5 +1,7 @@
 //! Piecewise polynomial joint motion: values, exact extrema, samples, errors by their messages.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
 use ikcore::trajectory::Trajectory;
 use proptest::prelude::*;
 
