@@ -165,6 +165,24 @@ pub enum Error {
         /// What is wrong and what would be right.
         problem: String,
     },
+    /// Times that do not increase.
+    #[error("{what} must increase, but row {row} has {value} after {previous}")]
+    NotIncreasing {
+        /// What was passed, such as "path times".
+        what: String,
+        /// The first row, from 0, that is not later than the one before it.
+        row: usize,
+        /// The time of the row before (s).
+        previous: f64,
+        /// The time of this row (s).
+        value: f64,
+    },
+    /// A joint motion that no robot could make.
+    #[error("trajectory: {problem}")]
+    InvalidTrajectory {
+        /// What is wrong and what would be right.
+        problem: String,
+    },
     /// Stored bytes that are not what they should be.
     #[error("cannot restore {what}: {problem}")]
     Corrupt {

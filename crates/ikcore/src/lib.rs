@@ -12,6 +12,7 @@ pub mod robot;
 pub mod solver;
 pub mod task;
 pub mod tracking;
+pub mod trajectory;
 
 pub use error::{Error, Result};
 pub use nalgebra;

@@ -1,13 +1,18 @@
-//! Rotations, rigid transforms, fast sines and the one bounded step. Plain arrays where it is hot, nalgebra elsewhere.
+//! Rotations, rigid transforms, fast sines, polynomials, knots in time and the one bounded step. Plain arrays where it
+//! is hot, nalgebra elsewhere.
 
 pub mod arithmetic;
 pub mod box_step;
 pub mod frame;
+pub mod knots;
+pub mod polynomial;
 pub mod pose;
 pub mod sincos;
 pub mod so3;
+pub mod ticks;
 
 pub use frame::Frame;
+pub use knots::Knots;
 pub use pose::Pose;
 
 /// The largest number of independent joints, and of moving elements, of a robot.

@@ -1,24 +1,43 @@
-//! stub
-#![allow(missing_docs)]
-use crate::math::Pose;
-pub struct Reference {
-    pub d: f64,
-    pub p: Vec<[f64; 3]>,
-}
-impl Reference {
-    pub fn dt(&self) -> f64 {
-        self.d
-    }
-    pub fn len(&self) -> usize {
-        self.p.len()
-    }
-    pub fn time(&self, i: usize) -> f64 {
-        i as f64 * self.d
-    }
-    pub fn position(&self, i: usize) -> [f64; 3] {
-        self.p[i]
-    }
-    pub fn pose(&self, _i: usize) -> Option<Pose> {
-        None
-    }
-}
+//! What a tip follows: curves in space and time, one a file, a [`Path`] of any of them, and its samples at the ticks.
+//!
+//! | curve | from |
+//! |---|---|
+//! | [`Circle`] | Cheng et al. 2020, eq. (14) |
+//! | [`Hypotrochoid`] | Khan et al. 2022, eq. (20), corrected |
+//! | [`Rose`] | r = a cos(k u) |
+//! | [`Polyline`] | straight strokes through given points; [`Polyline::letter_m`], [`Polyline::pentagram`] |
+//! | [`Samples`] | measured or computed positions or poses |
+//!
+//! ```
+//! use ikcore::path::{Circle, Path, Plane};
+//!
+//! let circle = Path::new(Circle::new(Plane::xy([0.3, 0.3, 1.0])?, 0.2, 30.0)?);
+//! let reference = circle.sample(0.2)?;
+//! assert_eq!(reference.len(), 151);
+//! assert_eq!(reference.position(0), [0.4, 0.3, 1.0]);
+//! # Ok::<(), ikcore::Error>(())
+//! ```
+
+mod circle;
+mod curve;
+mod hypotrochoid;
+mod letter_m;
+mod orientation;
+mod pentagram;
+mod plane;
+mod polyline;
+mod reference;
+mod rose;
+mod samples;
+mod timed_path;
+
+pub use circle::Circle;
+pub use curve::Curve;
+pub use hypotrochoid::Hypotrochoid;
+pub use letter_m::{KHAN_2022_M_CENTER, KHAN_2022_M_SIZE};
+pub use plane::Plane;
+pub use polyline::Polyline;
+pub use reference::Reference;
+pub use rose::Rose;
+pub use samples::Samples;
+pub use timed_path::Path;

@@ -1,0 +1,95 @@
+//! Polynomials of low degree, as coefficients in ascending powers: p(x) = c\[0\] + c\[1\] x + c\[2\] x^2 + ...
+
+use smallvec::SmallVec;
+
+/// Coefficients or roots of a polynomial up to degree 5, on the stack.
+pub type Short = SmallVec<[f64; 6]>;
+
+/// Value, first and second derivative at `x`, in one Horner pass.
+pub fn evaluate(coefficients: &[f64], x: f64) -> [f64; 3] {
+    let (mut value, mut slope, mut half_bend) = (0.0, 0.0, 0.0);
+    for &c in coefficients.iter().rev() {
+        half_bend = half_bend * x + slope;
+        slope = slope * x + value;
+        value = value * x + c;
+    }
+    [value, slope, 2.0 * half_bend]
+}
+
+/// The coefficients of the derivative; none for a constant.
+pub fn derivative(coefficients: &[f64]) -> Short {
+    coefficients.iter().enumerate().skip(1).map(|(power, c)| power as f64 * c).collect()
+}
+
+/// All distinct real roots in `[lower, upper]`, ascending. Of the zero polynomial: the two ends.
+///
+/// Between the roots of its derivative a polynomial is monotone, so that each stretch holds at most one root, bracketed
+/// by its ends. Where two roots are so near that rounding hides the sign between them, they are found as one.
+pub fn roots(coefficients: &[f64], lower: f64, upper: f64) -> Short {
+    let mut found = Short::new();
+    let mut left = (lower, value_or_zero(coefficients, lower));
+    for x in stationary_points(coefficients, lower, upper).into_iter().chain([upper]) {
+        let right = (x, value_or_zero(coefficients, x));
+        if left.1 == 0.0 {
+            found.push(left.0);
+        } else if right.1 != 0.0 && (left.1 < 0.0) != (right.1 < 0.0) {
+            found.push(bracketed_root(coefficients, left.0, right.0));
+        }
+        left = right;
+    }
+    if left.1 == 0.0 {
+        found.push(left.0);
+    }
+    found
+}
+
+/// The largest magnitude on `[lower, upper]`: at an end, or where the derivative vanishes.
+pub fn largest_magnitude(coefficients: &[f64], lower: f64, upper: f64) -> f64 {
+    let candidates = stationary_points(coefficients, lower, upper).into_iter().chain([lower, upper]);
+    candidates.map(|x| evaluate(coefficients, x)[0].abs()).fold(0.0, f64::max)
+}
+
+/// Where the derivative vanishes strictly inside `(lower, upper)`.
+fn stationary_points(coefficients: &[f64], lower: f64, upper: f64) -> Short {
+    if coefficients.len() < 2 {
+        return Short::new();
+    }
+    let mut points = roots(&derivative(coefficients), lower, upper);
+    points.retain(|x| lower < *x && *x < upper);
+    points
+}
+
+/// The value at `x`, or zero where it is no larger than the rounding of its own terms.
+fn value_or_zero(coefficients: &[f64], x: f64) -> f64 {
+    let value = evaluate(coefficients, x)[0];
+    let terms = coefficients.iter().rev().fold(0.0, |sum, c| sum * x.abs() + c.abs());
+    if value.abs() <= 4.0 * f64::EPSILON * terms { 0.0 } else { value }
+}
+
+/// The root between two points where the signs differ, to the last bits.
+///
+/// Newton's steps, with a bisection instead wherever one leaves the bracket or is not half as long as the step before.
+fn bracketed_root(coefficients: &[f64], mut lower: f64, mut upper: f64) -> f64 {
+    let rising = evaluate(coefficients, lower)[0] < 0.0;
+    let mut last_step = upper - lower;
+    let mut x = lower + 0.5 * last_step;
+    loop {
+        let [value, slope, _] = evaluate(coefficients, x);
+        if value == 0.0 {
+            return x;
+        }
+        if (value < 0.0) == rising {
+            lower = x;
+        } else {
+            upper = x;
+        }
+        let newton = x - value / slope;
+        let converges = lower < newton && newton < upper && (newton - x).abs() < 0.5 * last_step;
+        let next = if converges { newton } else { lower + 0.5 * (upper - lower) };
+        last_step = (next - x).abs();
+        if last_step <= f64::EPSILON * x.abs() || next == lower || next == upper {
+            return next;
+        }
+        x = next;
+    }
+}

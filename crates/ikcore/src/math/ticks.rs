@@ -1,0 +1,21 @@
+//! The ticks of a clock that samples motion.
+
+use crate::error::{Error, Result, require_positive};
+
+/// More ticks than this are taken for a mistake in `dt` rather than for a wish (2.7 hours at 1 kHz).
+const MAX_TICKS: f64 = 1e7;
+
+/// How many ticks of `dt` (s) cover `duration` (s): the ceiling of their ratio, except that a remainder below 1e-9 of a
+/// tick is rounding and not another tick.
+///
+/// # Errors
+/// [`Error::OutOfRange`] where `dt` is not positive, or so small that there would be over 10 million ticks.
+pub fn ticks(duration: f64, dt: f64) -> Result<usize> {
+    require_positive("dt", dt)?;
+    let count = (duration / dt - 1e-9).ceil().max(1.0);
+    if count > MAX_TICKS {
+        let requirement = format!("at least {} s to cover {duration} s in 10 million ticks", duration / MAX_TICKS);
+        return Err(Error::out_of_range("dt", &requirement, dt));
+    }
+    Ok(count as usize)
+}

@@ -1,0 +1,105 @@
+//! Straight strokes.
+
+use super::Curve;
+use crate::error::{Error, Result, require_finite, require_positive};
+use crate::math::Knots;
+
+/// Straight strokes from vertex to vertex, each at its own constant speed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polyline {
+    knots: Knots,
+    vertices: Vec<[f64; 3]>,
+}
+
+impl Polyline {
+    /// The strokes through `points` (m) in `duration` (s), at one speed from end to end. A point that repeats the one
+    /// before it adds nothing.
+    ///
+    /// # Errors
+    /// [`Error::InvalidPath`] for fewer than 2 points or points without extent, [`Error::NotFinite`],
+    /// [`Error::OutOfRange`] for a duration that is not positive.
+    pub fn new(points: &[[f64; 3]], duration: f64) -> Result<Self> {
+        require_positive("duration", duration)?;
+        check_points(points)?;
+        let travelled = arc_lengths(points);
+        let length = travelled[points.len() - 1];
+        if !(length.is_finite() && length > 0.0) {
+            let problem = format!("the points of a polyline must span a positive, finite length, not {length} m");
+            return Err(Error::InvalidPath { problem });
+        }
+        let (mut times, mut vertices) = (vec![0.0], vec![points[0]]);
+        for (point, arc_length) in points.iter().zip(travelled).skip(1) {
+            let time = duration * (arc_length / length);
+            if times.last().is_some_and(|last| time > *last) {
+                times.push(time);
+                vertices.push(*point);
+            }
+        }
+        Self::through(times, vertices)
+    }
+
+    /// The strokes that pass each vertex (m) at its time (s).
+    pub(super) fn through(times: Vec<f64>, vertices: Vec<[f64; 3]>) -> Result<Self> {
+        check_points(&vertices)?;
+        if times.len() != vertices.len() {
+            let expected = format!("{}, one a point", vertices.len());
+            return Err(Error::WrongLength { what: "path times".into(), expected, got: times.len() });
+        }
+        Ok(Self { knots: Knots::new("path times", times)?, vertices })
+    }
+
+    /// The strokes between `vertices` (m), each in the same share of `duration` (s).
+    pub(super) fn equal_strokes<const N: usize>(vertices: [[f64; 3]; N], duration: f64) -> Result<Self> {
+        require_positive("duration", duration)?;
+        let times = (0..N).map(|i| duration * (i as f64 / (N - 1) as f64)).collect();
+        Self::through(times, vertices.to_vec())
+    }
+
+    /// When each vertex is passed.
+    pub(super) fn knots(&self) -> &Knots {
+        &self.knots
+    }
+}
+
+impl Curve for Polyline {
+    fn duration(&self) -> f64 {
+        self.knots.duration()
+    }
+
+    fn position(&self, t: f64) -> [f64; 3] {
+        let (stroke, elapsed) = self.knots.locate(t);
+        let share = elapsed / self.knots.span(stroke);
+        let [from, to] = [self.vertices[stroke], self.vertices[stroke + 1]];
+        // In this form both ends are exact.
+        std::array::from_fn(|i| (1.0 - share) * from[i] + share * to[i])
+    }
+
+    fn velocity(&self, t: f64) -> [f64; 3] {
+        let (stroke, _) = self.knots.locate(t);
+        let [from, to] = [self.vertices[stroke], self.vertices[stroke + 1]];
+        std::array::from_fn(|i| (to[i] - from[i]) / self.knots.span(stroke))
+    }
+}
+
+/// Err unless there are at least two points and all are finite.
+pub(super) fn check_points(points: &[[f64; 3]]) -> Result<()> {
+    if points.len() < 2 {
+        let problem = format!("it needs at least 2 points, got {}", points.len());
+        return Err(Error::InvalidPath { problem });
+    }
+    require_finite("path points", points.as_flattened(), |i| format!("{} of row {}", ["x", "y", "z"][i % 3], i / 3))
+}
+
+/// The length (m) travelled up to each point.
+fn arc_lengths(points: &[[f64; 3]]) -> Vec<f64> {
+    let strokes = points.windows(2).map(|ends| {
+        let [x, y, z]: [f64; 3] = std::array::from_fn(|i| ends[1][i] - ends[0][i]);
+        x.hypot(y).hypot(z)
+    });
+    let mut travelled = 0.0;
+    let sums = strokes.map(|length| {
+        travelled += length;
+        travelled
+    });
+    std::iter::once(0.0).chain(sums).collect()
+}

@@ -1,0 +1,69 @@
+//! What a tracker follows, tick by tick.
+
+use nalgebra::Matrix3;
+
+use super::orientation::check_rotations;
+use super::polyline::check_points;
+use crate::error::{Error, Result, require_positive};
+use crate::math::{Pose, pose};
+
+/// Positions, and where wanted rotations, at the ticks t_i = i dt: row 0 is where to start, row i where to be at the end
+/// of tick i.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    dt: f64,
+    positions: Vec<[f64; 3]>,
+    rotations: Option<Vec<Matrix3<f64>>>,
+}
+
+#[expect(clippy::len_without_is_empty, reason = "there are always at least two rows")]
+impl Reference {
+    /// The reference with these positions (m) and rotations at ticks of `dt` (s).
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for `dt` not positive, [`Error::InvalidPath`] for fewer than 2 rows,
+    /// [`Error::WrongLength`] where rows of positions and rotations differ in number, [`Error::NotFinite`],
+    /// [`Error::NotRigid`].
+    pub fn new(dt: f64, positions: Vec<[f64; 3]>, rotations: Option<Vec<Matrix3<f64>>>) -> Result<Self> {
+        require_positive("dt", dt)?;
+        check_points(&positions)?;
+        let rotations = rotations.map(|rows| check_rotations(rows.iter())).transpose()?;
+        match &rotations {
+            Some(rows) if rows.len() != positions.len() => {
+                let expected = format!("{}, one a position", positions.len());
+                Err(Error::WrongLength { what: "path rotations".into(), expected, got: rows.len() })
+            }
+            _ => Ok(Self { dt, positions, rotations }),
+        }
+    }
+
+    /// Time between two rows (s).
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// Number of rows: one more than there are ticks.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Time of row `i` (s).
+    pub fn time(&self, i: usize) -> f64 {
+        i as f64 * self.dt
+    }
+
+    /// Position of row `i` (m).
+    pub fn position(&self, i: usize) -> [f64; 3] {
+        self.positions[i]
+    }
+
+    /// Rotation of row `i`, if there are rotations.
+    pub fn rotation(&self, i: usize) -> Option<Matrix3<f64>> {
+        self.rotations.as_ref().map(|rotations| rotations[i])
+    }
+
+    /// Position and rotation of row `i`, if there are rotations.
+    pub fn pose(&self, i: usize) -> Option<Pose> {
+        self.rotation(i).map(|rotation| pose::from_parts(self.position(i), rotation))
+    }
+}

@@ -1,0 +1,74 @@
+//! A curve with the orientation to hold along it.
+
+use std::sync::Arc;
+
+use nalgebra::Matrix3;
+
+use super::orientation::check_rotation;
+use super::{Curve, Reference};
+use crate::error::Result;
+use crate::math::ticks::ticks;
+use crate::math::{Pose, pose};
+
+/// A reference in space and time for the tip: a [`Curve`], and where wanted an orientation. Cheap to clone.
+///
+/// As in [`Curve`], time `t` (s) is clamped to `[0, duration]`, and all is in the frame of the robot's base.
+#[derive(Debug, Clone)]
+pub struct Path {
+    curve: Arc<dyn Curve>,
+    orientation: Option<Matrix3<f64>>,
+}
+
+impl Path {
+    /// The path along `curve`, with the curve's own orientation if it has one.
+    pub fn new(curve: impl Curve + 'static) -> Self {
+        Self { curve: Arc::new(curve), orientation: None }
+    }
+
+    /// The same path with this constant orientation, in place of any other.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`](crate::Error::NotFinite) or [`Error::NotRigid`](crate::Error::NotRigid) for a matrix that is
+    /// no rotation to 1e-6.
+    pub fn with_orientation(&self, rotation: Matrix3<f64>) -> Result<Self> {
+        let orientation = Some(check_rotation("path orientation", &rotation)?);
+        Ok(Self { curve: Arc::clone(&self.curve), orientation })
+    }
+
+    /// How long one pass takes (s).
+    pub fn duration(&self) -> f64 {
+        self.curve.duration()
+    }
+
+    /// Position (m).
+    pub fn position(&self, t: f64) -> [f64; 3] {
+        self.curve.position(t)
+    }
+
+    /// Velocity (m/s); at a corner, that of the stroke that begins.
+    pub fn velocity(&self, t: f64) -> [f64; 3] {
+        self.curve.velocity(t)
+    }
+
+    /// Orientation, if the path has one.
+    pub fn rotation(&self, t: f64) -> Option<Matrix3<f64>> {
+        self.orientation.or_else(|| self.curve.rotation(t))
+    }
+
+    /// Position and orientation, if the path has an orientation.
+    pub fn pose(&self, t: f64) -> Option<Pose> {
+        self.rotation(t).map(|rotation| pose::from_parts(self.position(t), rotation))
+    }
+
+    /// The path at the ticks i `dt` (s), from 0 to the first tick at or after its end.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for `dt` not positive, or so small that there would be over 10
+    /// million ticks.
+    pub fn sample(&self, dt: f64) -> Result<Reference> {
+        let times = (0..=ticks(self.duration(), dt)?).map(|i| i as f64 * dt);
+        let positions = times.clone().map(|t| self.position(t)).collect();
+        let rotations = times.map(|t| self.rotation(t)).collect();
+        Reference::new(dt, positions, rotations)
+    }
+}

@@ -1,0 +1,5 @@
+//! Joint motion in time.
+
+mod piecewise;
+
+pub use piecewise::{Coefficients, Trajectory};

@@ -1,0 +1,168 @@
+//! Piecewise polynomials, one a segment and joint.
+
+use crate::error::{Error, Result, require_finite};
+use crate::math::Knots;
+use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude};
+use crate::math::ticks::ticks;
+
+/// A polynomial up to degree 5 in the time s (s) since the segment began: q = c\[0\] + c\[1\] s + ... + c\[5\] s^5, in
+/// rad or m and powers of s.
+pub type Coefficients = [f64; 6];
+
+/// How far a joint may jump at a knot (rad or m, relative beyond 1): coefficients that were stored or computed meet only
+/// up to rounding.
+const CONTINUITY_TOLERANCE: f64 = 1e-6;
+
+/// The motion of all joints in time: piecewise polynomials between common knots, continuous in position.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory {
+    joints: Vec<String>,
+    knots: Knots,
+    /// Segment by segment, within it joint by joint.
+    coefficients: Vec<Coefficients>,
+}
+
+impl Trajectory {
+    /// The motion of these `joints` (names) with these `coefficients`, segment by segment and within it joint by joint,
+    /// between `knots` (s) that start at zero and increase.
+    ///
+    /// # Errors
+    /// [`Error::InvalidTrajectory`] without joints or where one jumps at a knot, [`Error::WrongLength`],
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] where the first knot is not zero, [`Error::NotIncreasing`].
+    pub fn new(joints: Vec<String>, knots: Vec<f64>, coefficients: Vec<Coefficients>) -> Result<Self> {
+        if joints.is_empty() {
+            return Err(Error::InvalidTrajectory { problem: "it needs at least 1 joint".into() });
+        }
+        let knots = Knots::new("trajectory times", knots)?;
+        let (n, segments) = (joints.len(), knots.segments());
+        if coefficients.len() != segments * n {
+            let what = "trajectory coefficients".into();
+            let expected = format!("{} polynomials ({segments} segments of {n} joints)", segments * n);
+            return Err(Error::WrongLength { what, expected, got: coefficients.len() });
+        }
+        require_finite("trajectory coefficients", coefficients.as_flattened(), |i| {
+            let (segment, joint, power) = (i / 6 / n, i / 6 % n, i % 6);
+            format!("power {power} of joint '{}' in segment {segment}", joints[joint])
+        })?;
+        let trajectory = Self { joints, knots, coefficients };
+        trajectory.check_continuity()?;
+        Ok(trajectory)
+    }
+
+    /// The motion through `q` (rad or m; one row of all joints a time) at `times` (s) that start at zero and increase:
+    /// straight between samples, so that the velocity is constant there and jumps at them.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_samples(joints: Vec<String>, times: &[f64], q: &[f64]) -> Result<Self> {
+        let n = joints.len();
+        if q.len() != times.len() * n {
+            let what = "trajectory samples".into();
+            let expected = format!("{} numbers ({} times of {n} joints)", times.len() * n, times.len());
+            return Err(Error::WrongLength { what, expected, got: q.len() });
+        }
+        require_finite("trajectory samples", q, |i| format!("joint '{}' of row {}", joints[i % n], i / n))?;
+        let mut coefficients = Vec::with_capacity(q.len());
+        for (row, ends) in times.windows(2).enumerate() {
+            for i in row * n..(row + 1) * n {
+                let slope = (q[i + n] - q[i]) / (ends[1] - ends[0]);
+                coefficients.push([q[i], slope, 0.0, 0.0, 0.0, 0.0]);
+            }
+        }
+        Self::new(joints, times.to_vec(), coefficients)
+    }
+
+    /// Names of the joints, in the order of q.
+    pub fn joints(&self) -> &[String] {
+        &self.joints
+    }
+
+    /// When the segments begin and the last one ends (s).
+    pub fn knots(&self) -> &[f64] {
+        self.knots.times()
+    }
+
+    /// The polynomials, segment by segment and within it joint by joint.
+    pub fn coefficients(&self) -> &[Coefficients] {
+        &self.coefficients
+    }
+
+    /// How long the motion lasts (s).
+    pub fn duration(&self) -> f64 {
+        self.knots.duration()
+    }
+
+    /// Writes position, velocity and acceleration of all joints (rad or m, and per s and s^2) at time `t` (s, clamped to
+    /// `[0, duration]`). At a knot they are those of the segment that begins.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] for a slice without exactly one entry a joint.
+    pub fn at(&self, t: f64, q: &mut [f64], qd: &mut [f64], qdd: &mut [f64]) -> Result<()> {
+        let n = self.joints.len();
+        if let Some(got) = [q.len(), qd.len(), qdd.len()].into_iter().find(|&length| length != n) {
+            let what = "state of the trajectory".into();
+            return Err(Error::WrongLength { what, expected: format!("{n} joints"), got });
+        }
+        let (segment, elapsed) = self.knots.locate(t);
+        for (joint, coefficients) in self.segment(segment).iter().enumerate() {
+            [q[joint], qd[joint], qdd[joint]] = evaluate(coefficients, elapsed);
+        }
+        Ok(())
+    }
+
+    /// The exact largest speed of each joint (rad/s or m/s).
+    pub fn max_velocity(&self) -> Vec<f64> {
+        self.largest(|position| derivative(position))
+    }
+
+    /// The exact largest acceleration of each joint within the segments (rad/s^2 or m/s^2). Jumps of the velocity at
+    /// knots, which would need an infinite one, are not in it.
+    pub fn max_acceleration(&self) -> Vec<f64> {
+        self.largest(|position| derivative(&derivative(position)))
+    }
+
+    /// The times i `dt` (s) from 0 on, and the duration as the last one.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for `dt` not positive, or so small that there would be over 10 million ticks.
+    pub fn sample_times(&self, dt: f64) -> Result<Vec<f64>> {
+        let steps = ticks(self.duration(), dt)?;
+        Ok((0..steps).map(|i| i as f64 * dt).chain([self.duration()]).collect())
+    }
+
+    /// The polynomials of one segment, joint by joint.
+    fn segment(&self, segment: usize) -> &[Coefficients] {
+        let n = self.joints.len();
+        &self.coefficients[segment * n..(segment + 1) * n]
+    }
+
+    /// For each joint the largest magnitude over all segments of what `quantity` makes of its position.
+    fn largest(&self, quantity: impl Fn(&Coefficients) -> Short) -> Vec<f64> {
+        let mut largest = vec![0.0_f64; self.joints.len()];
+        for segment in 0..self.knots.segments() {
+            for (largest, position) in largest.iter_mut().zip(self.segment(segment)) {
+                let in_segment = largest_magnitude(&quantity(position), 0.0, self.knots.span(segment));
+                *largest = largest.max(in_segment);
+            }
+        }
+        largest
+    }
+
+    /// Err if a joint is not where the next segment takes it up.
+    fn check_continuity(&self) -> Result<()> {
+        for next in 1..self.knots.segments() {
+            let span = self.knots.span(next - 1);
+            let polynomials = self.segment(next - 1).iter().zip(self.segment(next));
+            for (name, (before, after)) in self.joints.iter().zip(polynomials) {
+                let (left, right) = (evaluate(before, span)[0], after[0]);
+                let meets = (left - right).abs() <= CONTINUITY_TOLERANCE * right.abs().max(1.0);
+                if !meets {
+                    let time = self.knots.times()[next];
+                    let problem = format!("joint '{name}' jumps from {left} to {right} at t = {time} s");
+                    return Err(Error::InvalidTrajectory { problem });
+                }
+            }
+        }
+        Ok(())
+    }
+}

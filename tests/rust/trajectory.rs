@@ -1,0 +1,170 @@
+//! Piecewise polynomial joint motion: values, exact extrema, samples, errors by their messages.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
+use ikcore::trajectory::Trajectory;
+use proptest::prelude::*;
+
+fn names(count: usize) -> Vec<String> {
+    (1..=count).map(|i| format!("j{i}")).collect()
+}
+
+/// The state of all joints at time `t`.
+fn state(trajectory: &Trajectory, t: f64) -> [Vec<f64>; 3] {
+    let n = trajectory.joints().len();
+    let [mut q, mut qd, mut qdd] = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
+    trajectory.at(t, &mut q, &mut qd, &mut qdd).unwrap();
+    [q, qd, qdd]
+}
+
+/// Rest to rest over unit distance in `span` (s): 10 s^3 - 15 s^4 + 6 s^5 of the relative time.
+fn rest_to_rest(span: f64) -> [f64; 6] {
+    [0.0, 0.0, 0.0, 10.0 / span.powi(3), -15.0 / span.powi(4), 6.0 / span.powi(5)]
+}
+
+#[test]
+fn rest_to_rest_quintic_has_its_known_extrema() {
+    let span = 2.0;
+    let trajectory = Trajectory::new(names(1), vec![0.0, span], vec![rest_to_rest(span)]).unwrap();
+    // In closed form: 15/8 of the mean speed, and 10/sqrt(3) over span^2.
+    assert!((trajectory.max_velocity()[0] - 15.0 / 8.0 / span).abs() < 1e-15);
+    assert!((trajectory.max_acceleration()[0] - 10.0 / 3.0_f64.sqrt() / span.powi(2)).abs() < 1e-14);
+    assert_eq!(state(&trajectory, 1.0), [vec![0.5], vec![15.0 / 16.0], vec![0.0]]);
+    assert_eq!(state(&trajectory, -1.0), state(&trajectory, 0.0));
+    assert_eq!(state(&trajectory, 9.0), state(&trajectory, span));
+}
+
+#[test]
+fn samples_are_joined_by_straight_lines() {
+    let times = [0.0, 0.5, 2.0];
+    let q = [0.0, 1.0, 0.25, 1.0, -0.5, 4.0];
+    let trajectory = Trajectory::from_samples(names(2), &times, &q).unwrap();
+    assert_eq!((trajectory.knots(), trajectory.duration()), (&times[..], 2.0));
+    for (row, t) in times.into_iter().enumerate() {
+        assert_eq!(state(&trajectory, t)[0], q[2 * row..2 * row + 2]);
+    }
+    assert_eq!(state(&trajectory, 1.25), [vec![-0.125, 2.5], vec![-0.5, 2.0], vec![0.0, 0.0]]);
+    // At a knot the velocity is that of the segment that begins.
+    assert_eq!(state(&trajectory, 0.5)[1], [-0.5, 2.0]);
+    assert_eq!(trajectory.max_velocity(), [0.5, 2.0]);
+    assert_eq!(trajectory.max_acceleration(), [0.0, 0.0]);
+}
+
+#[test]
+fn parts_rebuild_the_trajectory() {
+    let trajectory = Trajectory::from_samples(names(2), &[0.0, 0.5, 2.0], &[0.0, 1.0, 0.25, 1.0, -0.5, 4.0]).unwrap();
+    let (joints, knots) = (trajectory.joints().to_vec(), trajectory.knots().to_vec());
+    assert_eq!(Trajectory::new(joints, knots, trajectory.coefficients().to_vec()).unwrap(), trajectory);
+}
+
+#[test]
+fn sample_times_end_at_the_end() {
+    let trajectory = Trajectory::from_samples(names(1), &[0.0, 1.0], &[0.0, 1.0]).unwrap();
+    assert_eq!(trajectory.sample_times(0.4).unwrap(), [0.0, 0.4, 0.8, 1.0]);
+    assert_eq!(trajectory.sample_times(0.1).unwrap().len(), 11);
+    assert_eq!(trajectory.sample_times(5.0).unwrap(), [0.0, 1.0]);
+    let error = trajectory.sample_times(-0.1).unwrap_err();
+    assert_eq!(error.to_string(), "dt must be positive and finite, got -0.1");
+}
+
+#[test]
+fn wrong_trajectories_are_named() {
+    let line = |from: f64, slope: f64| [from, slope, 0.0, 0.0, 0.0, 0.0];
+    let ramp = vec![line(0.0, 1.0), line(1.0, 1.0)];
+    for (result, expected) in [
+        (Trajectory::new(vec![], vec![0.0, 1.0], vec![]), "trajectory: it needs at least 1 joint"),
+        (Trajectory::new(names(1), vec![0.0], vec![]), "trajectory times: expected at least 2, got 1"),
+        (
+            Trajectory::new(names(1), vec![1.0, 2.0], vec![ramp[0]]),
+            "trajectory times: row 0 must be 0, where the clock starts, got 1",
+        ),
+        (
+            Trajectory::new(names(1), vec![0.0, 1.0, 1.0], ramp.clone()),
+            "trajectory times must increase, but row 2 has 1 after 1",
+        ),
+        (
+            Trajectory::new(names(2), vec![0.0, 1.0, 2.0], ramp.clone()),
+            "trajectory coefficients: expected 4 polynomials (2 segments of 2 joints), got 2",
+        ),
+        (
+            Trajectory::new(names(2), vec![0.0, 1.0], vec![ramp[0], line(0.0, f64::NAN)]),
+            "trajectory coefficients must be finite, but power 1 of joint 'j2' in segment 0 is NaN",
+        ),
+        (
+            Trajectory::new(names(1), vec![0.0, 1.0, 2.0], vec![ramp[0], line(1.5, 1.0)]),
+            "trajectory: joint 'j1' jumps from 1 to 1.5 at t = 1 s",
+        ),
+        (
+            Trajectory::from_samples(names(2), &[0.0, 1.0], &[0.0; 3]),
+            "trajectory samples: expected 4 numbers (2 times of 2 joints), got 3",
+        ),
+        (
+            Trajectory::from_samples(names(2), &[0.0, 1.0], &[0.0, 0.0, 0.0, f64::INFINITY]),
+            "trajectory samples must be finite, but joint 'j2' of row 1 is inf",
+        ),
+    ] {
+        assert_eq!(result.unwrap_err().to_string(), expected);
+    }
+    let trajectory = Trajectory::new(names(1), vec![0.0, 1.0, 2.0], ramp).unwrap();
+    let error = trajectory.at(0.5, &mut [0.0], &mut [0.0; 2], &mut [0.0]).unwrap_err();
+    assert_eq!(error.to_string(), "state of the trajectory: expected 1 joints, got 2");
+}
+
+/// Random quintic segments of two joints, each continued from where the one before it ends.
+fn any_trajectory() -> impl Strategy<Value = Trajectory> {
+    let segment = (0.05..2.0_f64, prop::array::uniform10(-3.0..3.0_f64));
+    prop::collection::vec(segment, 1..5).prop_map(|segments| {
+        let (mut knots, mut coefficients, mut reached) = (vec![0.0], Vec::new(), [0.3, -0.7]);
+        for (span, c) in segments {
+            let start = knots[knots.len() - 1];
+            for joint in 0..2 {
+                let [a, b, d, e, f] = [0, 1, 2, 3, 4].map(|i| c[5 * joint + i]);
+                coefficients.push([reached[joint], a, b, d, e, f]);
+                let s = (start + span) - start;
+                reached[joint] += s * (a + s * (b + s * (d + s * (e + s * f))));
+            }
+            knots.push(start + span);
+        }
+        Trajectory::new(names(2), knots, coefficients).unwrap()
+    })
+}
+
+proptest! {
+    #[test]
+    fn extrema_bound_dense_samples_closely(trajectory in any_trajectory()) {
+        let (velocity, acceleration) = (trajectory.max_velocity(), trajectory.max_acceleration());
+        let (mut sampled_velocity, mut sampled_acceleration) = ([0.0_f64; 2], [0.0_f64; 2]);
+        for ends in trajectory.knots().windows(2) {
+            // The last sample lies just inside: at the knot itself the next segment begins.
+            for i in 0..=2000 {
+                let share = (f64::from(i) / 2000.0).min(1.0 - 1e-12);
+                let [_, qd, qdd] = state(&trajectory, ends[0] + share * (ends[1] - ends[0]));
+                for joint in 0..2 {
+                    sampled_velocity[joint] = sampled_velocity[joint].max(qd[joint].abs());
+                    sampled_acceleration[joint] = sampled_acceleration[joint].max(qdd[joint].abs());
+                }
+            }
+        }
+        for joint in 0..2 {
+            for (exact, sampled) in
+                [(velocity[joint], sampled_velocity[joint]), (acceleration[joint], sampled_acceleration[joint])]
+            {
+                prop_assert!(sampled <= exact * (1.0 + 1e-12), "{} above {}", sampled, exact);
+                prop_assert!(exact - sampled < 1e-3 * (1.0 + exact), "{} far above {}", exact, sampled);
+            }
+        }
+    }
+
+    #[test]
+    fn velocity_and_acceleration_are_derivatives(trajectory in any_trajectory(), share in 0.0..1.0_f64) {
+        let h = 1e-6;
+        let t = h + share * (trajectory.duration() - 2.0 * h);
+        prop_assume!(trajectory.knots().iter().all(|knot| (knot - t).abs() > h));
+        let [[q0, qd0, _], [_, qd, qdd], [q1, qd1, _]] = [t - h, t, t + h].map(|t| state(&trajectory, t));
+        for joint in 0..2 {
+            let scale = 1.0 + q0[joint].abs() + qd[joint].abs() + qdd[joint].abs();
+            prop_assert!(((q1[joint] - q0[joint]) / (2.0 * h) - qd[joint]).abs() < 1e-7 * scale);
+            prop_assert!(((qd1[joint] - qd0[joint]) / (2.0 * h) - qdd[joint]).abs() < 1e-7 * scale);
+        }
+    }
+}
