@@ -2,11 +2,8 @@
 
 use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
 use crate::rng::LazyRng;
-use crate::robot::Robot;
+use crate::robot::{LANES, Robot};
 use crate::task::{SquaredError, Target, TipError, Tolerance};
-
-/// Configurations side by side in vector registers: four doubles fill one of AVX2.
-const LANES: usize = 4;
 
 /// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
 #[derive(Debug, Clone, Copy)]
@@ -47,7 +44,7 @@ impl Objective for Problem<'_> {
         let n = self.dimension();
         let mut groups = out.chunks_exact_mut(LANES);
         for (scores, group) in groups.by_ref().zip(qs.chunks_exact(LANES * n)) {
-            let errors = self.target.errors::<LANES>(self.robot, group);
+            let errors = self.target.errors(self.robot, group);
             scores.iter_mut().zip(errors).for_each(|(score, error)| *score = self.score(error));
         }
         let rest = groups.into_remainder();

@@ -4,6 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::builder::Element;
+use super::kinematics::Kernels;
 use crate::math::{Frame, Pose, pose};
 
 /// What drives a stage: turn = turn_scale * q\[joint\] + turn_offset, and likewise the slide. One of the scales is zero.
@@ -29,14 +30,14 @@ pub(super) struct LinkFrame {
 }
 
 /// The folded chain.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(super) struct Chain {
-    /// Moving elements in use; the rest of `stages` is padding that moves nothing.
-    pub moving: usize,
+    /// One per moving element, then padding that moves nothing.
     pub stages: Vec<Frame>,
     pub motions: Vec<Motion>,
     pub tip: Frame,
     pub links: Vec<LinkFrame>,
+    pub kernels: Kernels,
 }
 
 /// Numbers of stages that kernels are compiled for. Chains are padded up to the next one.
@@ -48,7 +49,13 @@ const LANES: usize = 4;
 impl Chain {
     /// Folds `elements` between `base` and `tool`. The number of moving elements has been checked.
     pub fn new(elements: &[Element], base: &Pose, tool: &Pose) -> Self {
-        let mut chain = Self { moving: 0, stages: vec![], motions: vec![], tip: Frame::IDENTITY, links: vec![] };
+        let mut chain = Self {
+            stages: vec![],
+            motions: vec![],
+            tip: Frame::IDENTITY,
+            links: vec![],
+            kernels: Kernels::for_stages(padded_size(elements)),
+        };
         // Constant transform since the last moving element, already in that element's z-aligned frame.
         let mut constant = *base;
         for element in elements {
@@ -71,12 +78,17 @@ impl Chain {
             }
         }
         chain.tip = Frame::from(&(constant * tool));
-        chain.moving = chain.stages.len();
-        let padded = SIZES.into_iter().find(|size| *size >= chain.moving).unwrap_or(chain.moving);
+        let padded = padded_size(elements);
         chain.stages.resize(padded, Frame::IDENTITY);
         chain.motions.resize(padded.next_multiple_of(LANES), Motion::NONE);
         chain
     }
+}
+
+/// The number of moving elements, rounded up to one that kernels are compiled for.
+fn padded_size(elements: &[Element]) -> usize {
+    let moving = elements.iter().filter(|element| matches!(element, Element::Moving { .. })).count();
+    SIZES.into_iter().find(|size| *size >= moving).unwrap_or(moving)
 }
 
 /// A rotation whose z axis is `axis`; exact where the axis is a coordinate axis.

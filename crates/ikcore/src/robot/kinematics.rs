@@ -6,83 +6,104 @@
 use super::MAX_DOF;
 use super::chain::Chain;
 use crate::math::Frame;
-use crate::math::arithmetic::{Arithmetic, Fused, Separate};
+use crate::math::arithmetic::{Arithmetic, Fused, Separate, has_fused};
 use crate::math::sincos::sincos;
 
 /// Columns of a 6 x n matrix, one per joint: linear rows (m per rad or m), then angular rows; the first n are in use.
 pub type Columns = [[f64; 6]; MAX_DOF];
 
-/// Calls `$kernel::<A, N, L>` for the chain's padded size, fused where the machine can.
-macro_rules! dispatch {
-    ($chain:expr, $kernel:ident ( $($argument:expr),* ) $(, $lanes:ident)?) => {{
-        macro_rules! by_size {
-            ($call:ident) => {
-                match $chain.stages.len() {
-                    4 => $call!(4, 4), 5 => $call!(5, 8), 6 => $call!(6, 8), 7 => $call!(7, 8), 8 => $call!(8, 8),
-                    12 => $call!(12, 12), 16 => $call!(16, 16), _ => $call!(32, 32),
-                }
-            };
+/// `$table!(N, L)` for the size that `$stages` is: N stages, their sines padded to L.
+macro_rules! for_each_size {
+    ($stages:expr, $table:ident) => {
+        match $stages {
+            4 => $table!(4, 4),
+            5 => $table!(5, 8),
+            6 => $table!(6, 8),
+            7 => $table!(7, 8),
+            8 => $table!(8, 8),
+            12 => $table!(12, 12),
+            16 => $table!(16, 16),
+            _ => $table!(32, 32),
         }
+    };
+}
+
+/// A table of kernels that any machine runs.
+#[cfg(not(target_arch = "aarch64"))]
+macro_rules! portable {
+    ($n:literal, $l:literal) => {
+        Kernels {
+            tip: tip::<Separate, $n, $l>,
+            tip_position: tip_position::<Separate, $n, $l>,
+            tip_positions: tip_positions::<Separate, $n>,
+            jacobian: jacobian::<Separate, $n, $l>,
+            stage_frames: stage_frames::<Separate, $n, $l>,
+        }
+    };
+}
+
+/// The same where FMA belongs to the baseline.
+#[cfg(target_arch = "aarch64")]
+macro_rules! native {
+    ($n:literal, $l:literal) => {
+        Kernels {
+            tip: tip::<Fused, $n, $l>,
+            tip_position: tip_position::<Fused, $n, $l>,
+            tip_positions: tip_positions::<Fused, $n>,
+            jacobian: jacobian::<Fused, $n, $l>,
+            stage_frames: stage_frames::<Fused, $n, $l>,
+        }
+    };
+}
+
+/// The same for machines that have AVX2 and FMA.
+#[cfg(target_arch = "x86_64")]
+macro_rules! fused {
+    ($n:literal, $l:literal) => {
+        // SAFETY (all five): the table is handed out only where `has_fused` found the instructions.
+        Kernels {
+            tip: |chain, q| unsafe { fused::tip::<$n, $l>(chain, q) },
+            tip_position: |chain, q| unsafe { fused::tip_position::<$n, $l>(chain, q) },
+            tip_positions: |chain, qs| unsafe { fused::tip_positions::<$n>(chain, qs) },
+            jacobian: |chain, q, columns| unsafe { fused::jacobian::<$n, $l>(chain, q, columns) },
+            stage_frames: |chain, q, reached| unsafe { fused::stage_frames::<$n, $l>(chain, q, reached) },
+        }
+    };
+}
+
+/// The kernels compiled for one padded number of stages and one instruction set; a chain chooses when it is built.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Kernels {
+    tip: fn(&Chain, &[f64]) -> Frame,
+    tip_position: fn(&Chain, &[f64]) -> [f64; 3],
+    tip_positions: fn(&Chain, &[f64]) -> [[f64; LANES]; 3],
+    jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
+    stage_frames: fn(&Chain, &[f64], &mut StageFrames),
+}
+
+/// Configurations side by side in [`Chain::tip_positions`]: four doubles fill one register of AVX2.
+pub const LANES: usize = 4;
+
+type StageFrames = [Frame; MAX_DOF + 1];
+
+impl Kernels {
+    /// The fastest that this machine runs, for a chain padded to `stages` (one of [`SIZES`](super::chain::SIZES)).
+    pub fn for_stages(stages: usize) -> Self {
         #[cfg(target_arch = "x86_64")]
-        {
-            macro_rules! portable { ($n:literal, $l:literal) => { $kernel::<Separate, $n, $l $(, $lanes)?>($($argument),*) }; }
-            macro_rules! fused {
-                // SAFETY: reached only where `has_fused` found the instructions.
-                ($n:literal, $l:literal) => { unsafe { fused::$kernel::<$n, $l $(, $lanes)?>($($argument),*) } };
-            }
-            if crate::math::arithmetic::has_fused() { by_size!(fused) } else { by_size!(portable) }
+        if has_fused() {
+            return for_each_size!(stages, fused);
         }
         #[cfg(target_arch = "aarch64")]
-        {
-            macro_rules! native { ($n:literal, $l:literal) => { $kernel::<Fused, $n, $l $(, $lanes)?>($($argument),*) }; }
-            by_size!(native)
-        }
-        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-        {
-            macro_rules! portable { ($n:literal, $l:literal) => { $kernel::<Separate, $n, $l $(, $lanes)?>($($argument),*) }; }
-            by_size!(portable)
-        }
-    }};
-}
-
-impl Chain {
-    /// The tip's frame. `q` has one finite entry per independent joint.
-    #[inline]
-    pub fn tip(&self, q: &[f64]) -> Frame {
-        dispatch!(self, tip(self, q))
-    }
-
-    /// The tip's position (m): from the tip back to the base, a third of the work of [`tip`](Self::tip).
-    #[inline]
-    pub fn tip_position(&self, q: &[f64]) -> [f64; 3] {
-        dispatch!(self, tip_position(self, q))
-    }
-
-    /// The tip's positions (m) at `W` configurations, stored one after another; lane by lane the same bits as
-    /// [`tip_position`](Self::tip_position).
-    #[inline]
-    pub fn tip_positions<const W: usize>(&self, qs: &[f64]) -> [[f64; W]; 3] {
-        dispatch!(self, tip_positions(self, qs), W)
-    }
-
-    /// The tip's frame and the geometric Jacobian at the tip, world axes, linear rows before angular rows.
-    #[inline]
-    pub fn jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
-        dispatch!(self, jacobian(self, q, columns))
-    }
-
-    /// The frame of every link, in the order of `links`.
-    pub fn link_frames(&self, q: &[f64]) -> Vec<Frame> {
-        let mut reached = [Frame::IDENTITY; MAX_DOF + 1];
-        dispatch!(self, stage_frames(self, q, &mut reached));
-        self.links.iter().map(|link| reached[link.stages].then::<Separate>(&link.offset)).collect()
+        return for_each_size!(stages, native);
+        #[cfg(not(target_arch = "aarch64"))]
+        for_each_size!(stages, portable)
     }
 }
 
-/// The same kernels, compiled for AVX2 and FMA.
+/// The kernels compiled for AVX2 and FMA.
 #[cfg(target_arch = "x86_64")]
 mod fused {
-    use super::{Chain, Columns, Frame, Fused, MAX_DOF};
+    use super::{Chain, Columns, Frame, Fused, LANES, StageFrames};
 
     #[target_feature(enable = "avx2,fma")]
     pub fn tip<const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
@@ -95,8 +116,8 @@ mod fused {
     }
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn tip_positions<const N: usize, const L: usize, const W: usize>(chain: &Chain, qs: &[f64]) -> [[f64; W]; 3] {
-        super::tip_positions::<Fused, N, L, W>(chain, qs)
+    pub fn tip_positions<const N: usize>(chain: &Chain, qs: &[f64]) -> [[f64; LANES]; 3] {
+        super::tip_positions::<Fused, N>(chain, qs)
     }
 
     #[target_feature(enable = "avx2,fma")]
@@ -105,8 +126,42 @@ mod fused {
     }
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn stage_frames<const N: usize, const L: usize>(chain: &Chain, q: &[f64], reached: &mut [Frame; MAX_DOF + 1]) {
+    pub fn stage_frames<const N: usize, const L: usize>(chain: &Chain, q: &[f64], reached: &mut StageFrames) {
         super::stage_frames::<Fused, N, L>(chain, q, reached);
+    }
+}
+
+impl Chain {
+    /// The tip's frame. `q` has one finite entry per independent joint.
+    #[inline]
+    pub fn tip(&self, q: &[f64]) -> Frame {
+        (self.kernels.tip)(self, q)
+    }
+
+    /// The tip's position (m): from the tip back to the base, half the work of [`tip`](Self::tip).
+    #[inline]
+    pub fn tip_position(&self, q: &[f64]) -> [f64; 3] {
+        (self.kernels.tip_position)(self, q)
+    }
+
+    /// The tip's positions (m), coordinate by coordinate, at [`LANES`] configurations stored one after another; lane by
+    /// lane the same bits as [`tip_position`](Self::tip_position).
+    #[inline]
+    pub fn tip_positions(&self, qs: &[f64]) -> [[f64; LANES]; 3] {
+        (self.kernels.tip_positions)(self, qs)
+    }
+
+    /// The tip's frame and the geometric Jacobian at the tip, world axes, linear rows before angular rows.
+    #[inline]
+    pub fn jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
+        (self.kernels.jacobian)(self, q, columns)
+    }
+
+    /// The frame of every link, in the order of `links`.
+    pub fn link_frames(&self, q: &[f64]) -> Vec<Frame> {
+        let mut reached = [Frame::IDENTITY; MAX_DOF + 1];
+        (self.kernels.stage_frames)(self, q, &mut reached);
+        self.links.iter().map(|link| reached[link.stages].then::<Separate>(&link.offset)).collect()
     }
 }
 
@@ -163,12 +218,10 @@ fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q:
     point
 }
 
-/// [`tip_position`] for `W` configurations at once, coordinate by coordinate.
+/// [`tip_position`] for several configurations at once, coordinate by coordinate.
 #[inline(always)]
-fn tip_positions<A: Arithmetic, const N: usize, const L: usize, const W: usize>(
-    chain: &Chain,
-    qs: &[f64],
-) -> [[f64; W]; 3] {
+fn tip_positions<A: Arithmetic, const N: usize>(chain: &Chain, qs: &[f64]) -> [[f64; LANES]; 3] {
+    const W: usize = LANES;
     let rows: [&[f64]; W] = std::array::from_fn(|w| &qs[w * (qs.len() / W)..]);
     let (mut angles, mut slides) = ([[0.0; W]; N], [[0.0; W]; N]);
     for (i, motion) in chain.motions[..N].iter().enumerate() {
@@ -225,11 +278,7 @@ fn jacobian<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f
 }
 
 #[inline(always)]
-fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(
-    chain: &Chain,
-    q: &[f64],
-    reached: &mut [Frame; MAX_DOF + 1],
-) {
+fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64], reached: &mut StageFrames) {
     let (sines, cosines, _) = motions::<A, L>(chain, q);
     pass::<A, N, L>(chain, q, |i, frame| reached[i + 1] = frame.turned::<A>(sines[i], cosines[i]));
 }

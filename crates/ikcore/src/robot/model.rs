@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::builder::{ChainBuilder, Element};
 use super::chain::Chain;
 use super::joint::Joint;
-use super::{Columns, MAX_DOF};
+use super::{Columns, LANES, MAX_DOF};
 use crate::error::{Error, Result, require_finite};
 use crate::math::{Frame, Pose};
 use crate::rng::LazyRng;
@@ -17,12 +17,19 @@ use crate::rng::LazyRng;
 ///
 /// Joint vectors hold the independent joints in chain order (rad, m); mimic joints follow theirs. Poses are seen from
 /// the robot's base.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Robot {
     description: ChainBuilder,
     base: Pose,
     tool: Pose,
     chain: Chain,
+}
+
+impl PartialEq for Robot {
+    /// The chain follows from the rest.
+    fn eq(&self, other: &Self) -> bool {
+        (&self.description, &self.base, &self.tool) == (&other.description, &other.base, &other.tool)
+    }
 }
 
 /// What is stored of a robot; the first byte is [`FORMAT`].
@@ -158,10 +165,10 @@ impl Robot {
         self.chain.tip_position(q)
     }
 
-    /// Positions of the tip (m) at `W` configurations stored one after another, (x, y, z) by configuration; the same bits
+    /// Positions of the tip (m) at [`LANES`] configurations stored one after another, (x, y, z) by configuration; the same bits
     /// as one by one.
     #[inline]
-    pub fn tip_positions<const W: usize>(&self, qs: &[f64]) -> [[f64; W]; 3] {
+    pub fn tip_positions(&self, qs: &[f64]) -> [[f64; LANES]; 3] {
         self.chain.tip_positions(qs)
     }
 

@@ -9,7 +9,7 @@ pub use error::{SquaredError, TipError, Tolerance};
 use crate::error::{Result, require_finite};
 use crate::math::{Frame, Pose};
 use crate::objective::Linearization;
-use crate::robot::Robot;
+use crate::robot::{LANES, Robot};
 
 /// Where the tip is to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,12 +49,12 @@ impl Target {
         }
     }
 
-    /// [`error`](Self::error) at `W` configurations stored one after another, side by side where only positions matter.
+    /// [`error`](Self::error) at [`LANES`] configurations stored one after another, side by side where only positions matter.
     #[inline]
-    pub fn errors<const W: usize>(&self, robot: &Robot, qs: &[f64]) -> [SquaredError; W] {
+    pub fn errors(&self, robot: &Robot, qs: &[f64]) -> [SquaredError; LANES] {
         match self {
             Self::Position(target) => {
-                let [x, y, z] = robot.tip_positions::<W>(qs);
+                let [x, y, z] = robot.tip_positions(qs);
                 std::array::from_fn(|w| position::error(target, &[x[w], y[w], z[w]]))
             }
             Self::Pose(_) => std::array::from_fn(|w| self.error(robot, &qs[w * robot.dof()..(w + 1) * robot.dof()])),
