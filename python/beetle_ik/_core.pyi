@@ -156,9 +156,9 @@ class BAS:
         cls,
         *,
         variant: Literal["star", "chain", "greedy"] = "star",
-        c1: float = ...,
-        c2: float = ...,
-        explorations: int = ...,
+        c1: float | None = None,  # None: what suits the variant; likewise c2 and explorations
+        c2: float | None = None,
+        explorations: int | None = None,
         max_passes: int = 200,
     ) -> BAS: ...
     @property

@@ -9,7 +9,7 @@ from typing import BinaryIO
 
 @contextmanager
 def whole_file(file: str | os.PathLike[str]) -> Iterator[BinaryIO]:
-    """Open `file` for writing; it appears when the block ends well, and what was there before stays when it does not."""
+    """Open `file` for writing: it appears when the block ends well; otherwise what was there before stays."""
     path = Path(file)
     unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:

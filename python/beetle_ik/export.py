@@ -1,7 +1,7 @@
 """Trajectories to and from files.
 
-npz keeps the polynomial pieces themselves. CSV keeps samples at the knots, as many derivatives as determine the pieces: positions for
-straight lines, velocities too up to cubics, accelerations too up to quintics.
+npz keeps the polynomial pieces themselves. CSV keeps samples at the knots, with as many derivatives as determine the
+pieces: positions for straight lines, velocities too up to cubics, accelerations too up to quintics.
 """
 
 import os
@@ -40,7 +40,8 @@ def from_csv(file: str | os.PathLike[str]) -> Trajectory:
             f"{os.fspath(file)}, line 1: no joint positions: expected columns named 'q:joint'; "
             f"columns found: {', '.join(table)}"
         )
-    q, qd, qdd = (_joint_columns(file, table, derivative, joints) for derivative in _DERIVATIVES)
+    q = np.column_stack([table[f"q:{joint}"] for joint in joints])
+    qd, qdd = (_joint_columns(file, table, derivative, joints) for derivative in _DERIVATIVES[1:])
     return Trajectory.from_samples(table["time"], q, qd=qd, qdd=qdd, joint_names=joints)
 
 
@@ -85,6 +86,7 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
     for name in ("time", "coefficients", "joint_names"):
         if name not in stored:
             raise InvalidInputError(
-                f"{os.fspath(file)}: not a trajectory: '{name}' is missing; the file holds: {', '.join(stored) or 'nothing'}"
+                f"{os.fspath(file)}: not a trajectory: '{name}' is missing; "
+                f"the file holds: {', '.join(stored) or 'nothing'}"
             )
     return Trajectory(stored["time"], stored["coefficients"], joint_names=stored["joint_names"].tolist())

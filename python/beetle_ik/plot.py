@@ -46,12 +46,12 @@ def robot(robot: Robot, q: ArrayLike) -> Figure:
 
 
 def track(result: TrackResult) -> Figure:
-    """A tracked path: tip and target in space, error, joint positions, evaluations and velocities within their limits."""
+    """A tracked path: tip and target in space, error, joint positions, evaluations, velocities within their limits."""
     joints = result.robot.joint_names
     velocity_rows = -(-len(joints) // _VELOCITY_PANELS_A_ROW)
     with _style():
         figure = _new_figure(13.0, 7.2 + 2.0 * velocity_rows)
-        above, below = figure.subfigures(2, 1, height_ratios=[7.2, 2.0 * velocity_rows])
+        above, below = np.asarray(figure.subfigures(2, 1, height_ratios=[7.2, 2.0 * velocity_rows]))
         grid = above.add_gridspec(3, 2, width_ratios=[1.0, 1.25])
         _draw_space(above.add_subplot(grid[:, 0], projection="3d"), result)
         error = above.add_subplot(grid[0, 1])
@@ -176,7 +176,7 @@ def _style() -> Iterator[None]:
         "legend.frameon": False,
         "lines.linewidth": 1.3,
     }
-    with mpl.rc_context(style):
+    with mpl.rc_context(style):  # type: ignore[arg-type, unused-ignore]  # the stub wants literal keys
         yield
 
 
