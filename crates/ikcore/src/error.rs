@@ -41,6 +41,16 @@ pub enum Error {
         /// The offending number.
         value: f64,
     },
+    /// A word that is none of the allowed ones.
+    #[error("{what} must be one of {known}, got '{value}'")]
+    UnknownOption {
+        /// The name of the argument.
+        what: String,
+        /// What came.
+        value: String,
+        /// The allowed words, quoted and separated by commas.
+        known: String,
+    },
     /// No built-in robot has this name.
     #[error("no robot is named '{name}'{suggestion}; known robots: {known}")]
     UnknownRobot {
@@ -163,9 +173,6 @@ pub enum Error {
         /// What is wrong with it.
         problem: String,
     },
-    /// The caller's monitor asked to stop.
-    #[error("interrupted")]
-    Interrupted,
 }
 
 impl Error {

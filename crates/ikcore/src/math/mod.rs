@@ -1,8 +1,14 @@
 //! Rotations, rigid transforms, fast sines and the one bounded step. Plain arrays where it is hot, nalgebra elsewhere.
 
+pub mod arithmetic;
 pub mod box_step;
+pub mod frame;
 pub mod pose;
 pub mod sincos;
 pub mod so3;
 
+pub use frame::Frame;
 pub use pose::Pose;
+
+/// The largest number of independent joints, and of moving elements, of a robot.
+pub const MAX_DOF: usize = 32;

@@ -66,11 +66,16 @@ impl Joint {
 
     /// The finite range from which random configurations are drawn: one turn, or 2 m, wide on an open side.
     pub fn sampling_range(&self) -> (f64, f64) {
+        self.sampling_range_within(self.lower, self.upper)
+    }
+
+    /// [`sampling_range`](Self::sampling_range) under other limits (rad or m).
+    pub fn sampling_range_within(&self, lower: f64, upper: f64) -> (f64, f64) {
         let reach = if self.kind.turns() { std::f64::consts::PI } else { UNLIMITED_SLIDE };
-        match (self.lower.is_finite(), self.upper.is_finite()) {
-            (true, true) => (self.lower, self.upper),
-            (true, false) => (self.lower, self.lower + 2.0 * reach),
-            (false, true) => (self.upper - 2.0 * reach, self.upper),
+        match (lower.is_finite(), upper.is_finite()) {
+            (true, true) => (lower, upper),
+            (true, false) => (lower, lower + 2.0 * reach),
+            (false, true) => (upper - 2.0 * reach, upper),
             (false, false) => (-reach, reach),
         }
     }

@@ -1,0 +1,184 @@
+//! Limits on joint motion. Each only narrows the box of the next tick; the tick's box is what a tracker may use.
+
+mod profile;
+mod tick_box;
+
+pub use profile::{Profile, Sinusoid};
+pub use tick_box::LimitAt;
+
+use std::fmt;
+
+use crate::error::{Error, Result};
+use crate::objective::Bounds;
+use crate::robot::Robot;
+
+/// A kind of limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Field {
+    /// Lower position limit (rad or m).
+    Lower,
+    /// Upper position limit (rad or m).
+    Upper,
+    /// Velocity (rad/s or m/s).
+    Velocity,
+    /// Acceleration (rad/s^2 or m/s^2).
+    Acceleration,
+    /// Jerk (rad/s^3 or m/s^3).
+    Jerk,
+}
+
+impl fmt::Display for Field {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Lower => "lower",
+            Self::Upper => "upper",
+            Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+            Self::Jerk => "jerk",
+        })
+    }
+}
+
+/// The limits in force: per joint and field a function of time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limits {
+    joints: Vec<String>,
+    lower: Vec<Profile>,
+    upper: Vec<Profile>,
+    velocity: Vec<Profile>,
+    acceleration: Option<Vec<Profile>>,
+    jerk: Option<Vec<Profile>>,
+}
+
+impl Limits {
+    /// The robot's own limits: positions and velocities.
+    pub fn of(robot: &Robot) -> Self {
+        let joints = robot.joints();
+        Self {
+            joints: joints.iter().map(|joint| joint.name.clone()).collect(),
+            lower: joints.iter().map(|joint| Profile::Constant(joint.lower)).collect(),
+            upper: joints.iter().map(|joint| Profile::Constant(joint.upper)).collect(),
+            velocity: joints.iter().map(|joint| Profile::Constant(joint.velocity)).collect(),
+            acceleration: None,
+            jerk: None,
+        }
+    }
+
+    /// Replaces one field for all joints; one profile per joint, or a single one for all of them.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] for another number of profiles, [`Error::NotFinite`] for NaN.
+    pub fn replace(mut self, field: Field, mut profiles: Vec<Profile>) -> Result<Self> {
+        let n = self.joints.len();
+        if profiles.len() == 1 {
+            profiles = vec![profiles[0].clone(); n];
+        }
+        if profiles.len() != n {
+            let expected = format!("one number, or {n} (one per joint)");
+            return Err(Error::WrongLength { what: format!("{field} limit"), expected, got: profiles.len() });
+        }
+        for (profile, joint) in profiles.iter().zip(&self.joints) {
+            if let Some(value) = profile.nan() {
+                let place = format!("joint '{joint}'");
+                return Err(Error::NotFinite { what: format!("{field} limit"), place, value });
+            }
+        }
+        match field {
+            Field::Lower => self.lower = profiles,
+            Field::Upper => self.upper = profiles,
+            Field::Velocity => self.velocity = profiles,
+            Field::Acceleration => self.acceleration = Some(profiles),
+            Field::Jerk => self.jerk = Some(profiles),
+        }
+        Ok(self)
+    }
+
+    /// The profiles of a field, one per joint; None where there is no such limit.
+    pub fn field(&self, field: Field) -> Option<&[Profile]> {
+        match field {
+            Field::Lower => Some(&self.lower),
+            Field::Upper => Some(&self.upper),
+            Field::Velocity => Some(&self.velocity),
+            Field::Acceleration => self.acceleration.as_deref(),
+            Field::Jerk => self.jerk.as_deref(),
+        }
+    }
+
+    /// Checks over \[0, `duration`\] (s) that no velocity limit is negative and no range is empty.
+    ///
+    /// # Errors
+    /// [`Error::NegativeLimit`] says when, [`Error::EmptyRange`] which joint.
+    pub fn validate(&self, duration: f64) -> Result<()> {
+        for field in [Field::Velocity, Field::Acceleration, Field::Jerk] {
+            for (profile, joint) in self.field(field).unwrap_or_default().iter().zip(&self.joints) {
+                let (time, value) = profile.smallest(0.0, duration);
+                if value < 0.0 {
+                    return Err(Error::NegativeLimit { field: field.to_string(), joint: joint.clone(), value, time });
+                }
+            }
+        }
+        for ((lower, upper), joint) in self.lower.iter().zip(&self.upper).zip(&self.joints) {
+            let (lower, upper) = (lower.largest(0.0, duration).1, upper.smallest(0.0, duration).1);
+            if !(lower <= upper) {
+                return Err(Error::EmptyRange { joint: joint.clone(), lower, upper });
+            }
+        }
+        Ok(())
+    }
+
+    /// Err if a field is set that `method` cannot keep.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`].
+    pub fn require_none(&self, fields: &[Field], method: &str, remedy: &str) -> Result<()> {
+        match fields.iter().find(|field| self.is_finite(**field)) {
+            None => Ok(()),
+            Some(field) => {
+                Err(Error::UnsupportedLimit { field: field.to_string(), method: method.into(), remedy: remedy.into() })
+            }
+        }
+    }
+
+    fn is_finite(&self, field: Field) -> bool {
+        self.field(field).unwrap_or_default().iter().any(|profile| *profile != Profile::Constant(f64::INFINITY))
+    }
+
+    /// The position limits as a box, for solving without time.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`] where they vary in time; [`Error::EmptyRange`].
+    pub fn position_box(&self) -> Result<Bounds> {
+        self.validate(0.0)?;
+        let constant = |field: Field, profile: &Profile| match profile {
+            Profile::Constant(value) => Ok(*value),
+            _ => Err(Error::UnsupportedLimit {
+                field: format!("time-varying {field}"),
+                method: "solve".into(),
+                remedy: "one configuration has no time; give numbers".into(),
+            }),
+        };
+        let lower = self.lower.iter().map(|p| constant(Field::Lower, p)).collect::<Result<Vec<_>>>()?;
+        let upper = self.upper.iter().map(|p| constant(Field::Upper, p)).collect::<Result<Vec<_>>>()?;
+        Bounds::new(&lower, &upper)
+    }
+
+    /// Err unless `q` lies within the position limits at time `t` (s); `what` names it.
+    ///
+    /// # Errors
+    /// [`Error::OutsideLimits`] names the joint, its value and its limits.
+    pub fn require_inside(&self, what: &str, t: f64, q: &[f64]) -> Result<()> {
+        for (i, joint) in self.joints.iter().enumerate() {
+            let (lower, upper) = (self.lower[i].at(t), self.upper[i].at(t));
+            if !(lower <= q[i] && q[i] <= upper) {
+                return Err(Error::OutsideLimits {
+                    what: what.into(),
+                    joint: joint.clone(),
+                    value: q[i],
+                    lower,
+                    upper,
+                });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,147 @@
+//! A limit as a function of time, with its extremes over an interval.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// mean + amplitude sin(angular_frequency t + phase): eq. (7) of Cheng et al. (2020), its sign mended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sinusoid {
+    /// The paper's H (rad/s).
+    pub mean: f64,
+    /// The paper's W (rad/s).
+    pub amplitude: f64,
+    /// The paper's omega (rad/s of the oscillation).
+    pub angular_frequency: f64,
+    /// Phase at t = 0 (rad).
+    pub phase: f64,
+}
+
+impl Sinusoid {
+    /// Its value at `t` (s).
+    pub fn at(&self, t: f64) -> f64 {
+        self.mean + self.amplitude * (self.angular_frequency * t + self.phase).sin()
+    }
+
+    /// The first time in \[`from`, `to`\] at which the sine is `sign` (1 or -1).
+    fn time_of_peak(&self, sign: f64, from: f64, to: f64) -> Option<f64> {
+        if self.angular_frequency == 0.0 {
+            return None;
+        }
+        let period = TAU / self.angular_frequency.abs();
+        let peak = (sign * FRAC_PI_2 - self.phase) / self.angular_frequency;
+        let first = peak + ((from - peak) / period).ceil() * period;
+        (first <= to).then_some(first.max(from))
+    }
+}
+
+/// A limit of one joint over time.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Profile {
+    /// The same at all times.
+    Constant(f64),
+    /// Oscillating.
+    Sinusoid(Sinusoid),
+    /// Values `step` seconds apart from t = 0 on, linear in between, the last one held.
+    Sampled {
+        /// Time between values (s).
+        step: f64,
+        /// The values.
+        values: Vec<f64>,
+    },
+}
+
+impl Profile {
+    /// Its value at `t` (s).
+    pub fn at(&self, t: f64) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Sinusoid(sinusoid) => sinusoid.at(t),
+            Self::Sampled { step, values } => {
+                let last = values.len() - 1;
+                let place = (t / step).clamp(0.0, last as f64);
+                let (below, share) = (place as usize, place.fract());
+                if share == 0.0 { values[below] } else { values[below] + share * (values[below + 1] - values[below]) }
+            }
+        }
+    }
+
+    /// (time, value) of its smallest value over \[`from`, `to`\] (s).
+    pub fn smallest(&self, from: f64, to: f64) -> (f64, f64) {
+        self.extreme(-1.0, from, to)
+    }
+
+    /// (time, value) of its largest value over \[`from`, `to`\] (s).
+    pub fn largest(&self, from: f64, to: f64) -> (f64, f64) {
+        self.extreme(1.0, from, to)
+    }
+
+    /// The largest (`sign` 1) or smallest (-1): at an end of the interval, a peak, or a sample between.
+    fn extreme(&self, sign: f64, from: f64, to: f64) -> (f64, f64) {
+        let mut best = (from, self.at(from));
+        let mut offer = |t: f64, value: f64| {
+            if sign * value > sign * best.1 {
+                best = (t, value);
+            }
+        };
+        match self {
+            Self::Constant(_) => {}
+            Self::Sinusoid(sinusoid) => {
+                offer(to, self.at(to));
+                if let Some(t) = sinusoid.time_of_peak(sign * sinusoid.amplitude.signum(), from, to) {
+                    offer(t, sinusoid.mean + sign * sinusoid.amplitude.abs());
+                }
+            }
+            Self::Sampled { step, values } => {
+                offer(to, self.at(to));
+                let first = (from / step).ceil().max(0.0) as usize;
+                let last = ((to / step).floor() as usize).min(values.len() - 1);
+                (first..=last).for_each(|i| offer(i as f64 * step, values[i]));
+            }
+        }
+        best
+    }
+
+    /// A NaN among its parameters.
+    pub(super) fn nan(&self) -> Option<f64> {
+        let any_nan = match self {
+            Self::Constant(value) => value.is_nan(),
+            Self::Sinusoid(s) => ![s.mean, s.amplitude, s.angular_frequency, s.phase].iter().all(|v| v.is_finite()),
+            Self::Sampled { values, .. } => values.iter().any(|v| v.is_nan()),
+        };
+        any_nan.then_some(f64::NAN)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn dense_minimum(profile: &Profile, from: f64, to: f64) -> f64 {
+        (0..=20_000).map(|i| profile.at(from + (to - from) * f64::from(i) / 20_000.0)).fold(f64::INFINITY, f64::min)
+    }
+
+    proptest! {
+        #[test]
+        fn smallest_of_a_sinusoid_is_that_of_dense_sampling(
+            mean in -1.0..1.0, amplitude in -1.0..1.0, angular_frequency in -9.0..9.0, phase in -7.0..7.0,
+            from in 0.0..5.0, length in 0.0..3.0,
+        ) {
+            let profile = Profile::Sinusoid(Sinusoid { mean, amplitude, angular_frequency, phase });
+            let (time, value) = profile.smallest(from, from + length);
+            let dense = dense_minimum(&profile, from, from + length);
+            prop_assert!(value <= dense + 1e-12 && dense - value < 1e-5, "{value} {dense}");
+            prop_assert!((from..=from + length).contains(&time));
+            prop_assert!((profile.at(time) - value).abs() < 1e-9);
+        }
+
+        #[test]
+        fn samples_are_joined_by_straight_lines(values in prop::collection::vec(0.0..1.0, 2..8), from in 0.0..1.0, length in 0.0..1.0) {
+            let profile = Profile::Sampled { step: 0.25, values: values.clone() };
+            let (_, value) = profile.smallest(from, from + length);
+            let dense = dense_minimum(&profile, from, from + length);
+            prop_assert!(value <= dense + 1e-12 && dense - value < 1e-3);
+            prop_assert_eq!(profile.at(0.25), values[1]);
+            prop_assert_eq!(profile.at(99.0), values[values.len() - 1]);
+        }
+    }
+}

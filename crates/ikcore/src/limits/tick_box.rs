@@ -1,0 +1,122 @@
+//! The box of one tick: position limits intersected with what the velocity limit lets the ACCEPTED configuration reach.
+
+use super::Limits;
+use crate::objective::Bounds;
+
+/// Where in a tick its limit is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LimitAt {
+    /// The smallest limit over the tick: never broken, at no instant.
+    #[default]
+    Interval,
+    /// The limit at the tick's beginning, as Cheng et al. (2020) take it.
+    Start,
+}
+
+impl Limits {
+    /// The velocity limit of joint `j` that holds for the tick from `from` to `to` (s).
+    pub fn velocity_over(&self, j: usize, from: f64, to: f64, at: LimitAt) -> f64 {
+        match at {
+            LimitAt::Interval => self.velocity[j].smallest(from, to).1,
+            LimitAt::Start => self.velocity[j].at(from),
+        }
+    }
+
+    /// The position range of joint `j` that holds at every instant from `from` to `to` (s).
+    pub fn position_range(&self, j: usize, from: f64, to: f64) -> [f64; 2] {
+        [self.lower[j].largest(from, to).1, self.upper[j].smallest(from, to).1]
+    }
+
+    /// Narrows `tick` to what `q` may become in the tick from `from` to `to` (s). Returns whether every joint can be
+    /// within its position limits at the end of the tick; one that cannot is sent towards them as fast as it may go.
+    pub fn narrow(&self, q: &[f64], from: f64, to: f64, at: LimitAt, tick: &mut Bounds) -> bool {
+        let (lower, upper) = tick.parts_mut();
+        let mut feasible = true;
+        for j in 0..q.len() {
+            let reach = self.velocity_over(j, from, to, at) * (to - from);
+            let (slowest, fastest) = (reachable(q[j], -reach), reachable(q[j], reach));
+            let [floor, ceiling] = self.position_range(j, from, to);
+            lower[j] = slowest.max(floor).min(fastest);
+            upper[j] = fastest.min(ceiling).max(slowest);
+            feasible &= floor <= fastest && slowest <= ceiling;
+        }
+        feasible
+    }
+}
+
+/// q + reach, rounded so that the displacement does not exceed `reach` by the last bit.
+fn reachable(q: f64, reach: f64) -> f64 {
+    let end = q + reach;
+    if reach > 0.0 && end - q > reach {
+        end.next_down()
+    } else if reach < 0.0 && end - q < reach {
+        end.next_up()
+    } else {
+        end
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::{Field, Profile};
+    use crate::math::pose;
+    use crate::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
+    fn slider(lower: f64, upper: f64, velocity: f64) -> Robot {
+        let mut chain = ChainBuilder::new("slider", "base");
+        let joint =
+            chain.add_joint(Joint::new("x", JointKind::Prismatic).with_range(lower, upper).with_velocity(velocity));
+        chain.moving(joint, JointKind::Prismatic, Vector3::x(), Drive::DIRECT);
+        chain.fixed(pose::translation(0.0, 0.0, 0.1));
+        chain.link("tip");
+        chain.build().unwrap()
+    }
+
+    fn tick(limits: &Limits, q: f64, dt: f64) -> (bool, f64, f64) {
+        let mut bounds = Bounds::new(&[0.0], &[0.0]).unwrap();
+        let feasible = limits.narrow(&[q], 0.0, dt, LimitAt::Interval, &mut bounds);
+        (feasible, bounds.lower()[0], bounds.upper()[0])
+    }
+
+    #[test]
+    fn position_limits_cut_the_velocity_reach() {
+        let limits = Limits::of(&slider(-1.0, 1.0, 0.5));
+        assert_eq!(tick(&limits, 0.0, 1.0), (true, -0.5, 0.5));
+        assert_eq!(tick(&limits, 0.75, 1.0), (true, 0.25, 1.0));
+    }
+
+    #[test]
+    fn outside_its_limits_a_joint_returns_at_full_speed() {
+        let limits = Limits::of(&slider(-1.0, 1.0, 0.5));
+        assert_eq!(tick(&limits, 2.0, 1.0), (false, 1.5, 1.5));
+        assert_eq!(tick(&limits, -2.0, 1.0), (false, -1.5, -1.5));
+        assert_eq!(tick(&limits, 1.25, 1.0), (true, 0.75, 1.0));
+    }
+
+    #[test]
+    fn a_zero_velocity_limit_locks_the_joint_and_none_frees_it() {
+        assert_eq!(tick(&Limits::of(&slider(-1.0, 1.0, 0.0)), 0.3, 1.0), (true, 0.3, 0.3));
+        let free = Limits::of(&slider(-1.0, 1.0, f64::INFINITY));
+        assert_eq!(tick(&free, 0.3, 1.0), (true, -1.0, 1.0));
+    }
+
+    #[test]
+    fn the_smallest_limit_of_the_tick_counts() {
+        let fading = Profile::Sampled { step: 0.5, values: vec![0.4, 0.1, 0.3] };
+        let limits = Limits::of(&slider(-9.0, 9.0, 1.0)).replace(Field::Velocity, vec![fading]).unwrap();
+        assert_eq!(limits.velocity_over(0, 0.0, 1.0, LimitAt::Interval), 0.1);
+        assert_eq!(limits.velocity_over(0, 0.0, 1.0, LimitAt::Start), 0.4);
+    }
+
+    proptest! {
+        #[test]
+        fn no_displacement_exceeds_the_reach(q in -3.0..3.0, velocity in 0.0..2.0, dt in 1e-4..0.5) {
+            let limits = Limits::of(&slider(-9.0, 9.0, velocity));
+            let (_, lower, upper) = tick(&limits, q, dt);
+            prop_assert!(upper - q <= velocity * dt && q - lower <= velocity * dt);
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! The one bounded step: damped least squares on six rows, with joints that hit a bound fixed and the step re-solved.
+
+/// Task rows of every least-squares problem here; unused rows are zero.
+pub const ROWS: usize = 6;
+
+/// Pivots below this share of the matrix's trace count as zero: no step in that direction.
+const SINGULAR: f64 = 1e-15;
+
+/// Joints can stick one after another; after so many rounds the rest is cut off at the box.
+const ROUNDS: usize = 4;
+
+/// Writes into `out` the point x + dx inside the box \[`lower`, `upper`\] that (nearly) minimises
+/// |residual + J dx|^2 + lambda |dx|^2, J given by its columns.
+///
+/// dx = -J' (J J' + lambda I)^-1 residual over the free joints. A joint that would leave the box is fixed at its bound,
+/// what it still moves is taken off the residual, and the others are solved again.
+pub fn box_step(
+    columns: &[[f64; ROWS]],
+    residual: &[f64; ROWS],
+    lambda: f64,
+    x: &[f64],
+    lower: &[f64],
+    upper: &[f64],
+    out: &mut [f64],
+) {
+    let n = x.len();
+    let mut remaining = *residual;
+    // Bit j: joint j sits at a bound.
+    let mut fixed = 0_u64;
+    for _ in 0..ROUNDS {
+        let z = solve(&gram(columns, lambda, n, fixed), &remaining);
+        let fixed_before = fixed;
+        for j in (0..n).filter(|j| fixed_before & (1 << j) == 0) {
+            let step = -dot(&columns[j], &z);
+            let bounded = (x[j] + step).max(lower[j]).min(upper[j]);
+            out[j] = bounded;
+            if bounded != x[j] + step {
+                fixed |= 1 << j;
+                for (rest, column) in remaining.iter_mut().zip(&columns[j]) {
+                    *rest += column * (bounded - x[j]);
+                }
+            }
+        }
+        if fixed == fixed_before {
+            return;
+        }
+    }
+}
+
+/// Lower triangle of J J' + lambda I over the joints that are not fixed.
+fn gram(columns: &[[f64; ROWS]], lambda: f64, n: usize, fixed: u64) -> [[f64; ROWS]; ROWS] {
+    let mut sum = [[0.0; ROWS]; ROWS];
+    for (i, row) in sum.iter_mut().enumerate() {
+        row[i] = lambda;
+    }
+    for column in (0..n).filter(|j| fixed & (1 << j) == 0).map(|j| &columns[j]) {
+        for i in 0..ROWS {
+            for k in 0..=i {
+                sum[i][k] += column[i] * column[k];
+            }
+        }
+    }
+    sum
+}
+
+/// Solves A z = b by LDL', A symmetric positive semi-definite in its lower triangle.
+fn solve(a: &[[f64; ROWS]; ROWS], b: &[f64; ROWS]) -> [f64; ROWS] {
+    let smallest = SINGULAR * (0..ROWS).map(|i| a[i][i]).sum::<f64>();
+    let mut l = *a;
+    let mut inverse_pivot = [0.0; ROWS];
+    for j in 0..ROWS {
+        let mut scaled = [0.0; ROWS];
+        for k in 0..j {
+            scaled[k] = l[j][k] * l[k][k];
+        }
+        for i in j..ROWS {
+            let correction: f64 = (0..j).map(|k| l[i][k] * scaled[k]).sum();
+            l[i][j] -= correction;
+        }
+        inverse_pivot[j] = if l[j][j] > smallest { 1.0 / l[j][j] } else { 0.0 };
+        for i in j + 1..ROWS {
+            l[i][j] *= inverse_pivot[j];
+        }
+    }
+    let mut z = *b;
+    for i in 0..ROWS {
+        for k in 0..i {
+            z[i] -= l[i][k] * z[k];
+        }
+    }
+    for i in (0..ROWS).rev() {
+        z[i] *= inverse_pivot[i];
+        for k in i + 1..ROWS {
+            z[i] -= l[k][i] * z[k];
+        }
+    }
+    z
+}
+
+fn dot(a: &[f64; ROWS], b: &[f64; ROWS]) -> f64 {
+    (0..ROWS).map(|k| a[k] * b[k]).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+    use proptest::prelude::*;
+
+    const FREE: f64 = f64::INFINITY;
+
+    fn damped_step(columns: &[[f64; 6]], residual: &[f64; 6], lambda: f64) -> DVector<f64> {
+        let j = DMatrix::from_fn(6, columns.len(), |i, k| columns[k][i]);
+        let normal = &j * j.transpose() + DMatrix::identity(6, 6) * lambda;
+        -j.transpose() * normal.lu().solve(&DVector::from_row_slice(residual)).unwrap()
+    }
+
+    proptest! {
+        #[test]
+        fn without_bounds_it_is_the_damped_pseudo_inverse(
+            columns in prop::collection::vec(prop::array::uniform6(-1.0..1.0), 1..10),
+            residual in prop::array::uniform6(-1.0..1.0),
+            lambda in 1e-3..1.0,
+        ) {
+            let n = columns.len();
+            let mut out = vec![0.0; n];
+            box_step(&columns, &residual, lambda, &vec![0.0; n], &vec![-FREE; n], &vec![FREE; n], &mut out);
+            let expected = damped_step(&columns, &residual, lambda);
+            prop_assert!((DVector::from_vec(out) - expected).norm() < 1e-10);
+        }
+
+        #[test]
+        fn never_leaves_the_box(
+            columns in prop::collection::vec(prop::array::uniform6(-1.0..1.0), 1..10),
+            residual in prop::array::uniform6(-5.0..5.0),
+            width in 0.0..0.5,
+        ) {
+            let n = columns.len();
+            let (lower, upper) = (vec![-width; n], vec![0.5 * width; n]);
+            let mut out = vec![0.0; n];
+            box_step(&columns, &residual, 1e-6, &vec![0.0; n], &lower, &upper, &mut out);
+            prop_assert!(out.iter().zip(&lower).zip(&upper).all(|((x, l), u)| l <= x && x <= u));
+        }
+    }
+
+    #[test]
+    fn what_a_stuck_joint_cannot_do_the_others_take_over() {
+        // Both joints push along x; the first may move by 0.1 only, so the second does the remaining 0.9.
+        let columns = [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 2];
+        let residual = [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let mut out = [0.0; 2];
+        box_step(&columns, &residual, 1e-12, &[0.0; 2], &[-0.1, -FREE], &[0.1, FREE], &mut out);
+        assert!((out[0] - 0.1).abs() < 1e-15 && (out[1] - 0.9).abs() < 1e-9, "{out:?}");
+    }
+
+    #[test]
+    fn a_direction_that_no_joint_moves_gets_no_step() {
+        let mut out = [0.0];
+        box_step(&[[0.0, 2.0, 0.0, 0.0, 0.0, 0.0]], &[1.0; 6], 0.0, &[0.0], &[-FREE], &[FREE], &mut out);
+        assert!((out[0] + 0.5).abs() < 1e-15, "{out:?}");
+    }
+}

@@ -1,0 +1,64 @@
+//! A rigid transform in plain arrays, for the kernels.
+
+use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
+
+use super::arithmetic::Arithmetic;
+use super::pose::{self, Pose};
+
+/// A rigid transform: the columns of its rotation (its axes, seen from the base) and its origin (m).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// x, y and z axis.
+    pub axes: [[f64; 3]; 3],
+    /// Position of the origin (m).
+    pub origin: [f64; 3],
+}
+
+impl Frame {
+    /// No motion.
+    pub const IDENTITY: Self = Self { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.0; 3] };
+
+    /// A vector of this frame's coordinates, turned into the base's: R v.
+    #[inline(always)]
+    pub fn turn<A: Arithmetic>(&self, v: &[f64; 3]) -> [f64; 3] {
+        let [x, y, z] = &self.axes;
+        std::array::from_fn(|k| A::mul_add(z[k], v[2], A::mul_add(y[k], v[1], x[k] * v[0])))
+    }
+
+    /// A point of this frame's coordinates, seen from the base: R p + t.
+    #[inline(always)]
+    pub fn place<A: Arithmetic>(&self, p: &[f64; 3]) -> [f64; 3] {
+        let [x, y, z] = &self.axes;
+        // Two short chains instead of one long one: the latency of this sum is what a chain of joints costs.
+        std::array::from_fn(|k| A::mul_add(x[k], p[0], self.origin[k]) + A::mul_add(y[k], p[1], z[k] * p[2]))
+    }
+
+    /// The frame reached by `next` from here: self * next.
+    #[inline(always)]
+    pub fn then<A: Arithmetic>(&self, next: &Self) -> Self {
+        let axes = std::array::from_fn(|column| self.turn::<A>(&next.axes[column]));
+        Self { axes, origin: self.place::<A>(&next.origin) }
+    }
+
+    /// Turned about its own z axis, given sine and cosine of the angle.
+    #[inline(always)]
+    pub fn turned<A: Arithmetic>(&self, sine: f64, cosine: f64) -> Self {
+        let [x, y, z] = self.axes;
+        let new_x = std::array::from_fn(|k| A::mul_add(sine, y[k], cosine * x[k]));
+        let new_y = std::array::from_fn(|k| A::mul_add(-sine, x[k], cosine * y[k]));
+        Self { axes: [new_x, new_y, z], origin: self.origin }
+    }
+}
+
+impl From<&Pose> for Frame {
+    fn from(pose: &Pose) -> Self {
+        Self { axes: (*pose.rotation.matrix()).into(), origin: pose.translation.vector.into() }
+    }
+}
+
+impl From<Frame> for Pose {
+    fn from(frame: Frame) -> Self {
+        pose::from_parts(frame.origin, Matrix3::from(frame.axes))
+    }
+}

@@ -1,0 +1,137 @@
+//! The meeting point of the robot side and the solver side: what is minimised, and within which box.
+
+use smallvec::SmallVec;
+
+use crate::error::{Error, Result};
+use crate::math::MAX_DOF;
+use crate::math::box_step::ROWS;
+use crate::rng::LazyRng;
+
+/// A point of the search space; on the stack up to [`MAX_DOF`] entries.
+pub type Point = SmallVec<[f64; MAX_DOF]>;
+
+/// What an objective says of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Score {
+    /// The weighted sum of squares r'r.
+    pub value: f64,
+    /// The problem's own test, such as metres AND radians within their tolerances.
+    pub solved: bool,
+}
+
+/// Something to minimise. It owns its scratch and is cloned per thread.
+pub trait Objective {
+    /// Number of entries of a point.
+    fn dimension(&self) -> usize;
+
+    /// The score of `x`, which lies inside the box.
+    fn evaluate(&mut self, x: &[f64]) -> Score;
+
+    /// Scores of many points, stored one after another in `xs`.
+    fn evaluate_all(&mut self, xs: &[f64], out: &mut [Score]) {
+        for (x, score) in xs.chunks_exact(self.dimension()).zip(out) {
+            *score = self.evaluate(x);
+        }
+    }
+
+    /// The start of attempt number `attempt` (from 1; attempt 0 is the caller's start). By default uniform in the box.
+    fn propose_start(&mut self, attempt: usize, bounds: &Bounds, rng: &mut LazyRng, x: &mut [f64]) {
+        let _ = attempt;
+        bounds.sample(rng, x);
+    }
+}
+
+/// Residual r and Jacobian dr/dx at a point.
+#[derive(Debug, Clone)]
+pub struct Linearization {
+    /// Weighted residual, current minus wanted; rows that a task does not use are zero.
+    pub residual: [f64; ROWS],
+    /// Columns of the weighted Jacobian, one per entry of x; the first `dimension` are in use.
+    pub columns: [[f64; ROWS]; MAX_DOF],
+}
+
+impl Default for Linearization {
+    fn default() -> Self {
+        Self { residual: [0.0; ROWS], columns: [[0.0; ROWS]; MAX_DOF] }
+    }
+}
+
+/// An objective that is a sum of at most six squares and knows its derivative.
+pub trait LeastSquares: Objective {
+    /// Residual and Jacobian at `x` in one pass, and the score.
+    fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score;
+}
+
+/// A box, entry by entry: lower <= upper; infinite bounds are allowed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bounds {
+    lower: Point,
+    upper: Point,
+}
+
+/// From a bound that is finite on one side only, samples reach this far.
+const OPEN_REACH: f64 = 2.0 * std::f64::consts::PI;
+
+impl Bounds {
+    /// # Errors
+    /// [`Error::WrongLength`] for unequal lengths, [`Error::OutOfRange`] for NaN or lower > upper.
+    pub fn new(lower: &[f64], upper: &[f64]) -> Result<Self> {
+        if lower.len() != upper.len() {
+            let expected = format!("{} entries as in lower", lower.len());
+            return Err(Error::WrongLength { what: "upper".into(), expected, got: upper.len() });
+        }
+        match lower.iter().zip(upper).position(|(l, u)| l.is_nan() || u.is_nan() || l > u) {
+            Some(i) => {
+                Err(Error::out_of_range(format!("lower[{i}]"), &format!("at most upper[{i}] = {}", upper[i]), lower[i]))
+            }
+            None => Ok(Self { lower: lower.into(), upper: upper.into() }),
+        }
+    }
+
+    /// The box of these (lower, upper), which are known to be in order.
+    pub(crate) fn from_ranges(ranges: impl Iterator<Item = (f64, f64)>) -> Self {
+        let (lower, upper) = ranges.unzip();
+        Self { lower, upper }
+    }
+
+    /// Lower bounds.
+    pub fn lower(&self) -> &[f64] {
+        &self.lower
+    }
+
+    /// Upper bounds.
+    pub fn upper(&self) -> &[f64] {
+        &self.upper
+    }
+
+    /// Writable lower and upper bounds. Whoever writes keeps lower <= upper.
+    pub(crate) fn parts_mut(&mut self) -> (&mut [f64], &mut [f64]) {
+        (&mut self.lower, &mut self.upper)
+    }
+
+    /// Clips `x` to the box: R(.) of BAS, eq. (10).
+    #[inline]
+    pub fn clip(&self, x: &mut [f64]) {
+        for ((x, lower), upper) in x.iter_mut().zip(&self.lower).zip(&self.upper) {
+            *x = x.max(*lower).min(*upper);
+        }
+    }
+
+    /// Whether `x` lies in the box, bounds included.
+    pub fn contains(&self, x: &[f64]) -> bool {
+        x.iter().zip(&self.lower).zip(&self.upper).all(|((x, lower), upper)| lower <= x && x <= upper)
+    }
+
+    /// A uniform draw; an open side reaches one turn from the other bound, or half a turn from zero.
+    pub fn sample(&self, rng: &mut LazyRng, x: &mut [f64]) {
+        for ((x, lower), upper) in x.iter_mut().zip(&self.lower).zip(&self.upper) {
+            let (from, to) = match (lower.is_finite(), upper.is_finite()) {
+                (true, true) => (*lower, *upper),
+                (true, false) => (*lower, lower + OPEN_REACH),
+                (false, true) => (upper - OPEN_REACH, *upper),
+                (false, false) => (-0.5 * OPEN_REACH, 0.5 * OPEN_REACH),
+            };
+            *x = rng.uniform_in(from, to);
+        }
+    }
+}

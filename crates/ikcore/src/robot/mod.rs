@@ -1,0 +1,19 @@
+//! Robots: the serial chain from a base link to a tip link, its joints, limits and kinematics.
+
+mod builder;
+mod catalog;
+mod chain;
+mod dh;
+mod joint;
+mod kinematics;
+mod model;
+mod planar;
+mod urdf;
+
+pub use builder::{ChainBuilder, Drive};
+pub use dh::{Dh, DhTable};
+pub use joint::{Joint, JointKind};
+pub use kinematics::Columns;
+pub use model::Robot;
+
+use crate::math::MAX_DOF;

@@ -1,0 +1,264 @@
+//! The robot: immutable, validated once, shared between threads without locks.
+
+use std::collections::HashSet;
+
+use nalgebra::Matrix6xX;
+use serde::{Deserialize, Serialize};
+
+use super::builder::{ChainBuilder, Element};
+use super::chain::Chain;
+use super::joint::Joint;
+use super::{Columns, MAX_DOF};
+use crate::error::{Error, Result, require_finite};
+use crate::math::{Frame, Pose};
+use crate::rng::LazyRng;
+
+/// A robot arm: a serial chain from base to tip.
+///
+/// Joint vectors hold the independent joints in chain order (rad, m); mimic joints follow theirs. Poses are seen from
+/// the robot's base.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Robot {
+    description: ChainBuilder,
+    base: Pose,
+    tool: Pose,
+    chain: Chain,
+}
+
+/// What is stored of a robot; the first byte is [`FORMAT`].
+#[derive(Serialize, Deserialize)]
+struct Stored {
+    description: ChainBuilder,
+    base: Pose,
+    tool: Pose,
+}
+
+/// Version of the byte form.
+const FORMAT: u8 = 1;
+
+impl Robot {
+    pub(super) fn new(description: ChainBuilder) -> Result<Self> {
+        Self::assembled(description, Pose::identity(), Pose::identity())
+    }
+
+    fn assembled(description: ChainBuilder, base: Pose, tool: Pose) -> Result<Self> {
+        description.validate()?;
+        let chain = Chain::new(&description.elements, &base, &tool);
+        Ok(Self { description, base, tool, chain })
+    }
+
+    /// The robot's name.
+    pub fn name(&self) -> &str {
+        &self.description.name
+    }
+
+    /// Degrees of freedom: the number of independent joints.
+    pub fn dof(&self) -> usize {
+        self.description.joints.len()
+    }
+
+    /// The independent joints, in the order of q.
+    pub fn joints(&self) -> &[Joint] {
+        &self.description.joints
+    }
+
+    /// Names of the links from base to tip.
+    pub fn link_names(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.chain.links.iter().map(|link| link.name.as_str())
+    }
+
+    /// Pose of the chain's first link, seen from the robot's base.
+    pub fn base(&self) -> &Pose {
+        &self.base
+    }
+
+    /// Pose of the tool, seen from the tip link.
+    pub fn tool(&self) -> &Pose {
+        &self.tool
+    }
+
+    /// The same robot, standing at `base`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] for NaN or infinity in the pose.
+    pub fn with_base(&self, base: Pose) -> Result<Self> {
+        finite_pose("base", &base)?;
+        Self::assembled(self.description.clone(), base, self.tool)
+    }
+
+    /// The same robot, its tip moved by `tool` from the tip link.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] for NaN or infinity in the pose.
+    pub fn with_tool(&self, tool: Pose) -> Result<Self> {
+        finite_pose("tool", &tool)?;
+        Self::assembled(self.description.clone(), self.base, tool)
+    }
+
+    /// The same robot with other joint limits; `change` gets each joint with its index.
+    ///
+    /// # Errors
+    /// [`Error::EmptyRange`] or [`Error::NegativeLimit`] for impossible limits.
+    pub fn with_limits(&self, mut change: impl FnMut(usize, &mut Joint)) -> Result<Self> {
+        let mut description = self.description.clone();
+        for (index, joint) in description.joints.iter_mut().enumerate() {
+            change(index, joint);
+        }
+        Self::assembled(description, self.base, self.tool)
+    }
+
+    /// Err unless `q` has one finite entry per joint; `what` names it in the message.
+    pub fn check(&self, what: &str, q: &[f64]) -> Result<()> {
+        if q.len() != self.dof() {
+            let expected = format!("{} joints", self.dof());
+            let what = format!("{what} of robot '{}'", self.name());
+            return Err(Error::WrongLength { what, expected, got: q.len() });
+        }
+        require_finite(what, q, |i| format!("joint '{}'", self.joints()[i].name))
+    }
+
+    /// Pose of the tip at `q` (n,) (rad, m).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] or [`Error::NotFinite`].
+    pub fn fk(&self, q: &[f64]) -> Result<Pose> {
+        self.check("joint angles", q)?;
+        Ok(self.tip(q).into())
+    }
+
+    /// Geometric Jacobian at the tip, 6 x n: linear rows (m per rad or m), then angular, in the base's axes.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] or [`Error::NotFinite`].
+    pub fn jacobian(&self, q: &[f64]) -> Result<Matrix6xX<f64>> {
+        self.check("joint angles", q)?;
+        let mut columns = [[0.0; 6]; MAX_DOF];
+        self.tip_and_jacobian(q, &mut columns);
+        Ok(Matrix6xX::from_iterator(q.len(), columns[..q.len()].iter().flatten().copied()))
+    }
+
+    /// Pose of every link at `q` (n,), base first, in the order of [`link_names`](Self::link_names).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] or [`Error::NotFinite`].
+    pub fn link_poses(&self, q: &[f64]) -> Result<Vec<Pose>> {
+        self.check("joint angles", q)?;
+        Ok(self.chain.link_frames(q).into_iter().map(Pose::from).collect())
+    }
+
+    /// [`fk`](Self::fk) without the check: `q` has one finite entry per joint.
+    #[inline]
+    pub fn tip(&self, q: &[f64]) -> Frame {
+        self.chain.tip(q)
+    }
+
+    /// Position of the tip (m) at `q`, which has one finite entry per joint.
+    #[inline]
+    pub fn tip_position(&self, q: &[f64]) -> [f64; 3] {
+        self.chain.tip_position(q)
+    }
+
+    /// Positions of the tip (m) at `W` configurations side by side; the same bits as one by one.
+    #[inline]
+    pub fn tip_positions<const W: usize>(&self, qs: &[&[f64]; W]) -> [[f64; 3]; W] {
+        self.chain.tip_positions(qs)
+    }
+
+    /// Tip and Jacobian in one pass, without the check: `q` has one finite entry per joint.
+    #[inline]
+    pub fn tip_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
+        self.chain.jacobian(q, columns)
+    }
+
+    /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).
+    pub fn random_configurations(&self, count: usize, rng: &mut LazyRng) -> Vec<f64> {
+        let ranges: Vec<_> = self.joints().iter().map(Joint::sampling_range).collect();
+        (0..count).flat_map(|_| ranges.iter()).map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect()
+    }
+
+    /// The robot as bytes, for storing and for copying between processes.
+    ///
+    /// # Errors
+    /// [`Error::Corrupt`] if the encoder fails.
+    pub fn to_bytes(&self) -> Result<Vec<u8>> {
+        let stored = Stored { description: self.description.clone(), base: self.base, tool: self.tool };
+        postcard::to_extend(&stored, vec![FORMAT]).map_err(|e| corrupt(e.to_string()))
+    }
+
+    /// The robot that [`to_bytes`](Self::to_bytes) stored.
+    ///
+    /// # Errors
+    /// [`Error::Corrupt`] for bytes of another version or of something else.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        let (version, rest) = bytes.split_first().ok_or_else(|| corrupt("no bytes".into()))?;
+        if *version != FORMAT {
+            return Err(corrupt(format!("format version {version}, this library reads version {FORMAT}")));
+        }
+        let stored: Stored = postcard::from_bytes(rest).map_err(|e| corrupt(e.to_string()))?;
+        Self::assembled(stored.description, stored.base, stored.tool)
+    }
+}
+
+fn corrupt(problem: String) -> Error {
+    Error::Corrupt { what: "robot".into(), problem }
+}
+
+fn finite_pose(what: &str, pose: &Pose) -> Result<()> {
+    require_finite(what, pose.to_homogeneous().as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))
+}
+
+impl ChainBuilder {
+    /// Everything that the kernels rely on.
+    fn validate(&self) -> Result<()> {
+        let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem };
+        let moving = self.elements.iter().filter(|e| matches!(e, Element::Moving { .. })).count();
+        if moving == 0 || self.joints.is_empty() {
+            return Err(invalid("no joint moves between base and tip".into()));
+        }
+        if moving > MAX_DOF || self.joints.len() > MAX_DOF {
+            return Err(invalid(format!(
+                "{moving} moving joints between base and tip; at most {MAX_DOF} are supported"
+            )));
+        }
+        let mut names = HashSet::new();
+        for joint in &self.joints {
+            if !names.insert(&joint.name) {
+                return Err(invalid(format!("two joints are named '{}'", joint.name)));
+            }
+            joint.validate()?;
+        }
+        self.elements.iter().try_for_each(|element| match element {
+            Element::Fixed(transform) => finite_pose("fixed transform", transform),
+            Element::Link(_) => Ok(()),
+            Element::Moving { axis, joint, scale, offset, .. } => {
+                let Some(driver) = self.joints.get(*joint) else {
+                    return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
+                };
+                if !((axis.norm() - 1.0).abs() < 1e-9) {
+                    return Err(invalid(format!("joint '{}' has a zero or non-finite axis", driver.name)));
+                }
+                require_finite("scale and offset of a joint", &[*scale, *offset], |_| {
+                    format!("joint '{}'", driver.name)
+                })
+            }
+        })
+    }
+}
+
+impl Joint {
+    fn validate(&self) -> Result<()> {
+        let joint = self.name.clone();
+        let (lower, upper) = (self.lower, self.upper);
+        if lower.is_nan() || upper.is_nan() || lower == f64::INFINITY || upper == f64::NEG_INFINITY {
+            let value = if lower.is_finite() || lower == f64::NEG_INFINITY { upper } else { lower };
+            return Err(Error::NotFinite { what: "position limits".into(), place: format!("joint '{joint}'"), value });
+        }
+        if lower > upper {
+            return Err(Error::EmptyRange { joint, lower, upper });
+        }
+        if !(self.velocity >= 0.0) {
+            return Err(Error::NegativeLimit { field: "velocity".into(), joint, value: self.velocity, time: 0.0 });
+        }
+        Ok(())
+    }
+}

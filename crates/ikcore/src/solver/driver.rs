@@ -1,0 +1,76 @@
+//! The loop: start, step, check; the same for every solver.
+
+use super::evaluator::{Evaluator, Halt};
+use super::stop::Status;
+use crate::objective::Objective;
+
+/// An algorithm: options in `self`, progress in `State`.
+pub trait Solver<O: Objective + ?Sized> {
+    /// What the algorithm remembers between steps.
+    type State;
+
+    /// Evaluates the start `x0` (first of all) and whatever else the algorithm begins with.
+    ///
+    /// # Errors
+    /// The evaluator's [`Halt`].
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Halt>;
+
+    /// One iteration.
+    ///
+    /// # Errors
+    /// The evaluator's [`Halt`], or [`Halt::Stalled`] by the algorithm's own rule.
+    fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt>;
+}
+
+impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for &S {
+    type State = S::State;
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Halt> {
+        (*self).start(evaluator, x0)
+    }
+
+    fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+        (*self).step(state, evaluator)
+    }
+}
+
+/// How a run ended. The best point and the counts stay with the evaluator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Outcome {
+    /// Why it ended.
+    pub halt: Halt,
+    /// Steps that were finished.
+    pub iterations: usize,
+}
+
+impl Outcome {
+    /// The status of a solve that ended so.
+    pub fn status(&self) -> Status {
+        match self.halt {
+            Halt::Solved => Status::Solved,
+            Halt::BelowValue => Status::Improved,
+            Halt::Stalled => Status::Stalled,
+            Halt::Budget => Status::BudgetSpent,
+            Halt::Time => Status::TimeUp,
+            Halt::Interrupted => Status::Interrupted,
+        }
+    }
+}
+
+/// Runs `solver` from `x0` until something halts it. A start that is solved already is returned untouched.
+pub fn run<O: Objective + ?Sized, S: Solver<O>>(solver: &S, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Outcome {
+    let mut iterations = 0;
+    let mut until_halt = || -> Result<std::convert::Infallible, Halt> {
+        let mut state = solver.start(evaluator, x0)?;
+        evaluator.check_solved()?;
+        loop {
+            solver.step(&mut state, evaluator)?;
+            iterations += 1;
+            evaluator.after_step(iterations)?;
+        }
+    };
+    let Err(halt) = until_halt();
+    // A budget that runs out in mid-step may have met a solution in that step.
+    let halt = if evaluator.best().solved { Halt::Solved } else { halt };
+    Outcome { halt, iterations }
+}

@@ -1,0 +1,226 @@
+//! Between solver and objective: counts, clips, checks, and keeps the best.
+
+use smallvec::SmallVec;
+
+use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Point, Score};
+use crate::rng::LazyRng;
+
+use super::stop::{Monitor, Stop, Stopwatch};
+
+/// Why a solver cannot go on; passed up with `?`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Halt {
+    /// The best point passes the problem's own test.
+    Solved,
+    /// The best value fell below [`Stop::value_below`].
+    BelowValue,
+    /// The solver's own rule: nothing more to gain from here.
+    Stalled,
+    /// The evaluation or iteration budget is spent.
+    Budget,
+    /// The time limit is over.
+    Time,
+    /// The monitor asked to stop.
+    Interrupted,
+}
+
+/// The best point met so far.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Best {
+    /// Where; empty before the first evaluation.
+    pub x: Point,
+    /// Its value; infinite where the objective was never finite.
+    pub value: f64,
+    /// Whether it passes the problem's own test.
+    pub solved: bool,
+}
+
+/// Evaluations between two looks at the monitor and the clock: some ten microseconds of forward kinematics.
+const POLL_EVERY: usize = 256;
+
+/// A budgeted view of an objective in a box.
+pub struct Evaluator<'a, O: ?Sized> {
+    objective: &'a mut O,
+    bounds: &'a Bounds,
+    stop: Stop,
+    rng: &'a mut LazyRng,
+    monitor: &'a mut dyn Monitor,
+    stopwatch: Option<Stopwatch>,
+    evaluations: usize,
+    next_poll: usize,
+    best: Best,
+    attempt_value: f64,
+    attempts: usize,
+    scores: SmallVec<[Score; 8]>,
+}
+
+impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
+    /// A fresh view with nothing counted yet.
+    pub fn new(
+        objective: &'a mut O,
+        bounds: &'a Bounds,
+        stop: Stop,
+        rng: &'a mut LazyRng,
+        monitor: &'a mut dyn Monitor,
+    ) -> Self {
+        Self {
+            objective,
+            bounds,
+            stop,
+            rng,
+            monitor,
+            stopwatch: stop.max_time.map(|_| Stopwatch::start()),
+            evaluations: 0,
+            next_poll: POLL_EVERY,
+            best: Best { x: Point::new(), value: f64::INFINITY, solved: false },
+            attempt_value: f64::INFINITY,
+            attempts: 1,
+            scores: SmallVec::new(),
+        }
+    }
+
+    /// Number of entries of a point.
+    pub fn dimension(&self) -> usize {
+        self.objective.dimension()
+    }
+
+    /// The box.
+    pub fn bounds(&self) -> &'a Bounds {
+        self.bounds
+    }
+
+    /// The run's random generator.
+    pub fn rng(&mut self) -> &mut LazyRng {
+        self.rng
+    }
+
+    /// The best point so far.
+    pub fn best(&self) -> &Best {
+        &self.best
+    }
+
+    /// Evaluations so far.
+    pub fn evaluations(&self) -> usize {
+        self.evaluations
+    }
+
+    /// Starts tried so far.
+    pub fn attempts(&self) -> usize {
+        self.attempts
+    }
+
+    /// The best value since the current attempt began.
+    pub fn attempt_value(&self) -> f64 {
+        self.attempt_value
+    }
+
+    /// Counts a new attempt and writes its start into `x`.
+    pub fn next_attempt(&mut self, x: &mut [f64]) {
+        self.objective.propose_start(self.attempts, self.bounds, self.rng, x);
+        self.attempts += 1;
+        self.attempt_value = f64::INFINITY;
+    }
+
+    /// Clips `x` to the box and returns its value, infinite where it is not finite.
+    ///
+    /// # Errors
+    /// A [`Halt`] when the budget is spent or the monitor asks to stop; `x` was not evaluated then.
+    #[inline]
+    pub fn evaluate(&mut self, x: &mut [f64]) -> Result<f64, Halt> {
+        self.spend(1)?;
+        self.bounds.clip(x);
+        let score = self.objective.evaluate(x);
+        Ok(self.record(x, score))
+    }
+
+    /// Clips the points stored one after another in `xs`, and writes the value of each.
+    ///
+    /// # Errors
+    /// As for one point; with a budget for some of them only, the first ones are evaluated before the halt.
+    pub fn evaluate_all(&mut self, xs: &mut [f64], values: &mut [f64]) -> Result<(), Halt> {
+        let n = self.dimension();
+        let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
+        self.spend(affordable)?;
+        let xs = &mut xs[..affordable * n];
+        xs.chunks_exact_mut(n).for_each(|x| self.bounds.clip(x));
+        let mut scores = std::mem::take(&mut self.scores);
+        scores.resize(affordable, Score { value: f64::INFINITY, solved: false });
+        self.objective.evaluate_all(xs, &mut scores);
+        for ((x, score), value) in xs.chunks_exact(n).zip(&scores).zip(values.iter_mut()) {
+            *value = self.record(x, *score);
+        }
+        self.scores = scores;
+        if affordable < values.len() { Err(Halt::Budget) } else { Ok(()) }
+    }
+
+    /// What the driver asks after every step: is it time to stop?
+    ///
+    /// # Errors
+    /// The reason to stop.
+    pub fn after_step(&self, iterations: usize) -> Result<(), Halt> {
+        self.check_solved()?;
+        match self.stop.value_below {
+            Some(value) if self.best.value < value => Err(Halt::BelowValue),
+            _ if iterations >= self.stop.max_iterations => Err(Halt::Budget),
+            _ => Ok(()),
+        }
+    }
+
+    /// Err(Solved) once the best point passes the problem's own test.
+    ///
+    /// # Errors
+    /// [`Halt::Solved`].
+    pub fn check_solved(&self) -> Result<(), Halt> {
+        if self.best.solved { Err(Halt::Solved) } else { Ok(()) }
+    }
+
+    #[inline]
+    fn spend(&mut self, count: usize) -> Result<(), Halt> {
+        if self.evaluations + count > self.stop.max_evaluations {
+            return Err(Halt::Budget);
+        }
+        self.evaluations += count;
+        if self.evaluations >= self.next_poll { self.poll() } else { Ok(()) }
+    }
+
+    #[cold]
+    fn poll(&mut self) -> Result<(), Halt> {
+        self.next_poll = self.evaluations + POLL_EVERY;
+        if !self.monitor.keep_going() {
+            return Err(Halt::Interrupted);
+        }
+        match (self.stop.max_time, &self.stopwatch) {
+            (Some(limit), Some(watch)) if watch.elapsed() >= limit => Err(Halt::Time),
+            _ => Ok(()),
+        }
+    }
+
+    /// Keeps the best: solved before unsolved, then the lower value, then the earlier.
+    #[inline]
+    fn record(&mut self, x: &[f64], score: Score) -> f64 {
+        let value = if score.value.is_finite() { score.value } else { f64::INFINITY };
+        self.attempt_value = self.attempt_value.min(value);
+        let solved = score.solved && value.is_finite();
+        let better = (solved && !self.best.solved) || (solved == self.best.solved && value < self.best.value);
+        if better || self.best.x.is_empty() {
+            self.best.x.clear();
+            self.best.x.extend_from_slice(x);
+            (self.best.value, self.best.solved) = (value, solved);
+        }
+        value
+    }
+}
+
+impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
+    /// Clips `x` to the box; value, residual and Jacobian there, counted as one evaluation.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    #[inline]
+    pub fn linearize(&mut self, x: &mut [f64], out: &mut Linearization) -> Result<f64, Halt> {
+        self.spend(1)?;
+        self.bounds.clip(x);
+        let score = self.objective.linearize(x, out);
+        Ok(self.record(x, score))
+    }
+}

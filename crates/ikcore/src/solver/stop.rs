@@ -1,0 +1,137 @@
+//! When to stop, and why it stopped. The only file with a clock.
+
+use std::time::{Duration, Instant};
+
+use crate::error::{Error, Result};
+
+/// Limits on a run; whichever comes first. Counts repeat exactly, a time limit does not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// Objective evaluations (for a robot: forward kinematics), the start included.
+    pub max_evaluations: usize,
+    /// Iterations as the solver counts them.
+    pub max_iterations: usize,
+    /// Wall-clock time. Setting it gives up repeatability.
+    pub max_time: Option<Duration>,
+    /// Stop after a step whose best value is below this. The start itself is not held against it.
+    pub value_below: Option<f64>,
+}
+
+impl Default for Stop {
+    /// 100 000 evaluations: about 10 ms for a 7-joint arm.
+    fn default() -> Self {
+        Self { max_evaluations: 100_000, max_iterations: usize::MAX, max_time: None, value_below: None }
+    }
+}
+
+impl Stop {
+    /// Checks that at least the start may be evaluated.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a budget of zero.
+    pub fn validate(&self) -> Result<()> {
+        if self.max_evaluations == 0 {
+            return Err(Error::out_of_range("max_evaluations", "at least 1", 0.0));
+        }
+        Ok(())
+    }
+}
+
+/// How a solve, or one step of a track, ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Status {
+    /// Within the tolerances.
+    Solved = 0,
+    /// A step of a track: not yet within the tolerance, but nearer than the step before.
+    Improved = 1,
+    /// A step of a track: neither within the tolerance nor nearer than the step before; the best found is kept.
+    Capped = 2,
+    /// The solver's own rule gave up: nothing more to gain from here.
+    Stalled = 3,
+    /// The evaluation or iteration budget is spent.
+    BudgetSpent = 4,
+    /// The time limit is over.
+    TimeUp = 5,
+    /// The caller's monitor asked to stop.
+    Interrupted = 6,
+    /// A track that did not stay within its tolerance.
+    Lost = 7,
+}
+
+impl Status {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 8] = [
+        Self::Solved,
+        Self::Improved,
+        Self::Capped,
+        Self::Stalled,
+        Self::BudgetSpent,
+        Self::TimeUp,
+        Self::Interrupted,
+        Self::Lost,
+    ];
+
+    /// The name as Python shows it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Solved => "SOLVED",
+            Self::Improved => "IMPROVED",
+            Self::Capped => "CAPPED",
+            Self::Stalled => "STALLED",
+            Self::BudgetSpent => "BUDGET_SPENT",
+            Self::TimeUp => "TIME_UP",
+            Self::Interrupted => "INTERRUPTED",
+            Self::Lost => "LOST",
+        }
+    }
+
+    /// What to try, as the end of a sentence; empty for success.
+    pub fn advice(self) -> &'static str {
+        match self {
+            Self::Solved | Self::Improved => "",
+            Self::Capped => "allow more passes, a wider tolerance or a higher velocity limit",
+            Self::Stalled => "try another start or seed, or MultiStart; the target may be out of reach",
+            Self::BudgetSpent => "raise the budget in stop=Stop(...); the target may be out of reach",
+            Self::TimeUp => "raise max_time",
+            Self::Interrupted => "run again to finish",
+            Self::Lost => "slow the path down, raise the velocity limits, or move the path into reach",
+        }
+    }
+}
+
+/// The caller's say in a long run: asked from the calling thread, every few microseconds of work.
+pub trait Monitor {
+    /// False ends the run with [`Status::Interrupted`].
+    fn keep_going(&mut self) -> bool;
+
+    /// Told of the steps of a track that are done, out of `total`.
+    fn progress(&mut self, _done: usize, _total: usize) {}
+}
+
+/// A monitor that lets everything run to its end.
+#[derive(Debug, Clone, Copy)]
+pub struct Unattended;
+
+impl Monitor for Unattended {
+    fn keep_going(&mut self) -> bool {
+        true
+    }
+}
+
+/// Time since it was started.
+#[derive(Debug, Clone, Copy)]
+pub struct Stopwatch(Instant);
+
+impl Stopwatch {
+    /// Starts now.
+    #[allow(clippy::disallowed_methods)]
+    pub fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    /// Time since the start.
+    pub fn elapsed(&self) -> Duration {
+        self.0.elapsed()
+    }
+}

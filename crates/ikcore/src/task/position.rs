@@ -1,0 +1,22 @@
+//! The tip at a point: r = p - p_d, dr/dq = linear rows of the geometric Jacobian.
+
+use super::TipError;
+use crate::math::Frame;
+use crate::objective::Linearization;
+
+/// p - p_d (m).
+#[inline(always)]
+pub fn residual(target: &[f64; 3], tip: &[f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| tip[k] - target[k])
+}
+
+/// Residual and derivative from the tip's geometric Jacobian, which stands in `out`; the angular rows are emptied.
+#[inline]
+pub fn linearize(target: &[f64; 3], tip: &Frame, dof: usize, out: &mut Linearization) -> TipError {
+    let [x, y, z] = residual(target, &tip.origin);
+    out.residual = [x, y, z, 0.0, 0.0, 0.0];
+    for column in &mut out.columns[..dof] {
+        column[3..].fill(0.0);
+    }
+    TipError::of_position(target, &tip.origin)
+}

@@ -1,0 +1,113 @@
+//! Following a path, tick by tick, inside the limits.
+//!
+//! Algorithm 1 of Cheng et al. (2020), read so that it can be run: in every tick the box is the position limits
+//! intersected with what the velocity limit lets the accepted configuration reach, so that no answer can break either;
+//! the solver works until the error is in its band or, for random searches, below that of the tick before; time always
+//! advances, and the best configuration found is always kept.
+
+mod record;
+mod session;
+
+pub use record::Record;
+pub use session::{Session, Step};
+
+use crate::error::Result;
+use crate::ik::{SolveOptions, solve};
+use crate::limits::{Field, LimitAt, Limits};
+use crate::path::Reference;
+use crate::robot::Robot;
+use crate::solver::stop::Stopwatch;
+use crate::solver::{Algorithm, AnySolver, LevenbergMarquardt, Monitor};
+use crate::task::{Target, Tolerance};
+
+/// How to track.
+#[derive(Debug, Clone)]
+pub struct TrackOptions {
+    /// What runs in every tick.
+    pub solver: AnySolver,
+    /// The error band.
+    pub tolerance: Tolerance,
+    /// Limits to keep; None keeps the robot's.
+    pub limits: Option<Limits>,
+    /// Where in a tick its velocity limit is taken.
+    pub limit_at: LimitAt,
+    /// Seed of the random draws: the same seed, the same bits.
+    pub seed: u64,
+}
+
+impl Default for TrackOptions {
+    /// Levenberg-Marquardt from the configuration of the tick before.
+    fn default() -> Self {
+        Self {
+            solver: AnySolver::Single(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default())),
+            tolerance: Tolerance::default(),
+            limits: None,
+            limit_at: LimitAt::default(),
+            seed: 0,
+        }
+    }
+}
+
+/// Follows `reference` with the tip of `robot`, from `start` (n,), or from a configuration solved for its first point.
+///
+/// # Errors
+/// Any [`Error`](crate::Error) for wrong input. A path that cannot be followed is a status, not an error. A monitor that
+/// asks to stop leaves the record of the ticks that were finished.
+pub fn track(
+    robot: &Robot,
+    reference: &Reference,
+    start: Option<&[f64]>,
+    options: &TrackOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Record> {
+    let stopwatch = Stopwatch::start();
+    let limits = options.limits.clone().unwrap_or_else(|| Limits::of(robot));
+    let last = reference.len() - 1;
+    limits.validate(reference.time(last))?;
+    let start = match start {
+        Some(q) => q.to_vec(),
+        None => first_configuration(robot, reference, &limits, options, monitor)?,
+    };
+    let mut session = Session::new(robot, &start, reference.dt(), limits, options)?;
+    let mut record = Record::new(&session, reference.len());
+    let mut step = session.begin(&target(reference, 0));
+    record.push(&session, reference.position(0), &step);
+    for i in 1..=last {
+        step = session.step(&target(reference, i), monitor)?;
+        if step.interrupted {
+            break;
+        }
+        record.push(&session, reference.position(i), &step);
+        monitor.progress(i, last);
+    }
+    record.finish(step.interrupted, stopwatch.elapsed());
+    Ok(record)
+}
+
+/// The target of row `i`: a pose where the reference has orientations.
+pub(crate) fn target(reference: &Reference, i: usize) -> Target {
+    match reference.pose(i) {
+        Some(pose) => Target::from(&pose),
+        None => Target::Position(reference.position(i)),
+    }
+}
+
+/// A configuration on, or nearest to, the path's first point, by the default solver.
+fn first_configuration(
+    robot: &Robot,
+    reference: &Reference,
+    limits: &Limits,
+    options: &TrackOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Vec<f64>> {
+    let at_start = |field: Field| limits.field(field).unwrap_or_default().iter().map(|profile| profile.at(0.0));
+    let constant = robot.with_limits(|i, joint| {
+        joint.lower = at_start(Field::Lower).nth(i).unwrap_or(joint.lower);
+        joint.upper = at_start(Field::Upper).nth(i).unwrap_or(joint.upper);
+    })?;
+    // Tighter than the band, so that the track does not begin at its edge.
+    let tolerance =
+        Tolerance { position: 0.1 * options.tolerance.position, rotation: 0.1 * options.tolerance.rotation };
+    let options = SolveOptions { tolerance, seed: options.seed, ..SolveOptions::default() };
+    Ok(solve(&constant, &target(reference, 0), &options, monitor)?.q.to_vec())
+}

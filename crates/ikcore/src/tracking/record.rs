@@ -1,0 +1,164 @@
+//! What a track leaves behind: a row per tick, and what it amounts to.
+
+use std::time::Duration;
+
+use super::session::{Session, Step};
+use crate::limits::{LimitAt, Limits};
+use crate::solver::Status;
+use crate::task::Tolerance;
+
+/// Rounding that a limit may be exceeded by: units in the last place of q.
+const ALLOWED_ULPS: f64 = 4.0;
+
+/// The record of a track: k rows, row 0 the start at t = 0, row i the tick that ends at t_i = i dt. Tables are stored
+/// row after row.
+#[derive(Debug, Clone)]
+pub struct Record {
+    /// Joints per row, n.
+    pub dof: usize,
+    /// Times (k,) (s).
+    pub time: Vec<f64>,
+    /// Configurations (k, n) (rad, m).
+    pub q: Vec<f64>,
+    /// Velocities (k, n): (q_i - q_{i-1}) / dt; zero in row 0.
+    pub qd: Vec<f64>,
+    /// The velocity limit that each velocity was held against (k, n); NaN in row 0.
+    pub velocity_limit: Vec<f64>,
+    /// Tip positions (k, 3) (m).
+    pub position: Vec<[f64; 3]>,
+    /// Wanted positions (k, 3) (m).
+    pub reference: Vec<[f64; 3]>,
+    /// Distances from them (k,) (m).
+    pub position_error: Vec<f64>,
+    /// Angles from the wanted orientations (k,) (rad); NaN where none was asked for.
+    pub rotation_error: Vec<f64>,
+    /// How each tick ended (k,).
+    pub step_status: Vec<Status>,
+    /// Evaluations of the forward kinematics per tick (k,).
+    pub step_evaluations: Vec<usize>,
+    /// Iterations per tick (k,); passes of the beetle.
+    pub step_iterations: Vec<usize>,
+    /// Largest excess of a displacement over v dt or of a position over its limit (rad, m); 0 within 4 ulp.
+    pub max_violation: f64,
+    /// The limits in force.
+    pub limits: Limits,
+    /// The error band.
+    pub tolerance: Tolerance,
+    /// How the track as a whole ended.
+    pub status: Status,
+    /// Time taken.
+    pub elapsed: Duration,
+    limit_at: LimitAt,
+    dt: f64,
+}
+
+impl Record {
+    /// An empty record with room for `rows`.
+    pub(super) fn new(session: &Session<'_>, rows: usize) -> Self {
+        let dof = session.q().len();
+        Self {
+            dof,
+            time: Vec::with_capacity(rows),
+            q: Vec::with_capacity(rows * dof),
+            qd: Vec::with_capacity(rows * dof),
+            velocity_limit: Vec::with_capacity(rows * dof),
+            position: Vec::with_capacity(rows),
+            reference: Vec::with_capacity(rows),
+            position_error: Vec::with_capacity(rows),
+            rotation_error: Vec::with_capacity(rows),
+            step_status: Vec::with_capacity(rows),
+            step_evaluations: Vec::with_capacity(rows),
+            step_iterations: Vec::with_capacity(rows),
+            max_violation: 0.0,
+            limits: session.limits().clone(),
+            tolerance: session.tolerance(),
+            status: Status::Lost,
+            elapsed: Duration::ZERO,
+            limit_at: session.limit_at(),
+            dt: session.dt(),
+        }
+    }
+
+    /// Appends what `session` has just accepted.
+    pub(super) fn push(&mut self, session: &Session<'_>, reference: [f64; 3], step: &Step) {
+        self.push_velocities(session);
+        self.time.push(session.time());
+        self.q.extend_from_slice(session.q());
+        self.position.push(step.position);
+        self.reference.push(reference);
+        self.position_error.push(step.error.position);
+        self.rotation_error.push(step.error.rotation);
+        self.step_status.push(step.status);
+        self.step_evaluations.push(step.evaluations);
+        self.step_iterations.push(step.iterations);
+    }
+
+    /// Velocities of the tick that has just ended, what they were held against, and the violations.
+    fn push_velocities(&mut self, session: &Session<'_>) {
+        let (Some(from), to) = (self.time.last().copied(), session.time()) else {
+            self.qd.resize(self.dof, 0.0);
+            self.velocity_limit.resize(self.dof, f64::NAN);
+            return;
+        };
+        for (j, q) in session.q().iter().enumerate() {
+            let before = self.q[self.q.len() - self.dof + j];
+            let limit = self.limits.velocity_over(j, from, to, self.limit_at);
+            self.qd.push((q - before) / self.dt);
+            self.velocity_limit.push(limit);
+            let [lower, upper] = self.limits.position_range(j, from, to);
+            let excess = ((q - before).abs() - limit * self.dt).max(lower - q).max(q - upper);
+            let rounding = ALLOWED_ULPS * f64::EPSILON * q.abs().max(1.0);
+            if excess > rounding {
+                self.max_violation = self.max_violation.max(excess);
+            }
+        }
+    }
+
+    /// Sums up: the track has succeeded if, once in its band, it stayed there.
+    pub(super) fn finish(&mut self, interrupted: bool, elapsed: Duration) {
+        self.elapsed = elapsed;
+        let last = *self.step_status.last().unwrap_or(&Status::Capped);
+        self.status = match self.joined() {
+            _ if interrupted => Status::Interrupted,
+            Some(joined) if self.step_status[joined..].iter().all(|s| *s == Status::Solved) => Status::Solved,
+            Some(_) => Status::Lost,
+            None => last,
+        };
+    }
+
+    /// The first row within the band.
+    pub fn joined(&self) -> Option<usize> {
+        self.step_status.iter().position(|status| *status == Status::Solved)
+    }
+
+    /// Evaluations of the forward kinematics in all.
+    pub fn evaluations(&self) -> usize {
+        self.step_evaluations.iter().sum()
+    }
+
+    /// What happened, and what to try.
+    pub fn message(&self) -> String {
+        let band = self.tolerance.position;
+        let worst = |from: usize| self.position_error[from..].iter().copied().fold(0.0, f64::max);
+        let advice = Status::Lost.advice();
+        let (rows, Some(joined)) = (self.time.len(), self.joined()) else {
+            let nearest = self.position_error.iter().copied().fold(f64::INFINITY, f64::min);
+            return format!("never came within {band:.3e} m (nearest {nearest:.3e} m): {advice}");
+        };
+        let since = self.time[joined];
+        let outside = self.step_status[joined..].iter().filter(|s| **s != Status::Solved).count();
+        match self.status {
+            Status::Solved => {
+                format!("in the band of {band:.3e} m from t = {since} s on; worst error there {:.3e} m", worst(joined))
+            }
+            Status::Interrupted => {
+                format!("interrupted at t = {} s: {}", self.time[rows - 1], Status::Interrupted.advice())
+            }
+            _ => format!(
+                "joined the path at t = {since} s, then outside the band of {band:.3e} m in {outside} of {} steps, by up to {:.3e} m: {advice}",
+                rows - 1,
+                worst(joined),
+            ),
+        }
+    }
+}

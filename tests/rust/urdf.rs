@@ -1,0 +1,392 @@
+//! Reading URDF: exact messages for what is wrong, and chains that move as the file says.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::path::PathBuf;
+
+use ikcore::math::{Pose, pose};
+use ikcore::nalgebra::Vector3;
+use ikcore::robot::{JointKind, Robot};
+use proptest::prelude::*;
+
+/// Three links in a row: `a` turns about a tilted, unnormalised axis, `b` slides.
+const ARM: &str = r#"<robot name="arm">
+  <link name="base"/>
+  <link name="upper"/>
+  <link name="hand"/>
+  <joint name="a" type="revolute">
+    <origin xyz="0.1 0.2 0.3" rpy="0.4 -0.5 0.6"/>
+    <parent link="base"/> <child link="upper"/>
+    <axis xyz="0 3 4"/>
+    <limit lower="-1" upper="2" velocity="1.5"/>
+  </joint>
+  <joint name="b" type="prismatic">
+    <origin xyz="0 0 1"/>
+    <parent link="upper"/> <child link="hand"/>
+    <axis xyz="0 0 -2"/>
+    <limit lower="0" upper="0.5" velocity="0.2"/>
+  </joint>
+</robot>"#;
+
+fn load(xml: &str) -> Robot {
+    Robot::from_urdf(xml, None, None).unwrap()
+}
+
+/// The message of the error that `ARM` ends in after one replacement.
+fn error_after(from: &str, to: &str) -> String {
+    assert!(ARM.contains(from), "nothing to replace: {from}");
+    error(&ARM.replacen(from, to, 1))
+}
+
+fn error(xml: &str) -> String {
+    Robot::from_urdf(xml, None, None).unwrap_err().to_string()
+}
+
+fn assert_same(a: &Pose, b: &Pose, tolerance: f64) {
+    let difference = (a.to_homogeneous() - b.to_homogeneous()).amax();
+    assert!(difference <= tolerance, "poses differ by {difference:.3e}:\n{a}{b}");
+}
+
+/// A robot of these links, one a line, and joints in short: (name, attributes of the joint, parent, child, elements).
+fn robot(links: &[&str], joints: &[(&str, &str, &str, &str, &str)]) -> String {
+    let mut xml = String::from("<robot name=\"r\">\n");
+    for link in links {
+        xml += &format!("<link name=\"{link}\"/>\n");
+    }
+    for (name, kind, parent, child, rest) in joints {
+        xml += &format!(
+            "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>{rest}</joint>\n"
+        );
+    }
+    xml + "</robot>"
+}
+
+#[test]
+fn chain_moves_as_the_file_says() {
+    let arm = load(ARM);
+    assert_eq!(arm.name(), "arm");
+    assert_eq!(arm.link_names().collect::<Vec<_>>(), ["base", "upper", "hand"]);
+    assert_eq!(arm.joints()[0].kind, JointKind::Revolute);
+    assert_eq!((arm.joints()[1].lower, arm.joints()[1].upper, arm.joints()[1].velocity), (0.0, 0.5, 0.2));
+    let expected = pose::from_rpy([0.4, -0.5, 0.6], [0.1, 0.2, 0.3])
+        * pose::rotation(Vector3::new(0.0, 0.6, 0.8), 0.7)
+        * pose::translation(0.0, 0.0, 1.0 - 0.2);
+    assert_same(&arm.fk(&[0.7, 0.2]).unwrap(), &expected, 1e-15);
+}
+
+#[test]
+fn roll_pitch_yaw_turn_about_fixed_axes() {
+    let xml = ARM.replace("0.4 -0.5 0.6", &format!("{FRAC_PI_2} 0 {FRAC_PI_2}"));
+    let upright = Robot::from_urdf(&xml, None, Some("upper")).unwrap().fk(&[0.0]).unwrap();
+    // Roll takes z to -y, yaw takes -y to x.
+    assert!((upright.rotation * Vector3::z() - Vector3::x()).amax() < 1e-15);
+}
+
+#[test]
+fn base_need_not_be_an_ancestor_of_the_tip() {
+    let (down, up) = (load(ARM), Robot::from_urdf(ARM, Some("hand"), Some("base")).unwrap());
+    assert_eq!(up.link_names().collect::<Vec<_>>(), ["hand", "upper", "base"]);
+    assert_eq!(up.joints().iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>(), ["b", "a"]);
+    assert_same(&up.fk(&[0.2, 0.7]).unwrap(), &down.fk(&[0.7, 0.2]).unwrap().inverse(), 1e-15);
+}
+
+#[test]
+fn two_branches_meet_at_their_common_link() {
+    let joints = [
+        ("trunk", "revolute", "root", "chest", ""),
+        ("left", "continuous", "chest", "left_hand", "<origin xyz='0 1 0'/><axis xyz='0 0 1'/>"),
+        ("right", "continuous", "chest", "right_hand", "<origin xyz='0 -1 0'/><axis xyz='0 0 1'/>"),
+    ];
+    let xml = robot(&["root", "chest", "left_hand", "right_hand"], &joints);
+    let across = Robot::from_urdf(&xml, Some("left_hand"), Some("right_hand")).unwrap();
+    assert_eq!(across.link_names().collect::<Vec<_>>(), ["left_hand", "chest", "right_hand"]);
+    let expected = (pose::translation(0.0, 1.0, 0.0) * pose::rotation(Vector3::z(), 0.3)).inverse()
+        * pose::translation(0.0, -1.0, 0.0)
+        * pose::rotation(Vector3::z(), 0.5);
+    assert_same(&across.fk(&[0.3, 0.5]).unwrap(), &expected, 1e-15);
+
+    let branch = Robot::from_urdf(&xml, Some("left_hand"), None).unwrap_err().to_string();
+    assert_eq!(branch, "URDF: base and tip are both 'left_hand': a chain needs two links");
+    assert_eq!(error(&xml), "robot 'r' ends in several links: say which one is the tip; leaves: left_hand, right_hand");
+    let typo = Robot::from_urdf(&xml, None, Some("left_hnd")).unwrap_err().to_string();
+    assert_eq!(
+        typo,
+        "robot 'r' has no link 'left_hnd' (did you mean 'left_hand'?); its links: root, chest, left_hand, right_hand"
+    );
+}
+
+#[test]
+fn mimic_joints_follow_through_chains_of_mimics() {
+    let slide = "<axis xyz='1 0 0'/><limit lower='-1' upper='1' velocity='1'/>";
+    let second = format!("{slide}<mimic joint='first' multiplier='-2' offset='0.1'/>");
+    let third = format!("{slide}<mimic joint='second' multiplier='0.5' offset='0.3'/>");
+    let xml = robot(
+        &["l0", "l1", "l2", "l3"],
+        &[
+            ("third", "prismatic", "l0", "l1", &third),
+            ("first", "prismatic", "l1", "l2", slide),
+            ("second", "prismatic", "l2", "l3", &second),
+        ],
+    );
+    let arm = load(&xml);
+    assert_eq!(arm.dof(), 1);
+    // second = 0.1 - 2 q, third = 0.5 second + 0.3 = 0.35 - q.
+    let q = 0.17;
+    let x = arm.fk(&[q]).unwrap().translation.x;
+    assert!((x - (q + (0.1 - 2.0 * q) + (0.35 - q))).abs() < 1e-15, "{x}");
+    let back = Robot::from_urdf(&xml, Some("l3"), Some("l0")).unwrap();
+    assert_same(&back.fk(&[q]).unwrap(), &arm.fk(&[q]).unwrap().inverse(), 1e-15);
+    // second in [-1, 1] leaves [-0.45, 0.55] and half the speed; third in [-1, 1] leaves [-0.65, 1.35].
+    let joint = &arm.joints()[0];
+    assert_eq!(joint.name, "first");
+    assert!((joint.lower + 0.45).abs() < 1e-15 && (joint.upper - 0.55).abs() < 1e-15 && joint.velocity == 0.5);
+}
+
+#[test]
+fn master_off_the_chain_stands_where_its_first_follower_does() {
+    let turn = "<axis xyz='0 0 1'/>";
+    let follower = format!("{turn}<limit lower='-1' upper='3' velocity='2'/><mimic joint='master' multiplier='2'/>");
+    let joints = [
+        ("first", "continuous", "l0", "l1", turn),
+        ("follower", "revolute", "l1", "l2", &follower),
+        ("last", "continuous", "l2", "l3", turn),
+        ("master", "continuous", "l0", "elsewhere", turn),
+    ];
+    let xml = robot(&["l0", "l1", "l2", "l3", "elsewhere"], &joints);
+    let arm = Robot::from_urdf(&xml, None, Some("l3")).unwrap();
+    assert_eq!(arm.joints().iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>(), ["first", "master", "last"]);
+    let master = &arm.joints()[1];
+    assert_eq!((master.kind, master.lower, master.upper, master.velocity), (JointKind::Revolute, -0.5, 1.5, 1.0));
+    let expected = pose::rotation(Vector3::z(), 0.1 + 2.0 * 0.2 + 0.3);
+    assert_same(&arm.fk(&[0.1, 0.2, 0.3]).unwrap(), &expected, 1e-15);
+}
+
+#[test]
+fn missing_limits_are_told_from_zeros() {
+    let limits = |limit: &str| {
+        let arm = load(&ARM.replace("<limit lower=\"-1\" upper=\"2\" velocity=\"1.5\"/>", limit));
+        (arm.joints()[0].lower, arm.joints()[0].upper, arm.joints()[0].velocity)
+    };
+    let free = (f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
+    assert_eq!(limits(""), free);
+    assert_eq!(limits("<limit effort='10'/>"), free);
+    assert_eq!(limits("<limit upper='0.5' velocity='1'/>"), (0.0, 0.5, 1.0));
+    assert_eq!(limits("<limit lower='0' upper='0' velocity='0'/>"), (0.0, 0.0, 0.0));
+    assert_eq!(limits("<limit lower='-inf' upper='1' velocity='inf'/>"), (f64::NEG_INFINITY, 1.0, f64::INFINITY));
+}
+
+#[test]
+fn what_is_not_kinematics_is_no_obstacle() {
+    let noise = r#"<robot name="arm" xmlns:sensor="http://example.org/sensor">
+  <material name="grey"><color rgba="a b c d"/></material>
+  <sensor:camera fov="${not xacro}"/> <gazebo><joint name="nothing"/></gazebo> <transmission/>
+  <visual><geometry><mesh filename="package://nowhere/x.dae"/><blob/></geometry></visual>"#;
+    let xml = ARM.replace("<robot name=\"arm\">", noise);
+    let xml = format!("\n\n<?xml version='1.0' encoding='latin-1'?>\n<!-- <robot> -->{xml}");
+    let q = [0.3, 0.1];
+    assert_eq!(load(&xml).fk(&q).unwrap(), load(ARM).fk(&q).unwrap());
+}
+
+#[test]
+fn deep_nesting_does_not_exhaust_the_stack() {
+    let depth = 100_000;
+    let nested = format!("<robot name=\"arm\">{}{}", "<x>".repeat(depth), "</x>".repeat(depth));
+    assert_eq!(load(&ARM.replace("<robot name=\"arm\">", &nested)).dof(), 2);
+}
+
+#[test]
+fn names_may_hold_any_character() {
+    let xml = ARM.replace("\"upper\"", "\"u&amp;p &lt;&quot;p'er&gt; ü\"");
+    let arm = Robot::from_urdf(&xml, None, Some("u&p <\"p'er> ü")).unwrap();
+    assert_eq!(arm.link_names().last(), Some("u&p <\"p'er> ü"));
+}
+
+#[test]
+fn text_that_is_no_urdf() {
+    assert_eq!(error("<robot>\n<link></robot>"), "URDF line 2: not XML: expected 'link' tag, not 'robot' at 2:7");
+    assert_eq!(error("<sdf/>"), "URDF line 1: the outermost element must be <robot>, found <sdf>");
+    assert_eq!(
+        error("<robot name='r'><link name='a'/></robot>"),
+        "URDF line 1: <robot> has no <joint>: a chain needs at least one that moves"
+    );
+    assert_eq!(
+        error("<robot name='r'><foo:bar/></robot>"),
+        "URDF line 1: the namespace prefix 'foo' is not declared: add xmlns:foo=\"foo\" to <robot>"
+    );
+    assert_eq!(error("no/such.urdf"), "cannot read 'no/such.urdf': No such file or directory (os error 2)");
+}
+
+#[test]
+fn xacro_says_how_to_expand_it() {
+    let expand = "run `xacro robot.xacro > robot.urdf` and load the result";
+    let element = "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'>\n<xacro:include filename='a'/></robot>";
+    assert_eq!(error(element), format!("URDF line 2: <xacro:include> is not expanded: {expand}"));
+    assert_eq!(error("<robot><xacro:arm/></robot>"), format!("URDF line 1: xacro is not expanded: {expand}"));
+    assert_eq!(error_after("0 3 4", "0 ${y} 4"), format!("URDF line 8: xyz=\"0 ${{y}} 4\" is not expanded: {expand}"));
+    let file = std::env::temp_dir().join(format!("ikcore-{}.xacro", std::process::id()));
+    std::fs::write(&file, ARM).unwrap();
+    let path = file.display().to_string();
+    let message = error(&path);
+    std::fs::remove_file(&file).unwrap();
+    let urdf = path.replace(".xacro", ".urdf");
+    assert_eq!(message, format!("URDF: '{path}' is a xacro file: run `xacro {path} > {urdf}` and load the result"));
+}
+
+#[test]
+fn joints_that_cannot_be() {
+    let cases = [
+        (
+            "0.1 0.2 0.3",
+            "0.1 nan 0.3",
+            "line 6: origin xyz of joint 'a' must be 3 finite numbers separated by spaces, got '0.1 nan 0.3'",
+        ),
+        (
+            "0.4 -0.5 0.6",
+            "0.4 -0.5",
+            "line 6: origin rpy of joint 'a' must be 3 finite numbers separated by spaces, got '0.4 -0.5'",
+        ),
+        ("0 3 4", "0 0 0", "line 5: axis of joint 'a' is zero: it must have a direction"),
+        ("lower=\"-1\"", "lower=\"low\"", "line 9: limit lower of joint 'a' must be a number, got 'low'"),
+        ("name=\"b\"", "name=\"a\"", "line 11: a second joint is named 'a'"),
+        ("name=\"hand\"", "name=\"base\"", "line 4: a second link is named 'base'"),
+        (
+            "link=\"hand\"",
+            "link=\"hnad\"",
+            "line 11: child link 'hnad' of joint 'b' does not exist (did you mean 'hand'?); links: base, upper, hand",
+        ),
+        ("link=\"hand\"", "link=\"base\"", "line 11: the joints form a cycle: base -> upper -> base"),
+        ("parent link=\"upper\"", "parent link=\"hand\"", "line 11: the joints form a cycle: hand -> hand"),
+        (
+            "type=\"prismatic\"",
+            "type=\"Prismatic\"",
+            "line 11: joint 'b' has the unknown type 'Prismatic' (did you mean 'prismatic'?); \
+             types: revolute, continuous, prismatic, fixed, floating, planar, spherical",
+        ),
+        (
+            "type=\"revolute\"",
+            "type=\"floating\"",
+            "line 5: joint 'a' is floating, \
+             and a chain takes only revolute, continuous, prismatic, fixed and mimic joints: \
+             take base and tip on one side of it, such as base 'upper'",
+        ),
+        (
+            "<origin xyz=\"0 0 1\"/>",
+            "<origin quat_xyzw=\"0 0 0 1\"/>",
+            "line 12: origin quat_xyzw of joint 'b' is not supported: write it as rpy",
+        ),
+        (
+            "<axis xyz=\"0 0 -2\"/>",
+            "<mimic joint=\"c\"/>",
+            "line 11: joint 'b' mimics 'c', which does not exist; joints: a, b",
+        ),
+        ("<axis xyz=\"0 0 -2\"/>", "<mimic joint=\"b\"/>", "line 11: mimic joints follow in a circle: b -> b"),
+        (
+            "<axis xyz=\"0 0 -2\"/>",
+            "<mimic joint=\"a\" offset=\"9\"/>",
+            "line 11: mimic joint 'b' allows its master 'a' only [-9, -8.5], which is outside [-1, 2]",
+        ),
+        (
+            "<axis xyz=\"0 0 -2\"/>",
+            "<mimic joint=\"a\" multiplier=\"inf\"/>",
+            "line 14: mimic multiplier of joint 'b' must be finite, got 'inf'",
+        ),
+        ("type=\"revolute\"", "", "line 5: joint 'a' has no attribute type=\"...\""),
+        ("<parent link=\"base\"/>", "", "line 5: joint 'a' has no <parent link=\"...\"/>"),
+    ];
+    for (from, to, message) in cases {
+        assert_eq!(error_after(from, to), format!("URDF {message}"), "after {from} -> {to}");
+    }
+    assert_eq!(error_after("lower=\"-1\"", "lower=\"3\""), "joint 'a': lower limit 3 is above upper limit 2");
+}
+
+#[test]
+fn trees_that_are_none() {
+    assert_eq!(
+        error_after("<link name=\"base\"/>", "<link name=\"base\"/><link name=\"world\"/>"),
+        "URDF: no joint leads to any of the links 'base', 'world': a tree has one root"
+    );
+    let loops = robot(
+        &["a", "b", "c"],
+        &[("ab", "fixed", "a", "b", ""), ("bc", "fixed", "b", "c", ""), ("ac", "fixed", "a", "c", "")],
+    );
+    assert_eq!(error(&loops), "URDF line 7: link 'c' is the child of two joints, 'bc' and 'ac': a tree has no loops");
+    let stiff = robot(&["a", "b"], &[("ab", "fixed", "a", "b", "<axis xyz='0 0 0'/>")]);
+    assert_eq!(error(&stiff), "URDF: no joint moves between base 'a' and tip 'b'");
+}
+
+#[test]
+fn only_joints_on_the_chain_are_judged() {
+    let joints = [
+        ("good", "continuous", "l0", "l1", ""),
+        ("odd", "revolute", "l1", "l2", "<axis xyz='0 0 0'/><limit lower='1' upper='-1'/><mimic joint='gone'/>"),
+    ];
+    let xml = robot(&["l0", "l1", "l2"], &joints);
+    assert_eq!(Robot::from_urdf(&xml, None, Some("l1")).unwrap().dof(), 1);
+    assert!(Robot::from_urdf(&xml, None, Some("l2")).is_err());
+}
+
+#[test]
+fn axes_of_any_length_point_the_same_way() {
+    let turned = |axis: &str| load(&ARM.replace("0 3 4", axis)).fk(&[0.7, 0.2]).unwrap();
+    for axis in ["0 0.6 0.8", "0 3e-200 4e-200", "0 3e200 4e200"] {
+        assert_same(&turned(axis), &turned("0 3 4"), 1e-15);
+    }
+}
+
+/// Name, base, tip and degrees of freedom of the robots beside the repository.
+const REAL: [(&str, &str, &str, usize); 9] = [
+    ("iiwa14", "base_link", "tool0", 7),
+    ("panda", "panda_link0", "panda_link8", 7),
+    ("ur5", "base_link", "tool0", 6),
+    ("kr210", "base_link", "tool0", 6),
+    ("gen3", "base_link", "end_effector_link", 7),
+    ("sawyer", "base", "right_hand", 7),
+    ("jaco2_6", "j2n6s300_link_base", "j2n6s300_end_effector", 6),
+    ("jaco2_7", "base", "j2s7s300_link_7", 7),
+    ("atlas", "utorso", "r_hand", 7),
+];
+
+#[test]
+fn real_robots_load_stripped_and_in_full() {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/robots");
+    if !folder.is_dir() {
+        println!("skipped: no {}", folder.display());
+        return;
+    }
+    for (name, base, tip, dof) in REAL {
+        let load = |file: PathBuf| Robot::from_urdf(&file.display().to_string(), Some(base), Some(tip)).unwrap();
+        let stripped = load(folder.join(format!("{name}.urdf")));
+        assert_eq!(stripped.dof(), dof, "{name}");
+        let full = folder.join(format!("full/{name}.urdf"));
+        if full.exists() {
+            let full = load(full);
+            let q: Vec<f64> = (0..dof).map(|i| (1.0 + i as f64).sin() * PI).collect();
+            assert_same(&full.fk(&q).unwrap(), &stripped.fk(&q).unwrap(), 1e-15);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whatever happens to a file on its way, the answer is a robot or an error.
+    #[test]
+    fn no_text_makes_it_panic(
+        cuts in prop::collection::vec(
+            (any::<prop::sample::Index>(), 0..12_usize, "[<>/\"'&; a-c0-9.eE=${}\n-]{0,6}"),
+            1..4,
+        ),
+    ) {
+        let mut text: Vec<char> = ARM.replace("<axis xyz=\"0 0 -2\"/>", "<mimic joint=\"a\"/>").chars().collect();
+        for (at, length, insertion) in cuts {
+            let start = at.index(text.len());
+            let end = (start + length).min(text.len());
+            text.splice(start..end, insertion.chars());
+        }
+        let text: String = text.into_iter().collect();
+        if let Ok(robot) = Robot::from_urdf(&text, None, None) {
+            prop_assert!(robot.fk(&vec![0.1; robot.dof()]).is_ok());
+        }
+    }
+}
