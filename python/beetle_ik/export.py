@@ -6,6 +6,8 @@ pieces: positions for straight lines, velocities too up to cubics, accelerations
 
 import os
 import zipfile
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,11 +80,7 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
     Raises:
         InvalidInputError: the file is no npz, or one of another kind: says what it lacks.
     """
-    try:
-        with np.load(file, allow_pickle=False) as archive:
-            stored = {name: archive[name] for name in archive.files}
-    except (ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile) as error:
-        raise InvalidInputError(f"{os.fspath(file)}: not an npz file ({error})") from error
+    stored = _arrays(file)
     for name in ("time", "coefficients", "joint_names"):
         if name not in stored:
             raise InvalidInputError(
@@ -90,3 +88,15 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
                 f"the file holds: {', '.join(stored) or 'nothing'}"
             )
     return Trajectory(stored["time"], stored["coefficients"], joint_names=stored["joint_names"].tolist())
+
+
+def _arrays(file: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
+    with Path(file).open("rb") as stream:
+        if not zipfile.is_zipfile(stream):
+            raise InvalidInputError(f"{os.fspath(file)}: not an npz file")
+        stream.seek(0)
+        try:
+            with np.load(stream, allow_pickle=False) as archive:
+                return {name: archive[name] for name in archive.files}
+        except (ValueError, EOFError, zipfile.BadZipFile) as error:
+            raise InvalidInputError(f"{os.fspath(file)}: damaged npz file: {error}") from error

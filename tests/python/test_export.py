@@ -76,11 +76,16 @@ def test_npz_that_is_no_trajectory(tmp_path: Path) -> None:
 def test_npz_that_is_no_npz(tmp_path: Path, content: bytes) -> None:
     file = tmp_path / "other.npz"
     file.write_bytes(content)
-    with pytest.raises(bik.InvalidInputError, match="not an npz file"):
+    with pytest.raises(bik.InvalidInputError) as caught:
         bik.Trajectory.from_npz(file)
+    assert str(caught.value) == f"{file}: not an npz file"
 
 
-def test_a_plain_array_is_no_npz(tmp_path: Path) -> None:
-    np.save(tmp_path / "array.npy", TIME)
-    with pytest.raises(bik.InvalidInputError, match="not an npz file"):
-        bik.Trajectory.from_npz(tmp_path / "array.npy")
+def test_npz_that_is_damaged(tmp_path: Path, tracked: bik.TrackResult) -> None:
+    file = tmp_path / "motion.npz"
+    tracked.trajectory.to_npz(file)
+    content = bytearray(file.read_bytes())
+    content[200] ^= 0xFF
+    file.write_bytes(content)
+    with pytest.raises(bik.InvalidInputError, match="damaged npz file: "):
+        bik.Trajectory.from_npz(file)
