@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench docs clean
+.PHONY: help demo test lint bench docs
 
 help:  ## list the targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/\1\t\2/p' $(MAKEFILE_LIST) | expand -t 10
@@ -33,9 +33,6 @@ bench:  ## criterion benchmarks of the core
 docs: $(VENV)/with-docs  ## the Rust pages in target/doc, the Python pages in docs/build
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked
 	$(BIN)/pdoc --output-directory docs/build beetle_ik
-
-clean:  ## remove all that was built
-	rm -rf target dist demo docs/build $(VENV)
 
 SOURCES := Cargo.toml Cargo.lock pyproject.toml README.md \
     $(shell find crates python -type f -not -name '*.pyc' -not -name '*.so' -not -name '*.pyd')
