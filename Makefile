@@ -1,0 +1,64 @@
+# Each target sets up what it needs, the virtual environment included. What has not changed is not built again.
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint bench docs
+
+help:  ## list the targets
+	@sed -nE 's/^([a-z]+):.*## (.*)/\1\t\2/p' $(MAKEFILE_LIST) | expand -t 10
+
+# The limit is the BAS paper's. It is above the real arm's in four joints: the command says so.
+demo: $(VENV)/with-plot  ## a KUKA iiwa 14 follows the BAS paper's circle; results in demo/
+	$(BIN)/beetle-ik track iiwa14 --curve circle --center 0.3,0.3,1.0 --diameter 0.2 --duration 30 --dt 0.2 \
+	    --start 0.6449,0.2037,0.1969,-0.7714,0.2028,0.7179,0.1 --velocity-limit 2,0.004,1 --solver bas --out demo
+
+test: lint  ## all checks and tests, of Rust and of Python
+	cargo test --locked
+	$(BIN)/python -m mypy.stubtest beetle_ik._core
+	$(BIN)/python -m pytest
+
+lint: $(VENV)/with-test  ## formatting, clippy, ruff and types
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --locked -- -D warnings
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+
+bench:  ## criterion benchmarks of the core
+	cargo bench --locked
+
+docs: $(VENV)/with-docs  ## the Rust pages in target/doc, the Python pages in docs/build
+	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked
+	$(BIN)/pdoc --output-directory docs/build beetle_ik
+
+SOURCES := Cargo.toml Cargo.lock pyproject.toml README.md \
+    $(shell find crates python -type f -not -name '*.pyc' -not -name '*.so' -not -name '*.pyd')
+
+$(BIN)/maturin: | $(VENV)/python
+	$(BIN)/pip install --quiet --disable-pip-version-check 'maturin>=1.10,<2'
+
+$(VENV)/python:
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
+	$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+# The wheel as it is released, installed without what it depends on: the extras below bring that.
+$(VENV)/wheel: $(SOURCES) | $(BIN)/maturin
+	rm -rf dist
+	$(BIN)/maturin build --release --interpreter $(BIN)/python --out dist
+	$(BIN)/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps dist/*.whl
+	@touch $@
+
+$(VENV)/with-%: $(VENV)/wheel
+	$(BIN)/pip install --quiet --disable-pip-version-check "$$(echo dist/*.whl)[$*]"
+	@touch $@
+
+# Pinocchio, against which kinematics is tested, is no condition: the tests that ask it skip where it has no wheel.
+$(VENV)/with-test: $(VENV)/wheel
+	$(BIN)/pip install --quiet --disable-pip-version-check "$$(echo dist/*.whl)[test]"
+	$(BIN)/pip install --quiet --disable-pip-version-check --only-binary :all: "$$(echo dist/*.whl)[oracles]" \
+	    || echo "no wheel of Pinocchio for this platform: its tests skip"
+	@touch $@

@@ -1,0 +1,66 @@
+"""Inverse kinematics, trajectory tracking and planning for robot manipulators.
+
+SI units, radians and numpy float64 throughout. Poses are 4x4 homogeneous matrices in the frame of the robot's base.
+Every result says whether it succeeded (`success`, `status`) and, in a sentence, what happened and what to try
+(`message`).
+
+    import beetle_ik as bik
+
+    robot = bik.Robot.named("iiwa14")
+    circle = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
+    result = bik.track(robot, circle, dt=0.2, solver=bik.BAS())
+    result.trajectory.to_csv("trajectory.csv")
+"""
+
+from . import paths, plot
+from ._core import (
+    BAS,
+    BeetleIkError,
+    InvalidInputError,
+    LevenbergMarquardt,
+    LimitError,
+    Limits,
+    MultiStart,
+    Path,
+    Robot,
+    Sinusoid,
+    Solution,
+    Status,
+    Stop,
+    TrackResult,
+    Trajectory,
+    UnknownNameError,
+    UnsupportedLimit,
+    UrdfError,
+    __version__,
+    pose,
+    solve,
+    track,
+)
+
+__all__ = [
+    "BAS",
+    "BeetleIkError",
+    "InvalidInputError",
+    "LevenbergMarquardt",
+    "LimitError",
+    "Limits",
+    "MultiStart",
+    "Path",
+    "Robot",
+    "Sinusoid",
+    "Solution",
+    "Status",
+    "Stop",
+    "TrackResult",
+    "Trajectory",
+    "UnknownNameError",
+    "UnsupportedLimit",
+    "UrdfError",
+    "__version__",
+    "paths",
+    "plot",
+    "pose",
+    "solve",
+    "track",
+]

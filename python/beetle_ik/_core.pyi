@@ -1,0 +1,398 @@
+# Types of the native module. Documentation lives in its docstrings (Rust), not here.
+#
+# Letters in the shape comments: n = degrees of freedom, m = items of a batch, k = samples in time.
+# SI units and radians throughout; results are read-only.
+
+import os
+from collections.abc import Callable
+from enum import IntEnum
+from typing import Any, Literal, TypeAlias, final
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+_Array: TypeAlias = NDArray[np.float64]
+_Solver: TypeAlias = BAS | LevenbergMarquardt | MultiStart
+_LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
+_LimitOut: TypeAlias = _Array | Sinusoid | Callable[[float], ArrayLike] | None
+_Progress: TypeAlias = bool | Callable[[int, int], object]  # called with (done, total)
+
+# --- errors -------------------------------------------------------------------------------------
+
+class BeetleIkError(Exception): ...
+class InvalidInputError(BeetleIkError, ValueError): ...
+class UnknownNameError(BeetleIkError, LookupError): ...
+class UrdfError(InvalidInputError): ...
+class LimitError(InvalidInputError): ...
+class UnsupportedLimit(LimitError): ...
+
+# --- robots -------------------------------------------------------------------------------------
+
+@final
+class Robot:
+    @staticmethod
+    def from_urdf(path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None) -> Robot: ...
+    @staticmethod
+    def from_dh(
+        *,
+        a: ArrayLike,
+        alpha: ArrayLike,
+        d: ArrayLike,
+        theta: ArrayLike | None = None,
+        kinds: list[str] | None = None,
+        convention: Literal["modified", "standard"] = "modified",
+        lower: ArrayLike | None = None,
+        upper: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        base: ArrayLike | None = None,
+        tool: ArrayLike | None = None,
+        name: str | None = None,
+    ) -> Robot: ...
+    @staticmethod
+    def planar(
+        lengths: ArrayLike,
+        *,
+        lower: ArrayLike | None = None,
+        upper: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+    ) -> Robot: ...
+    @staticmethod
+    def named(name: str) -> Robot: ...
+    @staticmethod
+    def names() -> list[str]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def dof(self) -> int: ...
+    @property
+    def joint_names(self) -> list[str]: ...
+    @property
+    def joint_kinds(self) -> list[str]: ...  # "revolute", "continuous" or "prismatic"
+    @property
+    def link_names(self) -> list[str]: ...  # along the chain, base first, tip last
+    @property
+    def lower(self) -> _Array: ...  # (n,), -inf where there is no limit
+    @property
+    def upper(self) -> _Array: ...  # (n,), inf where there is no limit
+    @property
+    def velocity_limit(self) -> _Array: ...  # (n,), inf where unknown
+    @property
+    def limits(self) -> Limits: ...
+    def with_tool(self, tool: ArrayLike) -> Robot: ...
+    def with_base(self, base: ArrayLike) -> Robot: ...
+    def with_limits(
+        self, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None, velocity: ArrayLike | None = None
+    ) -> Robot: ...
+    def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
+    def link_poses(self, q: ArrayLike) -> _Array: ...  # (links, 4, 4), in the order of link_names
+    def jacobian(self, q: ArrayLike) -> _Array: ...  # (n,) -> (6, n); (m, n) -> (m, 6, n)
+    def random_configurations(self, m: int, seed: int = 0) -> _Array: ...  # (m, n)
+    def manipulability(self, q: ArrayLike) -> Any: ...  # (n,) -> float; (m, n) -> (m,)
+
+def pose(
+    position: ArrayLike,
+    *,
+    xyzw: ArrayLike | None = None,
+    wxyz: ArrayLike | None = None,
+    rpy: ArrayLike | None = None,
+    rotvec: ArrayLike | None = None,
+    matrix: ArrayLike | None = None,
+) -> _Array: ...
+
+# --- limits -------------------------------------------------------------------------------------
+
+@final
+class Sinusoid:
+    def __new__(
+        cls, *, mean: ArrayLike, amplitude: ArrayLike, angular_frequency: ArrayLike, phase: ArrayLike = 0.0
+    ) -> Sinusoid: ...
+    @property
+    def mean(self) -> Any: ...  # what was given: a float or (n,)
+    @property
+    def amplitude(self) -> Any: ...
+    @property
+    def angular_frequency(self) -> Any: ...  # rad/s
+    @property
+    def phase(self) -> Any: ...
+
+@final
+class Limits:
+    def __new__(
+        cls,
+        *,
+        lower: ArrayLike | None = None,
+        upper: ArrayLike | None = None,
+        velocity: _LimitIn | None = None,
+        acceleration: _LimitIn | None = None,
+        jerk: _LimitIn | None = None,
+    ) -> Limits: ...
+    @property
+    def lower(self) -> _Array | None: ...
+    @property
+    def upper(self) -> _Array | None: ...
+    @property
+    def velocity(self) -> _LimitOut: ...
+    @property
+    def acceleration(self) -> _LimitOut: ...
+    @property
+    def jerk(self) -> _LimitOut: ...
+
+# --- solvers ------------------------------------------------------------------------------------
+
+class Status(IntEnum):
+    SOLVED = 0
+    IMPROVED = 1
+    CAPPED = 2
+    STALLED = 3
+    BUDGET_SPENT = 4
+    TIME_UP = 5
+
+@final
+class BAS:
+    def __new__(
+        cls,
+        *,
+        variant: Literal["star", "chain", "greedy"] = "star",
+        c1: float | None = None,  # None: what suits the variant; likewise c2 and explorations
+        c2: float | None = None,
+        explorations: int | None = None,
+        max_passes: int = 200,
+    ) -> BAS: ...
+    @property
+    def variant(self) -> str: ...
+    @property
+    def c1(self) -> float: ...
+    @property
+    def c2(self) -> float: ...
+    @property
+    def explorations(self) -> int: ...
+    @property
+    def max_passes(self) -> int: ...
+
+@final
+class LevenbergMarquardt:
+    def __new__(cls, *, initial_damping: float = ...) -> LevenbergMarquardt: ...
+    @property
+    def initial_damping(self) -> float: ...
+
+@final
+class MultiStart:
+    def __new__(cls, solver: BAS | LevenbergMarquardt, *, max_starts: int = ...) -> MultiStart: ...
+    @property
+    def solver(self) -> BAS | LevenbergMarquardt: ...
+    @property
+    def max_starts(self) -> int: ...
+
+@final
+class Stop:
+    def __new__(
+        cls, *, max_evaluations: int | None = None, max_iterations: int | None = None, max_time: float | None = None
+    ) -> Stop: ...
+    @property
+    def max_evaluations(self) -> int | None: ...
+    @property
+    def max_iterations(self) -> int | None: ...
+    @property
+    def max_time(self) -> float | None: ...  # s
+
+# --- inverse kinematics -------------------------------------------------------------------------
+
+def solve(
+    robot: Robot,
+    target: ArrayLike,  # (4, 4) pose or (3,) position
+    *,
+    start: ArrayLike | None = None,
+    solver: _Solver | None = None,
+    position_tolerance: float = 1e-6,
+    rotation_tolerance: float = 1e-6,
+    limits: Limits | None = None,
+    stop: Stop | None = None,
+    seed: int = 0,
+) -> Solution: ...
+
+@final
+class Solution:
+    @property
+    def q(self) -> _Array: ...  # (n,)
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def position_error(self) -> float: ...  # m
+    @property
+    def rotation_error(self) -> float: ...  # rad; NaN where no orientation was asked
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def restarts(self) -> int: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+
+# --- reference paths (public as beetle_ik.paths) ------------------------------------------------
+
+@final
+class Path:
+    @property
+    def duration(self) -> float: ...  # s
+    def position(self, t: ArrayLike) -> _Array: ...  # number -> (3,); (k,) -> (k, 3)
+    def velocity(self, t: ArrayLike) -> _Array: ...  # number -> (3,); (k,) -> (k, 3)
+    def pose(self, t: ArrayLike) -> _Array: ...  # number -> (4, 4); (k,) -> (k, 4, 4)
+    def sample(self, dt: float) -> tuple[_Array, _Array]: ...  # time (k,), positions (k, 3)
+    def with_orientation(self, orientation: ArrayLike | Callable[[float], ArrayLike]) -> Path: ...  # (3, 3)
+
+def circle(
+    center: ArrayLike, diameter: float, duration: float, *, a: ArrayLike = (1, 0, 0), b: ArrayLike = (0, 1, 0)
+) -> Path: ...
+def letter_m(
+    corner: ArrayLike,  # where the first stroke starts
+    duration: float,
+    *,
+    width: float,
+    height: float,
+    a: ArrayLike = (0, 1, 0),
+    b: ArrayLike = (0, 0, 1),
+) -> Path: ...
+def hypotrochoid(
+    center: ArrayLike,
+    duration: float,
+    *,
+    outer_radius: float,
+    inner_radius: float,
+    distance: float,
+    a: ArrayLike = (0, 1, 0),
+    b: ArrayLike = (0, 0, 1),
+) -> Path: ...
+def pentagram(
+    center: ArrayLike, duration: float, *, radius: float, a: ArrayLike = (1, 0, 0), b: ArrayLike = (0, 1, 0)
+) -> Path: ...
+def rose(
+    center: ArrayLike,
+    duration: float,
+    *,
+    radius: float,
+    petals: int,
+    a: ArrayLike = (1, 0, 0),
+    b: ArrayLike = (0, 1, 0),
+) -> Path: ...
+def polyline(points: ArrayLike, duration: float) -> Path: ...
+def from_samples(time: ArrayLike, positions_or_poses: ArrayLike) -> Path: ...  # (k,) and (k, 3) or (k, 4, 4)
+def from_function(function: Callable[[float], ArrayLike], duration: float) -> Path: ...
+
+# --- tracking -----------------------------------------------------------------------------------
+
+def track(
+    robot: Robot,
+    path: Path,
+    start: ArrayLike | None = None,  # None solves for the path's first point
+    *,
+    dt: float,
+    solver: _Solver | None = None,
+    limits: Limits | None = None,
+    position_tolerance: float = 1e-6,
+    rotation_tolerance: float = 1e-6,
+    seed: int = 0,
+    limit_at: Literal["interval", "start"] = "interval",
+    progress: _Progress = False,
+) -> TrackResult: ...
+
+@final
+class TrackResult:
+    @property
+    def time(self) -> _Array: ...  # (k,)
+    @property
+    def q(self) -> _Array: ...  # (k, n)
+    @property
+    def qd(self) -> _Array: ...  # (k, n), row 0 zero
+    @property
+    def velocity_limit(self) -> _Array: ...  # (k, n): what each qd was held against; row 0 NaN, inf where none
+    @property
+    def position(self) -> _Array: ...  # (k, 3)
+    @property
+    def reference(self) -> _Array: ...  # (k, 3)
+    @property
+    def position_error(self) -> _Array: ...  # (k,), m
+    @property
+    def rotation_error(self) -> _Array: ...  # (k,), rad; NaN where no orientation was asked
+    @property
+    def position_tolerance(self) -> float: ...  # m, as asked
+    @property
+    def step_status(self) -> NDArray[np.uint8]: ...  # (k,), values of Status
+    @property
+    def step_evaluations(self) -> NDArray[np.int64]: ...  # (k,)
+    @property
+    def step_iterations(self) -> NDArray[np.int64]: ...  # (k,): passes of BAS, steps of Levenberg-Marquardt
+    @property
+    def max_violation(self) -> float: ...  # rad or m; 0 within rounding
+    @property
+    def limit_margin(self) -> float: ...  # rad/s: smallest velocity_limit - |qd| of all; inf where no limit
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...  # the worst of the steps
+    @property
+    def message(self) -> str: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def trajectory(self) -> Trajectory: ...  # straight lines between the ticks: its velocities are exactly qd
+    def plot(self) -> Figure: ...
+
+# --- trajectories -------------------------------------------------------------------------------
+
+@final
+class Trajectory:
+    # coefficients[i, j, p] multiplies (t - time[i])**p: (k - 1, n, degree + 1)
+    def __new__(
+        cls, time: ArrayLike, coefficients: ArrayLike, *, joint_names: list[str] | None = None
+    ) -> Trajectory: ...
+    # Straight lines through q; cubics where qd is given too, quintics where qdd is.
+    @staticmethod
+    def from_samples(
+        time: ArrayLike,
+        q: ArrayLike,
+        *,
+        qd: ArrayLike | None = None,
+        qdd: ArrayLike | None = None,
+        joint_names: list[str] | None = None,
+    ) -> Trajectory: ...
+    @property
+    def time(self) -> _Array: ...  # (k,): the knots
+    @property
+    def coefficients(self) -> _Array: ...  # (k - 1, n, degree + 1)
+    @property
+    def q(self) -> _Array: ...  # (k, n), at the knots; likewise qd and qdd (of the piece that ends there)
+    @property
+    def qd(self) -> _Array: ...
+    @property
+    def qdd(self) -> _Array: ...
+    @property
+    def duration(self) -> float: ...  # s
+    @property
+    def joint_names(self) -> list[str]: ...
+    def max_velocity(self) -> _Array: ...  # (n,), exact over all t
+    def max_acceleration(self) -> _Array: ...  # (n,), exact inside the pieces
+    def at(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...  # q, qd, qdd: (n,) each, or (k, n) for (k,)
+    def sample(self, dt: float) -> tuple[_Array, _Array, _Array, _Array]: ...  # time, q, qd, qdd
+    def to_csv(self, file: str | os.PathLike[str]) -> None: ...
+    def to_npz(self, file: str | os.PathLike[str]) -> None: ...
+    @staticmethod
+    def from_csv(file: str | os.PathLike[str]) -> Trajectory: ...
+    @staticmethod
+    def from_npz(file: str | os.PathLike[str]) -> Trajectory: ...
+    def plot(self) -> Figure: ...

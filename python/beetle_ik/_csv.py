@@ -1,0 +1,68 @@
+"""Tables of numbers as CSV: a header of column names, then one row of numbers a line."""
+
+import csv
+import io
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._core import InvalidInputError
+from ._files import whole_file
+
+
+def write_table(file: str | os.PathLike[str], columns: Sequence[str], rows: NDArray[np.float64]) -> None:
+    """Write `rows` (lines, columns) so that reading gives the same bits back."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(rows.tolist())  # Python prints the shortest decimal that reads back exactly
+    with whole_file(file) as stream:
+        stream.write(text.getvalue().encode())
+
+
+def read_table(file: str | os.PathLike[str], required: Sequence[str]) -> dict[str, NDArray[np.float64]]:
+    """Read the columns of `file` by name, in the file's order.
+
+    Raises:
+        InvalidInputError: a column of `required` is missing, or an entry is no finite number: names line and column.
+    """
+    with Path(file).open(encoding="utf-8-sig", newline="") as stream:
+        lines = csv.reader(stream, skipinitialspace=True)
+        columns = [name.strip() for name in next(lines, [])]
+        _check_header(file, columns, required)
+        rows = [_numbers(file, lines.line_num, columns, line) for line in lines if line]
+    if not rows:
+        raise InvalidInputError(f"{os.fspath(file)}: no rows below the header")
+    return dict(zip(columns, np.array(rows).T, strict=True))
+
+
+def _check_header(file: str | os.PathLike[str], columns: list[str], required: Sequence[str]) -> None:
+    found = ", ".join(columns) or "none"
+    for name in required:
+        if name not in columns:
+            raise InvalidInputError(f"{os.fspath(file)}, line 1: column '{name}' is missing; columns found: {found}")
+    for i, name in enumerate(columns):
+        if name in columns[:i]:
+            raise InvalidInputError(f"{os.fspath(file)}, line 1: column '{name}' appears twice")
+
+
+def _numbers(file: str | os.PathLike[str], line_number: int, columns: list[str], line: list[str]) -> list[float]:
+    where = f"{os.fspath(file)}, line {line_number}"
+    if len(line) < len(columns):
+        raise InvalidInputError(f"{where}: column '{columns[len(line)]}' is missing")
+    if len(line) > len(columns):
+        raise InvalidInputError(f"{where}: {len(line)} entries for {len(columns)} columns")
+    return [_number(where, name, entry) for name, entry in zip(columns, line, strict=True)]
+
+
+def _number(where: str, column: str, entry: str) -> float:
+    try:
+        number = float(entry)
+    except ValueError:
+        raise InvalidInputError(f"{where}, column '{column}': '{entry}' is not a number") from None
+    if not np.isfinite(number):
+        raise InvalidInputError(f"{where}, column '{column}': {number} is not finite")
+    return number

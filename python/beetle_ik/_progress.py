@@ -1,0 +1,24 @@
+"""The progress bar behind `progress=True`."""
+
+
+class Bar:
+    """A bar on standard error; where that is no terminal, nothing."""
+
+    def __init__(self) -> None:
+        """Draw the bar, empty until the first `update`."""
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskProgressColumn, TimeElapsedColumn
+
+        console = Console(stderr=True)
+        columns = BarColumn(), TaskProgressColumn(), MofNCompleteColumn(), TimeElapsedColumn()
+        self._progress = Progress(*columns, console=console, disable=not console.is_terminal)
+        self._task = self._progress.add_task("", total=None)
+        self._progress.start()
+
+    def update(self, done: int, total: int) -> None:
+        """Show that `done` of `total` steps are done."""
+        self._progress.update(self._task, completed=done, total=total)
+
+    def close(self) -> None:
+        """Leave the bar as it stands and give the terminal back."""
+        self._progress.stop()

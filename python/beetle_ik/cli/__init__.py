@@ -1,0 +1,8 @@
+"""The command line: `beetle-ik robots | fk | solve | track`.
+
+Exit status: 0 what was asked was reached, 1 it was computed but not reached, 2 the input was wrong.
+"""
+
+from .app import app, main
+
+__all__ = ["app", "main"]

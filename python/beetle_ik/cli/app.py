@@ -1,0 +1,42 @@
+"""The commands in one place, and how mistakes are told."""
+
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+from .. import BeetleIkError
+from .fk import fk
+from .robots import robots
+from .solve import solve
+from .track import track
+
+_WRONG_INPUT = 2
+
+
+class _TellMistakes(TyperGroup):
+    """Users get the sentence of an error, not its traceback."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except (BeetleIkError, OSError) as error:
+            typer.echo(f"Error: {error}", err=True)
+            raise typer.Exit(_WRONG_INPUT) from error
+
+
+app = typer.Typer(
+    cls=_TellMistakes,
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Inverse kinematics and path tracking for robot manipulators. SI units and radians.",
+    epilog="Exit status: 0 reached, 1 computed but not reached, 2 wrong input.",
+)
+for command in (robots, fk, solve, track):
+    app.command()(command)
+
+
+def main() -> None:
+    """Run the command line on the arguments of the process."""
+    app(prog_name="beetle-ik")

@@ -1,0 +1,86 @@
+"""Options that several commands share, and what their text means."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .. import BAS, InvalidInputError, LevenbergMarquardt, Robot, Sinusoid
+
+_ROBOT = "Robot"
+
+RobotName = Annotated[str | None, typer.Argument(help="A built-in robot; `beetle-ik robots` lists them.")]
+UrdfFile = Annotated[
+    Path | None, typer.Option("--urdf", help="Your robot instead: a URDF file.", rich_help_panel=_ROBOT)
+]
+TipLink = Annotated[str | None, typer.Option("--tip", help="The link that is to move.", rich_help_panel=_ROBOT)]
+BaseLink = Annotated[str | None, typer.Option("--base", help="The link that stands still.", rich_help_panel=_ROBOT)]
+Start = Annotated[str | None, typer.Option(help="Joint positions to start from: q1,q2,...")]
+Seed = Annotated[int, typer.Option(help="Seed of all random draws: the same seed gives the same bits.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for machines instead of tables.")]
+
+
+class SolverName(StrEnum):
+    """Solvers by their names on the command line."""
+
+    BAS = "bas"
+    CHAIN = "chain"
+    GREEDY = "greedy"
+    LM = "lm"
+
+
+def make_solver(name: SolverName) -> BAS | LevenbergMarquardt:
+    """The solver of this name, with the library's settings."""
+    match name:
+        case SolverName.BAS:
+            return BAS(variant="star")
+        case SolverName.CHAIN:
+            return BAS(variant="chain")
+        case SolverName.GREEDY:
+            return BAS(variant="greedy")
+        case SolverName.LM:
+            return LevenbergMarquardt()
+
+
+def load_robot(name: str | None, urdf: Path | None, base: str | None, tip: str | None) -> Robot:
+    """The built-in robot or the one of the URDF file, whichever was asked for."""
+    if urdf is not None:
+        if name is not None:
+            raise InvalidInputError(f"both the robot '{name}' and --urdf '{urdf}' were given: give one of them")
+        return Robot.from_urdf(urdf, base=base, tip=tip)
+    if name is None:
+        raise InvalidInputError(
+            "no robot was given: name a built-in one (`beetle-ik robots` lists them) or use --urdf FILE"
+        )
+    if base is not None or tip is not None:
+        raise InvalidInputError("--base and --tip belong to --urdf; a built-in robot has its own")
+    return Robot.named(name)
+
+
+def numbers(option: str, text: str, length: int | None = None) -> list[float]:
+    """Numbers separated by commas, `length` of them where that is known beforehand."""
+    values = [_number(option, entry.strip()) for entry in text.split(",")]
+    if length is not None and len(values) != length:
+        raise InvalidInputError(
+            f"{option}: expected {length} numbers separated by commas, got {len(values)} in '{text}'"
+        )
+    return values
+
+
+def velocity_limit(text: str) -> float | Sinusoid:
+    """A limit as `number` or as `mean,amplitude,angular_frequency`."""
+    values = numbers("--velocity-limit", text)
+    match values:
+        case [constant]:
+            return constant
+        case [mean, amplitude, angular_frequency]:
+            return Sinusoid(mean=mean, amplitude=amplitude, angular_frequency=angular_frequency)
+    raise InvalidInputError(f"--velocity-limit: expected a number, or mean,amplitude,angular_frequency; got '{text}'")
+
+
+def _number(option: str, entry: str) -> float:
+    try:
+        return float(entry)
+    except ValueError:
+        raise InvalidInputError(f"{option}: '{entry}' is not a number") from None

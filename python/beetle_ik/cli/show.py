@@ -1,0 +1,56 @@
+"""What the commands print: tables for people, JSON for machines."""
+
+import json
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import typer
+
+
+def print_json(value: Any) -> None:
+    """Print `value` as JSON."""
+    typer.echo(to_json(value))
+
+
+def to_json(value: Any) -> str:
+    """`value` as JSON; numbers that JSON cannot write (NaN, infinite) become null."""
+    return json.dumps(_plain(value), indent=2, ensure_ascii=False)
+
+
+def print_pairs(title: str, pairs: Iterable[tuple[str, str]]) -> None:
+    """Print a table of names and values."""
+    print_table(title, (), pairs)
+
+
+def print_table(title: str, columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> None:
+    """Print a table; without `columns` it has no header."""
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(*columns, box=SIMPLE_HEAD, show_header=bool(columns))
+    for row in rows:
+        table.add_row(*(Text(entry) for entry in row))
+    typer.echo(title)
+    Console().print(table)
+
+
+def listed(values: Iterable[float]) -> str:
+    """Numbers as a short list."""
+    return ", ".join(f"{value:.6g}" for value in values)
+
+
+def _plain(value: Any) -> Any:
+    match value:
+        case dict():
+            return {key: _plain(entry) for key, entry in value.items()}
+        case list() | tuple():
+            return [_plain(entry) for entry in value]
+        case np.ndarray() | np.generic():
+            return _plain(value.tolist())
+        case float() if not math.isfinite(value):
+            return None
+    return value

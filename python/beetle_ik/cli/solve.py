@@ -1,0 +1,83 @@
+"""`beetle-ik solve`: joint positions that bring the tip to a target."""
+
+from typing import Annotated
+
+import typer
+
+from .. import Robot, Solution, pose
+from .. import solve as solve_target
+from .options import (
+    AsJson,
+    BaseLink,
+    RobotName,
+    Seed,
+    SolverName,
+    Start,
+    TipLink,
+    UrdfFile,
+    load_robot,
+    make_solver,
+    numbers,
+)
+from .show import listed, print_json, print_pairs
+
+
+def solve(
+    robot: RobotName = None,
+    *,
+    position: Annotated[str, typer.Option(help="Target of the tip: x,y,z in m.")],
+    rpy: Annotated[
+        str | None, typer.Option(help="Its orientation: roll,pitch,yaw in rad; without it any will do.")
+    ] = None,
+    start: Start = None,
+    solver: Annotated[SolverName | None, typer.Option(help="Without it: the library's own choice.")] = None,
+    tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = 1e-6,
+    rotation_tolerance: Annotated[float, typer.Option(help="Allowed rotation error in rad.")] = 1e-6,
+    seed: Seed = 0,
+    urdf: UrdfFile = None,
+    tip: TipLink = None,
+    base: BaseLink = None,
+    as_json: AsJson = False,
+) -> None:
+    """Inverse kinematics: joint positions for a position or a pose of the tip."""
+    arm = load_robot(robot, urdf, base, tip)
+    point = numbers("--position", position, 3)
+    solution = solve_target(
+        arm,
+        point if rpy is None else pose(point, rpy=numbers("--rpy", rpy, 3)),
+        start=None if start is None else numbers("--start", start),
+        solver=None if solver is None else make_solver(solver),
+        position_tolerance=tolerance,
+        rotation_tolerance=rotation_tolerance,
+        seed=seed,
+    )
+    _show(arm, solution, rpy is not None, as_json)
+    raise typer.Exit(0 if solution.success else 1)
+
+
+def _show(robot: Robot, solution: Solution, oriented: bool, as_json: bool) -> None:
+    if as_json:
+        fields = (
+            "q",
+            "success",
+            "message",
+            "position_error",
+            "rotation_error",
+            "iterations",
+            "restarts",
+            "evaluations",
+        )
+        status = {"robot": robot.name, "status": solution.status.name, "elapsed": solution.elapsed}
+        print_json(status | {field: getattr(solution, field) for field in fields})
+        return
+    rotation = [("rotation error [rad]", f"{solution.rotation_error:.3g}")] if oriented else []
+    print_pairs(
+        f"{robot.name}: {solution.message}",
+        [
+            ("q [rad, m]", listed(solution.q)),
+            ("position error [m]", f"{solution.position_error:.3g}"),
+            *rotation,
+            ("evaluations", str(solution.evaluations)),
+            ("time [ms]", f"{1e3 * solution.elapsed:.3g}"),
+        ],
+    )

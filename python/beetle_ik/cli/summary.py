@@ -1,0 +1,90 @@
+"""The figures by which a tracked path is judged."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from .. import TrackResult
+from .show import listed, print_pairs
+from .track_files import can_draw
+
+
+def summarize(result: TrackResult, solver: str, dt: float, seed: int, velocity_limit: str | None) -> dict[str, Any]:
+    """Errors, limits and cost of a tracked path; `velocity_limit` is what the user asked for."""
+    error = result.position_error
+    highest = np.nanmax(result.velocity_limit, axis=0)
+    own = result.robot.velocity_limit
+    return {
+        "robot": result.robot.name,
+        "solver": solver,
+        "dt": dt,
+        "seed": seed,
+        "steps": len(result.time) - 1,
+        "success": result.success,
+        "status": result.status.name,
+        "message": result.message,
+        "position_tolerance": result.position_tolerance,
+        "position_error": {
+            "mean": error[1:].mean(),
+            "max": error[1:].max(),
+            "steady_mean": error[len(error) // 2 :].mean(),  # over the second half, when the approach is over
+        },
+        "limit_margin": result.limit_margin,
+        "max_violation": result.max_violation,
+        "velocity_limit": {
+            "source": f"{result.robot.name}'s own" if velocity_limit is None else "--velocity-limit",
+            "lowest": np.nanmin(result.velocity_limit, axis=0),
+            "highest": highest,
+            "above_robot": {
+                name: limit
+                for name, limit, above in zip(result.robot.joint_names, own, highest > own, strict=True)
+                if above
+            },
+        },
+        "evaluations": result.evaluations,
+        "evaluations_per_step": result.step_evaluations[1:].mean(),
+        "elapsed": result.elapsed,
+    }
+
+
+def print_summary(summary: dict[str, Any], out: Path | None) -> None:
+    """Print the summary as a table, what to know about its limits, and where the files are."""
+    error, limit = summary["position_error"], summary["velocity_limit"]
+    print_pairs(
+        f"{summary['robot']}, {summary['steps']} steps of {summary['dt']:g} s: {summary['message']}",
+        [
+            ("mean position error [m]", f"{error['mean']:.3g}"),
+            ("  second half", f"{error['steady_mean']:.3g}"),
+            ("  maximum", f"{error['max']:.3g}"),
+            ("smallest velocity margin [rad/s]", f"{summary['limit_margin']:.3g}"),
+            ("largest limit violation [rad, m]", f"{summary['max_violation']:.3g}"),
+            ("velocity limit [rad/s]", f"{_span(limit['lowest'], limit['highest'])} ({limit['source']})"),
+            ("evaluations", f"{summary['evaluations']} ({summary['evaluations_per_step']:.0f} a step)"),
+            ("time [ms]", f"{1e3 * summary['elapsed']:.3g}"),
+        ],
+    )
+    if limit["above_robot"]:
+        typer.echo(_above_robot(summary["robot"], limit))
+    if out is not None:
+        figure = "" if can_draw() else ", without a figure: that needs `pip install beetle-ik[plot]`"
+        typer.echo(f"Files in {out}/{figure}")
+
+
+def _span(lowest: NDArray[np.float64], highest: NDArray[np.float64]) -> str:
+    """The range of a limit: one for all joints where they agree."""
+    spans = [
+        f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}" for low, high in zip(lowest, highest, strict=True)
+    ]
+    return spans[0] if len(set(spans)) == 1 else ", ".join(spans)
+
+
+def _above_robot(robot: str, limit: dict[str, Any]) -> str:
+    above = limit["above_robot"]
+    joints = f"{', '.join(above)}: {listed(np.round(list(above.values()), 3))}"
+    return (
+        f"Note: a velocity limit of up to {limit['highest'].max():.4g} rad/s is above the real {robot}'s own "
+        f"in {len(above)} of its {len(limit['highest'])} joints ({joints})."
+    )

@@ -1,0 +1,136 @@
+"""`beetle-ik track`: follow a path."""
+
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from .. import InvalidInputError, Limits
+from .. import Path as ReferencePath
+from .. import track as track_path
+from .curves import CurveName, make_curve, read_points
+from .options import (
+    AsJson,
+    BaseLink,
+    RobotName,
+    Seed,
+    SolverName,
+    Start,
+    TipLink,
+    UrdfFile,
+    load_robot,
+    make_solver,
+    numbers,
+    velocity_limit,
+)
+from .output import output_folder
+from .show import print_json
+from .summary import print_summary, summarize
+from .track_files import write_files
+
+_PATH = "Path"
+_CURVE = "Parameters of the curve"
+
+# The BAS paper's mean error of 1e-5 m comes out of a band 1.7 times as wide.
+_BAND = 1.7e-5
+
+Length = Annotated[float | None, typer.Option(metavar="METRES", rich_help_panel=_CURVE)]
+Point = Annotated[str | None, typer.Option(metavar="X,Y,Z", help="In m.", rich_help_panel=_CURVE)]
+Direction = Annotated[
+    str | None, typer.Option(metavar="X,Y,Z", help="Unit vector in the plane of the curve.", rich_help_panel=_CURVE)
+]
+
+
+def track(
+    robot: RobotName = None,
+    *,
+    curve: Annotated[CurveName | None, typer.Option(help="A built-in curve.", rich_help_panel=_PATH)] = None,
+    points: Annotated[
+        Path | None,
+        typer.Option("--path", help="Or a CSV file: columns x,y,z in m, optionally time in s.", rich_help_panel=_PATH),
+    ] = None,
+    duration: Annotated[float | None, typer.Option(help="Time for the path in s (30).", rich_help_panel=_PATH)] = None,
+    center: Point = None,
+    corner: Point = None,
+    diameter: Length = None,
+    radius: Length = None,
+    outer_radius: Length = None,
+    inner_radius: Length = None,
+    distance: Length = None,
+    width: Length = None,
+    height: Length = None,
+    petals: Annotated[int | None, typer.Option(rich_help_panel=_CURVE)] = None,
+    a: Direction = None,
+    b: Direction = None,
+    velocity_limit_text: Annotated[
+        str | None,
+        typer.Option(
+            "--velocity-limit",
+            help="In rad/s: a number, or mean,amplitude,angular_frequency of a sinusoid; without it the robot's own.",
+        ),
+    ] = None,
+    solver: Annotated[
+        SolverName, typer.Option(help="Beetle antennae search in three variants, or Levenberg-Marquardt.")
+    ] = (SolverName.BAS),
+    tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = _BAND,
+    dt: Annotated[float, typer.Option(help="Time between two commands in s.")] = 0.2,
+    start: Start = None,
+    seed: Seed = 0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for trajectory.csv, trajectory.npz, track.png and summary.json.")
+    ] = None,
+    urdf: UrdfFile = None,
+    tip: TipLink = None,
+    base: BaseLink = None,
+    as_json: AsJson = False,
+) -> None:
+    """Follow a path with the tip, within joint position and velocity limits."""
+    arm = load_robot(robot, urdf, base, tip)
+    triples = {"center": center, "corner": corner, "a": a, "b": b}
+    others = {
+        "diameter": diameter,
+        "radius": radius,
+        "outer_radius": outer_radius,
+        "inner_radius": inner_radius,
+        "distance": distance,
+        "width": width,
+        "height": height,
+        "petals": petals,
+    }
+    given: dict[str, Any] = {name: numbers(f"--{name}", text, 3) for name, text in triples.items() if text is not None}
+    given |= {name: value for name, value in others.items() if value is not None}
+    path = _reference(curve, points, duration, given)
+    limits = None if velocity_limit_text is None else Limits(velocity=velocity_limit(velocity_limit_text))
+    with nullcontext() if out is None else output_folder(out) as folder:
+        result = track_path(
+            arm,
+            path,
+            None if start is None else numbers("--start", start),
+            dt=dt,
+            solver=make_solver(solver),
+            limits=limits,
+            position_tolerance=tolerance,
+            seed=seed,
+            progress=not as_json,
+        )
+        summary = summarize(result, solver, dt, seed, velocity_limit_text)
+        if folder is not None:
+            write_files(result, summary, folder)
+    if as_json:
+        print_json(summary)
+    else:
+        print_summary(summary, out)
+    raise typer.Exit(0 if result.success else 1)
+
+
+def _reference(
+    curve: CurveName | None, points: Path | None, duration: float | None, given: dict[str, Any]
+) -> ReferencePath:
+    if points is not None:
+        if curve is not None or given:
+            raise InvalidInputError("--path takes its points from the file: leave out --curve and its parameters")
+        return read_points(points, duration)
+    if curve is None:
+        raise InvalidInputError(f"no path was given: use --path FILE or --curve with one of {', '.join(CurveName)}")
+    return make_curve(curve, duration, given)

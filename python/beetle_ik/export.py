@@ -1,0 +1,102 @@
+"""Trajectories to and from files.
+
+npz keeps the polynomial pieces themselves. CSV keeps samples at the knots, with as many derivatives as determine the
+pieces: positions for straight lines, velocities too up to cubics, accelerations too up to quintics.
+"""
+
+import os
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._core import InvalidInputError, Trajectory
+from ._csv import read_table, write_table
+from ._files import whole_file
+
+# Columns are named "q:joint", "qd:joint", "qdd:joint": position, velocity and acceleration of each joint.
+_DERIVATIVES = ("q", "qd", "qdd")
+
+
+def to_csv(trajectory: Trajectory, file: str | os.PathLike[str]) -> None:
+    """Write the trajectory's knots as CSV: time (s), then positions and what derivatives its degree needs."""
+    degree = trajectory.coefficients.shape[2] - 1
+    kept = _DERIVATIVES[: min(max(degree, 1) // 2 + 1, len(_DERIVATIVES))]
+    samples = (trajectory.q, trajectory.qd, trajectory.qdd)[: len(kept)]
+    columns = ["time", *(f"{derivative}:{joint}" for derivative in kept for joint in trajectory.joint_names)]
+    write_table(file, columns, np.column_stack((trajectory.time, *samples)))
+
+
+def from_csv(file: str | os.PathLike[str]) -> Trajectory:
+    """Read a trajectory from CSV; the columns present decide the degree of its pieces.
+
+    Raises:
+        InvalidInputError: a column is missing or an entry is no number: names line and column.
+    """
+    table = read_table(file, ["time"])
+    joints = [column.removeprefix("q:") for column in table if column.startswith("q:")]
+    if not joints:
+        raise InvalidInputError(
+            f"{os.fspath(file)}, line 1: no joint positions: expected columns named 'q:joint'; "
+            f"columns found: {', '.join(table)}"
+        )
+    q = np.column_stack([table[f"q:{joint}"] for joint in joints])
+    qd, qdd = (_joint_columns(file, table, derivative, joints) for derivative in _DERIVATIVES[1:])
+    return Trajectory.from_samples(table["time"], q, qd=qd, qdd=qdd, joint_names=joints)
+
+
+def _joint_columns(
+    file: str | os.PathLike[str], table: dict[str, NDArray[np.float64]], derivative: str, joints: list[str]
+) -> NDArray[np.float64] | None:
+    """The columns of one derivative, None where the file has none of them."""
+    columns = [f"{derivative}:{joint}" for joint in joints]
+    present = [column for column in columns if column in table]
+    if not present:
+        return None
+    for column in columns:
+        if column not in table:
+            raise InvalidInputError(
+                f"{os.fspath(file)}, line 1: column '{column}' is missing, though '{present[0]}' is there"
+            )
+    return np.column_stack([table[column] for column in columns])
+
+
+def to_npz(trajectory: Trajectory, file: str | os.PathLike[str]) -> None:
+    """Write the trajectory's knots, coefficients and joint names as npz."""
+    with whole_file(file) as stream:
+        np.savez(
+            stream,
+            time=trajectory.time,
+            coefficients=trajectory.coefficients,
+            joint_names=np.array(trajectory.joint_names, dtype=np.str_),
+        )
+
+
+def from_npz(file: str | os.PathLike[str]) -> Trajectory:
+    """Read a trajectory that `to_npz` wrote.
+
+    Raises:
+        InvalidInputError: the file is no npz, or one of another kind: says what it lacks.
+    """
+    stored = _arrays(file)
+    for name in ("time", "coefficients", "joint_names"):
+        if name not in stored:
+            raise InvalidInputError(
+                f"{os.fspath(file)}: not a trajectory: '{name}' is missing; "
+                f"the file holds: {', '.join(stored) or 'nothing'}"
+            )
+    return Trajectory(stored["time"], stored["coefficients"], joint_names=stored["joint_names"].tolist())
+
+
+def _arrays(file: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
+    with Path(file).open("rb") as stream:
+        if not zipfile.is_zipfile(stream):
+            raise InvalidInputError(f"{os.fspath(file)}: not an npz file")
+        stream.seek(0)
+        try:
+            with np.load(stream, allow_pickle=False) as archive:
+                return {name: archive[name] for name in archive.files}
+        except (ValueError, EOFError, zipfile.BadZipFile) as error:
+            raise InvalidInputError(f"{os.fspath(file)}: damaged npz file: {error}") from error

@@ -1,0 +1,187 @@
+"""Figures of results. Each function returns a matplotlib Figure and never shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from ._core import Robot, TrackResult, Trajectory
+
+# Okabe and Ito's palette, which colour-blind readers can tell apart too; its yellow is too faint for lines on white.
+_BLUE, _VERMILION, _GREEN, _PURPLE, _ORANGE, _SKY, _BLACK = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#E69F00",
+    "#56B4E9",
+    "#000000",
+)
+_CYCLE = (_BLUE, _VERMILION, _GREEN, _PURPLE, _ORANGE, _SKY, _BLACK)
+_FORBIDDEN = "#D9D9D9"
+_VELOCITY_PANELS_A_ROW = 7
+_TRAJECTORY_SAMPLES = 2001
+
+
+def robot(robot: Robot, q: ArrayLike) -> Figure:
+    """The robot as a stick figure at the configuration `q` (n,)."""
+    origins = robot.link_poses(q)[:, :3, 3]
+    with _style():
+        figure = _new_figure(6.0, 6.0)
+        axes = figure.add_subplot(projection="3d")
+        axes.plot(*origins.T, color=_BLUE, linewidth=3, marker="o", markersize=6, label="links")
+        axes.plot(*origins[-1:].T, color=_VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
+        _equal_axes(axes, origins)
+        axes.set_title(f"{robot.name}, {robot.dof} joints")
+        axes.legend(loc="upper left")
+    return figure
+
+
+def track(result: TrackResult) -> Figure:
+    """A tracked path: tip and target in space, error, joint positions, evaluations, velocities within their limits."""
+    joints = result.robot.joint_names
+    velocity_rows = -(-len(joints) // _VELOCITY_PANELS_A_ROW)
+    with _style():
+        figure = _new_figure(13.0, 7.2 + 2.0 * velocity_rows)
+        above, below = np.asarray(figure.subfigures(2, 1, height_ratios=[7.2, 2.0 * velocity_rows]))
+        grid = above.add_gridspec(3, 2, width_ratios=[1.0, 1.25])
+        _draw_space(above.add_subplot(grid[:, 0], projection="3d"), result)
+        error = above.add_subplot(grid[0, 1])
+        _draw_error(error, result)
+        _draw_positions(above.add_subplot(grid[1, 1], sharex=error), result)
+        _draw_evaluations(above.add_subplot(grid[2, 1], sharex=error), result)
+        above.align_ylabels()
+        _draw_velocities(below, result, velocity_rows)
+    return figure
+
+
+def trajectory(trajectory: Trajectory) -> Figure:
+    """Position, velocity and, where the pieces are curved, acceleration of each joint over time."""
+    curved = trajectory.coefficients.shape[2] > 2
+    labels = ["position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]"][: 3 if curved else 2]
+    time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
+    with _style():
+        figure = _new_figure(9.0, 2.4 * len(labels) + 0.6)
+        panels = figure.subplots(len(labels), 1, sharex=True)
+        for axes, label, values in zip(panels, labels, trajectory.at(time), strict=False):
+            _draw_joints(axes, time, values, trajectory.joint_names)
+            axes.set_ylabel(label)
+        panels[-1].set_xlabel("time [s]")
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper")
+    return figure
+
+
+def _draw_space(axes: Any, result: TrackResult) -> None:
+    axes.plot(*result.reference.T, color=_VERMILION, linewidth=4, alpha=0.45, label="target")
+    axes.plot(*result.position.T, color=_BLUE, linewidth=1.2, label="tip")
+    axes.plot(*result.position[:1].T, color=_BLUE, marker="o", linestyle="none", label="start")
+    _equal_axes(axes, np.vstack((result.reference, result.position)))
+    axes.set_title("path of the tip")
+    axes.legend(loc="upper left")
+
+
+def _draw_error(axes: Axes, result: TrackResult) -> None:
+    axes.semilogy(result.time, result.position_error, color=_BLUE)
+    axes.axhline(result.position_tolerance, color=_VERMILION, linestyle="--", label="tolerance")
+    axes.set_ylabel("position error [m]")
+    axes.tick_params(labelbottom=False)
+    axes.legend(loc="upper right")
+
+
+def _draw_positions(axes: Axes, result: TrackResult) -> None:
+    _draw_joints(axes, result.time, result.q, result.robot.joint_names)
+    axes.set_ylabel("joint position [rad]" if _all_turn(result.robot) else "joint position [rad, m]")
+    axes.tick_params(labelbottom=False)
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
+
+
+def _draw_evaluations(axes: Axes, result: TrackResult) -> None:
+    axes.step(result.time[1:], result.step_evaluations[1:], where="mid", color=_GREEN)
+    axes.set_ylim(bottom=0)
+    axes.set_ylabel("evaluations per step")
+    axes.set_xlabel("time [s]")
+
+
+def _draw_velocities(figure: Any, result: TrackResult, rows: int) -> None:
+    """One small panel a joint, each with its own limit: shaded is where the joint may not go."""
+    names = result.robot.joint_names
+    panels = figure.subplots(rows, min(len(names), _VELOCITY_PANELS_A_ROW), sharex=True, sharey=True, squeeze=False)
+    time, velocity, limit = result.time[1:], result.qd[1:], result.velocity_limit[1:]
+    top = 1.15 * _highest(limit if np.isfinite(limit).any() else velocity)
+    for j, axes in enumerate(panels.flat):
+        if j >= len(names):
+            axes.set_visible(False)
+            continue
+        bound = np.minimum(limit[:, j], 2.0 * top)  # an infinite limit shades nothing within view
+        axes.fill_between(time, bound, 2.0 * top, color=_FORBIDDEN, linewidth=0)
+        axes.fill_between(time, -bound, -2.0 * top, color=_FORBIDDEN, linewidth=0)
+        axes.plot(time, velocity[:, j], color=_joint_style(j)["color"])
+        axes.set_title(names[j])
+        axes.set_ylim(-top, top)
+    unit = "rad/s" if _all_turn(result.robot) else "rad/s, m/s"
+    figure.supylabel(f"velocity [{unit}]")
+    figure.supxlabel("time [s]; shaded: beyond the velocity limit")
+
+
+def _draw_joints(axes: Axes, time: NDArray[np.float64], values: NDArray[np.float64], names: list[str]) -> None:
+    for j, name in enumerate(names):
+        axes.plot(time, values[:, j], label=name, **_joint_style(j))
+
+
+def _joint_style(j: int) -> dict[str, Any]:
+    """Colour of joint `j`; the next round of colours is dashed."""
+    return {"color": _CYCLE[j % len(_CYCLE)], "linestyle": ("-", "--", ":", "-.")[j // len(_CYCLE) % 4]}
+
+
+def _equal_axes(axes: Any, points: NDArray[np.float64]) -> None:
+    """The same scale along x, y and z, so that a circle looks like one."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    reach = 0.55 * max(float((high - low).max()), 1e-9)
+    middle = (low + high) / 2
+    for name, center in zip("xyz", middle, strict=True):
+        axes.set(**{f"{name}lim": (center - reach, center + reach), f"{name}label": f"{name} [m]"})
+    axes.set_box_aspect((1, 1, 1), zoom=0.9)  # room for the labels, which the layout overlooks
+    axes.locator_params(nbins=5)
+
+
+def _highest(values: NDArray[np.float64]) -> float:
+    """The largest finite magnitude; 1 where all is still, so that axes keep a height."""
+    return float(np.abs(values[np.isfinite(values)]).max(initial=0.0)) or 1.0
+
+
+def _all_turn(robot: Robot) -> bool:
+    return "prismatic" not in robot.joint_kinds
+
+
+@contextmanager
+def _style() -> Iterator[None]:
+    import matplotlib as mpl
+
+    style: dict[str, Any] = {
+        "axes.grid": True,
+        "axes.spines.right": False,
+        "axes.spines.top": False,
+        "axes.titlesize": "medium",
+        "figure.labelsize": "medium",
+        "font.size": 9.5,
+        "grid.alpha": 0.3,
+        "legend.frameon": False,
+        "lines.linewidth": 1.3,
+    }
+    with mpl.rc_context(style):  # type: ignore[arg-type, unused-ignore]  # the stub wants literal keys
+        yield
+
+
+def _new_figure(width: float, height: float) -> Figure:
+    """A figure of this size (inches) that `matplotlib.pyplot.show` knows, so that callers can show it."""
+    import matplotlib.pyplot as plt
+
+    return plt.figure(figsize=(width, height), layout="constrained", dpi=120)

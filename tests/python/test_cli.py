@@ -1,0 +1,219 @@
+"""The command line: exit codes, JSON, files, messages."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner, Result
+
+import beetle_ik as bik
+from beetle_ik.cli import app
+
+SHORT_CIRCLE = ["--curve", "circle", "--center", "4,1,0", "--diameter", "1.4", "--duration", "3", "--tolerance", "4e-5"]
+TRACK = ["track", "planar5", *SHORT_CIRCLE]
+FILES = {"trajectory.csv", "trajectory.npz", "track.png", "summary.json"}
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(app, list(arguments))
+
+
+def refused(*arguments: str) -> str:
+    """What is said about wrong input."""
+    result = run(*arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    return result.stderr.strip()
+
+
+def run_json(*arguments: str) -> Any:
+    result = run(*arguments, "--json")
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+def test_robots() -> None:
+    robots = {robot["name"]: robot for robot in run_json("robots")}
+    assert set(robots) == set(bik.Robot.names())
+    assert len(robots["iiwa14"]["joints"]) == robots["iiwa14"]["dof"] == 7
+    assert "iiwa14" in run("robots").stdout
+
+
+def test_fk_gives_the_pose() -> None:
+    q = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]
+    answer = run_json("fk", "iiwa14", "--q", ",".join(map(str, q)))
+    assert answer["pose"] == bik.Robot.named("iiwa14").fk(q).tolist()
+
+
+def test_fk_takes_a_negative_first_angle() -> None:
+    assert "position [m]" in run("fk", "planar5", "--q", "-0.1,0,0,0,0").stdout
+
+
+def test_solve_reaches_a_position_and_a_pose() -> None:
+    free = run_json("solve", "iiwa14", "--position", "0.4,0.3,1.0")
+    assert free["success"]
+    assert free["rotation_error"] is None
+    posed = run_json("solve", "iiwa14", "--position", "0.4,0.2,0.8", "--rpy", "0,1.5,0")
+    assert posed["rotation_error"] <= 1e-6
+
+
+def test_out_of_reach_is_computed_and_exits_with_1() -> None:
+    result = run("solve", "planar5", "--position", "9,0,0")
+    assert result.exit_code == 1
+    assert "position error [m]" in result.stdout
+
+
+def test_track_writes_its_files(tmp_path: Path) -> None:
+    folder = tmp_path / "new" / "results"
+    summary = run_json(*TRACK, "--velocity-limit", "0.2,0.004,1", "--out", str(folder))
+    assert {file.name for file in folder.iterdir()} == FILES
+    assert json.loads((folder / "summary.json").read_text()) == summary
+    assert (summary["success"], summary["steps"]) == (True, 15)
+    assert summary["position_error"]["steady_mean"] <= 4e-5
+    assert summary["velocity_limit"]["source"] == "--velocity-limit"
+    from_csv = bik.Trajectory.from_csv(folder / "trajectory.csv")
+    from_npz = bik.Trajectory.from_npz(folder / "trajectory.npz")
+    assert (from_csv.q == from_npz.q).all()
+
+
+def test_track_repeats_bit_for_bit(tmp_path: Path) -> None:
+    for folder in ("first", "second"):
+        assert run(*TRACK, "--seed", "3", "--out", str(tmp_path / folder)).exit_code == 0
+    for name in ("trajectory.csv", "trajectory.npz"):
+        assert (tmp_path / "first" / name).read_bytes() == (tmp_path / "second" / name).read_bytes()
+
+
+@pytest.mark.parametrize("solver", ["bas", "chain", "greedy", "lm"])
+def test_every_solver_tracks(solver: str) -> None:
+    assert run_json(*TRACK, "--solver", solver)["solver"] == solver
+
+
+@pytest.mark.parametrize("curve", ["circle", "hypotrochoid", "letter-m", "pentagram", "rose"])
+def test_every_curve_is_within_reach_of_the_iiwa14(curve: str) -> None:
+    assert run("track", "iiwa14", "--curve", curve).exit_code == 0
+
+
+def test_a_limit_above_the_real_arm_is_told() -> None:
+    result = run("track", "iiwa14", "--curve", "circle", "--velocity-limit", "2,0.004,1")
+    assert (
+        "Note: a velocity limit of up to 2.004 rad/s is above the real iiwa14's own in 4 of its 7 joints"
+        in result.stdout
+    )
+
+
+def test_points_from_a_file(tmp_path: Path) -> None:
+    timed, untimed = tmp_path / "timed.csv", tmp_path / "untimed.csv"
+    timed.write_text("time,x,y,z\n0,4,1,0\n2,4,0.9,0\n")
+    untimed.write_text("x,y,z\n4,1,0\n4,0.9,0\n")
+    assert run_json("track", "planar5", "--path", str(timed))["steps"] == 10
+    assert run_json("track", "planar5", "--path", str(untimed), "--duration", "4")["steps"] == 20
+    assert refused("track", "planar5", "--path", str(timed), "--duration", "4") == (
+        f"Error: --duration: '{timed}' has a column 'time', which sets the duration; leave one of them out"
+    )
+    untimed.write_text("x,y\n4,1\n")
+    assert refused("track", "planar5", "--path", str(untimed)) == (
+        f"Error: {untimed}, line 1: column 'z' is missing; columns found: x, y"
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ["fk", "--q", "0"],
+            "no robot was given: name a built-in one (`beetle-ik robots` lists them) or use --urdf FILE",
+        ),
+        (
+            ["fk", "iiwa14", "--urdf", "arm.urdf", "--q", "0"],
+            "both the robot 'iiwa14' and --urdf 'arm.urdf' were given: give one of them",
+        ),
+        (
+            ["fk", "iiwa14", "--tip", "x", "--q", "0"],
+            "--base and --tip belong to --urdf; a built-in robot has its own",
+        ),
+        (["fk", "planar5", "--q", "0,0,x,0,0"], "--q: 'x' is not a number"),
+        (
+            ["solve", "planar5", "--position", "1,2"],
+            "--position: expected 3 numbers separated by commas, got 2 in '1,2'",
+        ),
+        (
+            ["track", "planar5"],
+            "no path was given: use --path FILE or --curve with one of circle, hypotrochoid, letter-m, pentagram, rose",
+        ),
+        (
+            ["track", "planar5", "--curve", "circle", "--petals", "3"],
+            "--petals does not belong to the curve 'circle', which takes --center, --diameter, --a, --b",
+        ),
+        (
+            ["track", "planar5", "--curve", "circle", "--path", "points.csv"],
+            "--path takes its points from the file: leave out --curve and its parameters",
+        ),
+        (
+            [*TRACK, "--velocity-limit", "1,2"],
+            "--velocity-limit: expected a number, or mean,amplitude,angular_frequency; got '1,2'",
+        ),
+    ],
+)
+def test_wrong_input_is_told_exactly(arguments: list[str], message: str) -> None:
+    assert refused(*arguments) == f"Error: {message}"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["fk", "iiwa", "--q", "0"],
+        ["fk", "iiwa14", "--q", "0,0"],
+        ["fk", "--urdf", "no-such-file.urdf", "--q", "0"],
+        [*TRACK, "--dt", "0"],
+        [*TRACK, "--start", "9,9,9,9,9"],
+        [*TRACK, "--velocity-limit", "-1"],
+        [*TRACK, "--velocity-limit", "0.1,0.2,1"],
+        ["track", "planar5", "--path", "no-such-file.csv"],
+        ["track", "planar5", "--curve", "spiral"],
+    ],
+)
+def test_what_the_core_refuses_exits_with_2(arguments: list[str]) -> None:
+    assert "Error" in refused(*arguments)
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_any_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("beetle_ik.cli.track.track_path", lambda *_, **__: pytest.fail("work was done"))
+    blocked = tmp_path / "file"
+    blocked.touch()
+    assert refused(*TRACK, "--out", str(blocked / "results")).startswith(
+        f"Error: --out: folder '{blocked / 'results'}' cannot be written: "
+    )
+
+
+def test_a_failure_half_way_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail_half_way(_result: object, _summary: object, folder: Path) -> None:
+        (folder / "trajectory.csv").touch()
+        raise OSError("disk full")
+
+    monkeypatch.setattr("beetle_ik.cli.track.write_files", fail_half_way)
+    assert refused(*TRACK, "--out", str(tmp_path / "new" / "results")) == "Error: disk full"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failure_half_way_keeps_what_was_in_the_folder(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").touch()
+    refused(*TRACK, "--dt", "0", "--out", str(tmp_path))
+    assert [file.name for file in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_the_module_runs_and_a_pipe_gets_no_progress_bar() -> None:
+    command = [sys.executable, "-m", "beetle_ik", *TRACK]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "mean position error [m]" in done.stdout
+
+
+@pytest.mark.parametrize("command", ["", "robots", "fk", "solve", "track"])
+def test_help(command: str) -> None:
+    result = run(*command.split(), "--help")
+    assert result.exit_code == 0
+    assert "Usage: " in result.stdout

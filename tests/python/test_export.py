@@ -1,0 +1,91 @@
+"""Trajectories to files and back."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beetle_ik as bik
+
+TIME = np.array([0.0, 0.5, 1.25, 2.0])
+JOINTS = ["shoulder", "elbow, left"]
+
+
+def smooth_samples() -> list[np.ndarray]:
+    """Positions, velocities and accelerations of a smooth motion at `TIME`, (3, 4, 2)."""
+    phase = np.outer(TIME, [1.0, 2.0]) + 0.3
+    rate = np.array([1.0, 2.0])
+    return [np.sin(phase), rate * np.cos(phase), -(rate**2) * np.sin(phase)]
+
+
+@pytest.mark.parametrize("derivatives", [1, 2, 3])
+def test_csv_keeps_what_determines_the_pieces(tmp_path: Path, derivatives: int) -> None:
+    q, *others = smooth_samples()[:derivatives]
+    written = bik.Trajectory.from_samples(TIME, q, **dict(zip(("qd", "qdd"), others, strict=False)), joint_names=JOINTS)
+    written.to_csv(tmp_path / "motion.csv")
+    read = bik.Trajectory.from_csv(tmp_path / "motion.csv")
+    assert read.joint_names == JOINTS
+    np.testing.assert_array_equal(read.time, written.time)
+    np.testing.assert_allclose(read.coefficients, written.coefficients, rtol=0, atol=1e-13)
+
+
+def test_csv_names_its_columns(tmp_path: Path) -> None:
+    bik.Trajectory.from_samples(TIME, smooth_samples()[0], joint_names=JOINTS).to_csv(tmp_path / "motion.csv")
+    assert (tmp_path / "motion.csv").read_text().splitlines()[0] == 'time,q:shoulder,"q:elbow, left"'
+
+
+def test_npz_keeps_every_bit(tmp_path: Path, tracked: bik.TrackResult) -> None:
+    tracked.trajectory.to_npz(tmp_path / "motion.npz")
+    read = bik.Trajectory.from_npz(tmp_path / "motion.npz")
+    assert read.joint_names == tracked.trajectory.joint_names
+    np.testing.assert_array_equal(read.time, tracked.trajectory.time)
+    np.testing.assert_array_equal(read.coefficients, tracked.trajectory.coefficients)
+
+
+def test_a_tracked_path_survives_csv(tmp_path: Path, tracked: bik.TrackResult) -> None:
+    tracked.trajectory.to_csv(tmp_path / "motion.csv")
+    read = bik.Trajectory.from_csv(tmp_path / "motion.csv")
+    np.testing.assert_array_equal(read.q, tracked.q)
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("t,q:a\n0,1\n", ", line 1: column 'time' is missing; columns found: t, q:a"),
+        ("time,a\n0,1\n", ", line 1: no joint positions: expected columns named 'q:joint'; columns found: time, a"),
+        ("time,q:a,q:b,qd:a\n0,1,2,3\n", ", line 1: column 'qd:b' is missing, though 'qd:a' is there"),
+    ],
+)
+def test_csv_that_is_no_trajectory(tmp_path: Path, text: str, problem: str) -> None:
+    file = tmp_path / "motion.csv"
+    file.write_text(text)
+    with pytest.raises(bik.InvalidInputError) as caught:
+        bik.Trajectory.from_csv(file)
+    assert str(caught.value) == f"{file}{problem}"
+
+
+def test_npz_that_is_no_trajectory(tmp_path: Path) -> None:
+    file = tmp_path / "other.npz"
+    np.savez(file, time=TIME, data=TIME)
+    with pytest.raises(bik.InvalidInputError) as caught:
+        bik.Trajectory.from_npz(file)
+    assert str(caught.value) == (f"{file}: not a trajectory: 'coefficients' is missing; the file holds: time, data")
+
+
+@pytest.mark.parametrize("content", [b"", b"plain text", b"PK\x03\x04 but no archive", b"\x93NUMPY"])
+def test_npz_that_is_no_npz(tmp_path: Path, content: bytes) -> None:
+    file = tmp_path / "other.npz"
+    file.write_bytes(content)
+    with pytest.raises(bik.InvalidInputError) as caught:
+        bik.Trajectory.from_npz(file)
+    assert str(caught.value) == f"{file}: not an npz file"
+
+
+def test_npz_that_is_damaged(tmp_path: Path, tracked: bik.TrackResult) -> None:
+    file = tmp_path / "motion.npz"
+    tracked.trajectory.to_npz(file)
+    content = bytearray(file.read_bytes())
+    content[200] ^= 0xFF
+    file.write_bytes(content)
+    with pytest.raises(bik.InvalidInputError, match="damaged npz file: "):
+        bik.Trajectory.from_npz(file)

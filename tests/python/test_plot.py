@@ -1,0 +1,74 @@
+"""Figures: what they hold and how it is labelled."""
+
+import io
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+import beetle_ik as bik
+
+
+def labels(figure: Figure) -> list[str]:
+    return [axes.get_ylabel() for axes in figure.get_axes()]
+
+
+def legend(axes: Axes) -> list[str]:
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+def test_a_tracked_path(tracked: bik.TrackResult) -> None:
+    figure = tracked.plot()
+    space, error, positions, evaluations, *velocities = figure.get_axes()
+    assert [space.get_xlabel(), space.get_ylabel(), space.get_zlabel()] == ["x [m]", "y [m]", "z [m]"]
+    assert legend(space) == ["target", "tip", "start"]
+    assert (error.get_ylabel(), error.get_yscale()) == ("position error [m]", "log")
+    assert error.get_lines()[1].get_ydata()[0] == tracked.position_tolerance
+    assert positions.get_ylabel() == "joint position [rad]"
+    assert legend(positions) == tracked.robot.joint_names
+    assert (evaluations.get_ylabel(), evaluations.get_xlabel()) == ("evaluations per step", "time [s]")
+    assert [axes.get_title() for axes in velocities] == tracked.robot.joint_names
+    figure.savefig(io.BytesIO())
+
+
+def test_the_shade_begins_at_the_velocity_limit(tracked: bik.TrackResult) -> None:
+    for j, axes in enumerate(tracked.plot().get_axes()[4:]):
+        above, below = (shade.get_paths()[0].vertices[:, 1] for shade in axes.collections)
+        assert above.min() == pytest.approx(np.nanmin(tracked.velocity_limit[:, j]))
+        assert below.max() == pytest.approx(-np.nanmin(tracked.velocity_limit[:, j]))
+
+
+def test_space_has_one_scale(tracked: bik.TrackResult) -> None:
+    space = tracked.plot().get_axes()[0]
+    widths = [np.ptp(limits) for limits in (space.get_xlim(), space.get_ylim(), space.get_zlim())]
+    assert widths == pytest.approx([widths[0]] * 3)
+
+
+def test_a_trajectory_of_straight_lines_has_no_acceleration(tracked: bik.TrackResult) -> None:
+    assert labels(tracked.trajectory.plot()) == ["position [rad, m]", "velocity [rad/s, m/s]"]
+
+
+def test_a_curved_trajectory() -> None:
+    q = np.array([[0.0, 1.0], [1.0, 0.0]])
+    figure = bik.Trajectory.from_samples([0.0, 1.0], q, qd=np.zeros((2, 2)), joint_names=["a", "b"]).plot()
+    assert labels(figure)[2] == "acceleration [rad/s², m/s²]"
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["a", "b"]
+
+
+def test_a_robot() -> None:
+    robot = bik.Robot.planar([1.0, 1.0])
+    (axes,) = bik.plot.robot(robot, [0.0, 0.0]).get_axes()
+    assert axes.get_title() == f"{robot.name}, 2 joints"
+    np.testing.assert_allclose(axes.get_lines()[1].get_data_3d(), [[2.0], [0.0], [0.0]], atol=1e-12)
+
+
+def test_figures_are_not_shown(tracked: bik.TrackResult, monkeypatch: pytest.MonkeyPatch) -> None:
+    def show(*_: object, **__: object) -> None:
+        pytest.fail("a figure was shown")
+
+    monkeypatch.setattr(plt, "show", show)
+    tracked.plot()
+    tracked.trajectory.plot()
+    bik.plot.robot(tracked.robot, tracked.q[0])
