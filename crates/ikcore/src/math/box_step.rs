@@ -133,7 +133,7 @@ mod tests {
         fn never_leaves_the_box(
             columns in prop::collection::vec(prop::array::uniform6(-1.0..1.0), 1..10),
             residual in prop::array::uniform6(-5.0..5.0),
-            width in 0.0..0.5,
+            width in 0.0_f64..0.5,
         ) {
             let n = columns.len();
             let (lower, upper) = (vec![-width; n], vec![0.5 * width; n]);

@@ -235,8 +235,10 @@ impl ChainBuilder {
             }
             joint.validate()?;
         }
+        let mut links = HashSet::new();
         self.elements.iter().try_for_each(|element| match element {
             Element::Fixed(transform) => finite_pose("fixed transform", transform),
+            Element::Link(name) if !links.insert(name) => Err(invalid(format!("two links are named '{name}'"))),
             Element::Link(_) => Ok(()),
             Element::Moving { axis, joint, scale, offset, .. } => {
                 let Some(driver) = self.joints.get(*joint) else {
