@@ -3,6 +3,7 @@
 pub mod error;
 pub mod ik;
 pub mod limits;
+pub mod manipulability;
 pub mod math;
 pub mod objective;
 pub mod path;

@@ -131,6 +131,12 @@ impl Record {
         self.step_status.iter().position(|status| *status == Status::Solved)
     }
 
+    /// Smallest distance of a speed from its limit (rad/s, m/s); infinite without limits.
+    pub fn limit_margin(&self) -> f64 {
+        // min() passes over the NaN of row 0.
+        self.qd.iter().zip(&self.velocity_limit).map(|(qd, limit)| limit - qd.abs()).fold(f64::INFINITY, f64::min)
+    }
+
     /// Evaluations of the forward kinematics in all.
     pub fn evaluations(&self) -> usize {
         self.step_evaluations.iter().sum()
