@@ -11,6 +11,9 @@ use pyo3::prelude::*;
 
 use crate::error::{invalid, raise};
 
+/// A float64 array of any shape, as results hold it.
+pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
 /// Any array-like as float64 in C order; not copied where it already is one. `what` names it in errors.
 pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     if let Ok(array) = value.cast::<PyArrayDyn<f64>>()

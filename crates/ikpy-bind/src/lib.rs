@@ -28,5 +28,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     path::register(module)?;
     module.add_class::<tracking::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;
-    module.add_class::<trajectory::PyTrajectory>()
+    module.add_class::<trajectory::PyTrajectory>()?;
+    // The package names what is public; a second list here would only go stale.
+    module.dict().del_item("__all__")
 }

@@ -3,10 +3,12 @@
 use ikcore::math::ticks::ticks;
 use ikcore::nalgebra::Matrix3;
 use ikcore::path::{Circle, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples};
-use numpy::{PyArray1, PyArrayDyn, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::convert::{array, matrix3, point, rigid_rows, row, scalar_or_vector, shape_text, summary, table, vector};
+use crate::convert::{
+    Array, array, matrix3, point, rigid_rows, row, scalar_or_vector, shape_text, summary, table, vector,
+};
 use crate::error::{invalid, raise};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -56,17 +58,17 @@ impl PyPath {
     }
 
     /// Position (m): (3,) for a number t (s), (k, 3) for t (k,).
-    fn position<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn position<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
         each(py, t, [3], |t| Ok(self.position_at(py, t)?.to_vec()))
     }
 
     /// Velocity (m/s): (3,) for a number t (s), (k, 3) for t (k,). Of a Python function, by central differences.
-    fn velocity<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn velocity<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
         each(py, t, [3], |t| Ok(self.velocity_at(py, t)?.to_vec()))
     }
 
     /// Pose: (4, 4) for a number t (s), (k, 4, 4) for t (k,). The path must have an orientation.
-    fn pose<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn pose<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
         each(py, t, [4, 4], |t| {
             let Some(rotation) = self.rotation_at(py, t)? else {
                 return Err(invalid("this path has no orientation: use path.with_orientation(R)".into()));
@@ -76,11 +78,7 @@ impl PyPath {
     }
 
     /// Times (k,) (s) from 0 in steps of dt, and the positions (k, 3) (m) there: what a tracker follows.
-    fn sample<'py>(
-        &self,
-        py: Python<'py>,
-        dt: f64,
-    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArrayDyn<f64>>)> {
+    fn sample<'py>(&self, py: Python<'py>, dt: f64) -> PyResult<(Bound<'py, PyArray1<f64>>, Array<'py>)> {
         let reference = self.reference(py, dt)?;
         let count = reference.len();
         let positions = (0..count).flat_map(|i| reference.position(i)).collect();
@@ -180,7 +178,7 @@ fn each<'py, const D: usize>(
     t: &Bound<'py, PyAny>,
     shape: [usize; D],
     value: impl Fn(f64) -> PyResult<Vec<f64>>,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+) -> PyResult<Array<'py>> {
     let (times, single) = scalar_or_vector("t", t)?;
     let mut values = vec![];
     for t in &times {
@@ -198,7 +196,8 @@ fn plane(center: &Bound<'_, PyAny>, a: [f64; 3], b: [f64; 3]) -> PyResult<Plane>
 /// A circle about `center` (3,) (m) of this diameter (m), once around in `duration` (s), from the side of `a` towards
 /// `b`: eq. (14) of Cheng et al. (2020). `a` and `b` (3,) are orthonormal.
 #[pyfunction]
-#[pyo3(signature = (center, diameter, duration, *, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]))]
+#[pyo3(signature = (center, diameter, duration, *, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+       text_signature = "(center, diameter, duration, *, a=(1, 0, 0), b=(0, 1, 0))")]
 fn circle(center: &Bound<'_, PyAny>, diameter: f64, duration: f64, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
     Ok(Path::new(Circle::new(plane(center, a, b)?, diameter, duration).map_err(raise)?).into())
 }
@@ -206,7 +205,8 @@ fn circle(center: &Bound<'_, PyAny>, diameter: f64, duration: f64, a: [f64; 3], 
 /// The letter M about `center` (3,), `width` along `a` and `height` along `b` (m), its four strokes equally long in
 /// time (Khan et al. 2022).
 #[pyfunction]
-#[pyo3(signature = (center, duration, *, width, height, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]))]
+#[pyo3(signature = (center, duration, *, width, height, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]),
+       text_signature = "(center, duration, *, width, height, a=(0, 1, 0), b=(0, 0, 1))")]
 fn letter_m(
     center: &Bound<'_, PyAny>,
     duration: f64,
@@ -221,7 +221,8 @@ fn letter_m(
 /// A hypotrochoid about `center` (3,): the path of a point at `distance` from the centre of a circle that rolls inside
 /// another (m). Eq. (20) of Khan et al. (2022) as it was meant; the ratio of the radii is one of small whole numbers.
 #[pyfunction]
-#[pyo3(signature = (center, duration, *, outer_radius, inner_radius, distance, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]))]
+#[pyo3(signature = (center, duration, *, outer_radius, inner_radius, distance, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]),
+       text_signature = "(center, duration, *, outer_radius, inner_radius, distance, a=(0, 1, 0), b=(0, 0, 1))")]
 fn hypotrochoid(
     center: &Bound<'_, PyAny>,
     duration: f64,
@@ -238,14 +239,16 @@ fn hypotrochoid(
 /// A five-pointed star about `center` (3,), its points `radius` (m) away, drawn in five strokes at constant speed from
 /// the point on the side of `b`.
 #[pyfunction]
-#[pyo3(signature = (center, duration, *, radius, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]))]
+#[pyo3(signature = (center, duration, *, radius, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+       text_signature = "(center, duration, *, radius, a=(1, 0, 0), b=(0, 1, 0))")]
 fn pentagram(center: &Bound<'_, PyAny>, duration: f64, radius: f64, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
     Ok(Path::new(Polyline::pentagram(&plane(center, a, b)?, radius, duration).map_err(raise)?).into())
 }
 
 /// A rose about `center` (3,): at angle u the distance is radius cos(k u) (m). Odd k gives k petals, even k 2 k.
 #[pyfunction]
-#[pyo3(signature = (center, duration, *, radius, k, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]))]
+#[pyo3(signature = (center, duration, *, radius, k, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+       text_signature = "(center, duration, *, radius, k, a=(1, 0, 0), b=(0, 1, 0))")]
 fn rose(center: &Bound<'_, PyAny>, duration: f64, radius: f64, k: u32, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
     Ok(Path::new(Rose::new(plane(center, a, b)?, radius, k, duration).map_err(raise)?).into())
 }

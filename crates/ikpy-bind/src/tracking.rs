@@ -151,7 +151,7 @@ impl PyTrackResult {
     /// Smallest distance of a speed from its limit (rad/s, m/s); inf without limits.
     #[getter]
     fn limit_margin(&self) -> f64 {
-        self.core.limit_margin()
+        self.core.limit_margin
     }
 
     /// Whether the tip came into the error band and stayed there.

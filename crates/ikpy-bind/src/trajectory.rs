@@ -1,14 +1,13 @@
 //! `Trajectory`.
 
 use ikcore::trajectory::{Coefficients, Trajectory};
-use numpy::{PyArray1, PyArrayDyn, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
-use crate::convert::{array, row, scalar_or_vector, shape_text, table, vector};
+use crate::convert::{Array, array, row, scalar_or_vector, shape_text, table, vector};
 use crate::error::{invalid, raise};
 use crate::upward;
-
-type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Joint motion in time, a polynomial between knots: q_j(t) = sum over p of coefficients[i, j, p] (t - time[i])^p.
 ///
@@ -197,13 +196,9 @@ impl PyTrajectory {
         )
     }
 
-    fn __getnewargs_ex__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<((Bound<'py, PyArray1<f64>>, Array<'py>), Bound<'py, pyo3::types::PyDict>)> {
-        let options = pyo3::types::PyDict::new(py);
-        options.set_item("joint_names", self.joint_names())?;
-        Ok(((self.time(py), self.coefficients(py)?), options))
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let arguments = (self.time(py), self.coefficients(py)?).into_pyobject(py)?;
+        Ok((arguments, [("joint_names", self.joint_names())].into_py_dict(py)?))
     }
 }
 

@@ -40,6 +40,9 @@ pub struct Record {
     pub step_iterations: Vec<usize>,
     /// Largest excess of a displacement over v dt or of a position over its limit (rad, m); 0 within 4 ulp.
     pub max_violation: f64,
+    /// Smallest distance of a speed from its limit (rad/s, m/s); infinite without limits, below zero only where
+    /// `max_violation` is above.
+    pub limit_margin: f64,
     /// The limits in force.
     pub limits: Limits,
     /// The error band.
@@ -70,6 +73,7 @@ impl Record {
             step_evaluations: Vec::with_capacity(rows),
             step_iterations: Vec::with_capacity(rows),
             max_violation: 0.0,
+            limit_margin: f64::INFINITY,
             limits: session.limits().clone(),
             tolerance: session.tolerance(),
             status: Status::Lost,
@@ -106,7 +110,10 @@ impl Record {
             self.qd.push((q - before) / self.dt);
             self.velocity_limit.push(limit);
             let [lower, upper] = self.limits.position_range(j, from, to);
-            let excess = ((q - before).abs() - limit * self.dt).max(lower - q).max(q - upper);
+            let too_fast = (q - before).abs() - limit * self.dt;
+            // From displacements, which keep the limit to the last bit; velocities round once more.
+            self.limit_margin = self.limit_margin.min(-too_fast / self.dt);
+            let excess = too_fast.max(lower - q).max(q - upper);
             let rounding = ALLOWED_ULPS * f64::EPSILON * q.abs().max(1.0);
             if excess > rounding {
                 self.max_violation = self.max_violation.max(excess);
@@ -129,12 +136,6 @@ impl Record {
     /// The first row within the band.
     pub fn joined(&self) -> Option<usize> {
         self.step_status.iter().position(|status| *status == Status::Solved)
-    }
-
-    /// Smallest distance of a speed from its limit (rad/s, m/s); infinite without limits.
-    pub fn limit_margin(&self) -> f64 {
-        // min() passes over the NaN of row 0.
-        self.qd.iter().zip(&self.velocity_limit).map(|(qd, limit)| limit - qd.abs()).fold(f64::INFINITY, f64::min)
     }
 
     /// Evaluations of the forward kinematics in all.
