@@ -17,8 +17,8 @@ __version__: str
 _Array: TypeAlias = NDArray[np.float64]
 _Solver: TypeAlias = BAS | LevenbergMarquardt | MultiStart
 _LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
-_LimitOut: TypeAlias = _Array | Sinusoid | Callable[[float], ArrayLike] | None
-_Progress: TypeAlias = bool | Callable[[int, int], object]  # called with (done, total)
+_LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] | None
+_Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
 # --- errors -------------------------------------------------------------------------------------
 
@@ -107,7 +107,7 @@ def pose(
 @final
 class Sinusoid:
     def __new__(
-        cls, *, mean: ArrayLike, amplitude: ArrayLike, angular_frequency: ArrayLike, phase: ArrayLike = 0.0
+        cls, *, mean: ArrayLike, amplitude: ArrayLike, angular_frequency: ArrayLike, phase: ArrayLike | None = None
     ) -> Sinusoid: ...
     @property
     def mean(self) -> Any: ...  # what was given: a float or (n,)
@@ -117,28 +117,30 @@ class Sinusoid:
     def angular_frequency(self) -> Any: ...  # rad/s
     @property
     def phase(self) -> Any: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Limits:
     def __new__(
         cls,
         *,
-        lower: ArrayLike | None = None,
-        upper: ArrayLike | None = None,
+        lower: _LimitIn | None = None,
+        upper: _LimitIn | None = None,
         velocity: _LimitIn | None = None,
         acceleration: _LimitIn | None = None,
         jerk: _LimitIn | None = None,
     ) -> Limits: ...
     @property
-    def lower(self) -> _Array | None: ...
+    def lower(self) -> _LimitOut: ...
     @property
-    def upper(self) -> _Array | None: ...
+    def upper(self) -> _LimitOut: ...
     @property
     def velocity(self) -> _LimitOut: ...
     @property
     def acceleration(self) -> _LimitOut: ...
     @property
     def jerk(self) -> _LimitOut: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- solvers ------------------------------------------------------------------------------------
 
@@ -149,6 +151,8 @@ class Status(IntEnum):
     STALLED = 3
     BUDGET_SPENT = 4
     TIME_UP = 5
+    INTERRUPTED = 6
+    LOST = 7
 
 @final
 class BAS:
@@ -171,20 +175,23 @@ class BAS:
     def explorations(self) -> int: ...
     @property
     def max_passes(self) -> int: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class LevenbergMarquardt:
     def __new__(cls, *, initial_damping: float = ...) -> LevenbergMarquardt: ...
     @property
     def initial_damping(self) -> float: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class MultiStart:
-    def __new__(cls, solver: BAS | LevenbergMarquardt, *, max_starts: int = ...) -> MultiStart: ...
+    def __new__(cls, solver: BAS | LevenbergMarquardt, *, max_starts: int | None = None) -> MultiStart: ...
     @property
     def solver(self) -> BAS | LevenbergMarquardt: ...
     @property
-    def max_starts(self) -> int: ...
+    def max_starts(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Stop:
@@ -197,6 +204,7 @@ class Stop:
     def max_iterations(self) -> int | None: ...
     @property
     def max_time(self) -> float | None: ...  # s
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- inverse kinematics -------------------------------------------------------------------------
 
@@ -254,7 +262,7 @@ def circle(
     center: ArrayLike, diameter: float, duration: float, *, a: ArrayLike = (1, 0, 0), b: ArrayLike = (0, 1, 0)
 ) -> Path: ...
 def letter_m(
-    corner: ArrayLike,  # where the first stroke starts
+    center: ArrayLike,
     duration: float,
     *,
     width: float,
@@ -280,7 +288,7 @@ def rose(
     duration: float,
     *,
     radius: float,
-    petals: int,
+    k: int,
     a: ArrayLike = (1, 0, 0),
     b: ArrayLike = (0, 1, 0),
 ) -> Path: ...
@@ -302,7 +310,7 @@ def track(
     rotation_tolerance: float = 1e-6,
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
-    progress: _Progress = False,
+    progress: _Progress = None,
 ) -> TrackResult: ...
 
 @final
@@ -396,3 +404,4 @@ class Trajectory:
     @staticmethod
     def from_npz(file: str | os.PathLike[str]) -> Trajectory: ...
     def plot(self) -> Figure: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...

@@ -12,8 +12,19 @@ from typer.testing import CliRunner, Result
 import beetle_ik as bik
 from beetle_ik.cli import app
 
-SHORT_CIRCLE = ["--curve", "circle", "--center", "4,1,0", "--diameter", "1.4", "--duration", "3", "--tolerance", "4e-5"]
-TRACK = ["track", "planar5", *SHORT_CIRCLE]
+CIRCLE = [
+    "--curve",
+    "circle",
+    "--center",
+    "4,1,0",
+    "--diameter",
+    "1.4",
+    "--duration",
+    "30",
+    "--tolerance",
+    "4e-5",
+]
+TRACK = ["track", "planar5", *CIRCLE]
 FILES = {"trajectory.csv", "trajectory.npz", "track.png", "summary.json"}
 
 
@@ -70,7 +81,7 @@ def test_track_writes_its_files(tmp_path: Path) -> None:
     summary = run_json(*TRACK, "--velocity-limit", "0.2,0.004,1", "--out", str(folder))
     assert {file.name for file in folder.iterdir()} == FILES
     assert json.loads((folder / "summary.json").read_text()) == summary
-    assert (summary["success"], summary["steps"]) == (True, 15)
+    assert (summary["success"], summary["steps"]) == (True, 150)
     assert summary["position_error"]["steady_mean"] <= 4e-5
     assert summary["velocity_limit"]["source"] == "--velocity-limit"
     from_csv = bik.Trajectory.from_csv(folder / "trajectory.csv")
@@ -143,8 +154,8 @@ def test_points_from_a_file(tmp_path: Path) -> None:
             "no path was given: use --path FILE or --curve with one of circle, hypotrochoid, letter-m, pentagram, rose",
         ),
         (
-            ["track", "planar5", "--curve", "circle", "--petals", "3"],
-            "--petals does not belong to the curve 'circle', which takes --center, --diameter, --a, --b",
+            ["track", "planar5", "--curve", "circle", "--k", "3"],
+            "--k does not belong to the curve 'circle', which takes --center, --diameter, --a, --b",
         ),
         (
             ["track", "planar5", "--curve", "circle", "--path", "points.csv"],

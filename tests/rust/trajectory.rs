@@ -38,7 +38,7 @@ fn rest_to_rest_quintic_has_its_known_extrema() {
 fn samples_are_joined_by_straight_lines() {
     let times = [0.0, 0.5, 2.0];
     let q = [0.0, 1.0, 0.25, 1.0, -0.5, 4.0];
-    let trajectory = Trajectory::from_samples(names(2), &times, &q).unwrap();
+    let trajectory = Trajectory::from_samples(names(2), &times, &q, None, None).unwrap();
     assert_eq!((trajectory.knots(), trajectory.duration()), (&times[..], 2.0));
     for (row, t) in times.into_iter().enumerate() {
         assert_eq!(state(&trajectory, t)[0], q[2 * row..2 * row + 2]);
@@ -52,14 +52,15 @@ fn samples_are_joined_by_straight_lines() {
 
 #[test]
 fn parts_rebuild_the_trajectory() {
-    let trajectory = Trajectory::from_samples(names(2), &[0.0, 0.5, 2.0], &[0.0, 1.0, 0.25, 1.0, -0.5, 4.0]).unwrap();
+    let trajectory =
+        Trajectory::from_samples(names(2), &[0.0, 0.5, 2.0], &[0.0, 1.0, 0.25, 1.0, -0.5, 4.0], None, None).unwrap();
     let (joints, knots) = (trajectory.joints().to_vec(), trajectory.knots().to_vec());
     assert_eq!(Trajectory::new(joints, knots, trajectory.coefficients().to_vec()).unwrap(), trajectory);
 }
 
 #[test]
 fn sample_times_end_at_the_end() {
-    let trajectory = Trajectory::from_samples(names(1), &[0.0, 1.0], &[0.0, 1.0]).unwrap();
+    let trajectory = Trajectory::from_samples(names(1), &[0.0, 1.0], &[0.0, 1.0], None, None).unwrap();
     assert_eq!(trajectory.sample_times(0.4).unwrap(), [0.0, 0.4, 0.8, 1.0]);
     assert_eq!(trajectory.sample_times(0.1).unwrap().len(), 11);
     assert_eq!(trajectory.sample_times(5.0).unwrap(), [0.0, 1.0]);
@@ -95,11 +96,11 @@ fn wrong_trajectories_are_named() {
             "trajectory: joint 'j1' jumps from 1 to 1.5 at t = 1 s",
         ),
         (
-            Trajectory::from_samples(names(2), &[0.0, 1.0], &[0.0; 3]),
+            Trajectory::from_samples(names(2), &[0.0, 1.0], &[0.0; 3], None, None),
             "trajectory samples: expected 4 numbers (2 times of 2 joints), got 3",
         ),
         (
-            Trajectory::from_samples(names(2), &[0.0, 1.0], &[0.0, 0.0, 0.0, f64::INFINITY]),
+            Trajectory::from_samples(names(2), &[0.0, 1.0], &[0.0, 0.0, 0.0, f64::INFINITY], None, None),
             "trajectory samples must be finite, but joint 'j2' of row 1 is inf",
         ),
     ] {
@@ -167,4 +168,40 @@ proptest! {
             prop_assert!(((qd1[joint] - qd0[joint]) / (2.0 * h) - qdd[joint]).abs() < 1e-7 * scale);
         }
     }
+}
+
+/// Samples of q = t^degree at both ends of a segment that does not begin at zero.
+fn power(degree: i32, times: &[f64]) -> [Vec<f64>; 3] {
+    let d = f64::from(degree);
+    [
+        times.iter().map(|t| t.powi(degree)).collect(),
+        times.iter().map(|t| d * t.powi(degree - 1)).collect(),
+        times.iter().map(|t| d * (d - 1.0) * t.powi(degree - 2)).collect(),
+    ]
+}
+
+#[test]
+fn samples_with_derivatives_reproduce_the_polynomial_that_they_were_taken_from() {
+    let times = [0.0, 0.5, 1.7];
+    for (degree, with_accelerations) in [(3, false), (5, true)] {
+        let [q, qd, qdd] = power(degree, &times);
+        let qdd = with_accelerations.then_some(qdd.as_slice());
+        let trajectory = Trajectory::from_samples(names(1), &times, &q, Some(&qd), qdd).unwrap();
+        assert_eq!(trajectory.degree(), degree as usize);
+        let (mut q, mut qd, mut qdd) = ([0.0], [0.0], [0.0]);
+        for i in 0..=170 {
+            let t = 0.01 * f64::from(i);
+            trajectory.at(t, &mut q, &mut qd, &mut qdd).unwrap();
+            let [expected_q, expected_qd, expected_qdd] = power(degree, &[t]);
+            assert!((q[0] - expected_q[0]).abs() < 1e-12, "{t}");
+            assert!((qd[0] - expected_qd[0]).abs() < 1e-11, "{t}");
+            assert!((qdd[0] - expected_qdd[0]).abs() < 1e-10, "{t}");
+        }
+    }
+}
+
+#[test]
+fn accelerations_without_velocities_are_refused() {
+    let error = Trajectory::from_samples(names(1), &[0.0, 1.0], &[0.0, 1.0], None, Some(&[0.0, 0.0])).unwrap_err();
+    assert_eq!(error.to_string(), "trajectory: accelerations need velocities too");
 }

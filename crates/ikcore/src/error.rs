@@ -194,6 +194,12 @@ pub enum Error {
 }
 
 impl Error {
+    /// Shorthand for [`Error::UnknownOption`].
+    pub(crate) fn unknown_option(what: &str, value: &str, known: &[&str]) -> Self {
+        let known = known.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
+        Self::UnknownOption { what: what.into(), value: value.into(), known }
+    }
+
     /// Shorthand for [`Error::OutOfRange`].
     pub(crate) fn out_of_range(what: impl Into<String>, requirement: &str, value: f64) -> Self {
         Self::OutOfRange { what: what.into(), requirement: requirement.into(), value }

@@ -1,1 +1,34 @@
-//! binding
+//! The native module `beetle_ik._core`: registration only. Each file converts for one module of the core.
+
+mod convert;
+mod error;
+mod ik;
+mod limits;
+mod monitor;
+mod path;
+mod robot;
+mod solver;
+mod tracking;
+mod trajectory;
+mod upward;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    error::register(module)?;
+    solver::register(module)?;
+    module.add_class::<robot::PyRobot>()?;
+    module.add_function(wrap_pyfunction!(robot::pose, module)?)?;
+    module.add_class::<limits::PySinusoid>()?;
+    module.add_class::<limits::PyLimits>()?;
+    module.add_class::<ik::PySolution>()?;
+    module.add_function(wrap_pyfunction!(ik::solve, module)?)?;
+    path::register(module)?;
+    module.add_class::<tracking::PyTrackResult>()?;
+    module.add_function(wrap_pyfunction!(tracking::track, module)?)?;
+    module.add_class::<trajectory::PyTrajectory>()?;
+    // The package names what is public; a second list here would only go stale.
+    module.dict().del_item("__all__")
+}

@@ -38,9 +38,9 @@ _CURVES = {
     CurveName.HYPOTROCHOID: _Curve(
         paths.hypotrochoid, {"center": _PLACE, "outer_radius": 0.1, "inner_radius": 0.06, "distance": 0.06}
     ),
-    CurveName.LETTER_M: _Curve(paths.letter_m, {"corner": (0.4, 0.1, 0.6), "width": 0.3, "height": 0.3}),
+    CurveName.LETTER_M: _Curve(paths.letter_m, {"center": (0.4, 0.25, 0.75), "width": 0.3, "height": 0.3}),
     CurveName.PENTAGRAM: _Curve(paths.pentagram, {"center": _PLACE, "radius": 0.1}),
-    CurveName.ROSE: _Curve(paths.rose, {"center": _PLACE, "radius": 0.1, "petals": 3}),
+    CurveName.ROSE: _Curve(paths.rose, {"center": _PLACE, "radius": 0.1, "k": 3}),
 }
 
 

@@ -52,7 +52,6 @@ def track(
     ] = None,
     duration: Annotated[float | None, typer.Option(help="Time for the path in s (30).", rich_help_panel=_PATH)] = None,
     center: Point = None,
-    corner: Point = None,
     diameter: Length = None,
     radius: Length = None,
     outer_radius: Length = None,
@@ -60,7 +59,7 @@ def track(
     distance: Length = None,
     width: Length = None,
     height: Length = None,
-    petals: Annotated[int | None, typer.Option(rich_help_panel=_CURVE)] = None,
+    k: Annotated[int | None, typer.Option("--k", help="Of the rose radius cos(k u).", rich_help_panel=_CURVE)] = None,
     a: Direction = None,
     b: Direction = None,
     velocity_limit_text: Annotated[
@@ -87,7 +86,7 @@ def track(
 ) -> None:
     """Follow a path with the tip, within joint position and velocity limits."""
     arm = load_robot(robot, urdf, base, tip)
-    triples = {"center": center, "corner": corner, "a": a, "b": b}
+    triples = {"center": center, "a": a, "b": b}
     others = {
         "diameter": diameter,
         "radius": radius,
@@ -96,7 +95,7 @@ def track(
         "distance": distance,
         "width": width,
         "height": height,
-        "petals": petals,
+        "k": k,
     }
     given: dict[str, Any] = {name: numbers(f"--{name}", text, 3) for name, text in triples.items() if text is not None}
     given |= {name: value for name, value in others.items() if value is not None}

@@ -1,6 +1,9 @@
 //! The box of one tick: position limits intersected with what the velocity limit lets the ACCEPTED configuration reach.
 
+use std::str::FromStr;
+
 use super::Limits;
+use crate::error::{Error, Result};
 use crate::objective::Bounds;
 
 /// Where in a tick its limit is taken.
@@ -11,6 +14,18 @@ pub enum LimitAt {
     Interval,
     /// The limit at the tick's beginning, as Cheng et al. (2020) take it.
     Start,
+}
+
+impl FromStr for LimitAt {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "interval" => Ok(Self::Interval),
+            "start" => Ok(Self::Start),
+            _ => Err(Error::unknown_option("limit_at", name, &["interval", "start"])),
+        }
+    }
 }
 
 impl Limits {

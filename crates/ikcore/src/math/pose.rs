@@ -1,8 +1,8 @@
 //! Rigid transforms: the type, and the check that a 4x4 matrix is one.
 
-use nalgebra::{IsometryMatrix3, Matrix3, Matrix4, Rotation3, Translation3, Vector3};
+use nalgebra::{IsometryMatrix3, Matrix3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require_finite};
 
 /// A rigid transform: rotation matrix and translation (m).
 pub type Pose = IsometryMatrix3<f64>;
@@ -31,13 +31,63 @@ pub fn from_rpy(rpy: [f64; 3], translation: [f64; 3]) -> Pose {
     Pose::from_parts(Translation3::from(translation), Rotation3::from_euler_angles(rpy[0], rpy[1], rpy[2]))
 }
 
+/// The rotation of a quaternion (x, y, z, w) of any length but zero.
+///
+/// # Errors
+/// [`Error::OutOfRange`] for a quaternion without a length.
+pub fn from_quaternion(xyzw: [f64; 4], translation: [f64; 3]) -> Result<Pose> {
+    let [x, y, z, w] = xyzw;
+    let quaternion = Quaternion::new(w, x, y, z);
+    let length = quaternion.norm();
+    if !(length.is_finite() && length > 0.0) {
+        return Err(Error::out_of_range("length of the quaternion", "positive and finite", length));
+    }
+    let rotation = UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix();
+    Ok(Pose::from_parts(Translation3::from(translation), rotation))
+}
+
+/// The rotation by the length of a rotation vector (rad) about its direction.
+pub fn from_rotation_vector(rotation_vector: [f64; 3], translation: [f64; 3]) -> Pose {
+    Pose::from_parts(Translation3::from(translation), Rotation3::new(Vector3::from(rotation_vector)))
+}
+
+/// The rotation of a 3x3 matrix.
+///
+/// # Errors
+/// As [`from_matrix`].
+pub fn from_rotation_matrix(rotation: Matrix3<f64>, translation: [f64; 3]) -> Result<Pose> {
+    let mut matrix = rotation.to_homogeneous();
+    matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&Vector3::from(translation));
+    from_matrix("matrix", &matrix)
+}
+
+/// The pose itself if all its numbers are finite.
+///
+/// # Errors
+/// [`Error::NotFinite`]; `what` names it.
+pub fn checked(what: &str, pose: Pose) -> Result<Pose> {
+    require_finite(what, pose.to_homogeneous().as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))?;
+    Ok(pose)
+}
+
+/// The 16 numbers of a pose, row after row.
+pub fn rows(pose: &Pose) -> [f64; 16] {
+    let (r, p) = (pose.rotation.matrix(), &pose.translation);
+    [
+        r.m11, r.m12, r.m13, p.x, //
+        r.m21, r.m22, r.m23, p.y, //
+        r.m31, r.m32, r.m33, p.z, //
+        0.0, 0.0, 0.0, 1.0,
+    ]
+}
+
 /// Reads a homogeneous 4x4 matrix; `what` names it in errors.
 ///
 /// # Errors
 /// [`Error::NotFinite`] for NaN or infinity; [`Error::NotRigid`] where the last row is not (0, 0, 0, 1), or the
 /// rotation is not orthonormal to 1e-6 or is a reflection. What is within 1e-6 is orthonormalised.
 pub fn from_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<Pose> {
-    crate::error::require_finite(what, matrix.as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))?;
+    require_finite(what, matrix.as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))?;
     let not_rigid = |problem: String| Error::NotRigid { what: what.into(), problem };
     let last_row = matrix.row(3);
     if (last_row[0], last_row[1], last_row[2], last_row[3]) != (0.0, 0.0, 0.0, 1.0) {

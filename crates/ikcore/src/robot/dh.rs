@@ -1,5 +1,7 @@
 //! Robots from Denavit-Hartenberg tables, in both conventions.
 
+use std::str::FromStr;
+
 use nalgebra::Vector3;
 
 use super::builder::{ChainBuilder, Drive};
@@ -15,6 +17,18 @@ pub enum Dh {
     Standard,
     /// Craig 1986: frame i on joint i, A_i = Rx(alpha) Tx(a) Rz(theta) Tz(d), with alpha_{i-1} and a_{i-1} in row i.
     Modified,
+}
+
+impl FromStr for Dh {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "standard" => Ok(Self::Standard),
+            "modified" => Ok(Self::Modified),
+            _ => Err(Error::unknown_option("convention", name, &["modified", "standard"])),
+        }
+    }
 }
 
 /// A Denavit-Hartenberg table: one entry per joint in every list.

@@ -1,6 +1,10 @@
 //! A joint as the caller sees it.
 
+use std::str::FromStr;
+
 use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
 
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -26,6 +30,16 @@ impl JointKind {
     /// Whether the joint turns rather than slides.
     pub fn turns(self) -> bool {
         self != Self::Prismatic
+    }
+}
+
+impl FromStr for JointKind {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        const ALL: [JointKind; 3] = [JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic];
+        let found = ALL.into_iter().find(|kind| kind.name() == name);
+        found.ok_or_else(|| Error::unknown_option("kind of a joint", name, &ALL.map(Self::name)))
     }
 }
 

@@ -6,6 +6,7 @@ mod chain;
 mod dh;
 mod joint;
 mod kinematics;
+mod many;
 mod model;
 mod planar;
 mod urdf;

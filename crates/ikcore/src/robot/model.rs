@@ -10,7 +10,7 @@ use super::chain::Chain;
 use super::joint::Joint;
 use super::{Columns, LANES, MAX_DOF};
 use crate::error::{Error, Result, require_finite};
-use crate::math::{Frame, Pose};
+use crate::math::{Frame, Pose, pose};
 use crate::rng::LazyRng;
 
 /// A robot arm: a serial chain from base to tip.
@@ -89,7 +89,7 @@ impl Robot {
     /// # Errors
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
     pub fn with_base(&self, base: Pose) -> Result<Self> {
-        finite_pose("base", &base)?;
+        let base = pose::checked("base", base)?;
         Self::assembled(self.description.clone(), base, self.tool)
     }
 
@@ -98,7 +98,7 @@ impl Robot {
     /// # Errors
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
     pub fn with_tool(&self, tool: Pose) -> Result<Self> {
-        finite_pose("tool", &tool)?;
+        let tool = pose::checked("tool", tool)?;
         Self::assembled(self.description.clone(), self.base, tool)
     }
 
@@ -211,10 +211,6 @@ fn corrupt(problem: String) -> Error {
     Error::Corrupt { what: "robot".into(), problem }
 }
 
-fn finite_pose(what: &str, pose: &Pose) -> Result<()> {
-    require_finite(what, pose.to_homogeneous().as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))
-}
-
 impl ChainBuilder {
     /// Everything that the kernels rely on.
     fn validate(&self) -> Result<()> {
@@ -237,7 +233,7 @@ impl ChainBuilder {
         }
         let mut links = HashSet::new();
         self.elements.iter().try_for_each(|element| match element {
-            Element::Fixed(transform) => finite_pose("fixed transform", transform),
+            Element::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
             Element::Link(name) if !links.insert(name) => Err(invalid(format!("two links are named '{name}'"))),
             Element::Link(_) => Ok(()),
             Element::Moving { axis, joint, scale, offset, .. } => {

@@ -56,9 +56,9 @@ impl Algorithm {
     /// Every algorithm with its default options.
     pub fn all() -> Vec<Self> {
         vec![
-            Self::Bas(Bas { variant: Variant::Star, ..Bas::default() }),
-            Self::Bas(Bas { variant: Variant::Chain, ..Bas::default() }),
-            Self::Bas(Bas { variant: Variant::Greedy, ..Bas::default() }),
+            Self::Bas(Bas::of(Variant::Star)),
+            Self::Bas(Bas::of(Variant::Chain)),
+            Self::Bas(Bas::of(Variant::Greedy)),
             Self::LevenbergMarquardt(LevenbergMarquardt::default()),
         ]
     }

@@ -40,6 +40,9 @@ pub struct Record {
     pub step_iterations: Vec<usize>,
     /// Largest excess of a displacement over v dt or of a position over its limit (rad, m); 0 within 4 ulp.
     pub max_violation: f64,
+    /// Smallest distance of a speed from its limit (rad/s, m/s); infinite without limits, below zero only where
+    /// `max_violation` is above.
+    pub limit_margin: f64,
     /// The limits in force.
     pub limits: Limits,
     /// The error band.
@@ -70,6 +73,7 @@ impl Record {
             step_evaluations: Vec::with_capacity(rows),
             step_iterations: Vec::with_capacity(rows),
             max_violation: 0.0,
+            limit_margin: f64::INFINITY,
             limits: session.limits().clone(),
             tolerance: session.tolerance(),
             status: Status::Lost,
@@ -106,7 +110,10 @@ impl Record {
             self.qd.push((q - before) / self.dt);
             self.velocity_limit.push(limit);
             let [lower, upper] = self.limits.position_range(j, from, to);
-            let excess = ((q - before).abs() - limit * self.dt).max(lower - q).max(q - upper);
+            let too_fast = (q - before).abs() - limit * self.dt;
+            // From displacements, which keep the limit to the last bit; velocities round once more.
+            self.limit_margin = self.limit_margin.min(-too_fast / self.dt);
+            let excess = too_fast.max(lower - q).max(q - upper);
             let rounding = ALLOWED_ULPS * f64::EPSILON * q.abs().max(1.0);
             if excess > rounding {
                 self.max_violation = self.max_violation.max(excess);
@@ -145,14 +152,14 @@ impl Record {
             let nearest = self.position_error.iter().copied().fold(f64::INFINITY, f64::min);
             return format!("never came within {band:.3e} m (nearest {nearest:.3e} m): {advice}");
         };
-        let since = self.time[joined];
+        let since = rounded(self.time[joined]);
         let outside = self.step_status[joined..].iter().filter(|s| **s != Status::Solved).count();
         match self.status {
             Status::Solved => {
                 format!("in the band of {band:.3e} m from t = {since} s on; worst error there {:.3e} m", worst(joined))
             }
             Status::Interrupted => {
-                format!("interrupted at t = {} s: {}", self.time[rows - 1], Status::Interrupted.advice())
+                format!("interrupted at t = {} s: {}", rounded(self.time[rows - 1]), Status::Interrupted.advice())
             }
             _ => format!(
                 "joined the path at t = {since} s, then outside the band of {band:.3e} m in {outside} of {} steps, by up to {:.3e} m: {advice}",
@@ -161,4 +168,9 @@ impl Record {
             ),
         }
     }
+}
+
+/// A time (s) without the digits that sums of dt leave behind.
+fn rounded(time: f64) -> f64 {
+    (time * 1e9).round() / 1e9
 }

@@ -1,5 +1,6 @@
 //! Joint motion in time.
 
+mod hermite;
 mod piecewise;
 
 pub use piecewise::{Coefficients, Trajectory};

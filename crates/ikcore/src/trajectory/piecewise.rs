@@ -1,5 +1,6 @@
 //! Piecewise polynomials, one a segment and joint.
 
+use super::hermite;
 use crate::error::{Error, Result, require_finite};
 use crate::math::Knots;
 use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude};
@@ -50,23 +51,42 @@ impl Trajectory {
     }
 
     /// The motion through `q` (rad or m; one row of all joints a time) at `times` (s) that start at zero and increase:
-    /// straight between samples, so that the velocity is constant there and jumps at them.
+    /// straight between samples, so that the velocity is constant there and jumps at them. With velocities `qd` it is
+    /// cubic, with accelerations `qdd` too it is quintic, and meets them at the samples.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
-    pub fn from_samples(joints: Vec<String>, times: &[f64], q: &[f64]) -> Result<Self> {
+    /// As [`new`](Self::new); [`Error::InvalidTrajectory`] for accelerations without velocities.
+    pub fn from_samples(
+        joints: Vec<String>,
+        times: &[f64],
+        q: &[f64],
+        qd: Option<&[f64]>,
+        qdd: Option<&[f64]>,
+    ) -> Result<Self> {
         let n = joints.len();
-        if q.len() != times.len() * n {
-            let what = "trajectory samples".into();
-            let expected = format!("{} numbers ({} times of {n} joints)", times.len() * n, times.len());
-            return Err(Error::WrongLength { what, expected, got: q.len() });
+        if qdd.is_some() && qd.is_none() {
+            return Err(Error::InvalidTrajectory { problem: "accelerations need velocities too".into() });
         }
-        require_finite("trajectory samples", q, |i| format!("joint '{}' of row {}", joints[i % n], i / n))?;
+        for (samples, what) in
+            [(Some(q), "trajectory samples"), (qd, "velocity samples"), (qdd, "acceleration samples")]
+        {
+            let samples = samples.unwrap_or_default();
+            if !samples.is_empty() && samples.len() != times.len() * n {
+                let expected = format!("{} numbers ({} times of {n} joints)", times.len() * n, times.len());
+                return Err(Error::WrongLength { what: what.into(), expected, got: samples.len() });
+            }
+            require_finite(what, samples, |i| format!("joint '{}' of row {}", joints[i % n], i / n))?;
+        }
         let mut coefficients = Vec::with_capacity(q.len());
         for (row, ends) in times.windows(2).enumerate() {
+            let h = ends[1] - ends[0];
             for i in row * n..(row + 1) * n {
-                let slope = (q[i + n] - q[i]) / (ends[1] - ends[0]);
-                coefficients.push([q[i], slope, 0.0, 0.0, 0.0, 0.0]);
+                let pair = |samples: &[f64]| [samples[i], samples[i + n]];
+                coefficients.push(match (qd, qdd) {
+                    (None, _) => hermite::line(h, pair(q)),
+                    (Some(qd), None) => hermite::cubic(h, pair(q), pair(qd)),
+                    (Some(qd), Some(qdd)) => hermite::quintic(h, pair(q), pair(qd), pair(qdd)),
+                });
             }
         }
         Self::new(joints, times.to_vec(), coefficients)
@@ -85,6 +105,12 @@ impl Trajectory {
     /// The polynomials, segment by segment and within it joint by joint.
     pub fn coefficients(&self) -> &[Coefficients] {
         &self.coefficients
+    }
+
+    /// The largest power of time that is in use.
+    pub fn degree(&self) -> usize {
+        let used = |coefficients: &Coefficients| coefficients.iter().rposition(|c| *c != 0.0).unwrap_or(0);
+        self.coefficients.iter().map(used).max().unwrap_or(0)
     }
 
     /// How long the motion lasts (s).

@@ -1,0 +1,142 @@
+//! Python values to Rust and back: the only file that knows how numpy lays out memory.
+
+use ikcore::math::{Pose, pose};
+use ikcore::nalgebra::{Matrix3, Matrix4};
+use numpy::{
+    Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
+    PyUntypedArrayMethods,
+};
+use pyo3::intern;
+use pyo3::prelude::*;
+
+use crate::error::{invalid, raise};
+
+/// A float64 array of any shape, as results hold it.
+pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// Any array-like as float64 in C order; not copied where it already is one. `what` names it in errors.
+pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
+        && array.is_c_contiguous()
+    {
+        return Ok(array.readonly());
+    }
+    let py = value.py();
+    let numpy = py.import(intern!(py, "numpy"))?;
+    let options = [("dtype", "float64"), ("order", "C")];
+    let converted =
+        numpy.call_method(intern!(py, "asarray"), (value,), Some(&pyo3::types::IntoPyDict::into_py_dict(options, py)?));
+    match converted {
+        Ok(array) => Ok(array.cast_into::<PyArrayDyn<f64>>()?.readonly()),
+        Err(_) => Err(invalid(format!("{what} must be an array of numbers, got {}", summary(value)))),
+    }
+}
+
+/// The repr of a value, cut to a readable length.
+pub fn summary(value: &Bound<'_, PyAny>) -> String {
+    let repr = value.repr().map_or_else(|_| "an object without a repr".into(), |text| text.to_string());
+    if repr.chars().count() > 60 { repr.chars().take(57).chain("...".chars()).collect() } else { repr }
+}
+
+/// A shape as Python writes it.
+pub fn shape_text(shape: &[usize]) -> String {
+    match shape {
+        [n] => format!("({n},)"),
+        _ => format!("({})", shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// The numbers of an array-like of one dimension.
+pub fn vector(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let array = array(what, value)?;
+    match array.shape() {
+        [_] => Ok(array.as_slice()?.to_vec()),
+        shape => Err(invalid(format!("{what}: expected one dimension, got shape {}", shape_text(shape)))),
+    }
+}
+
+/// A number, or the numbers of an array-like of one dimension; whether it was a number.
+pub fn scalar_or_vector(what: &str, value: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, bool)> {
+    let array = array(what, value)?;
+    match array.shape() {
+        [] | [_] => Ok((array.as_slice()?.to_vec(), array.shape().is_empty())),
+        shape => Err(invalid(format!("{what}: expected a number or one dimension, got shape {}", shape_text(shape)))),
+    }
+}
+
+/// Three numbers.
+pub fn point(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
+    let array = array(what, value)?;
+    match <[f64; 3]>::try_from(array.as_slice()?) {
+        Ok(point) if array.shape().len() == 1 => Ok(point),
+        _ => Err(invalid(format!("{what}: expected shape (3,), got {}", shape_text(array.shape())))),
+    }
+}
+
+/// A rigid transform from a 4x4 matrix.
+pub fn rigid(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Pose> {
+    let array = array(what, value)?;
+    match array.shape() {
+        [4, 4] => rigid_rows(what, array.as_slice()?),
+        shape => Err(invalid(format!("{what}: expected shape (4, 4), got {}", shape_text(shape)))),
+    }
+}
+
+/// A rigid transform from 16 numbers, row after row.
+pub fn rigid_rows(what: &str, rows: &[f64]) -> PyResult<Pose> {
+    pose::from_matrix(what, &Matrix4::from_row_slice(rows)).map_err(raise)
+}
+
+/// A 3x3 matrix.
+pub fn matrix3(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
+    let array = array(what, value)?;
+    match array.shape() {
+        [3, 3] => Ok(Matrix3::from_row_slice(array.as_slice()?)),
+        shape => Err(invalid(format!("{what}: expected shape (3, 3), got {}", shape_text(shape)))),
+    }
+}
+
+/// Numbers in C order, moved into a read-only array of this shape.
+pub fn table<'py, T: Element>(py: Python<'py>, values: Vec<T>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    Ok(read_only(values.into_pyarray(py).reshape(shape)?))
+}
+
+/// A read-only vector that takes the buffer over.
+pub fn row<T: Element>(py: Python<'_>, values: Vec<T>) -> Bound<'_, PyArray1<T>> {
+    read_only(values.into_pyarray(py))
+}
+
+/// A read-only 4x4 matrix.
+pub fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    Ok(read_only(PyArray1::from_slice(py, &pose::rows(pose)).reshape([4, 4])?))
+}
+
+fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
+    array.readwrite().make_nonwriteable();
+    array
+}
+
+/// The rows (m, n) of a batch, or the single row (n,): the numbers and, for a batch, m. `n` is checked by the core for
+/// a single row, and here for a batch.
+pub enum Rows<'py> {
+    /// One row.
+    One(PyReadonlyArrayDyn<'py, f64>),
+    /// m rows.
+    Many(PyReadonlyArrayDyn<'py, f64>, usize),
+}
+
+/// Reads (n,) or (m, n); `owner` is whose joints these are.
+pub fn rows<'py>(what: &str, owner: &str, n: usize, value: &Bound<'py, PyAny>) -> PyResult<Rows<'py>> {
+    let array = array(what, value)?;
+    match array.shape() {
+        [_] => Ok(Rows::One(array)),
+        [m, columns] if *columns == n => {
+            let m = *m;
+            Ok(Rows::Many(array, m))
+        }
+        shape => Err(invalid(format!(
+            "{what} of robot '{owner}': expected shape ({n},) or (m, {n}), got {}",
+            shape_text(shape)
+        ))),
+    }
+}

@@ -1,0 +1,99 @@
+//! Errors of the core as Python exceptions.
+
+use ikcore::Error;
+use pyo3::exceptions::{PyException, PyLookupError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyTuple, PyType};
+
+/// The exception classes, made once. Several have two bases, which pyo3's own macro cannot give them.
+struct Classes {
+    base: Py<PyType>,
+    invalid_input: Py<PyType>,
+    unknown_name: Py<PyType>,
+    urdf: Py<PyType>,
+    limit: Py<PyType>,
+    unsupported_limit: Py<PyType>,
+}
+
+static CLASSES: PyOnceLock<Classes> = PyOnceLock::new();
+
+fn classes(py: Python<'_>) -> PyResult<&Classes> {
+    CLASSES.get_or_try_init(py, || {
+        let class = |name: &str, doc: &str, bases: Vec<Bound<'_, PyType>>| -> PyResult<Py<PyType>> {
+            let namespace = PyDict::new(py);
+            namespace.set_item("__module__", "beetle_ik")?;
+            namespace.set_item("__doc__", doc)?;
+            let made = py.get_type::<PyType>().call1((name, PyTuple::new(py, bases)?, namespace))?;
+            Ok(made.cast_into::<PyType>()?.unbind())
+        };
+        let (value_error, lookup_error) = (py.get_type::<PyValueError>(), py.get_type::<PyLookupError>());
+        let base = class("BeetleIkError", "Any error of this library.", vec![py.get_type::<PyException>()])?;
+        let bound = |class: &Py<PyType>| class.bind(py).clone();
+        let invalid_input = class(
+            "InvalidInputError",
+            "An argument with a wrong value, shape or unit; the message says what would be right.",
+            vec![bound(&base), value_error],
+        )?;
+        Ok(Classes {
+            unknown_name: class(
+                "UnknownNameError",
+                "No robot, link or option of that name; the message lists them.",
+                vec![bound(&base), lookup_error],
+            )?,
+            urdf: class(
+                "UrdfError",
+                "A robot description that cannot be read; the message names line and joint.",
+                vec![bound(&invalid_input)],
+            )?,
+            limit: class(
+                "LimitError",
+                "Limits that contradict themselves or exclude the start.",
+                vec![bound(&invalid_input)],
+            )?,
+            unsupported_limit: class(
+                "UnsupportedLimit",
+                "A limit that the method cannot honour. No method ignores one.",
+                vec![bound(&invalid_input)],
+            )?,
+            base,
+            invalid_input,
+        })
+    })
+}
+
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    let Classes { base, invalid_input, unknown_name, urdf, limit, unsupported_limit } = classes(py)?;
+    for class in [base, invalid_input, unknown_name, urdf, limit, unsupported_limit] {
+        let class = class.bind(py);
+        module.add(class.name()?, class)?;
+    }
+    Ok(())
+}
+
+/// The exception for an error of the core.
+pub fn raise(error: Error) -> PyErr {
+    Python::attach(|py| {
+        let classes = match classes(py) {
+            Ok(classes) => classes,
+            Err(failure) => return failure,
+        };
+        let class = match error {
+            Error::UnknownRobot { .. } | Error::UnknownLink { .. } => &classes.unknown_name,
+            Error::Urdf { .. } | Error::AmbiguousTip { .. } => &classes.urdf,
+            Error::EmptyRange { .. } | Error::OutsideLimits { .. } | Error::NegativeLimit { .. } => &classes.limit,
+            Error::UnsupportedLimit { .. } => &classes.unsupported_limit,
+            _ => &classes.invalid_input,
+        };
+        PyErr::from_type(class.bind(py).clone(), error.to_string())
+    })
+}
+
+/// An `InvalidInputError` for what the core never sees.
+pub fn invalid(message: String) -> PyErr {
+    Python::attach(|py| match classes(py) {
+        Ok(classes) => PyErr::from_type(classes.invalid_input.bind(py).clone(), message),
+        Err(failure) => failure,
+    })
+}

@@ -1,0 +1,161 @@
+//! `solve` and `Solution`.
+
+use ikcore::ik::{self, SolveOptions};
+use ikcore::math::Frame;
+use ikcore::solver::{AnySolver, Status, Stop};
+use ikcore::task::{Target, TipError, Tolerance};
+use numpy::{PyArray1, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::convert::{array, point, rigid_rows, row, shape_text, vector};
+use crate::error::{invalid, raise};
+use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::monitor::Watcher;
+use crate::robot::PyRobot;
+use crate::solver::{PyStop, any_solver, status};
+
+/// The best configuration found, and what became of the search.
+#[pyclass(name = "Solution", module = "beetle_ik", frozen)]
+pub struct PySolution {
+    core: ik::Solution,
+    q: Py<PyArray1<f64>>,
+    limits: Py<PyLimits>,
+}
+
+#[pymethods]
+impl PySolution {
+    /// The configuration (n,) (rad, m), inside the limits.
+    #[getter]
+    fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.q.bind(py).clone()
+    }
+
+    /// Whether the target was reached within the tolerances.
+    #[getter]
+    fn success(&self) -> bool {
+        self.core.status == Status::Solved
+    }
+
+    /// Why the search ended, a `Status`.
+    #[getter]
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        status(py, self.core.status)
+    }
+
+    /// What happened, and what to try.
+    #[getter]
+    fn message(&self) -> String {
+        self.core.message()
+    }
+
+    /// Distance of the tip from the target (m), by forward kinematics of `q`.
+    #[getter]
+    fn position_error(&self) -> f64 {
+        self.core.error.position
+    }
+
+    /// Geodesic angle to the target's orientation (rad); NaN where none was asked for.
+    #[getter]
+    fn rotation_error(&self) -> f64 {
+        self.core.error.rotation
+    }
+
+    /// Iterations over all starts.
+    #[getter]
+    fn iterations(&self) -> usize {
+        self.core.iterations
+    }
+
+    /// Starts beyond the first.
+    #[getter]
+    fn restarts(&self) -> usize {
+        self.core.restarts
+    }
+
+    /// Evaluations of the forward kinematics.
+    #[getter]
+    fn evaluations(&self) -> usize {
+        self.core.evaluations
+    }
+
+    /// Time taken (s).
+    #[getter]
+    fn elapsed(&self) -> f64 {
+        self.core.elapsed.as_secs_f64()
+    }
+
+    /// The limits in force.
+    #[getter]
+    fn limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyLimits> {
+        self.limits.bind(py).clone()
+    }
+
+    fn __repr__(&self) -> String {
+        let TipError { position, rotation } = self.core.error;
+        let rotation = if rotation.is_nan() { String::new() } else { format!(", rotation_error={rotation:.3e}") };
+        format!("<Solution {}: position_error={position:.3e}{rotation}>", self.core.status.name())
+    }
+}
+
+/// Finds a configuration that brings the tip of `robot` to `target`, inside the limits.
+///
+/// Args:
+///     robot: the arm.
+///     target: pose (4, 4), or position (3,) (m) with the orientation left free.
+///     start: (n,), where to begin; None begins at a random configuration.
+///     solver: None: Levenberg-Marquardt from many starts.
+///     position_tolerance: m.
+///     rotation_tolerance: rad, geodesic angle.
+///     limits: position limits to keep; None keeps the robot's.
+///     stop: budgets; None: a count of evaluations that keeps a 7-joint arm under about 10 ms.
+///     seed: of the random draws: the same seed, the same bits.
+///
+/// Returns:
+///     A `Solution`. A target that is not reached is a status beside the best configuration found, not an error.
+///
+/// Raises:
+///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform.
+///     LimitError: a start outside the limits.
+#[pyfunction]
+#[pyo3(signature = (robot, target, *, start=None, solver=None, position_tolerance=1e-6, rotation_tolerance=1e-6,
+                    limits=None, stop=None, seed=0))]
+#[allow(clippy::too_many_arguments)]
+pub fn solve(
+    py: Python<'_>,
+    robot: &PyRobot,
+    target: &Bound<'_, PyAny>,
+    start: Option<&Bound<'_, PyAny>>,
+    solver: Option<&Bound<'_, PyAny>>,
+    position_tolerance: f64,
+    rotation_tolerance: f64,
+    limits: Option<&PyLimits>,
+    stop: Option<&PyStop>,
+    seed: u64,
+) -> PyResult<PySolution> {
+    let target = read_target(target)?;
+    let (in_force, resolved) = limits_of_call(py, limits, &robot.core, &Sampling::once())?;
+    let options = SolveOptions {
+        solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
+        start: start.map(|start| vector("start", start)).transpose()?,
+        tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
+        limits: limits.map(|_| resolved),
+        stop: stop.map_or(Stop::default(), PyStop::core),
+        seed,
+    };
+    let mut watcher = Watcher::new();
+    let core = py.detach(|| ik::solve(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;
+    watcher.finish()?;
+    Ok(PySolution { q: row(py, core.q.to_vec()).unbind(), limits: Py::new(py, in_force)?, core })
+}
+
+fn read_target(value: &Bound<'_, PyAny>) -> PyResult<Target> {
+    let numbers = array("target", value)?;
+    match numbers.shape() {
+        [3] => Ok(Target::Position(point("target", value)?)),
+        [4, 4] => Ok(Target::Pose(Frame::from(&rigid_rows("target", numbers.as_slice()?)?))),
+        shape => {
+            let got = shape_text(shape);
+            Err(invalid(format!("target: expected a pose (4, 4) or a position (3,), got shape {got}")))
+        }
+    }
+}

@@ -1,0 +1,372 @@
+//! `Limits` and `Sinusoid`.
+
+use ikcore::limits::{Field, Limits, Profile, Sinusoid};
+use ikcore::robot::Robot;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::convert::{row, scalar_or_vector, summary};
+use crate::error::{invalid, raise};
+
+/// A limit that oscillates: mean + amplitude sin(angular_frequency t + phase), eq. (7) of Cheng et al. (2020) with its
+/// sign mended.
+///
+/// Args:
+///     mean, amplitude: in the unit of the limit; a number for all joints, or (n,).
+///     angular_frequency: rad/s; a number or (n,).
+///     phase: rad at t = 0; a number or (n,).
+#[pyclass(name = "Sinusoid", module = "beetle_ik", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub struct PySinusoid {
+    mean: Numbers,
+    amplitude: Numbers,
+    angular_frequency: Numbers,
+    phase: Numbers,
+}
+
+/// A number, or one per joint.
+#[derive(Clone, PartialEq)]
+struct Numbers {
+    values: Vec<f64>,
+    single: bool,
+}
+
+impl Numbers {
+    fn read(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (values, single) = scalar_or_vector(what, value)?;
+        if values.is_empty() {
+            return Err(invalid(format!("{what}: expected a number or one per joint, got none")));
+        }
+        Ok(Self { values, single })
+    }
+
+    fn at(&self, joint: usize) -> f64 {
+        self.values[if self.values.len() == 1 { 0 } else { joint }]
+    }
+
+    fn show<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        if self.single {
+            return Ok(self.values[0].into_pyobject(py)?.into_any());
+        }
+        Ok(row(py, self.values.clone()).into_any())
+    }
+
+    fn repr(&self) -> String {
+        if self.single { format!("{:?}", self.values[0]) } else { format!("{:?}", self.values) }
+    }
+}
+
+#[pymethods]
+impl PySinusoid {
+    #[new]
+    #[pyo3(signature = (*, mean, amplitude, angular_frequency, phase=None))]
+    fn new(
+        mean: &Bound<'_, PyAny>,
+        amplitude: &Bound<'_, PyAny>,
+        angular_frequency: &Bound<'_, PyAny>,
+        phase: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let none = Numbers { values: vec![0.0], single: true };
+        let sinusoid = Self {
+            mean: Numbers::read("mean", mean)?,
+            amplitude: Numbers::read("amplitude", amplitude)?,
+            angular_frequency: Numbers::read("angular_frequency", angular_frequency)?,
+            phase: phase.map_or(Ok(none), |phase| Numbers::read("phase", phase))?,
+        };
+        sinusoid.profiles()?;
+        Ok(sinusoid)
+    }
+
+    /// Mean, as given.
+    #[getter]
+    fn mean<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.mean.show(py)
+    }
+
+    /// Amplitude, as given.
+    #[getter]
+    fn amplitude<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.amplitude.show(py)
+    }
+
+    /// Angular frequency (rad/s), as given.
+    #[getter]
+    fn angular_frequency<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.angular_frequency.show(py)
+    }
+
+    /// Phase at t = 0 (rad), as given.
+    #[getter]
+    fn phase<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.phase.show(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let Self { mean, amplitude, angular_frequency, phase } = self;
+        format!(
+            "Sinusoid(mean={}, amplitude={}, angular_frequency={}, phase={})",
+            mean.repr(),
+            amplitude.repr(),
+            angular_frequency.repr(),
+            phase.repr()
+        )
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyDict>)> {
+        let options = PyDict::new(py);
+        options.set_item("mean", self.mean(py)?)?;
+        options.set_item("amplitude", self.amplitude(py)?)?;
+        options.set_item("angular_frequency", self.angular_frequency(py)?)?;
+        options.set_item("phase", self.phase(py)?)?;
+        Ok(((), options))
+    }
+}
+
+impl PySinusoid {
+    /// One profile per joint, or one for all of them.
+    fn profiles(&self) -> PyResult<Vec<Profile>> {
+        let fields = [&self.mean, &self.amplitude, &self.angular_frequency, &self.phase];
+        let count = fields.iter().map(|numbers| numbers.values.len()).max().unwrap_or(1);
+        if let Some(odd) = fields.iter().find(|numbers| ![1, count].contains(&numbers.values.len())) {
+            let got = odd.values.len();
+            return Err(invalid(format!(
+                "Sinusoid: its fields have {count} and {got} values; give a number or one per joint"
+            )));
+        }
+        let joint = |j: usize| Sinusoid {
+            mean: self.mean.at(j),
+            amplitude: self.amplitude.at(j),
+            angular_frequency: self.angular_frequency.at(j),
+            phase: self.phase.at(j),
+        };
+        Ok((0..count).map(|j| Profile::Sinusoid(joint(j))).collect())
+    }
+}
+
+/// What a field of `Limits` was given.
+enum Given {
+    Numbers(Numbers),
+    Sinusoid(PySinusoid),
+    Function(Py<PyAny>),
+}
+
+impl Given {
+    fn read(field: Field, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(sinusoid) = value.cast::<PySinusoid>() {
+            return Ok(Self::Sinusoid(sinusoid.get().clone()));
+        }
+        if value.is_callable() {
+            return Ok(Self::Function(value.clone().unbind()));
+        }
+        Numbers::read(&format!("{field} limit"), value).map(Self::Numbers)
+    }
+
+    fn clone_ref(&self, py: Python<'_>) -> Self {
+        match self {
+            Self::Numbers(numbers) => Self::Numbers(numbers.clone()),
+            Self::Sinusoid(sinusoid) => Self::Sinusoid(sinusoid.clone()),
+            Self::Function(function) => Self::Function(function.clone_ref(py)),
+        }
+    }
+
+    fn show<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match self {
+            Self::Numbers(numbers) => numbers.show(py),
+            Self::Sinusoid(sinusoid) => Ok(Bound::new(py, sinusoid.clone())?.into_any()),
+            Self::Function(function) => Ok(function.bind(py).clone()),
+        }
+    }
+
+    fn profiles(&self, py: Python<'_>, field: Field, sampling: &Sampling, n: usize) -> PyResult<Vec<Profile>> {
+        match self {
+            Self::Numbers(numbers) => Ok(numbers.values.iter().map(|value| Profile::Constant(*value)).collect()),
+            Self::Sinusoid(sinusoid) => sinusoid.profiles(),
+            Self::Function(function) => sampled(function.bind(py), field, sampling, n),
+        }
+    }
+}
+
+/// When functions of time are sampled: before the core runs, since callables never reach its threads.
+pub struct Sampling {
+    /// Time between samples (s).
+    pub step: f64,
+    /// Number of samples.
+    pub count: usize,
+}
+
+impl Sampling {
+    /// At both ends and in the middle of each of `ticks` ticks of `dt` seconds.
+    pub fn of_ticks(dt: f64, ticks: usize) -> Self {
+        Self { step: 0.5 * dt, count: 2 * ticks + 1 }
+    }
+
+    /// At t = 0 only.
+    pub fn once() -> Self {
+        Self { step: 1.0, count: 1 }
+    }
+}
+
+fn sampled(function: &Bound<'_, PyAny>, field: Field, sampling: &Sampling, n: usize) -> PyResult<Vec<Profile>> {
+    let mut columns: Vec<Vec<f64>> = vec![];
+    for i in 0..sampling.count {
+        let t = i as f64 * sampling.step;
+        let what = format!("{field} limit at t = {t} s");
+        let (values, _) = scalar_or_vector(&what, &function.call1((t,))?)?;
+        if i == 0 {
+            columns.resize(values.len(), Vec::with_capacity(sampling.count));
+        }
+        if values.len() != columns.len() || ![1, n].contains(&values.len()) {
+            return Err(invalid(format!(
+                "{what}: expected a number, or {n} values at all times, got {}",
+                values.len()
+            )));
+        }
+        columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+    }
+    Ok(columns.into_iter().map(|values| Profile::Sampled { step: sampling.step, values }).collect())
+}
+
+/// Limits on joint motion. A field that is given replaces the robot's, a field left None is the robot's, np.inf
+/// switches one off.
+///
+/// Args:
+///     lower, upper: positions (rad, m).
+///     velocity: rad/s or m/s.
+///     acceleration, jerk: rad/s^2 or m/s^2, rad/s^3 or m/s^3.
+///
+/// Each is a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
+/// are sampled at the ends and in the middle of every tick. A method that cannot honour a field raises
+/// `UnsupportedLimit`; none ignores one.
+#[pyclass(name = "Limits", module = "beetle_ik", frozen)]
+pub struct PyLimits {
+    given: [Option<Given>; 5],
+}
+
+/// The fields in the order of `PyLimits::given`.
+const FIELDS: [Field; 5] = [Field::Lower, Field::Upper, Field::Velocity, Field::Acceleration, Field::Jerk];
+
+#[pymethods]
+impl PyLimits {
+    #[new]
+    #[pyo3(signature = (*, lower=None, upper=None, velocity=None, acceleration=None, jerk=None))]
+    fn new(
+        lower: Option<&Bound<'_, PyAny>>,
+        upper: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+        acceleration: Option<&Bound<'_, PyAny>>,
+        jerk: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let mut given = [const { None }; 5];
+        for ((slot, field), value) in given.iter_mut().zip(FIELDS).zip([lower, upper, velocity, acceleration, jerk]) {
+            *slot = value.map(|value| Given::read(field, value)).transpose()?;
+        }
+        Ok(Self { given })
+    }
+
+    /// Lower position limits (rad, m), as given.
+    #[getter]
+    fn lower<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show(py, 0)
+    }
+
+    /// Upper position limits (rad, m), as given.
+    #[getter]
+    fn upper<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show(py, 1)
+    }
+
+    /// Velocity limits (rad/s, m/s), as given.
+    #[getter]
+    fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show(py, 2)
+    }
+
+    /// Acceleration limits (rad/s^2, m/s^2), as given.
+    #[getter]
+    fn acceleration<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show(py, 3)
+    }
+
+    /// Jerk limits (rad/s^3, m/s^3), as given.
+    #[getter]
+    fn jerk<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show(py, 4)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let mut shown = vec![];
+        for (given, field) in self.given.iter().zip(FIELDS) {
+            if let Some(given) = given {
+                shown.push(format!("{field}={}", summary(&given.show(py)?)));
+            }
+        }
+        Ok(format!("Limits({})", shown.join(", ")))
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyDict>)> {
+        let options = PyDict::new(py);
+        for (given, field) in self.given.iter().zip(FIELDS) {
+            if let Some(given) = given {
+                options.set_item(field.to_string(), given.show(py)?)?;
+            }
+        }
+        Ok(((), options))
+    }
+}
+
+impl PyLimits {
+    /// The robot's own limits.
+    pub fn of(robot: &Robot) -> Self {
+        let numbers = |values: Vec<f64>| Some(Given::Numbers(Numbers { values, single: false }));
+        let joints = robot.joints();
+        Self {
+            given: [
+                numbers(joints.iter().map(|joint| joint.lower).collect()),
+                numbers(joints.iter().map(|joint| joint.upper).collect()),
+                numbers(joints.iter().map(|joint| joint.velocity).collect()),
+                None,
+                None,
+            ],
+        }
+    }
+
+    /// The limits in force for `robot`: these where given, else the robot's.
+    pub fn in_force(&self, py: Python<'_>, robot: &Robot) -> Self {
+        let mut given = Self::of(robot).given;
+        for (slot, replacement) in given.iter_mut().zip(&self.given) {
+            if let Some(replacement) = replacement {
+                *slot = Some(replacement.clone_ref(py));
+            }
+        }
+        Self { given }
+    }
+
+    /// The same for the core, functions of time sampled.
+    pub fn resolve(&self, py: Python<'_>, robot: &Robot, sampling: &Sampling) -> PyResult<Limits> {
+        let mut limits = Limits::of(robot);
+        for (given, field) in self.given.iter().zip(FIELDS) {
+            if let Some(given) = given {
+                let profiles = given.profiles(py, field, sampling, robot.dof())?;
+                limits = limits.replace(field, profiles).map_err(raise)?;
+            }
+        }
+        Ok(limits)
+    }
+
+    fn show<'py>(&self, py: Python<'py>, field: usize) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.given[field].as_ref().map(|given| given.show(py)).transpose()
+    }
+}
+
+/// The limits of a call: those given or the robot's, for the result and for the core.
+pub fn limits_of_call(
+    py: Python<'_>,
+    limits: Option<&PyLimits>,
+    robot: &Robot,
+    sampling: &Sampling,
+) -> PyResult<(PyLimits, Limits)> {
+    match limits {
+        None => Ok((PyLimits::of(robot), Limits::of(robot))),
+        Some(limits) => Ok((limits.in_force(py, robot), limits.resolve(py, robot, sampling)?)),
+    }
+}

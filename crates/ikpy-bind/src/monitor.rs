@@ -1,0 +1,108 @@
+//! Ctrl-C and progress in long calls.
+
+use std::time::Duration;
+
+use ikcore::solver::Monitor;
+use ikcore::solver::stop::Stopwatch;
+use pyo3::prelude::*;
+use pyo3::types::PyBool;
+
+use crate::convert::summary;
+use crate::error::invalid;
+use crate::upward;
+
+/// Time between two looks at Python: short enough to feel immediate, long enough to cost nothing.
+const INTERVAL: Duration = Duration::from_millis(20);
+
+/// Watches a call that runs without the interpreter.
+pub struct Watcher {
+    since_last_look: Stopwatch,
+    progress: Option<Py<PyAny>>,
+    failure: Option<PyErr>,
+}
+
+impl Watcher {
+    /// A watcher for Ctrl-C alone.
+    pub fn new() -> Self {
+        Self { since_last_look: Stopwatch::start(), progress: None, failure: None }
+    }
+
+    /// A watcher that also reports progress to `update(done, total)`.
+    pub fn with_progress(update: Option<Py<PyAny>>) -> Self {
+        Self { progress: update, ..Self::new() }
+    }
+
+    /// What the interpreter raised meanwhile, if anything.
+    pub fn finish(self) -> PyResult<()> {
+        self.failure.map_or(Ok(()), Err)
+    }
+
+    fn due(&mut self) -> bool {
+        let due = self.since_last_look.elapsed() >= INTERVAL;
+        if due {
+            self.since_last_look = Stopwatch::start();
+        }
+        due
+    }
+
+    fn look(&mut self, action: impl FnOnce(Python<'_>) -> PyResult<()>) {
+        if self.failure.is_none() {
+            self.failure = Python::attach(action).err();
+        }
+    }
+}
+
+impl Monitor for Watcher {
+    fn keep_going(&mut self) -> bool {
+        if self.due() {
+            self.look(|py| py.check_signals());
+        }
+        self.failure.is_none()
+    }
+
+    fn progress(&mut self, done: usize, total: usize) {
+        let Some(update) = &self.progress else { return };
+        let update = Python::attach(|py| update.clone_ref(py));
+        if done == total || self.due() {
+            self.look(|py| {
+                py.check_signals()?;
+                update.call1(py, (done, total)).map(|_| ())
+            });
+        }
+    }
+}
+
+/// The `progress` argument: nothing, a bar on the terminal (True), or a callable of (done, total).
+#[derive(Default)]
+pub struct Progress {
+    update: Option<Py<PyAny>>,
+    bar: Option<Py<PyAny>>,
+}
+
+impl Progress {
+    pub fn new(argument: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(wanted) = argument.cast::<PyBool>() {
+            return if wanted.is_true() { Self::bar(argument.py()) } else { Ok(Self::default()) };
+        }
+        if argument.is_callable() {
+            return Ok(Self { update: Some(argument.clone().unbind()), bar: None });
+        }
+        let got = summary(argument);
+        Err(invalid(format!("progress must be True, False or a callable of (done, total), got {got}")))
+    }
+
+    fn bar(py: Python<'_>) -> PyResult<Self> {
+        let bar = upward::progress_bar(py)?;
+        Ok(Self { update: Some(bar.getattr("update")?.unbind()), bar: Some(bar.unbind()) })
+    }
+
+    /// What to call with (done, total).
+    pub fn update(&self, py: Python<'_>) -> Option<Py<PyAny>> {
+        self.update.as_ref().map(|update| update.clone_ref(py))
+    }
+
+    /// Takes the bar off the screen.
+    pub fn close(self, py: Python<'_>) -> PyResult<()> {
+        self.bar.map_or(Ok(()), |bar| bar.call_method0(py, "close").map(|_| ()))
+    }
+}

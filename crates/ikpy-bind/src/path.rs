@@ -1,0 +1,301 @@
+//! `Path` and the functions of `beetle_ik.paths`.
+
+use ikcore::math::ticks::ticks;
+use ikcore::nalgebra::Matrix3;
+use ikcore::path::{Circle, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples};
+use numpy::{PyArray1, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::convert::{
+    Array, array, matrix3, point, rigid_rows, row, scalar_or_vector, shape_text, summary, table, vector,
+};
+use crate::error::{invalid, raise};
+
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<PyPath>()?;
+    module.add_function(wrap_pyfunction!(circle, module)?)?;
+    module.add_function(wrap_pyfunction!(letter_m, module)?)?;
+    module.add_function(wrap_pyfunction!(hypotrochoid, module)?)?;
+    module.add_function(wrap_pyfunction!(pentagram, module)?)?;
+    module.add_function(wrap_pyfunction!(rose, module)?)?;
+    module.add_function(wrap_pyfunction!(polyline, module)?)?;
+    module.add_function(wrap_pyfunction!(from_samples, module)?)?;
+    module.add_function(wrap_pyfunction!(from_function, module)?)
+}
+
+/// A reference for the tip: a position for every time in [0, duration], and an orientation where one was given. Times
+/// outside are clamped.
+#[pyclass(name = "Path", module = "beetle_ik", frozen)]
+pub struct PyPath {
+    curve: Curve,
+    orientation: Orientation,
+}
+
+/// Where the orientation comes from.
+enum Orientation {
+    OfCurve,
+    Constant(Matrix3<f64>),
+    Function(Py<PyAny>),
+}
+
+enum Curve {
+    Core(Path),
+    Function { function: Py<PyAny>, duration: f64 },
+}
+
+/// Half the time over which the velocity of a user's function is differenced, as a share of its duration.
+const DIFFERENCE: f64 = 1e-5;
+
+#[pymethods]
+impl PyPath {
+    /// How long the path lasts (s).
+    #[getter]
+    fn duration(&self) -> f64 {
+        match &self.curve {
+            Curve::Core(path) => path.duration(),
+            Curve::Function { duration, .. } => *duration,
+        }
+    }
+
+    /// Position (m): (3,) for a number t (s), (k, 3) for t (k,).
+    fn position<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+        each(py, t, [3], |t| Ok(self.position_at(py, t)?.to_vec()))
+    }
+
+    /// Velocity (m/s): (3,) for a number t (s), (k, 3) for t (k,). Of a Python function, by central differences.
+    fn velocity<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+        each(py, t, [3], |t| Ok(self.velocity_at(py, t)?.to_vec()))
+    }
+
+    /// Pose: (4, 4) for a number t (s), (k, 4, 4) for t (k,). The path must have an orientation.
+    fn pose<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+        each(py, t, [4, 4], |t| {
+            let Some(rotation) = self.rotation_at(py, t)? else {
+                return Err(invalid("this path has no orientation: use path.with_orientation(R)".into()));
+            };
+            Ok(ikcore::math::pose::rows(&ikcore::math::pose::from_parts(self.position_at(py, t)?, rotation)).to_vec())
+        })
+    }
+
+    /// Times (k,) (s) from 0 in steps of dt, and the positions (k, 3) (m) there: what a tracker follows.
+    fn sample<'py>(&self, py: Python<'py>, dt: f64) -> PyResult<(Bound<'py, PyArray1<f64>>, Array<'py>)> {
+        let reference = self.reference(py, dt)?;
+        let count = reference.len();
+        let positions = (0..count).flat_map(|i| reference.position(i)).collect();
+        Ok((row(py, (0..count).map(|i| reference.time(i)).collect()), table(py, positions, &[count, 3])?))
+    }
+
+    /// The same path with an orientation: a rotation matrix (3, 3), or a callable of t (s) that returns one.
+    fn with_orientation(&self, py: Python<'_>, orientation: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let orientation = if orientation.is_callable() {
+            Orientation::Function(orientation.clone().unbind())
+        } else {
+            let rotation = matrix3("orientation", orientation)?;
+            let pose = ikcore::math::pose::from_rotation_matrix(rotation, [0.0; 3]).map_err(raise)?;
+            Orientation::Constant(*pose.rotation.matrix())
+        };
+        Ok(Self { curve: self.curve.clone_ref(py), orientation })
+    }
+
+    fn __repr__(&self) -> String {
+        let oriented = match (&self.orientation, &self.curve) {
+            (Orientation::OfCurve, Curve::Core(path)) => path.rotation(0.0).is_some(),
+            (Orientation::OfCurve, Curve::Function { .. }) => false,
+            _ => true,
+        };
+        format!("<Path of {} s{}>", self.duration(), if oriented { ", with orientation" } else { "" })
+    }
+}
+
+impl From<Path> for PyPath {
+    fn from(path: Path) -> Self {
+        Self { curve: Curve::Core(path), orientation: Orientation::OfCurve }
+    }
+}
+
+impl Curve {
+    fn clone_ref(&self, py: Python<'_>) -> Self {
+        match self {
+            Self::Core(path) => Self::Core(path.clone()),
+            Self::Function { function, duration } => {
+                Self::Function { function: function.clone_ref(py), duration: *duration }
+            }
+        }
+    }
+}
+
+impl PyPath {
+    /// The path at all tick times; Python functions are called here, before the core runs.
+    pub fn reference(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
+        if let (Curve::Core(path), Orientation::OfCurve) = (&self.curve, &self.orientation) {
+            return path.sample(dt).map_err(raise);
+        }
+        let count = ticks(self.duration(), dt).map_err(raise)? + 1;
+        let time = |i: usize| (i as f64 * dt).min(self.duration());
+        let positions = (0..count).map(|i| self.position_at(py, time(i))).collect::<PyResult<_>>()?;
+        let rotations = (0..count).map(|i| self.rotation_at(py, time(i))).collect::<PyResult<_>>()?;
+        Reference::new(dt, positions, rotations).map_err(raise)
+    }
+
+    fn position_at(&self, py: Python<'_>, t: f64) -> PyResult<[f64; 3]> {
+        match &self.curve {
+            Curve::Core(path) => Ok(path.position(t)),
+            Curve::Function { function, duration } => {
+                let t = t.clamp(0.0, *duration);
+                point(&format!("path at t = {t} s"), &function.bind(py).call1((t,))?)
+            }
+        }
+    }
+
+    fn velocity_at(&self, py: Python<'_>, t: f64) -> PyResult<[f64; 3]> {
+        match &self.curve {
+            Curve::Core(path) => Ok(path.velocity(t)),
+            Curve::Function { duration, .. } => {
+                let half = DIFFERENCE * duration;
+                let (from, to) = ((t - half).max(0.0), (t + half).min(*duration));
+                let (before, after) = (self.position_at(py, from)?, self.position_at(py, to)?);
+                Ok(std::array::from_fn(|k| (after[k] - before[k]) / (to - from)))
+            }
+        }
+    }
+
+    fn rotation_at(&self, py: Python<'_>, t: f64) -> PyResult<Option<Matrix3<f64>>> {
+        match (&self.orientation, &self.curve) {
+            (Orientation::Constant(rotation), _) => Ok(Some(*rotation)),
+            (Orientation::Function(function), _) => {
+                let t = t.clamp(0.0, self.duration());
+                matrix3(&format!("orientation at t = {t} s"), &function.bind(py).call1((t,))?).map(Some)
+            }
+            (Orientation::OfCurve, Curve::Core(path)) => Ok(path.rotation(t)),
+            (Orientation::OfCurve, Curve::Function { .. }) => Ok(None),
+        }
+    }
+}
+
+/// `value(t)` for a number t, or stacked for t (k,).
+fn each<'py, const D: usize>(
+    py: Python<'py>,
+    t: &Bound<'py, PyAny>,
+    shape: [usize; D],
+    value: impl Fn(f64) -> PyResult<Vec<f64>>,
+) -> PyResult<Array<'py>> {
+    let (times, single) = scalar_or_vector("t", t)?;
+    let mut values = vec![];
+    for t in &times {
+        values.extend(value(*t)?);
+    }
+    let mut full = if single { vec![] } else { vec![times.len()] };
+    full.extend(shape);
+    table(py, values, &full)
+}
+
+fn plane(center: &Bound<'_, PyAny>, a: [f64; 3], b: [f64; 3]) -> PyResult<Plane> {
+    Plane::new(point("center", center)?, a, b).map_err(raise)
+}
+
+/// A circle about `center` (3,) (m) of this diameter (m), once around in `duration` (s), from the side of `a` towards
+/// `b`: eq. (14) of Cheng et al. (2020). `a` and `b` (3,) are orthonormal.
+#[pyfunction]
+#[pyo3(signature = (center, diameter, duration, *, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+       text_signature = "(center, diameter, duration, *, a=(1, 0, 0), b=(0, 1, 0))")]
+fn circle(center: &Bound<'_, PyAny>, diameter: f64, duration: f64, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
+    Ok(Path::new(Circle::new(plane(center, a, b)?, diameter, duration).map_err(raise)?).into())
+}
+
+/// The letter M about `center` (3,), `width` along `a` and `height` along `b` (m), its four strokes equally long in
+/// time (Khan et al. 2022).
+#[pyfunction]
+#[pyo3(signature = (center, duration, *, width, height, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]),
+       text_signature = "(center, duration, *, width, height, a=(0, 1, 0), b=(0, 0, 1))")]
+fn letter_m(
+    center: &Bound<'_, PyAny>,
+    duration: f64,
+    width: f64,
+    height: f64,
+    a: [f64; 3],
+    b: [f64; 3],
+) -> PyResult<PyPath> {
+    Ok(Path::new(Polyline::letter_m(&plane(center, a, b)?, width, height, duration).map_err(raise)?).into())
+}
+
+/// A hypotrochoid about `center` (3,): the path of a point at `distance` from the centre of a circle that rolls inside
+/// another (m). Eq. (20) of Khan et al. (2022) as it was meant; the ratio of the radii is one of small whole numbers.
+#[pyfunction]
+#[pyo3(signature = (center, duration, *, outer_radius, inner_radius, distance, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]),
+       text_signature = "(center, duration, *, outer_radius, inner_radius, distance, a=(0, 1, 0), b=(0, 0, 1))")]
+fn hypotrochoid(
+    center: &Bound<'_, PyAny>,
+    duration: f64,
+    outer_radius: f64,
+    inner_radius: f64,
+    distance: f64,
+    a: [f64; 3],
+    b: [f64; 3],
+) -> PyResult<PyPath> {
+    let curve = Hypotrochoid::new(plane(center, a, b)?, outer_radius, inner_radius, distance, duration);
+    Ok(Path::new(curve.map_err(raise)?).into())
+}
+
+/// A five-pointed star about `center` (3,), its points `radius` (m) away, drawn in five strokes at constant speed from
+/// the point on the side of `b`.
+#[pyfunction]
+#[pyo3(signature = (center, duration, *, radius, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+       text_signature = "(center, duration, *, radius, a=(1, 0, 0), b=(0, 1, 0))")]
+fn pentagram(center: &Bound<'_, PyAny>, duration: f64, radius: f64, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
+    Ok(Path::new(Polyline::pentagram(&plane(center, a, b)?, radius, duration).map_err(raise)?).into())
+}
+
+/// A rose about `center` (3,): at angle u the distance is radius cos(k u) (m). Odd k gives k petals, even k 2 k.
+#[pyfunction]
+#[pyo3(signature = (center, duration, *, radius, k, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+       text_signature = "(center, duration, *, radius, k, a=(1, 0, 0), b=(0, 1, 0))")]
+fn rose(center: &Bound<'_, PyAny>, duration: f64, radius: f64, k: u32, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
+    Ok(Path::new(Rose::new(plane(center, a, b)?, radius, k, duration).map_err(raise)?).into())
+}
+
+/// Straight strokes through `points` (k, 3) (m) at constant speed, `duration` (s) in all.
+#[pyfunction]
+fn polyline(points: &Bound<'_, PyAny>, duration: f64) -> PyResult<PyPath> {
+    Ok(Path::new(Polyline::new(&positions("points", points)?, duration).map_err(raise)?).into())
+}
+
+/// The path through samples: `time` (k,) (s) from 0, and positions (k, 3) (m) or poses (k, 4, 4). Straight in between,
+/// rotations along the shortest turn.
+#[pyfunction]
+fn from_samples(time: &Bound<'_, PyAny>, positions_or_poses: &Bound<'_, PyAny>) -> PyResult<PyPath> {
+    let time = vector("time", time)?;
+    let values = array("positions_or_poses", positions_or_poses)?;
+    let samples = match values.shape() {
+        [_, 4, 4] => {
+            let matrices = values.as_slice()?.chunks_exact(16).enumerate();
+            let poses =
+                matrices.map(|(i, rows)| rigid_rows(&format!("pose {i}"), rows)).collect::<PyResult<Vec<_>>>()?;
+            Samples::from_poses(time, &poses)
+        }
+        _ => Samples::from_positions(time, positions("positions_or_poses", positions_or_poses)?),
+    };
+    Ok(Path::new(samples.map_err(raise)?).into())
+}
+
+/// The path that `function(t)` describes: t (s) in [0, duration] to a position (3,) (m). It is called before a tracker
+/// runs, at the times of its ticks.
+#[pyfunction]
+fn from_function(function: &Bound<'_, PyAny>, duration: f64) -> PyResult<PyPath> {
+    if !function.is_callable() {
+        return Err(invalid(format!("function must be a callable of t, got {}", summary(function))));
+    }
+    if !(duration.is_finite() && duration > 0.0) {
+        return Err(invalid(format!("duration must be positive and finite, got {duration}")));
+    }
+    let curve = Curve::Function { function: function.clone().unbind(), duration };
+    Ok(PyPath { curve, orientation: Orientation::OfCurve })
+}
+
+fn positions(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; 3]>> {
+    let values = array(what, value)?;
+    match values.shape() {
+        [_, 3] => Ok(values.as_slice()?.as_chunks().0.to_vec()),
+        [0] => Ok(vec![]),
+        shape => Err(invalid(format!("{what}: expected shape (k, 3), got {}", shape_text(shape)))),
+    }
+}

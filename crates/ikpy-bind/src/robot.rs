@@ -1,0 +1,381 @@
+//! `Robot` and `pose`.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use ikcore::math::{Pose, pose as poses};
+use ikcore::rng;
+use ikcore::robot::{Dh, DhTable, Joint, JointKind, Robot};
+use numpy::{PyArray1, PyArray2, PyArrayDyn};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::convert::{self, Rows, array, pose_array, row, rows, shape_text, table, vector};
+use crate::error::{invalid, raise};
+use crate::limits::PyLimits;
+
+/// A robot arm: the chain of joints from a base link to a tip link. Immutable; make one with `from_urdf`, `from_dh`,
+/// `planar` or `named`.
+///
+/// Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow theirs. Poses are 4x4
+/// matrices in the frame of the robot's base.
+#[pyclass(name = "Robot", module = "beetle_ik", frozen, eq)]
+#[derive(PartialEq)]
+pub struct PyRobot {
+    pub core: Arc<Robot>,
+}
+
+impl From<Robot> for PyRobot {
+    fn from(robot: Robot) -> Self {
+        Self { core: Arc::new(robot) }
+    }
+}
+
+/// Numbers for n joints: one for all of them, or one each.
+fn per_joint(what: &str, value: &Bound<'_, PyAny>, n: usize) -> PyResult<Vec<f64>> {
+    let (values, _) = convert::scalar_or_vector(what, value)?;
+    match values.len() {
+        1 => Ok(vec![values[0]; n]),
+        got if got == n => Ok(values),
+        got => Err(invalid(format!("{what}: expected a number or {n} values (one per joint), got {got}"))),
+    }
+}
+
+#[pymethods]
+impl PyRobot {
+    /// A robot from a URDF, read from a file or from a string of XML.
+    ///
+    /// Args:
+    ///     path_or_xml: file, or text that contains "<".
+    ///     base: link in whose frame everything is expressed; None takes the root. It need not be an ancestor of `tip`.
+    ///     tip: link that is to be moved; None takes the only leaf.
+    ///
+    /// Revolute, continuous, prismatic, fixed and mimic joints are understood; visuals, meshes and unknown tags are
+    /// passed over. A missing velocity limit is infinite, a zero one locks the joint; `safety_controller` is ignored.
+    ///
+    /// Raises:
+    ///     UrdfError: not XML, no joint, a cycle, two roots, a zero axis, several leaves and no `tip`.
+    ///     UnknownNameError: no link of that name; the message lists them.
+    #[staticmethod]
+    #[pyo3(signature = (path_or_xml, *, base=None, tip=None))]
+    fn from_urdf(path_or_xml: &Bound<'_, PyAny>, base: Option<&str>, tip: Option<&str>) -> PyResult<Self> {
+        let source = match path_or_xml.extract::<String>() {
+            Ok(text) => text,
+            Err(_) => path_or_xml.extract::<PathBuf>()?.to_string_lossy().into_owned(),
+        };
+        Robot::from_urdf(&source, base, tip).map(Self::from).map_err(raise)
+    }
+
+    /// A robot from Denavit-Hartenberg parameters, one row per joint.
+    ///
+    /// Args:
+    ///     a, alpha, d: link length (m), twist (rad), offset (m), each (n,).
+    ///     theta: constant offset of a revolute joint, fixed angle of a prismatic one (rad), (n,); None: zeros.
+    ///     kinds: "revolute", "continuous" or "prismatic" per joint; None: all revolute.
+    ///     convention: "modified" (Craig: a and alpha of the link before) or "standard".
+    ///     lower, upper, velocity: limits (rad, m; rad/s, m/s), a number or (n,); None: no limit.
+    ///     base, tool: poses (4, 4) before the first and behind the last frame.
+    ///     name: the robot's name.
+    #[staticmethod]
+    #[pyo3(signature = (*, a, alpha, d, theta=None, kinds=None, convention="modified", lower=None, upper=None,
+                        velocity=None, base=None, tool=None, name=None))]
+    #[allow(clippy::too_many_arguments)]
+    fn from_dh(
+        a: &Bound<'_, PyAny>,
+        alpha: &Bound<'_, PyAny>,
+        d: &Bound<'_, PyAny>,
+        theta: Option<&Bound<'_, PyAny>>,
+        kinds: Option<Vec<String>>,
+        convention: &str,
+        lower: Option<&Bound<'_, PyAny>>,
+        upper: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+        base: Option<&Bound<'_, PyAny>>,
+        tool: Option<&Bound<'_, PyAny>>,
+        name: Option<&str>,
+    ) -> PyResult<Self> {
+        let convention: Dh = convention.parse().map_err(raise)?;
+        let mut table = DhTable::new(convention, vector("a", a)?, vector("alpha", alpha)?, vector("d", d)?);
+        let n = table.a.len();
+        if let Some(theta) = theta {
+            table.theta = vector("theta", theta)?;
+        }
+        if let Some(kinds) = kinds {
+            table.kinds =
+                kinds.iter().map(|kind| kind.parse::<JointKind>()).collect::<Result<_, _>>().map_err(raise)?;
+        }
+        for (what, value, field) in [
+            ("lower", lower, &mut table.lower),
+            ("upper", upper, &mut table.upper),
+            ("velocity", velocity, &mut table.velocity),
+        ] {
+            if let Some(value) = value {
+                *field = per_joint(what, value, n)?;
+            }
+        }
+        if let Some(base) = base {
+            table.base = convert::rigid("base", base)?;
+        }
+        if let Some(tool) = tool {
+            table.tool = convert::rigid("tool", tool)?;
+        }
+        Robot::from_dh(name.unwrap_or("dh"), &table).map(Self::from).map_err(raise)
+    }
+
+    /// A planar arm of revolute joints in the x-y plane, its base at the origin.
+    ///
+    /// Args:
+    ///     lengths: link lengths (m), (n,).
+    ///     lower, upper, velocity: limits (rad, rad/s), a number or (n,); None: -pi, pi and no velocity limit.
+    #[staticmethod]
+    #[pyo3(signature = (lengths, *, lower=None, upper=None, velocity=None))]
+    fn planar(
+        lengths: &Bound<'_, PyAny>,
+        lower: Option<&Bound<'_, PyAny>>,
+        upper: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let robot = Self::from(Robot::planar(&vector("lengths", lengths)?).map_err(raise)?);
+        robot.with_limits(lower, upper, velocity)
+    }
+
+    /// A built-in robot; `Robot.names()` lists them.
+    ///
+    /// Raises:
+    ///     UnknownNameError: lists the names and suggests the nearest.
+    #[staticmethod]
+    fn named(name: &str) -> PyResult<Self> {
+        Robot::named(name).map(Self::from).map_err(raise)
+    }
+
+    /// The names of the built-in robots.
+    #[staticmethod]
+    fn names() -> Vec<&'static str> {
+        Robot::names().collect()
+    }
+
+    /// The robot's name.
+    #[getter]
+    fn name(&self) -> &str {
+        self.core.name()
+    }
+
+    /// Degrees of freedom, n: the number of independent joints.
+    #[getter]
+    fn dof(&self) -> usize {
+        self.core.dof()
+    }
+
+    /// Names of the independent joints, in the order of q.
+    #[getter]
+    fn joint_names(&self) -> Vec<&str> {
+        self.core.joints().iter().map(|joint| joint.name.as_str()).collect()
+    }
+
+    /// "revolute", "continuous" or "prismatic" per independent joint.
+    #[getter]
+    fn joint_kinds(&self) -> Vec<&'static str> {
+        self.core.joints().iter().map(|joint| joint.kind.name()).collect()
+    }
+
+    /// Names of the links along the chain, base first, tip last.
+    #[getter]
+    fn link_names(&self) -> Vec<&str> {
+        self.core.link_names().collect()
+    }
+
+    /// Lower position limits (n,) (rad, m); -inf where there is none.
+    #[getter]
+    fn lower<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.core.joints().iter().map(|joint| joint.lower).collect())
+    }
+
+    /// Upper position limits (n,) (rad, m); inf where there is none.
+    #[getter]
+    fn upper<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.core.joints().iter().map(|joint| joint.upper).collect())
+    }
+
+    /// Velocity limits (n,) (rad/s, m/s); inf where unknown, 0 for a locked joint.
+    #[getter]
+    fn velocity_limit<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.core.joints().iter().map(|joint| joint.velocity).collect())
+    }
+
+    /// All limits of the robot.
+    #[getter]
+    fn limits(&self) -> PyLimits {
+        PyLimits::of(&self.core)
+    }
+
+    /// The same robot with a tool: `tool` (4, 4) is the pose of the new tip in the frame of the tip link.
+    fn with_tool(&self, tool: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.core.with_tool(convert::rigid("tool", tool)?).map(Self::from).map_err(raise)
+    }
+
+    /// The same robot standing elsewhere: `base` (4, 4) is the pose of its base link.
+    fn with_base(&self, base: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.core.with_base(convert::rigid("base", base)?).map(Self::from).map_err(raise)
+    }
+
+    /// The same robot with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps what it has.
+    #[pyo3(signature = (*, lower=None, upper=None, velocity=None))]
+    fn with_limits(
+        &self,
+        lower: Option<&Bound<'_, PyAny>>,
+        upper: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let n = self.core.dof();
+        let read = |what: &str, value: Option<&Bound<'_, PyAny>>| value.map(|v| per_joint(what, v, n)).transpose();
+        let (lower, upper, velocity) = (read("lower", lower)?, read("upper", upper)?, read("velocity", velocity)?);
+        let change = |i: usize, joint: &mut Joint| {
+            joint.lower = lower.as_ref().map_or(joint.lower, |values| values[i]);
+            joint.upper = upper.as_ref().map_or(joint.upper, |values| values[i]);
+            joint.velocity = velocity.as_ref().map_or(joint.velocity, |values| values[i]);
+        };
+        self.core.with_limits(change).map(Self::from).map_err(raise)
+    }
+
+    /// Forward kinematics: the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n).
+    fn fk<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        match rows("joint angles", self.core.name(), self.core.dof(), q)? {
+            Rows::One(q) => Ok(pose_array(py, &self.core.fk(q.as_slice()?).map_err(raise)?)?.into_any()),
+            Rows::Many(q, m) => {
+                let (robot, q) = (&*self.core, q.as_slice()?);
+                let poses = py.detach(|| robot.fk_all(q)).map_err(raise)?;
+                Ok(table(py, poses, &[m, 4, 4])?.into_any())
+            }
+        }
+    }
+
+    /// Poses of all links at q (n,), in the order of `link_names`: (links, 4, 4).
+    fn link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let poses = self.core.link_poses(&vector("joint angles", q)?).map_err(raise)?;
+        let count = poses.len();
+        table(py, poses.iter().flat_map(ikcore::math::pose::rows).collect(), &[count, 4, 4])
+    }
+
+    /// Geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m), then
+    /// angular rows, in the axes of the base.
+    fn jacobian<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let n = self.core.dof();
+        match rows("joint angles", self.core.name(), n, q)? {
+            Rows::One(q) => {
+                self.core.check("joint angles", q.as_slice()?).map_err(raise)?;
+                table(py, self.core.jacobian_all(q.as_slice()?).map_err(raise)?, &[6, n])
+            }
+            Rows::Many(q, m) => {
+                let (robot, q) = (&*self.core, q.as_slice()?);
+                table(py, py.detach(|| robot.jacobian_all(q)).map_err(raise)?, &[m, 6, n])
+            }
+        }
+    }
+
+    /// m configurations drawn uniformly between the limits, (m, n). Without limits: one turn, or 2 m, around zero.
+    #[pyo3(signature = (m, seed=0))]
+    fn random_configurations<'py>(
+        &self,
+        py: Python<'py>,
+        m: usize,
+        seed: u64,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        table(py, self.core.random_configurations(m, &mut rng::stream(seed, 0)), &[m, self.core.dof()])
+    }
+
+    /// Yoshikawa's manipulability sqrt(det(J J')) at q (n,) or (m, n); below six joints sqrt(det(J' J)).
+    fn manipulability<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        match rows("joint angles", self.core.name(), self.core.dof(), q)? {
+            Rows::One(q) => {
+                let value = ikcore::manipulability::manipulability(&self.core, q.as_slice()?).map_err(raise)?;
+                Ok(value.into_pyobject(py)?.into_any())
+            }
+            Rows::Many(q, _) => {
+                let of = |q: &[f64]| ikcore::manipulability::manipulability(&self.core, q);
+                let values = q.as_slice()?.chunks_exact(self.core.dof()).map(of).collect::<Result<_, _>>();
+                Ok(row(py, values.map_err(raise)?).into_any())
+            }
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Robot '{}': {} joints, {} to {}>", self.core.name(), self.core.dof(), self.end(true), self.end(false))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let restore = py.get_type::<Self>().getattr("_from_bytes")?;
+        Ok((restore, (PyBytes::new(py, &self.core.to_bytes().map_err(raise)?),)))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _from_bytes(bytes: &[u8]) -> PyResult<Self> {
+        Robot::from_bytes(bytes).map(Self::from).map_err(raise)
+    }
+}
+
+impl PyRobot {
+    fn end(&self, base: bool) -> &str {
+        let mut links = self.core.link_names();
+        if base { links.next() } else { links.last() }.unwrap_or_default()
+    }
+}
+
+/// A pose (4, 4) from a position (3,) (m) and one description of the orientation, whose keyword names its order.
+///
+/// Args:
+///     position: (3,).
+///     xyzw, wxyz: quaternion (4,), of any length but zero.
+///     rpy: fixed-axis roll, pitch, yaw (rad): Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
+///     rotvec: rotation vector (rad).
+///     matrix: rotation matrix (3, 3).
+///
+/// Without a description of the orientation the axes are those of the base.
+#[pyfunction]
+#[pyo3(signature = (position, *, xyzw=None, wxyz=None, rpy=None, rotvec=None, matrix=None))]
+pub fn pose<'py>(
+    position: &Bound<'py, PyAny>,
+    xyzw: Option<&Bound<'py, PyAny>>,
+    wxyz: Option<&Bound<'py, PyAny>>,
+    rpy: Option<&Bound<'py, PyAny>>,
+    rotvec: Option<&Bound<'py, PyAny>>,
+    matrix: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let position_xyz = convert::point("position", position)?;
+    let given: Vec<(&str, &Bound<'py, PyAny>)> =
+        [("xyzw", xyzw), ("wxyz", wxyz), ("rpy", rpy), ("rotvec", rotvec), ("matrix", matrix)]
+            .into_iter()
+            .filter_map(|(name, value)| value.map(|value| (name, value)))
+            .collect();
+    let made: Pose = match given[..] {
+        [] => poses::translation(position_xyz[0], position_xyz[1], position_xyz[2]),
+        [("xyzw", value)] => {
+            let [x, y, z, w] = quaternion("xyzw", value)?;
+            poses::from_quaternion([x, y, z, w], position_xyz).map_err(raise)?
+        }
+        [("wxyz", value)] => {
+            let [w, x, y, z] = quaternion("wxyz", value)?;
+            poses::from_quaternion([x, y, z, w], position_xyz).map_err(raise)?
+        }
+        [("rpy", value)] => poses::from_rpy(convert::point("rpy", value)?, position_xyz),
+        [("rotvec", value)] => poses::from_rotation_vector(convert::point("rotvec", value)?, position_xyz),
+        [("matrix", value)] => {
+            poses::from_rotation_matrix(convert::matrix3("matrix", value)?, position_xyz).map_err(raise)?
+        }
+        _ => {
+            let names = given.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+            return Err(invalid(format!("give one description of the orientation, got {names}")));
+        }
+    };
+    pose_array(position.py(), &poses::checked("pose", made).map_err(raise)?)
+}
+
+fn quaternion(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 4]> {
+    let array = array(what, value)?;
+    <[f64; 4]>::try_from(array.as_slice()?).map_err(|_| {
+        invalid(format!(
+            "{what}: expected shape (4,), got {}",
+            shape_text(numpy::PyUntypedArrayMethods::shape(&*array))
+        ))
+    })
+}

@@ -1,0 +1,278 @@
+//! `track` and `TrackResult`.
+
+use ikcore::limits::LimitAt;
+use ikcore::solver::Status;
+use ikcore::task::Tolerance;
+use ikcore::tracking::{self, Record, TrackOptions};
+use ikcore::trajectory::Trajectory;
+use numpy::{PyArray1, PyArrayDyn};
+use pyo3::prelude::*;
+
+use crate::convert::{row, table, vector};
+use crate::error::raise;
+use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::monitor::{Progress, Watcher};
+use crate::path::PyPath;
+use crate::robot::PyRobot;
+use crate::solver::{any_solver, status};
+use crate::trajectory::PyTrajectory;
+use crate::upward;
+
+/// The record of a track: k = steps + 1 rows; row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
+#[pyclass(name = "TrackResult", module = "beetle_ik", frozen)]
+pub struct PyTrackResult {
+    core: Record,
+    tables: Tables,
+    /// The robot that was tracked.
+    #[pyo3(get)]
+    robot: Py<PyRobot>,
+    /// The limits in force.
+    #[pyo3(get)]
+    limits: Py<PyLimits>,
+}
+
+/// The arrays of a record, made once.
+struct Tables {
+    time: Py<PyArray1<f64>>,
+    q: Py<PyArrayDyn<f64>>,
+    qd: Py<PyArrayDyn<f64>>,
+    velocity_limit: Py<PyArrayDyn<f64>>,
+    position: Py<PyArrayDyn<f64>>,
+    reference: Py<PyArrayDyn<f64>>,
+    position_error: Py<PyArray1<f64>>,
+    rotation_error: Py<PyArray1<f64>>,
+    step_status: Py<PyArray1<u8>>,
+    step_evaluations: Py<PyArray1<i64>>,
+    step_iterations: Py<PyArray1<i64>>,
+}
+
+impl Tables {
+    fn new(py: Python<'_>, record: &Record) -> PyResult<Self> {
+        let (k, n) = (record.time.len(), record.dof);
+        let counts = |counts: &[usize]| row(py, counts.iter().map(|count| *count as i64).collect()).unbind();
+        Ok(Self {
+            time: row(py, record.time.clone()).unbind(),
+            q: table(py, record.q.clone(), &[k, n])?.unbind(),
+            qd: table(py, record.qd.clone(), &[k, n])?.unbind(),
+            velocity_limit: table(py, record.velocity_limit.clone(), &[k, n])?.unbind(),
+            position: table(py, record.position.as_flattened().to_vec(), &[k, 3])?.unbind(),
+            reference: table(py, record.reference.as_flattened().to_vec(), &[k, 3])?.unbind(),
+            position_error: row(py, record.position_error.clone()).unbind(),
+            rotation_error: row(py, record.rotation_error.clone()).unbind(),
+            step_status: row(py, record.step_status.iter().map(|status| *status as u8).collect()).unbind(),
+            step_evaluations: counts(&record.step_evaluations),
+            step_iterations: counts(&record.step_iterations),
+        })
+    }
+}
+
+#[pymethods]
+impl PyTrackResult {
+    /// Times (k,) (s).
+    #[getter]
+    fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.tables.time.bind(py).clone()
+    }
+
+    /// Configurations (k, n) (rad, m).
+    #[getter]
+    fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        self.tables.q.bind(py).clone()
+    }
+
+    /// Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt, zero in row 0.
+    #[getter]
+    fn qd<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        self.tables.qd.bind(py).clone()
+    }
+
+    /// The limit that each velocity was held against (k, n); NaN in row 0, inf where there is none.
+    #[getter]
+    fn velocity_limit<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        self.tables.velocity_limit.bind(py).clone()
+    }
+
+    /// Positions of the tip (k, 3) (m).
+    #[getter]
+    fn position<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        self.tables.position.bind(py).clone()
+    }
+
+    /// Wanted positions (k, 3) (m).
+    #[getter]
+    fn reference<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        self.tables.reference.bind(py).clone()
+    }
+
+    /// Distances between the two (k,) (m).
+    #[getter]
+    fn position_error<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.tables.position_error.bind(py).clone()
+    }
+
+    /// Angles to the wanted orientations (k,) (rad); NaN where none was asked for.
+    #[getter]
+    fn rotation_error<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.tables.rotation_error.bind(py).clone()
+    }
+
+    /// The error band (m), as asked.
+    #[getter]
+    fn position_tolerance(&self) -> f64 {
+        self.core.tolerance.position
+    }
+
+    /// How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED
+    /// neither.
+    #[getter]
+    fn step_status<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
+        self.tables.step_status.bind(py).clone()
+    }
+
+    /// Evaluations of the forward kinematics in each step (k,).
+    #[getter]
+    fn step_evaluations<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.tables.step_evaluations.bind(py).clone()
+    }
+
+    /// Iterations in each step (k,): passes of BAS, steps of Levenberg-Marquardt.
+    #[getter]
+    fn step_iterations<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.tables.step_iterations.bind(py).clone()
+    }
+
+    /// Largest excess of a displacement over its limit times dt, or of a position over its limit (rad, m); 0 within
+    /// rounding.
+    #[getter]
+    fn max_violation(&self) -> f64 {
+        self.core.max_violation
+    }
+
+    /// Smallest distance of a speed from its limit (rad/s, m/s); inf without limits.
+    #[getter]
+    fn limit_margin(&self) -> f64 {
+        self.core.limit_margin
+    }
+
+    /// Whether the tip came into the error band and stayed there.
+    #[getter]
+    fn success(&self) -> bool {
+        self.core.status == Status::Solved
+    }
+
+    /// SOLVED as `success`; LOST if the tip left its band again; else how the last step ended.
+    #[getter]
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        status(py, self.core.status)
+    }
+
+    /// What happened, and what to try.
+    #[getter]
+    fn message(&self) -> String {
+        self.core.message()
+    }
+
+    /// Evaluations of the forward kinematics in all.
+    #[getter]
+    fn evaluations(&self) -> usize {
+        self.core.evaluations()
+    }
+
+    /// Time taken (s).
+    #[getter]
+    fn elapsed(&self) -> f64 {
+        self.core.elapsed.as_secs_f64()
+    }
+
+    /// The joint motion, straight between the ticks: its velocities are exactly `qd`.
+    #[getter]
+    fn trajectory(&self) -> PyResult<PyTrajectory> {
+        let names = self.robot.get().core.joints().iter().map(|joint| joint.name.clone()).collect();
+        Trajectory::from_samples(names, &self.core.time, &self.core.q, None, None)
+            .map(PyTrajectory::from)
+            .map_err(raise)
+    }
+
+    /// A matplotlib figure: the tip's path, the error, joint angles, velocities with their limits, evaluations.
+    fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        upward::plot(slf.into_any(), "track")
+    }
+
+    fn __len__(&self) -> usize {
+        self.core.time.len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.time.len(), self.core.message())
+    }
+}
+
+/// Follows `path` with the tip of `robot`, tick by tick, inside the limits.
+///
+/// In every tick the joints may move within the position limits and within what the velocity limits let the last
+/// accepted configuration reach, so that neither can be broken (Cheng et al. 2020, Algorithm 1).
+///
+/// Args:
+///     robot: the arm.
+///     path: positions or poses over time.
+///     start: (n,), configuration at t = 0; None solves for the path's first point.
+///     dt: time step (s).
+///     solver: what runs in every tick; None: Levenberg-Marquardt from the tick before.
+///     limits: None: the robot's.
+///     position_tolerance: the error band (m).
+///     rotation_tolerance: the same for orientations (rad).
+///     seed: of the random draws: the same seed, the same bits.
+///     limit_at: a tick's velocity limit is its smallest over the "interval", or, as in the paper, that at its "start".
+///     progress: True for a bar on the terminal, or a callable of (done, total).
+///
+/// Returns:
+///     A `TrackResult`. A path that cannot be followed is a status, not an error.
+///
+/// Raises:
+///     InvalidInputError: wrong shape, NaN, dt not positive.
+///     LimitError: a start outside its limits, a limit below zero.
+///     UnsupportedLimit: acceleration or jerk limits, which this tracker does not keep.
+#[pyfunction]
+#[pyo3(signature = (robot, path, start=None, *, dt, solver=None, limits=None, position_tolerance=1e-6,
+                    rotation_tolerance=1e-6, seed=0, limit_at="interval", progress=None))]
+#[allow(clippy::too_many_arguments)]
+pub fn track(
+    py: Python<'_>,
+    robot: &Bound<'_, PyRobot>,
+    path: &PyPath,
+    start: Option<&Bound<'_, PyAny>>,
+    dt: f64,
+    solver: Option<&Bound<'_, PyAny>>,
+    limits: Option<&PyLimits>,
+    position_tolerance: f64,
+    rotation_tolerance: f64,
+    seed: u64,
+    limit_at: &str,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyTrackResult> {
+    let arm = robot.get().core.clone();
+    let reference = path.reference(py, dt)?;
+    let sampling = Sampling::of_ticks(dt, reference.len() - 1);
+    let (in_force, resolved) = limits_of_call(py, limits, &arm, &sampling)?;
+    let start = start.map(|start| vector("start", start)).transpose()?;
+    let standard = TrackOptions::default();
+    let options = TrackOptions {
+        solver: solver.map_or(Ok(standard.solver), any_solver)?,
+        tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
+        limits: Some(resolved),
+        limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
+        seed,
+    };
+    let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
+    let mut watcher = Watcher::with_progress(progress.update(py));
+    let record = py.detach(|| tracking::track(&arm, &reference, start.as_deref(), &options, &mut watcher));
+    progress.close(py)?;
+    watcher.finish()?;
+    let core = record.map_err(raise)?;
+    Ok(PyTrackResult {
+        tables: Tables::new(py, &core)?,
+        robot: robot.clone().unbind(),
+        limits: Py::new(py, in_force)?,
+        core,
+    })
+}

@@ -1,0 +1,221 @@
+//! `Trajectory`.
+
+use ikcore::trajectory::{Coefficients, Trajectory};
+use numpy::{PyArray1, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
+
+use crate::convert::{Array, array, row, scalar_or_vector, shape_text, table, vector};
+use crate::error::{invalid, raise};
+use crate::upward;
+
+/// Joint motion in time, a polynomial between knots: q_j(t) = sum over p of coefficients[i, j, p] (t - time[i])^p.
+///
+/// Args:
+///     time: the knots (k,) (s), from 0.
+///     coefficients: (k - 1, n, degree + 1), degree at most 5, in ascending powers.
+///     joint_names: n names; None: "q1", "q2", ...
+#[pyclass(name = "Trajectory", module = "beetle_ik", frozen, eq)]
+#[derive(PartialEq)]
+pub struct PyTrajectory(Trajectory);
+
+impl From<Trajectory> for PyTrajectory {
+    fn from(core: Trajectory) -> Self {
+        Self(core)
+    }
+}
+
+/// Powers that coefficients have in the core.
+const POWERS: usize = 6;
+
+fn names(given: Option<Vec<String>>, n: usize) -> Vec<String> {
+    given.unwrap_or_else(|| (1..=n).map(|i| format!("q{i}")).collect())
+}
+
+#[pymethods]
+impl PyTrajectory {
+    #[new]
+    #[pyo3(signature = (time, coefficients, *, joint_names=None))]
+    fn new(
+        time: &Bound<'_, PyAny>,
+        coefficients: &Bound<'_, PyAny>,
+        joint_names: Option<Vec<String>>,
+    ) -> PyResult<Self> {
+        let values = array("coefficients", coefficients)?;
+        let &[_, n, powers @ 1..=POWERS] = values.shape() else {
+            let got = shape_text(values.shape());
+            return Err(invalid(format!(
+                "coefficients: expected shape (k - 1, n, degree + 1), degree at most 5, got {got}"
+            )));
+        };
+        let padded = values.as_slice()?.chunks_exact(powers).map(|given| {
+            let mut polynomial: Coefficients = [0.0; POWERS];
+            polynomial[..powers].copy_from_slice(given);
+            polynomial
+        });
+        let core = Trajectory::new(names(joint_names, n), vector("time", time)?, padded.collect());
+        core.map(Self).map_err(raise)
+    }
+
+    /// The motion through samples q (k, n) at `time` (k,) (s): straight in between; cubic where velocities qd (k, n)
+    /// are given too, quintic where accelerations qdd (k, n) are.
+    #[staticmethod]
+    #[pyo3(signature = (time, q, *, qd=None, qdd=None, joint_names=None))]
+    fn from_samples(
+        time: &Bound<'_, PyAny>,
+        q: &Bound<'_, PyAny>,
+        qd: Option<&Bound<'_, PyAny>>,
+        qdd: Option<&Bound<'_, PyAny>>,
+        joint_names: Option<Vec<String>>,
+    ) -> PyResult<Self> {
+        let time = vector("time", time)?;
+        let read = |what: &str, value: &Bound<'_, PyAny>| {
+            let values = array(what, value)?;
+            match values.shape() {
+                [k, n] if *k == time.len() => Ok((values.as_slice()?.to_vec(), *n)),
+                shape => {
+                    let (k, got) = (time.len(), shape_text(shape));
+                    Err(invalid(format!("{what}: expected shape ({k}, n), a row for each time, got {got}")))
+                }
+            }
+        };
+        let (q, n) = read("q", q)?;
+        let qd = qd.map(|value| read("qd", value)).transpose()?.map(|(values, _)| values);
+        let qdd = qdd.map(|value| read("qdd", value)).transpose()?.map(|(values, _)| values);
+        let core = Trajectory::from_samples(names(joint_names, n), &time, &q, qd.as_deref(), qdd.as_deref());
+        core.map(Self).map_err(raise)
+    }
+
+    /// The knots (k,) (s).
+    #[getter]
+    fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.0.knots().to_vec())
+    }
+
+    /// (k - 1, n, degree + 1), in ascending powers of the time since the knot.
+    #[getter]
+    fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        let (polynomials, n) = (self.0.coefficients(), self.0.joints().len());
+        let powers = self.0.degree() + 1;
+        let used = polynomials.iter().flat_map(|polynomial| polynomial[..powers].to_vec()).collect();
+        table(py, used, &[polynomials.len() / n, n, powers])
+    }
+
+    /// Positions at the knots (k, n) (rad, m).
+    #[getter]
+    fn q<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        Ok(self.at_times(py, self.0.knots(), false)?.0)
+    }
+
+    /// Velocities at the knots (k, n) (rad/s, m/s), of the piece that begins there.
+    #[getter]
+    fn qd<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        Ok(self.at_times(py, self.0.knots(), false)?.1)
+    }
+
+    /// Accelerations at the knots (k, n) (rad/s^2, m/s^2), of the piece that begins there.
+    #[getter]
+    fn qdd<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        Ok(self.at_times(py, self.0.knots(), false)?.2)
+    }
+
+    /// How long the motion lasts (s).
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.0.duration()
+    }
+
+    /// Names of the joints, in the order of q.
+    #[getter]
+    fn joint_names(&self) -> Vec<String> {
+        self.0.joints().to_vec()
+    }
+
+    /// The largest speed of each joint (n,) (rad/s, m/s), exact over all times.
+    fn max_velocity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.0.max_velocity())
+    }
+
+    /// The largest acceleration of each joint (n,) (rad/s^2, m/s^2), exact inside the pieces; jumps of the velocity at
+    /// knots are not in it.
+    fn max_acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.0.max_acceleration())
+    }
+
+    /// (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside are clamped.
+    fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
+        let (times, single) = scalar_or_vector("t", t)?;
+        self.at_times(py, &times, single)
+    }
+
+    /// (time, q, qd, qdd) every dt seconds and at the end: (k,) and (k, n) each.
+    #[allow(clippy::type_complexity)]
+    fn sample<'py>(
+        &self,
+        py: Python<'py>,
+        dt: f64,
+    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Array<'py>, Array<'py>, Array<'py>)> {
+        let times = self.0.sample_times(dt).map_err(raise)?;
+        let (q, qd, qdd) = self.at_times(py, &times, false)?;
+        Ok((row(py, times), q, qd, qdd))
+    }
+
+    /// Writes the samples at the knots as CSV, whole or not at all.
+    fn to_csv(slf: Bound<'_, Self>, file: Bound<'_, PyAny>) -> PyResult<()> {
+        upward::write(slf.into_any(), "to_csv", file)
+    }
+
+    /// Writes knots and coefficients as npz, whole or not at all.
+    fn to_npz(slf: Bound<'_, Self>, file: Bound<'_, PyAny>) -> PyResult<()> {
+        upward::write(slf.into_any(), "to_npz", file)
+    }
+
+    /// Reads what `to_csv` wrote, or any CSV with a column `time` and one per joint.
+    #[staticmethod]
+    fn from_csv<'py>(file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        upward::read("from_csv", file)
+    }
+
+    /// Reads what `to_npz` wrote.
+    #[staticmethod]
+    fn from_npz<'py>(file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        upward::read("from_npz", file)
+    }
+
+    /// A matplotlib figure of positions, velocities and accelerations.
+    fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        upward::plot(slf.into_any(), "trajectory")
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<Trajectory of {} joints, {} s, {} knots>",
+            self.0.joints().len(),
+            self.0.duration(),
+            self.0.knots().len()
+        )
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let arguments = (self.time(py), self.coefficients(py)?).into_pyobject(py)?;
+        Ok((arguments, [("joint_names", self.joint_names())].into_py_dict(py)?))
+    }
+}
+
+impl PyTrajectory {
+    fn at_times<'py>(
+        &self,
+        py: Python<'py>,
+        times: &[f64],
+        single: bool,
+    ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
+        let n = self.0.joints().len();
+        let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; times.len() * n]);
+        for (i, t) in times.iter().enumerate() {
+            let row = i * n..(i + 1) * n;
+            self.0.at(*t, &mut q[row.clone()], &mut qd[row.clone()], &mut qdd[row]).map_err(raise)?;
+        }
+        let shape = if single { vec![n] } else { vec![times.len(), n] };
+        Ok((table(py, q, &shape)?, table(py, qd, &shape)?, table(py, qdd, &shape)?))
+    }
+}

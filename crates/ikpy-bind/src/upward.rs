@@ -1,0 +1,32 @@
+//! The only calls from here up into the Python package: pictures, files and the progress bar.
+
+use pyo3::prelude::*;
+
+fn call<'py>(
+    py: Python<'py>,
+    module: &str,
+    function: &str,
+    arguments: impl pyo3::call::PyCallArgs<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    py.import(module)?.getattr(function)?.call1(arguments)
+}
+
+/// `beetle_ik.plot.<function>(result)`.
+pub fn plot<'py>(result: Bound<'py, PyAny>, function: &str) -> PyResult<Bound<'py, PyAny>> {
+    call(result.py(), "beetle_ik.plot", function, (result,))
+}
+
+/// `beetle_ik.export.<function>(trajectory, file)`.
+pub fn write<'py>(trajectory: Bound<'py, PyAny>, function: &str, file: Bound<'py, PyAny>) -> PyResult<()> {
+    call(trajectory.py(), "beetle_ik.export", function, (trajectory, file)).map(|_| ())
+}
+
+/// `beetle_ik.export.<function>(file)`.
+pub fn read<'py>(function: &str, file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    call(file.py(), "beetle_ik.export", function, (file,))
+}
+
+/// A progress bar on the terminal.
+pub fn progress_bar(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    call(py, "beetle_ik._progress", "Bar", ())
+}
