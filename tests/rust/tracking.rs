@@ -8,8 +8,11 @@
 
 mod common;
 
+use std::f64::consts::FRAC_PI_2;
+
 use common::{bits, robot};
 use ikcore::limits::{Field, LimitAt, Limits, Profile, Sinusoid};
+use ikcore::nalgebra::{Rotation3, Vector3};
 use ikcore::path::{Circle, Path, Plane, Polyline, Reference};
 use ikcore::robot::Robot;
 use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, Monitor, Status, Unattended, Variant};
@@ -348,6 +351,25 @@ fn orientations_are_held_along_the_path() {
     let record = track(&task.robot, &path.sample(DT).unwrap(), Some(&OFF7), &options, &mut Unattended).unwrap();
     assert_eq!(record.status, Status::Solved, "{}", record.message());
     assert!(record.rotation_error[record.joined().unwrap()..].iter().all(|error| *error <= 1e-6));
+    assert!(
+        record.message().starts_with("in the band of 1.000e-6 m and 1.000e-6 rad from t = "),
+        "{}",
+        record.message()
+    );
+}
+
+#[test]
+fn an_orientation_that_cannot_be_held_is_told_in_radians() {
+    // A planar arm cannot turn its tip out of the plane.
+    let task = five_links();
+    let upright = Rotation3::from_axis_angle(&Vector3::x_axis(), FRAC_PI_2).into_inner();
+    let path = Path::new(task.circle.clone()).with_orientation(upright).unwrap();
+    let options = task.options(descent(), 1e-6, 0);
+    let record = track(&task.robot, &path.sample(DT).unwrap(), Some(&OFF5), &options, &mut Unattended).unwrap();
+    assert!(record.status != Status::Solved && record.joined().is_none());
+    let nearest = record.rotation_error.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(nearest > FRAC_PI_2 - 1e-9, "{nearest}");
+    assert!(record.message().contains(&format!(" m and {nearest:.3e} rad): ")), "{}", record.message());
 }
 
 /// Says stop once this many rows are done.
