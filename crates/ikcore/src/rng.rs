@@ -62,16 +62,26 @@ impl LazyRng {
         lower + (upper - lower) * self.uniform()
     }
 
+    /// Uniform in [-1, 1), entry by entry.
+    #[inline]
+    fn symmetric(&mut self, out: &mut [f64]) {
+        match &mut self.source {
+            Some(source) if source.next + out.len() <= BUFFER => {
+                let drawn = &source.uniforms[source.next..source.next + out.len()];
+                out.iter_mut().zip(drawn).for_each(|(v, uniform)| *v = 2.0 * uniform - 1.0);
+                source.next += out.len();
+            }
+            _ => out.fill_with(|| 2.0 * self.uniform() - 1.0),
+        }
+    }
+
     /// A vector of unit length: entries uniform in [-1, 1), then normalised.
     pub fn direction(&mut self, b: &mut [f64]) {
         let mut squared = 0.0;
         // A draw of almost zero length has no direction.
         while squared < 1e-12 {
-            squared = 0.0;
-            for v in &mut *b {
-                *v = 2.0 * self.uniform() - 1.0;
-                squared += *v * *v;
-            }
+            self.symmetric(b);
+            squared = b.iter().map(|v| v * v).sum();
         }
         let scale = 1.0 / squared.sqrt();
         b.iter_mut().for_each(|v| *v *= scale);

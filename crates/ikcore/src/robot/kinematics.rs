@@ -35,7 +35,8 @@ macro_rules! portable {
         Kernels {
             tip: tip::<Separate, $n, $l>,
             tip_position: tip_position::<Separate, $n, $l>,
-            tip_positions: tip_positions::<Separate, $n>,
+            tip_pair: side_by_side::<Separate, $n, $l, 2>,
+            tip_four: side_by_side::<Separate, $n, $n, 4>,
             jacobian: jacobian::<Separate, $n, $l>,
             stage_frames: stage_frames::<Separate, $n, $l>,
         }
@@ -49,7 +50,8 @@ macro_rules! native {
         Kernels {
             tip: tip::<Fused, $n, $l>,
             tip_position: tip_position::<Fused, $n, $l>,
-            tip_positions: tip_positions::<Fused, $n>,
+            tip_pair: side_by_side::<Fused, $n, $l, 2>,
+            tip_four: side_by_side::<Fused, $n, $n, 4>,
             jacobian: jacobian::<Fused, $n, $l>,
             stage_frames: stage_frames::<Fused, $n, $l>,
         }
@@ -60,11 +62,12 @@ macro_rules! native {
 #[cfg(target_arch = "x86_64")]
 macro_rules! fused {
     ($n:literal, $l:literal) => {
-        // SAFETY (all five): the table is handed out only where `has_fused` found the instructions.
+        // SAFETY (all six): the table is handed out only where `has_fused` found the instructions.
         Kernels {
             tip: |chain, q| unsafe { fused::tip::<$n, $l>(chain, q) },
             tip_position: |chain, q| unsafe { fused::tip_position::<$n, $l>(chain, q) },
-            tip_positions: |chain, qs| unsafe { fused::tip_positions::<$n>(chain, qs) },
+            tip_pair: |chain, qs| unsafe { fused::side_by_side::<$n, $l, 2>(chain, qs) },
+            tip_four: |chain, qs| unsafe { fused::side_by_side::<$n, $n, 4>(chain, qs) },
             jacobian: |chain, q, columns| unsafe { fused::jacobian::<$n, $l>(chain, q, columns) },
             stage_frames: |chain, q, reached| unsafe { fused::stage_frames::<$n, $l>(chain, q, reached) },
         }
@@ -76,13 +79,11 @@ macro_rules! fused {
 pub(super) struct Kernels {
     tip: fn(&Chain, &[f64]) -> Frame,
     tip_position: fn(&Chain, &[f64]) -> [f64; 3],
-    tip_positions: fn(&Chain, &[f64]) -> [[f64; LANES]; 3],
+    tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
+    tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
     jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
     stage_frames: fn(&Chain, &[f64], &mut StageFrames),
 }
-
-/// Configurations side by side in [`Chain::tip_positions`]: four doubles fill one register of AVX2.
-pub const LANES: usize = 4;
 
 type StageFrames = [Frame; MAX_DOF + 1];
 
@@ -103,7 +104,7 @@ impl Kernels {
 /// The kernels compiled for AVX2 and FMA.
 #[cfg(target_arch = "x86_64")]
 mod fused {
-    use super::{Chain, Columns, Frame, Fused, LANES, StageFrames};
+    use super::{Chain, Columns, Frame, Fused, StageFrames};
 
     #[target_feature(enable = "avx2,fma")]
     pub fn tip<const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
@@ -116,8 +117,8 @@ mod fused {
     }
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn tip_positions<const N: usize>(chain: &Chain, qs: &[f64]) -> [[f64; LANES]; 3] {
-        super::tip_positions::<Fused, N>(chain, qs)
+    pub fn side_by_side<const N: usize, const L: usize, const W: usize>(chain: &Chain, qs: &[f64]) -> [[f64; W]; 3] {
+        super::side_by_side::<Fused, N, L, W>(chain, qs)
     }
 
     #[target_feature(enable = "avx2,fma")]
@@ -144,11 +145,21 @@ impl Chain {
         (self.kernels.tip_position)(self, q)
     }
 
-    /// The tip's positions (m), coordinate by coordinate, at [`LANES`] configurations stored one after another; lane by
-    /// lane the same bits as [`tip_position`](Self::tip_position).
+    /// Hands the tip's positions (m) at configurations of `n` entries, stored one after another, to `visit`, in order:
+    /// four side by side as long as there are four, then two; the same bits as [`tip_position`](Self::tip_position).
     #[inline]
-    pub fn tip_positions(&self, qs: &[f64]) -> [[f64; LANES]; 3] {
-        (self.kernels.tip_positions)(self, qs)
+    pub fn tip_positions(&self, mut qs: &[f64], n: usize, mut visit: impl FnMut([f64; 3])) {
+        while let Some((group, rest)) = qs.split_at_checked(4 * n) {
+            transposed((self.kernels.tip_four)(self, group)).into_iter().for_each(&mut visit);
+            qs = rest;
+        }
+        if let Some((group, rest)) = qs.split_at_checked(2 * n) {
+            transposed((self.kernels.tip_pair)(self, group)).into_iter().for_each(&mut visit);
+            qs = rest;
+        }
+        if qs.len() == n {
+            visit(self.tip_position(qs));
+        }
     }
 
     /// The tip's frame and the geometric Jacobian at the tip, world axes, linear rows before angular rows.
@@ -163,6 +174,12 @@ impl Chain {
         (self.kernels.stage_frames)(self, q, &mut reached);
         self.links.iter().map(|link| reached[link.stages].then::<Separate>(&link.offset)).collect()
     }
+}
+
+/// Point by point what is given coordinate by coordinate.
+#[inline]
+fn transposed<const W: usize>(coordinates: [[f64; W]; 3]) -> [[f64; 3]; W] {
+    std::array::from_fn(|w| coordinates.map(|coordinate| coordinate[w]))
 }
 
 /// Sines, cosines and slides (m) of all stages.
@@ -218,20 +235,23 @@ fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q:
     point
 }
 
-/// [`tip_position`] for several configurations at once, coordinate by coordinate.
+/// [`tip_position`] for W configurations at once, coordinate by coordinate: lane w of every array is configuration w.
 #[inline(always)]
-fn tip_positions<A: Arithmetic, const N: usize>(chain: &Chain, qs: &[f64]) -> [[f64; LANES]; 3] {
-    const W: usize = LANES;
-    let rows: [&[f64]; W] = std::array::from_fn(|w| &qs[w * (qs.len() / W)..]);
-    let (mut angles, mut slides) = ([[0.0; W]; N], [[0.0; W]; N]);
-    for (i, motion) in chain.motions[..N].iter().enumerate() {
+fn side_by_side<A: Arithmetic, const N: usize, const L: usize, const W: usize>(
+    chain: &Chain,
+    qs: &[f64],
+) -> [[f64; W]; 3] {
+    let n = qs.len() / W;
+    let rows: [&[f64]; W] = std::array::from_fn(|w| &qs[w * n..(w + 1) * n]);
+    let (mut angles, mut slides) = ([[0.0; W]; L], [[0.0; W]; L]);
+    for (i, motion) in chain.motions[..L].iter().enumerate() {
         for w in 0..W {
             let value = rows[w][motion.joint];
             angles[i][w] = A::mul_add(motion.turn_scale, value, motion.turn_offset);
             slides[i][w] = A::mul_add(motion.slide_scale, value, motion.slide_offset);
         }
     }
-    let (mut sines, mut cosines) = ([[0.0; W]; N], [[0.0; W]; N]);
+    let (mut sines, mut cosines) = ([[0.0; W]; L], [[0.0; W]; L]);
     sincos::<A>(angles.as_flattened(), sines.as_flattened_mut(), cosines.as_flattened_mut());
     let mut point = chain.tip.origin.map(|coordinate| [coordinate; W]);
     for i in (0..N).rev() {

@@ -13,7 +13,7 @@ mod urdf;
 pub use builder::{ChainBuilder, Drive};
 pub use dh::{Dh, DhTable};
 pub use joint::{Joint, JointKind};
-pub use kinematics::{Columns, LANES};
+pub use kinematics::Columns;
 pub use model::Robot;
 
 use crate::math::MAX_DOF;
