@@ -4,8 +4,9 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use ikcore::math::MAX_DOF;
 use ikcore::rng;
-use ikcore::robot::{MAX_DOF, Robot};
+use ikcore::robot::Robot;
 
 const ROBOTS: [&str; 3] = ["iiwa14", "ur5e", "planar5"];
 

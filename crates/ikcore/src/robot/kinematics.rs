@@ -1,136 +1,19 @@
 //! Forward kinematics and Jacobian: one pass from base to tip, in plain arrays, without allocation.
 //!
-//! Each kernel has one body, compiled for every padded number of stages ([`SIZES`](super::chain::SIZES)) and for
-//! machines with and without AVX2 and FMA.
+//! Each kernel has one straight-line body over N stages, their sines padded to L; [`dispatch`](super::dispatch) holds
+//! its compilations.
 
 use super::MAX_DOF;
 use super::chain::Chain;
 use crate::math::Frame;
-use crate::math::arithmetic::{Arithmetic, Fused, Separate, has_fused};
+use crate::math::arithmetic::{Arithmetic, Separate};
 use crate::math::sincos::sincos;
 
 /// Columns of a 6 x n matrix, one per joint: linear rows (m per rad or m), then angular rows; the first n are in use.
 pub type Columns = [[f64; 6]; MAX_DOF];
 
-/// `$table!(N, L)` for the size that `$stages` is: N stages, their sines padded to L.
-macro_rules! for_each_size {
-    ($stages:expr, $table:ident) => {
-        match $stages {
-            4 => $table!(4, 4),
-            5 => $table!(5, 8),
-            6 => $table!(6, 8),
-            7 => $table!(7, 8),
-            8 => $table!(8, 8),
-            12 => $table!(12, 12),
-            16 => $table!(16, 16),
-            _ => $table!(32, 32),
-        }
-    };
-}
-
-/// A table of kernels that any machine runs.
-#[cfg(not(target_arch = "aarch64"))]
-macro_rules! portable {
-    ($n:literal, $l:literal) => {
-        Kernels {
-            tip: tip::<Separate, $n, $l>,
-            tip_position: tip_position::<Separate, $n, $l>,
-            tip_pair: side_by_side::<Separate, $n, $l, 2>,
-            tip_four: side_by_side::<Separate, $n, $n, 4>,
-            jacobian: jacobian::<Separate, $n, $l>,
-            stage_frames: stage_frames::<Separate, $n, $l>,
-        }
-    };
-}
-
-/// The same where FMA belongs to the baseline.
-#[cfg(target_arch = "aarch64")]
-macro_rules! native {
-    ($n:literal, $l:literal) => {
-        Kernels {
-            tip: tip::<Fused, $n, $l>,
-            tip_position: tip_position::<Fused, $n, $l>,
-            tip_pair: side_by_side::<Fused, $n, $l, 2>,
-            tip_four: side_by_side::<Fused, $n, $n, 4>,
-            jacobian: jacobian::<Fused, $n, $l>,
-            stage_frames: stage_frames::<Fused, $n, $l>,
-        }
-    };
-}
-
-/// The same for machines that have AVX2 and FMA.
-#[cfg(target_arch = "x86_64")]
-macro_rules! fused {
-    ($n:literal, $l:literal) => {
-        // SAFETY (all six): the table is handed out only where `has_fused` found the instructions.
-        Kernels {
-            tip: |chain, q| unsafe { fused::tip::<$n, $l>(chain, q) },
-            tip_position: |chain, q| unsafe { fused::tip_position::<$n, $l>(chain, q) },
-            tip_pair: |chain, qs| unsafe { fused::side_by_side::<$n, $l, 2>(chain, qs) },
-            tip_four: |chain, qs| unsafe { fused::side_by_side::<$n, $n, 4>(chain, qs) },
-            jacobian: |chain, q, columns| unsafe { fused::jacobian::<$n, $l>(chain, q, columns) },
-            stage_frames: |chain, q, reached| unsafe { fused::stage_frames::<$n, $l>(chain, q, reached) },
-        }
-    };
-}
-
-/// The kernels compiled for one padded number of stages and one instruction set; a chain chooses when it is built.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Kernels {
-    tip: fn(&Chain, &[f64]) -> Frame,
-    tip_position: fn(&Chain, &[f64]) -> [f64; 3],
-    tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
-    tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
-    jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
-    stage_frames: fn(&Chain, &[f64], &mut StageFrames),
-}
-
-type StageFrames = [Frame; MAX_DOF + 1];
-
-impl Kernels {
-    /// The fastest that this machine runs, for a chain padded to `stages` (one of [`SIZES`](super::chain::SIZES)).
-    pub fn for_stages(stages: usize) -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if has_fused() {
-            return for_each_size!(stages, fused);
-        }
-        #[cfg(target_arch = "aarch64")]
-        return for_each_size!(stages, native);
-        #[cfg(not(target_arch = "aarch64"))]
-        for_each_size!(stages, portable)
-    }
-}
-
-/// The kernels compiled for AVX2 and FMA.
-#[cfg(target_arch = "x86_64")]
-mod fused {
-    use super::{Chain, Columns, Frame, Fused, StageFrames};
-
-    #[target_feature(enable = "avx2,fma")]
-    pub fn tip<const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
-        super::tip::<Fused, N, L>(chain, q)
-    }
-
-    #[target_feature(enable = "avx2,fma")]
-    pub fn tip_position<const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
-        super::tip_position::<Fused, N, L>(chain, q)
-    }
-
-    #[target_feature(enable = "avx2,fma")]
-    pub fn side_by_side<const N: usize, const L: usize, const W: usize>(chain: &Chain, qs: &[f64]) -> [[f64; W]; 3] {
-        super::side_by_side::<Fused, N, L, W>(chain, qs)
-    }
-
-    #[target_feature(enable = "avx2,fma")]
-    pub fn jacobian<const N: usize, const L: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
-        super::jacobian::<Fused, N, L>(chain, q, columns)
-    }
-
-    #[target_feature(enable = "avx2,fma")]
-    pub fn stage_frames<const N: usize, const L: usize>(chain: &Chain, q: &[f64], reached: &mut StageFrames) {
-        super::stage_frames::<Fused, N, L>(chain, q, reached);
-    }
-}
+/// Frames reached after 0, 1, 2, ... stages.
+pub(super) type StageFrames = [Frame; MAX_DOF + 1];
 
 impl Chain {
     /// The tip's frame. `q` has one finite entry per independent joint.
@@ -176,7 +59,8 @@ impl Chain {
     }
 }
 
-/// Point by point what is given coordinate by coordinate.
+/// Point by point what is given coordinate by coordinate. Kept out of the kernels: there it makes the compiler vectorise
+/// along coordinates instead of lanes (27 ns a configuration instead of 17).
 #[inline]
 fn transposed<const W: usize>(coordinates: [[f64; W]; 3]) -> [[f64; 3]; W] {
     std::array::from_fn(|w| coordinates.map(|coordinate| coordinate[w]))
@@ -219,12 +103,12 @@ fn pass<A: Arithmetic, const N: usize, const L: usize>(
 }
 
 #[inline(always)]
-fn tip<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
+pub(super) fn tip<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
     pass::<A, N, L>(chain, q, |_, _| ())
 }
 
 #[inline(always)]
-fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
+pub(super) fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
     let (sines, cosines, slides) = motions::<A, L>(chain, q);
     let mut point = chain.tip.origin;
     for i in (0..N).rev() {
@@ -237,7 +121,7 @@ fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q:
 
 /// [`tip_position`] for W configurations at once, coordinate by coordinate: lane w of every array is configuration w.
 #[inline(always)]
-fn side_by_side<A: Arithmetic, const N: usize, const L: usize, const W: usize>(
+pub(super) fn side_by_side<A: Arithmetic, const N: usize, const L: usize, const W: usize>(
     chain: &Chain,
     qs: &[f64],
 ) -> [[f64; W]; 3] {
@@ -271,7 +155,11 @@ fn side_by_side<A: Arithmetic, const N: usize, const L: usize, const W: usize>(
 }
 
 #[inline(always)]
-fn jacobian<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
+pub(super) fn jacobian<A: Arithmetic, const N: usize, const L: usize>(
+    chain: &Chain,
+    q: &[f64],
+    columns: &mut Columns,
+) -> Frame {
     let (mut axes, mut origins) = ([[0.0; 3]; N], [[0.0; 3]; N]);
     let tip = pass::<A, N, L>(chain, q, |i, frame| {
         axes[i] = frame.axes[2];
@@ -298,7 +186,11 @@ fn jacobian<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f
 }
 
 #[inline(always)]
-fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64], reached: &mut StageFrames) {
+pub(super) fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(
+    chain: &Chain,
+    q: &[f64],
+    reached: &mut StageFrames,
+) {
     let (sines, cosines, _) = motions::<A, L>(chain, q);
     pass::<A, N, L>(chain, q, |i, frame| reached[i + 1] = frame.turned::<A>(sines[i], cosines[i]));
 }

@@ -4,6 +4,7 @@ mod builder;
 mod catalog;
 mod chain;
 mod dh;
+mod dispatch;
 mod joint;
 mod kinematics;
 mod model;
