@@ -2,7 +2,7 @@
 //! are solved without a draw.
 
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use rand::{Rng, SeedableRng};
 
 /// Numbers drawn at once; a quarter of the cost of single draws.
 const BUFFER: usize = 64;
