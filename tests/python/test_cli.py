@@ -12,7 +12,7 @@ from typer.testing import CliRunner, Result
 import beetle_ik as bik
 from beetle_ik.cli import app
 
-SHORT_CIRCLE = [
+CIRCLE = [
     "--curve",
     "circle",
     "--center",
@@ -24,7 +24,7 @@ SHORT_CIRCLE = [
     "--tolerance",
     "4e-5",
 ]
-TRACK = ["track", "planar5", *SHORT_CIRCLE]
+TRACK = ["track", "planar5", *CIRCLE]
 FILES = {"trajectory.csv", "trajectory.npz", "track.png", "summary.json"}
 
 

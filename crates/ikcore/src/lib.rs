@@ -1,4 +1,57 @@
-//! The core of beetle-ik.
+//! Inverse kinematics and trajectory tracking for robot manipulators, redundant ones first.
+//!
+//! ```
+//! use ikcore::ik::{SolveOptions, solve};
+//! use ikcore::robot::Robot;
+//! use ikcore::solver::{Status, Unattended};
+//! use ikcore::task::Target;
+//!
+//! let robot = Robot::named("iiwa14")?;
+//! let target = Target::Position([0.4, 0.3, 0.8]);
+//! let solution = solve(&robot, &target, &SolveOptions::default(), &mut Unattended)?;
+//! assert_eq!(solution.status, Status::Solved);
+//! assert!(solution.error.position <= 1e-6);
+//! # Ok::<(), ikcore::Error>(())
+//! ```
+//!
+//! # How data flows
+//!
+//! ```text
+//!      robot ───────────────┐
+//! path (reference)          ├─> task ─> problem ··implements··> objective <──uses── solver ─> solution
+//!      limits ──────────────┘                                                                    │
+//!                                           tracking  <──────────────────────────────────────────┘
+//!                                              │
+//!                                          trajectory
+//! ```
+//!
+//! Two families meet in [`objective`] and nowhere else. The robot side ([`robot`], [`limits`], [`task`], [`problem`])
+//! implements its small traits, the solver side ([`solver`]) consumes them: a solver file never mentions robots, a robot
+//! file never mentions solvers. So a solver serves any objective, and one that needs a Jacobian cannot be given an
+//! objective without.
+//!
+//! # What every algorithm keeps to
+//!
+//! - Evaluation budgets are exact, answers lie inside the box, the best point found is never lost: the
+//!   [`Evaluator`](solver::Evaluator) sees to it, not the algorithm.
+//! - Not having converged is a [`Status`](solver::Status) with a sentence that says what to try. An [`Error`] is a
+//!   caller's mistake, and names the thing, the value and what would be right.
+//! - The same seed gives the same bits, on one build and instruction set.
+//! - Models are immutable and shared between threads without locks; hot loops do not allocate.
+//!
+//! # Layers
+//!
+//! A file imports its own folder and lower layers only; a test holds it to that.
+//!
+//! | layer | modules |
+//! |---|---|
+//! | 0 | [`error`], [`rng`], [`math`] |
+//! | 1 | [`robot`], [`path`], [`trajectory`], [`objective`] |
+//! | 2 | [`limits`], [`manipulability`] |
+//! | 3 | [`task`], [`solver`] |
+//! | 4 | [`problem`] |
+//! | 5 | [`ik`] |
+//! | 6 | [`tracking`] |
 
 pub mod error;
 pub mod ik;

@@ -20,6 +20,8 @@ class _TellMistakes(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         try:
             return super().invoke(ctx)
+        except BrokenPipeError:
+            raise  # the reader of our output has gone: Typer leaves without a word
         except (BeetleIkError, OSError) as error:
             typer.echo(f"Error: {error}", err=True)
             raise typer.Exit(_WRONG_INPUT) from error

@@ -18,9 +18,9 @@ pub struct Stop {
 }
 
 impl Default for Stop {
-    /// 100 000 evaluations: about 10 ms for a 7-joint arm.
+    /// 30 000 evaluations: about 10 ms for a 7-joint arm.
     fn default() -> Self {
-        Self { max_evaluations: 100_000, max_iterations: usize::MAX, max_time: None, value_below: None }
+        Self { max_evaluations: 30_000, max_iterations: usize::MAX, max_time: None, value_below: None }
     }
 }
 

@@ -152,14 +152,14 @@ impl Record {
             let nearest = self.position_error.iter().copied().fold(f64::INFINITY, f64::min);
             return format!("never came within {band:.3e} m (nearest {nearest:.3e} m): {advice}");
         };
-        let since = self.time[joined];
+        let since = rounded(self.time[joined]);
         let outside = self.step_status[joined..].iter().filter(|s| **s != Status::Solved).count();
         match self.status {
             Status::Solved => {
                 format!("in the band of {band:.3e} m from t = {since} s on; worst error there {:.3e} m", worst(joined))
             }
             Status::Interrupted => {
-                format!("interrupted at t = {} s: {}", self.time[rows - 1], Status::Interrupted.advice())
+                format!("interrupted at t = {} s: {}", rounded(self.time[rows - 1]), Status::Interrupted.advice())
             }
             _ => format!(
                 "joined the path at t = {since} s, then outside the band of {band:.3e} m in {outside} of {} steps, by up to {:.3e} m: {advice}",
@@ -168,4 +168,9 @@ impl Record {
             ),
         }
     }
+}
+
+/// A time (s) without the digits that sums of dt leave behind.
+fn rounded(time: f64) -> f64 {
+    (time * 1e9).round() / 1e9
 }

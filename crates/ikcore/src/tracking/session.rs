@@ -122,9 +122,7 @@ impl<'a> Session<'a> {
         target.validate()?;
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
         let inside_limits = self.limits.narrow(&self.q, from, to, self.limit_at, &mut self.tick_box);
-        // Line 16 of Algorithm 1: a random search may go on to the next tick once it beats the last one.
-        let value_below = if self.solver.settles_for_improvement() { self.last_value } else { None };
-        let stop = Stop { value_below, ..Stop::default() };
+        let stop = self.stop();
         let mut problem = Problem::new(self.robot, target, self.tolerance);
         let objective: &mut dyn LeastSquares = &mut problem;
         let mut evaluator = Evaluator::new(objective, &self.tick_box, stop, &mut self.rng, monitor);
@@ -145,5 +143,19 @@ impl<'a> Session<'a> {
         let error = problem.verify(&self.q);
         let position = self.robot.tip_position(&self.q);
         Ok(Step { status, error, position, evaluations, iterations, inside_limits, interrupted })
+    }
+
+    /// When a tick's search ends short of its band. A single solver ends by its own rule, a multi-start by its budget.
+    fn stop(&self) -> Stop {
+        let standard = Stop::default();
+        Stop {
+            // Line 16 of Algorithm 1: a random search may go on to the next tick once it beats the last one.
+            value_below: if self.solver.settles_for_improvement() { self.last_value } else { None },
+            max_evaluations: match self.solver {
+                AnySolver::Single(_) => usize::MAX,
+                AnySolver::MultiStart(_) => standard.max_evaluations,
+            },
+            ..standard
+        }
     }
 }
