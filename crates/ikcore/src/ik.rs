@@ -110,6 +110,7 @@ fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
         return Ok(Bounds::from_ranges(robot.joints().iter().map(|joint| (joint.lower, joint.upper))));
     };
     let remedy = "a single configuration has no motion; leave it out";
+    limits.require_for(robot)?;
     limits.require_none(&[Field::Acceleration, Field::Jerk], "solve", remedy)?;
     limits.position_box()
 }

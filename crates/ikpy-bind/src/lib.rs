@@ -7,6 +7,7 @@ mod limits;
 mod monitor;
 mod path;
 mod robot;
+mod sinusoid;
 mod solver;
 mod tracking;
 mod trajectory;
@@ -21,7 +22,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     solver::register(module)?;
     module.add_class::<robot::PyRobot>()?;
     module.add_function(wrap_pyfunction!(robot::pose, module)?)?;
-    module.add_class::<limits::PySinusoid>()?;
+    module.add_class::<sinusoid::PySinusoid>()?;
     module.add_class::<limits::PyLimits>()?;
     module.add_class::<ik::PySolution>()?;
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;

@@ -67,7 +67,8 @@ impl Limits {
     /// Replaces one field for all joints; one profile per joint, or a single one for all of them.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] for another number of profiles, [`Error::NotFinite`] for NaN.
+    /// [`Error::WrongLength`] for another number of profiles or one without samples, [`Error::OutOfRange`] for NaN,
+    /// [`Error::NotFinite`] for a sinusoid of anything that is not finite.
     pub fn replace(mut self, field: Field, mut profiles: Vec<Profile>) -> Result<Self> {
         let n = self.joints.len();
         if profiles.len() == 1 {
@@ -78,10 +79,7 @@ impl Limits {
             return Err(Error::WrongLength { what: format!("{field} limit"), expected, got: profiles.len() });
         }
         for (profile, joint) in profiles.iter().zip(&self.joints) {
-            if let Some(value) = profile.nan() {
-                let place = format!("joint '{joint}'");
-                return Err(Error::NotFinite { what: format!("{field} limit"), place, value });
-            }
+            profile.validate(&format!("{field} limit of joint '{joint}'"))?;
         }
         match field {
             Field::Lower => self.lower = profiles,
@@ -119,7 +117,7 @@ impl Limits {
         }
         for ((lower, upper), joint) in self.lower.iter().zip(&self.upper).zip(&self.joints) {
             let (lower, upper) = (lower.largest(0.0, duration).1, upper.smallest(0.0, duration).1);
-            if !(lower <= upper) {
+            if !(lower <= upper) || lower == f64::INFINITY || upper == f64::NEG_INFINITY {
                 return Err(Error::EmptyRange { joint: joint.clone(), lower, upper });
             }
         }
@@ -160,6 +158,18 @@ impl Limits {
         let lower = self.lower.iter().map(|p| constant(Field::Lower, p)).collect::<Result<Vec<_>>>()?;
         let upper = self.upper.iter().map(|p| constant(Field::Upper, p)).collect::<Result<Vec<_>>>()?;
         Bounds::new(&lower, &upper)
+    }
+
+    /// Err unless these are limits for the joints of `robot`.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] for another number of joints.
+    pub fn require_for(&self, robot: &Robot) -> Result<()> {
+        if self.joints.len() == robot.dof() {
+            return Ok(());
+        }
+        let (what, expected) = (format!("limits for robot '{}'", robot.name()), format!("{} joints", robot.dof()));
+        Err(Error::WrongLength { what, expected, got: self.joints.len() })
     }
 
     /// Err unless `q` lies within the position limits at time `t` (s); `what` names it.

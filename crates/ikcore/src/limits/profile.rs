@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use crate::error::{Error, Result, require_finite, require_positive};
+
 /// mean + amplitude sin(angular_frequency t + phase): eq. (7) of Cheng et al. (2020), its sign mended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sinusoid {
@@ -100,14 +102,27 @@ impl Profile {
         best
     }
 
-    /// A NaN among its parameters.
-    pub(super) fn nan(&self) -> Option<f64> {
-        let any_nan = match self {
-            Self::Constant(value) => value.is_nan(),
-            Self::Sinusoid(s) => ![s.mean, s.amplitude, s.angular_frequency, s.phase].iter().all(|v| v.is_finite()),
-            Self::Sampled { values, .. } => values.iter().any(|v| v.is_nan()),
-        };
-        any_nan.then_some(f64::NAN)
+    /// Err unless it is a number at every time; `what` names it, as in "velocity limit of joint 'elbow'".
+    pub(super) fn validate(&self, what: &str) -> Result<()> {
+        let no_number = |value: f64, place: &str| Error::out_of_range(format!("{what}{place}"), "a number", value);
+        match self {
+            Self::Constant(value) if value.is_nan() => Err(no_number(*value, "")),
+            Self::Constant(_) => Ok(()),
+            Self::Sinusoid(Sinusoid { mean, amplitude, angular_frequency, phase }) => {
+                let parts = [*mean, *amplitude, *angular_frequency, *phase];
+                require_finite(what, &parts, |i| ["mean", "amplitude", "angular frequency", "phase"][i].into())
+            }
+            Self::Sampled { values, .. } if values.is_empty() => {
+                Err(Error::WrongLength { what: what.into(), expected: "at least 1 sample".into(), got: 0 })
+            }
+            Self::Sampled { step, values } => {
+                require_positive(&format!("time between samples of the {what}"), *step)?;
+                match values.iter().position(|value| value.is_nan()) {
+                    Some(i) => Err(no_number(values[i], &format!(" at t = {} s", i as f64 * step))),
+                    None => Ok(()),
+                }
+            }
+        }
     }
 }
 

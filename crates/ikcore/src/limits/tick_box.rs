@@ -48,7 +48,8 @@ impl Limits {
         let (lower, upper) = tick.parts_mut();
         let mut feasible = true;
         for j in 0..q.len() {
-            let reach = self.velocity_over(j, from, to, at) * (to - from);
+            // A session without a known end cannot refuse a limit that will fall below zero: there it stands still.
+            let reach = (self.velocity_over(j, from, to, at) * (to - from)).max(0.0);
             let (slowest, fastest) = (reachable(q[j], -reach), reachable(q[j], reach));
             let [floor, ceiling] = self.position_range(j, from, to);
             lower[j] = slowest.max(floor).min(fastest);

@@ -89,6 +89,8 @@ fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
+
     use crate::math::pose;
     use nalgebra::{Rotation3, Vector3};
 
@@ -104,9 +106,7 @@ mod tests {
     #[test]
     fn logarithm_of_exponential_is_the_rotation_vector() {
         for axis in directions() {
-            for angle in
-                [0.0, 1e-12, 1e-7, 1e-3, 0.5, 2.0, 2.69, 2.7, 3.0, 3.141, 3.1415926, std::f64::consts::PI - 1e-10]
-            {
+            for angle in [0.0, 1e-12, 1e-7, 1e-3, 0.5, 2.0, 2.69, 2.7, 3.0, PI - 1e-3, PI - 1e-7, PI - 1e-10] {
                 let target = Rotation3::from_euler_angles(0.4, -1.1, 2.0);
                 let turned = Rotation3::new(axis * angle) * target;
                 let phi = Vector3::from(rotation_between(&frame(target), &frame(turned)));
@@ -121,9 +121,9 @@ mod tests {
     #[test]
     fn half_a_turn_has_length_pi() {
         for axis in directions() {
-            let turned = Rotation3::new(axis * std::f64::consts::PI);
+            let turned = Rotation3::new(axis * PI);
             let phi = Vector3::from(rotation_between(&Frame::IDENTITY, &frame(turned)));
-            assert!((phi.norm() - std::f64::consts::PI).abs() < 1e-14);
+            assert!((phi.norm() - PI).abs() < 1e-14);
             assert!(phi.cross(&axis).norm() < 1e-7);
         }
     }

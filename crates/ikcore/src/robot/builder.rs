@@ -94,7 +94,8 @@ impl ChainBuilder {
     /// # Errors
     /// [`Error::InvalidRobot`](crate::Error::InvalidRobot) for no joints, too many, or a joint or link named twice;
     /// [`Error::EmptyRange`](crate::Error::EmptyRange), [`Error::NegativeLimit`](crate::Error::NegativeLimit) or
-    /// [`Error::NotFinite`](crate::Error::NotFinite) for impossible limits or transforms.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for impossible limits;
+    /// [`Error::NotFinite`](crate::Error::NotFinite) for transforms.
     pub fn build(self) -> Result<Robot> {
         Robot::new(self)
     }

@@ -253,17 +253,21 @@ impl ChainBuilder {
 
 impl Joint {
     fn validate(&self) -> Result<()> {
-        let joint = self.name.clone();
-        let (lower, upper) = (self.lower, self.upper);
-        if lower.is_nan() || upper.is_nan() || lower == f64::INFINITY || upper == f64::NEG_INFINITY {
-            let value = if lower.is_finite() || lower == f64::NEG_INFINITY { upper } else { lower };
-            return Err(Error::NotFinite { what: "position limits".into(), place: format!("joint '{joint}'"), value });
+        let Self { lower, upper, velocity, .. } = *self;
+        let limits = [
+            ("lower", lower, lower < f64::INFINITY, "a number below infinity"),
+            ("upper", upper, upper > f64::NEG_INFINITY, "a number above -infinity"),
+            ("velocity", velocity, !velocity.is_nan(), "a number"),
+        ];
+        if let Some((side, value, _, requirement)) = limits.into_iter().find(|(_, _, valid, _)| !valid) {
+            return Err(Error::out_of_range(format!("{side} limit of joint '{}'", self.name), requirement, value));
         }
+        let joint = self.name.clone();
         if lower > upper {
             return Err(Error::EmptyRange { joint, lower, upper });
         }
-        if !(self.velocity >= 0.0) {
-            return Err(Error::NegativeLimit { field: "velocity".into(), joint, value: self.velocity, time: 0.0 });
+        if velocity < 0.0 {
+            return Err(Error::NegativeLimit { field: "velocity".into(), joint, value: velocity, time: 0.0 });
         }
         Ok(())
     }

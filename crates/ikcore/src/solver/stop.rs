@@ -25,13 +25,15 @@ impl Default for Stop {
 }
 
 impl Stop {
-    /// Checks that at least the start may be evaluated.
+    /// Checks that at least the start may be evaluated and one step made.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a budget of zero.
     pub fn validate(&self) -> Result<()> {
-        if self.max_evaluations == 0 {
-            return Err(Error::out_of_range("max_evaluations", "at least 1", 0.0));
+        for (name, count) in [("max_evaluations", self.max_evaluations), ("max_iterations", self.max_iterations)] {
+            if count == 0 {
+                return Err(Error::out_of_range(name, "at least 1", 0.0));
+            }
         }
         Ok(())
     }

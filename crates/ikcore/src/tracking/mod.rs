@@ -62,26 +62,41 @@ pub fn track(
 ) -> Result<Record> {
     let stopwatch = Stopwatch::start();
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(robot));
-    let last = reference.len() - 1;
-    limits.validate(reference.time(last))?;
+    limits.validate(reference.time(reference.len() - 1))?;
     let start = match start {
         Some(q) => q.to_vec(),
         None => first_configuration(robot, reference, &limits, options, monitor)?,
     };
     let mut session = Session::new(robot, &start, reference.dt(), limits, options)?;
     let mut record = Record::new(&session, reference.len());
-    let mut step = session.begin(&target(reference, 0));
-    record.push(&session, reference.position(0), &step);
+    let beginning = session.begin(&target(reference, 0));
+    record.push(&session, reference.position(0), &beginning);
+    let finished = follow(reference, &mut session, &mut record, monitor)?;
+    record.finish(!finished, stopwatch.elapsed());
+    Ok(record)
+}
+
+/// Ticks to the end of `reference`; false where the monitor asked to stop before.
+fn follow(
+    reference: &Reference,
+    session: &mut Session<'_>,
+    record: &mut Record,
+    monitor: &mut dyn Monitor,
+) -> Result<bool> {
+    let last = reference.len() - 1;
     for i in 1..=last {
-        step = session.step(&target(reference, i), monitor)?;
-        if step.interrupted {
-            break;
+        // Asked here too: most ticks are over before the evaluator would ask.
+        if !monitor.keep_going() {
+            return Ok(false);
         }
-        record.push(&session, reference.position(i), &step);
+        let step = session.step(&target(reference, i), monitor)?;
+        if step.interrupted {
+            return Ok(false);
+        }
+        record.push(session, reference.position(i), &step);
         monitor.progress(i, last);
     }
-    record.finish(step.interrupted, stopwatch.elapsed());
-    Ok(record)
+    Ok(true)
 }
 
 /// The target of row `i`: a pose where the reference has orientations.

@@ -145,29 +145,43 @@ impl Record {
 
     /// What happened, and what to try.
     pub fn message(&self) -> String {
-        let band = self.tolerance.position;
-        let worst = |from: usize| self.position_error[from..].iter().copied().fold(0.0, f64::max);
+        let last = self.time.len() - 1;
+        if self.status == Status::Interrupted {
+            return format!("interrupted at t = {} s: {}", rounded(self.time[last]), Status::Interrupted.advice());
+        }
+        let band = self.in_words(self.tolerance.position, self.tolerance.rotation);
         let advice = Status::Lost.advice();
-        let (rows, Some(joined)) = (self.time.len(), self.joined()) else {
-            let nearest = self.position_error.iter().copied().fold(f64::INFINITY, f64::min);
-            return format!("never came within {band:.3e} m (nearest {nearest:.3e} m): {advice}");
+        let Some(joined) = self.joined() else {
+            let (position, rotation) = (smallest(&self.position_error), smallest(&self.rotation_error));
+            return format!("never came within {band} (nearest {}): {advice}", self.in_words(position, rotation));
         };
         let since = rounded(self.time[joined]);
-        let outside = self.step_status[joined..].iter().filter(|s| **s != Status::Solved).count();
-        match self.status {
-            Status::Solved => {
-                format!("in the band of {band:.3e} m from t = {since} s on; worst error there {:.3e} m", worst(joined))
-            }
-            Status::Interrupted => {
-                format!("interrupted at t = {} s: {}", rounded(self.time[rows - 1]), Status::Interrupted.advice())
-            }
-            _ => format!(
-                "joined the path at t = {since} s, then outside the band of {band:.3e} m in {outside} of {} steps, by up to {:.3e} m: {advice}",
-                rows - 1,
-                worst(joined),
-            ),
+        let (position, rotation) = (largest(&self.position_error[joined..]), largest(&self.rotation_error[joined..]));
+        let worst = self.in_words(position, rotation);
+        if self.status == Status::Solved {
+            return format!("in the band of {band} from t = {since} s on; worst error there {worst}");
         }
+        let outside = self.step_status[joined..].iter().filter(|status| **status != Status::Solved).count();
+        format!(
+            "joined the path at t = {since} s, then outside the band of {band} in {outside} of {last} steps, by up to {worst}: {advice}"
+        )
     }
+
+    /// Errors (m, rad) with their units; the angle only where orientations were asked for.
+    fn in_words(&self, position: f64, rotation: f64) -> String {
+        let asked = self.rotation_error.iter().any(|error| !error.is_nan());
+        if asked { format!("{position:.3e} m and {rotation:.3e} rad") } else { format!("{position:.3e} m") }
+    }
+}
+
+/// The smallest error; NaN, which was not asked for, does not count.
+fn smallest(errors: &[f64]) -> f64 {
+    errors.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// The largest error; NaN, which was not asked for, does not count.
+fn largest(errors: &[f64]) -> f64 {
+    errors.iter().copied().fold(0.0, f64::max)
 }
 
 /// A time (s) without the digits that sums of dt leave behind.

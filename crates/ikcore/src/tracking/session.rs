@@ -56,6 +56,8 @@ impl<'a> Session<'a> {
         require_positive("dt", dt)?;
         options.solver.validate()?;
         options.tolerance.validate()?;
+        limits.require_for(robot)?;
+        limits.validate(0.0)?;
         let remedy = "this tracker keeps position and velocity limits; leave it out";
         limits.require_none(&[Field::Acceleration, Field::Jerk], "track", remedy)?;
         robot.check("start", start)?;

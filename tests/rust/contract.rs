@@ -1,0 +1,406 @@
+//! The contract that every algorithm keeps, alone and from many starts: one table of solvers and problems, and one check
+//! of each promise over all of it.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
+mod common;
+
+use std::sync::LazyLock;
+use std::time::Duration;
+
+use common::{bits, pose_at, robot};
+use ikcore::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
+use ikcore::problem::Problem;
+use ikcore::rng::{self, LazyRng};
+use ikcore::robot::Robot;
+use ikcore::solver::{
+    Algorithm, AnySolver, Best, Evaluator, Halt, Monitor, MultiStart, Outcome, Status, Stop, Unattended,
+};
+use ikcore::task::{Target, Tolerance};
+
+/// Evaluations between two looks at monitor and clock, and the largest group handed in at once.
+const POLL: usize = 256 + 16;
+
+/// r = s (x - 1/2, 2 (y - x^2), z - 0.3, floor): a bent valley, solved where r'r <= 1e-12 and thus never above a floor.
+/// Its slope s is about that of the tip of a small arm (m per rad), for which the default antennae are long enough.
+#[derive(Clone, Copy)]
+struct Valley {
+    floor: f64,
+}
+
+const SLOPE: f64 = 0.25;
+const BOTTOM: [f64; 3] = [0.5, 0.25, 0.3];
+
+impl Objective for Valley {
+    fn dimension(&self) -> usize {
+        3
+    }
+
+    fn evaluate(&mut self, x: &[f64]) -> Score {
+        self.linearize(x, &mut Linearization::default())
+    }
+}
+
+impl LeastSquares for Valley {
+    fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score {
+        let sloped = |entries: [f64; 6]| entries.map(|entry| SLOPE * entry);
+        out.residual = sloped([x[0] - 0.5, 2.0 * (x[1] - x[0] * x[0]), x[2] - 0.3, self.floor, 0.0, 0.0]);
+        out.columns[0] = sloped([1.0, -4.0 * x[0], 0.0, 0.0, 0.0, 0.0]);
+        out.columns[1] = sloped([0.0, 2.0, 0.0, 0.0, 0.0, 0.0]);
+        out.columns[2] = sloped([0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+        let value = out.residual.iter().map(|r| r * r).sum();
+        Score { value, solved: value <= 1e-12 }
+    }
+}
+
+/// Says of a point, by its number, that its value is not finite.
+type Poison = fn(&[f64], usize) -> Option<f64>;
+
+/// Passes everything on to `inner`, writes down what it saw, and spoils what the poison names.
+struct Probe {
+    inner: Box<dyn LeastSquares>,
+    poison: Poison,
+    seen: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl Probe {
+    fn note(&mut self, x: &[f64], score: Score) -> Score {
+        let number = self.values.len();
+        // A poisoned point claims to be the solution: nobody may believe it.
+        let poisoned = (self.poison)(x, number).map(|value| Score { value, solved: true });
+        let score = poisoned.unwrap_or(score);
+        self.seen.extend_from_slice(x);
+        self.values.push(score.value);
+        score
+    }
+}
+
+impl Objective for Probe {
+    fn dimension(&self) -> usize {
+        self.inner.dimension()
+    }
+
+    fn evaluate(&mut self, x: &[f64]) -> Score {
+        let score = self.inner.evaluate(x);
+        self.note(x, score)
+    }
+
+    fn evaluate_all(&mut self, xs: &[f64], out: &mut [Score]) {
+        self.inner.evaluate_all(xs, out);
+        for (x, score) in xs.chunks_exact(self.dimension()).zip(out) {
+            *score = self.note(x, *score);
+        }
+    }
+
+    fn propose_start(&mut self, attempt: usize, bounds: &Bounds, rng: &mut LazyRng, x: &mut [f64]) {
+        self.inner.propose_start(attempt, bounds, rng, x);
+    }
+}
+
+impl LeastSquares for Probe {
+    fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score {
+        let score = self.inner.linearize(x, out);
+        self.note(x, score)
+    }
+}
+
+static ARM: LazyLock<Robot> = LazyLock::new(|| robot("iiwa14"));
+static POSE: LazyLock<Target> = LazyLock::new(|| pose_at(&ARM, &[0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1]));
+
+/// What is minimised, where from, and under which rules.
+struct Case {
+    name: &'static str,
+    problem: fn() -> Box<dyn LeastSquares>,
+    start: Vec<f64>,
+    bounds: Bounds,
+    stop: Stop,
+    seed: u64,
+    poison: Poison,
+}
+
+fn healthy(_: &[f64], _: usize) -> Option<f64> {
+    None
+}
+
+fn valley() -> Case {
+    Case {
+        name: "valley",
+        problem: || Box::new(Valley { floor: 0.0 }),
+        start: vec![-0.5, -1.0, 0.9],
+        bounds: Bounds::new(&[-1.0, -1.0, 0.1], &[1.0, 2.0, 1.0]).unwrap(),
+        stop: Stop::default(),
+        seed: 7,
+        poison: healthy,
+    }
+}
+
+/// A valley whose bottom does not count as solved.
+fn bottomless() -> Case {
+    Case { name: "valley above a floor", problem: || Box::new(Valley { floor: 1.0 }), ..valley() }
+}
+
+fn arm() -> Case {
+    let limits = |side: fn(&ikcore::robot::Joint) -> f64| ARM.joints().iter().map(side).collect::<Vec<_>>();
+    Case {
+        name: "pose of iiwa14",
+        problem: || Box::new(Problem::new(&ARM, &POSE, Tolerance::default())),
+        start: vec![0.1; 7],
+        bounds: Bounds::new(&limits(|joint| joint.lower), &limits(|joint| joint.upper)).unwrap(),
+        ..valley()
+    }
+}
+
+/// Every algorithm, alone and from many starts.
+fn solvers() -> Vec<AnySolver> {
+    let all = Algorithm::all().into_iter();
+    all.flat_map(|algorithm| [AnySolver::Single(algorithm.clone()), AnySolver::MultiStart(MultiStart::new(algorithm))])
+        .collect()
+}
+
+/// Whether the solver's path depends on its seed even without a restart.
+fn is_random(solver: &AnySolver) -> bool {
+    *solver != AnySolver::Single(Algorithm::LevenbergMarquardt(Default::default()))
+}
+
+struct Run {
+    outcome: Outcome,
+    evaluations: usize,
+    best: Best,
+    seen: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl Case {
+    fn with_stop(self, stop: Stop) -> Self {
+        Self { stop, ..self }
+    }
+
+    fn run(&self, solver: &AnySolver) -> Run {
+        self.run_watched(solver, &mut Unattended)
+    }
+
+    /// Runs the solver and checks what must hold whatever the case.
+    fn run_watched(&self, solver: &AnySolver, monitor: &mut dyn Monitor) -> Run {
+        let mut probe = Probe { inner: (self.problem)(), poison: self.poison, seen: vec![], values: vec![] };
+        let mut rng = rng::stream(self.seed, 0);
+        let objective: &mut dyn LeastSquares = &mut probe;
+        let mut evaluator = Evaluator::new(objective, &self.bounds, self.stop, &mut rng, monitor);
+        let outcome = solver.run(&mut evaluator, &self.start);
+        let (evaluations, best) = (evaluator.evaluations(), evaluator.best().clone());
+        let run = Run { outcome, evaluations, best, seen: probe.seen, values: probe.values };
+        let what = format!("{} by {solver:?}", self.name);
+        run.check_points(self, &what);
+        run.check_best(&what);
+        run.check_counts(self, &what);
+        run
+    }
+}
+
+impl Run {
+    fn check_points(&self, case: &Case, what: &str) {
+        assert_eq!(self.seen[..case.start.len()], case.start, "{what}: the start comes first");
+        for x in self.seen.chunks_exact(case.start.len()) {
+            assert!(case.bounds.contains(x) && x.iter().all(|v| v.is_finite()), "{what}: {x:?} is outside the box");
+        }
+    }
+
+    /// The best is the lowest finite value seen, at the point where it was seen; without any, the start.
+    fn check_best(&self, what: &str) {
+        let Best { x, value, solved } = &self.best;
+        let lowest = self.values.iter().copied().filter(|v| v.is_finite()).fold(f64::INFINITY, f64::min);
+        assert!(*value == lowest || *solved, "{what}: kept {value}, saw {lowest}");
+        let at = self.values.iter().position(|v| v == value).unwrap_or(0);
+        let seen = &self.seen[at * x.len()..(at + 1) * x.len()];
+        assert_eq!(bits(x), bits(seen), "{what}: the best value belongs to another point");
+        assert_eq!(*solved, self.outcome.halt == Halt::Solved, "{what}");
+    }
+
+    fn check_counts(&self, case: &Case, what: &str) {
+        let Outcome { halt, iterations } = self.outcome;
+        let made = self.values.len();
+        assert!(made <= case.stop.max_evaluations, "{what}: {made} evaluations");
+        assert!(iterations <= case.stop.max_iterations, "{what}: {iterations} iterations");
+        if !matches!(halt, Halt::Interrupted | Halt::Time) {
+            assert_eq!(made, self.evaluations, "{what}: evaluations made and reported");
+        }
+        if halt == Halt::Budget {
+            let spent = made == case.stop.max_evaluations || iterations == case.stop.max_iterations;
+            assert!(spent, "{what}: gave up after {made} evaluations and {iterations} iterations");
+        }
+    }
+}
+
+#[test]
+fn all_solve_the_valley_and_come_near_the_pose() {
+    for solver in solvers() {
+        let run = valley().run(&solver);
+        assert_eq!(run.outcome.status(), Status::Solved, "{solver:?}: {:?}", run.best);
+        if matches!(solver, AnySolver::MultiStart(_)) {
+            // Six rows at once are slow work for a beetle: the default budget brings it near, not there.
+            let run = arm().run(&solver);
+            assert!(run.best.value < 1e-2, "{solver:?}: {:?}", run.best);
+        }
+    }
+}
+
+#[test]
+fn budgets_are_kept_to_the_last_evaluation() {
+    for solver in solvers() {
+        for case in [bottomless, arm] {
+            for max_evaluations in [1, 2, 3, 4, 5, 7, 8, 9, 50, 151, 1000] {
+                let run = case().with_stop(Stop { max_evaluations, ..Stop::default() }).run(&solver);
+                let gave_up_before = run.evaluations < max_evaluations;
+                let may = matches!(run.outcome.halt, Halt::Stalled | Halt::Solved);
+                assert!(!gave_up_before || may, "{solver:?}: {:?} after {}", run.outcome, run.evaluations);
+            }
+        }
+    }
+}
+
+#[test]
+fn iterations_are_limited() {
+    for solver in solvers() {
+        for max_iterations in [1, 2, 3] {
+            let run = bottomless().with_stop(Stop { max_iterations, ..Stop::default() }).run(&solver);
+            assert_eq!(run.outcome, Outcome { halt: Halt::Budget, iterations: max_iterations }, "{solver:?}");
+        }
+    }
+}
+
+#[test]
+fn a_start_that_is_solved_is_returned_untouched() {
+    for solver in solvers() {
+        let run = Case { start: BOTTOM.to_vec(), ..valley() }.run(&solver);
+        assert_eq!(run.outcome, Outcome { halt: Halt::Solved, iterations: 0 }, "{solver:?}");
+        assert_eq!((run.evaluations, bits(&run.best.x)), (1, bits(&BOTTOM)), "{solver:?}");
+    }
+}
+
+#[test]
+fn nothing_finite_anywhere_leaves_the_start() {
+    let poisons: [Poison; 3] = [|_, _| Some(f64::NAN), |_, _| Some(f64::INFINITY), |_, _| Some(f64::NEG_INFINITY)];
+    for solver in solvers() {
+        for poison in poisons {
+            let stop = Stop { max_evaluations: 3000, ..Stop::default() };
+            let run = Case { poison, ..arm().with_stop(stop) }.run(&solver);
+            assert_eq!(bits(&run.best.x), bits(&[0.1; 7]), "{solver:?}");
+            assert_eq!((run.best.value, run.best.solved), (f64::INFINITY, false), "{solver:?}");
+        }
+    }
+}
+
+#[test]
+fn a_space_that_is_half_poisoned_is_still_searched() {
+    for solver in solvers() {
+        let run = Case { poison: |x, _| (x[0] < -0.6).then_some(f64::NAN), ..valley() }.run(&solver);
+        assert_eq!(run.outcome.halt, Halt::Solved, "{solver:?}");
+    }
+}
+
+#[test]
+fn a_poisoned_start_is_left_by_those_that_draw() {
+    for solver in solvers() {
+        let poison: Poison = |_, number| (number == 0).then_some(f64::INFINITY);
+        let run = Case { poison, ..valley() }.run(&solver);
+        let expected = if is_random(&solver) { Halt::Solved } else { Halt::Stalled };
+        assert_eq!(run.outcome.halt, expected, "{solver:?}");
+    }
+}
+
+#[test]
+fn the_seed_decides_every_draw() {
+    for solver in solvers() {
+        let points = |seed| {
+            let poison: Poison = |_, number| (number == 0).then_some(f64::NAN);
+            let stop = Stop { max_evaluations: 500, ..Stop::default() };
+            bits(&Case { seed, poison, ..arm().with_stop(stop) }.run(&solver).seen)
+        };
+        assert_eq!(points(1), points(1), "{solver:?}");
+        assert_eq!(points(1) != points(2), is_random(&solver), "{solver:?}");
+    }
+}
+
+#[test]
+fn a_locked_entry_never_moves() {
+    let bounds = Bounds::new(&[-1.0, -1.0, 0.3], &[1.0, 2.0, 0.3]).unwrap();
+    for solver in solvers() {
+        let case = Case { bounds: bounds.clone(), start: vec![-0.5, -1.0, 0.3], ..valley() };
+        assert_eq!(case.run(&solver).outcome.halt, Halt::Solved, "{solver:?}");
+    }
+}
+
+#[test]
+fn a_box_of_one_point_holds_everybody() {
+    let bounds = Bounds::new(&[0.0; 3], &[0.0; 3]).unwrap();
+    for solver in solvers() {
+        let stop = Stop { max_evaluations: 2000, ..Stop::default() };
+        let run = Case { bounds: bounds.clone(), start: vec![0.0; 3], ..valley().with_stop(stop) }.run(&solver);
+        assert!(matches!(run.outcome.halt, Halt::Stalled | Halt::Budget), "{solver:?}: {:?}", run.outcome);
+    }
+}
+
+#[test]
+fn a_box_without_walls_is_searched_with_finite_points() {
+    let (minus, plus) = (f64::NEG_INFINITY, f64::INFINITY);
+    for (lower, upper) in [([minus; 3], [plus; 3]), ([minus, -3.0, minus], [3.0, plus, plus])] {
+        for solver in solvers() {
+            let case = Case { bounds: Bounds::new(&lower, &upper).unwrap(), ..valley() };
+            assert_eq!(case.run(&solver).outcome.halt, Halt::Solved, "{solver:?}");
+        }
+    }
+}
+
+/// Lets the run go on `left` more times.
+struct Countdown {
+    left: usize,
+    asked_in_vain: usize,
+}
+
+impl Monitor for Countdown {
+    fn keep_going(&mut self) -> bool {
+        if self.left == 0 {
+            self.asked_in_vain += 1;
+            return false;
+        }
+        self.left -= 1;
+        true
+    }
+}
+
+#[test]
+fn a_monitor_that_says_stop_is_obeyed_at_once() {
+    for solver in solvers() {
+        for left in [0, 1, 3] {
+            let mut monitor = Countdown { left, asked_in_vain: 0 };
+            let run = bottomless().run_watched(&solver, &mut monitor);
+            if run.outcome.halt == Halt::Stalled && run.values.len() < POLL {
+                continue; // over before anybody could ask
+            }
+            assert_eq!(run.outcome.status(), Status::Interrupted, "{solver:?}");
+            assert!(run.values.len() <= (left + 1) * POLL, "{solver:?}: {} evaluations", run.values.len());
+            assert_eq!(monitor.asked_in_vain, 1, "{solver:?}");
+        }
+    }
+}
+
+#[test]
+fn no_time_ends_the_run_at_the_first_look_at_the_clock() {
+    for solver in solvers() {
+        let run = bottomless().with_stop(Stop { max_time: Some(Duration::ZERO), ..Stop::default() }).run(&solver);
+        assert!(matches!(run.outcome.halt, Halt::Time | Halt::Stalled), "{solver:?}: {:?}", run.outcome);
+        assert!(run.values.len() <= POLL, "{solver:?}: {} evaluations", run.values.len());
+    }
+}
+
+#[test]
+fn a_value_below_the_asked_one_is_enough() {
+    for solver in solvers() {
+        let run = valley().with_stop(Stop { value_below: Some(0.001), ..Stop::default() }).run(&solver);
+        assert_eq!(run.outcome.status(), Status::Improved, "{solver:?}");
+        assert!(run.best.value < 0.001, "{solver:?}: {:?}", run.best);
+        // The start is below it: one step is made all the same.
+        let run = bottomless().with_stop(Stop { value_below: Some(1e9), ..Stop::default() }).run(&solver);
+        assert_eq!(run.outcome, Outcome { halt: Halt::BelowValue, iterations: 1 }, "{solver:?}");
+    }
+}

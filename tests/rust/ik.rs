@@ -1,0 +1,236 @@
+//! Solving: derivatives of the residuals, reachable and unreachable targets, starts, seeds and limits.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
+mod common;
+
+use common::{bits, message, pose_at, position_at, robot};
+use ikcore::ik::{Solution, SolveOptions, solve};
+use ikcore::limits::{Field, Limits, Profile, Sinusoid};
+use ikcore::math::{Frame, pose};
+use ikcore::nalgebra::{Rotation3, Vector3};
+use ikcore::objective::{LeastSquares, Linearization};
+use ikcore::problem::Problem;
+use ikcore::rng;
+use ikcore::robot::Robot;
+use ikcore::solver::multi_start::RestartRule;
+use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, MultiStart, Status, Stop, Unattended, Variant};
+use ikcore::task::{Target, Tolerance};
+
+fn solved(robot: &Robot, target: &Target, options: &SolveOptions) -> Solution {
+    solve(robot, target, options, &mut Unattended).unwrap()
+}
+
+fn configurations(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
+    let flat = robot.random_configurations(count, &mut rng::stream(11, 0));
+    flat.chunks_exact(robot.dof()).map(<[f64]>::to_vec).collect()
+}
+
+/// Compares the columns of `linearize` with central differences of its residual.
+fn assert_derivative(robot: &Robot, target: &Target, q: &[f64]) {
+    let mut problem = Problem::new(robot, target, Tolerance::default());
+    let mut residual_at = |q: &[f64]| {
+        let mut out = Linearization::default();
+        let score = problem.linearize(q, &mut out);
+        let squares: f64 = out.residual.iter().map(|r| r * r).sum();
+        assert!((score.value - squares).abs() <= 1e-14 * squares, "{}: value and residual differ", robot.name());
+        (out.residual, out.columns)
+    };
+    let (_, columns) = residual_at(q);
+    let h = 1e-6;
+    for j in 0..q.len() {
+        let mut moved = q.to_vec();
+        moved[j] = q[j] + h;
+        let (ahead, _) = residual_at(&moved);
+        moved[j] = q[j] - h;
+        let (behind, _) = residual_at(&moved);
+        for row in 0..6 {
+            let difference = (ahead[row] - behind[row]) / (2.0 * h);
+            let error = (difference - columns[j][row]).abs();
+            let size = columns[j].iter().fold(1.0_f64, |size, v| size.max(v.abs()));
+            assert!(error < 1e-7 * size, "{}: row {row}, joint {j}: {error:.3e}", robot.name());
+        }
+    }
+}
+
+#[test]
+fn position_residual_has_its_derivative() {
+    for name in ["iiwa14", "ur5e", "planar5", "hydraulic3", "kr210"] {
+        let robot = robot(name);
+        for q in configurations(&robot, 5) {
+            assert_derivative(&robot, &Target::Position([0.3, -0.2, 0.5]), &q);
+        }
+    }
+}
+
+#[test]
+fn pose_residual_has_its_derivative_up_to_three_radians_away() {
+    for name in ["iiwa14", "panda", "ur5e", "kr210", "gen3", "hydraulic3"] {
+        let robot = robot(name);
+        for (q, axis) in configurations(&robot, 4).iter().zip([[1.0, 0.0, 0.0], [0.2, -0.8, 0.5], [0.0, 0.6, 0.8]]) {
+            for angle in [0.0, 1e-9, 1e-4, 0.1, 1.0, 2.0, 2.9, 3.0] {
+                let tip = robot.fk(q).unwrap();
+                let turn = Rotation3::new(Vector3::from(axis).normalize() * angle);
+                let target = pose::translation(0.1, 0.2, -0.3) * turn * tip;
+                assert_derivative(&robot, &Target::from(&target), q);
+            }
+        }
+    }
+}
+
+#[test]
+fn arms_of_six_joints_and_more_reach_what_is_reachable() {
+    for robot in Robot::names().map(robot).filter(|robot| robot.dof() >= 6) {
+        for (i, q) in configurations(&robot, 40).iter().enumerate() {
+            let options = SolveOptions { seed: i as u64, ..SolveOptions::default() };
+            let solution = solved(&robot, &pose_at(&robot, q), &options);
+            assert_eq!(solution.status, Status::Solved, "{} target {i}: {}", robot.name(), solution.message());
+            assert_honest(&robot, &pose_at(&robot, q), &solution);
+        }
+    }
+}
+
+#[test]
+fn positions_are_reached_by_every_arm() {
+    for robot in Robot::names().map(robot) {
+        for (i, q) in configurations(&robot, 20).iter().enumerate() {
+            let options = SolveOptions { seed: i as u64, ..SolveOptions::default() };
+            let solution = solved(&robot, &position_at(&robot, q), &options);
+            assert_eq!(solution.status, Status::Solved, "{} target {i}: {}", robot.name(), solution.message());
+            assert!(solution.error.rotation.is_nan(), "nothing was asked of the orientation");
+            assert_honest(&robot, &position_at(&robot, q), &solution);
+        }
+    }
+}
+
+/// The solution lies inside the limits, and its errors are those of plain forward kinematics.
+fn assert_honest(robot: &Robot, target: &Target, solution: &Solution) {
+    for (value, joint) in solution.q.iter().zip(robot.joints()) {
+        assert!(joint.lower <= *value && *value <= joint.upper, "{}: {value}", joint.name);
+    }
+    let tip = robot.fk(&solution.q).unwrap();
+    let (Target::Position(origin) | Target::Pose(Frame { origin, .. })) = target;
+    let distance = (tip.translation.vector - Vector3::from(*origin)).norm();
+    assert!((distance - solution.error.position).abs() < 1e-12, "{distance} {:?}", solution.error);
+    if let Target::Pose(frame) = target {
+        let wanted = ikcore::math::Pose::from(*frame).rotation;
+        // |R - R_d| = 2 sqrt(2) sin(angle / 2)
+        let chord = (tip.rotation.matrix() - wanted.matrix()).norm();
+        let angle = 2.0 * (chord / 8.0_f64.sqrt()).asin();
+        assert!((angle - solution.error.rotation).abs() < 1e-12, "{angle} {:?}", solution.error);
+    }
+}
+
+#[test]
+fn a_target_out_of_reach_is_approached_and_said_to_be() {
+    let planar = robot("planar5");
+    let options = SolveOptions { stop: Stop { max_evaluations: 5000, ..Stop::default() }, ..SolveOptions::default() };
+    let solution = solved(&planar, &Target::Position([4.0, 4.0, 0.0]), &options);
+    let shortfall = 32.0_f64.sqrt() - 5.0;
+    assert_eq!((solution.status, solution.evaluations), (Status::BudgetSpent, 5000));
+    let distance = solution.error.position;
+    assert!((shortfall..1.01 * shortfall).contains(&distance), "{:?}", solution.error);
+    let advice = "raise the budget in stop=Stop(...); the target may be out of reach";
+    assert_eq!(solution.message(), format!("budget spent {distance:.3e} m away: {advice}"));
+}
+
+#[test]
+fn a_pose_out_of_reach_is_approached_too() {
+    let iiwa = robot("iiwa14");
+    let target = Target::from(&pose::translation(3.0, 0.0, 0.36));
+    let options = SolveOptions { stop: Stop { max_evaluations: 5000, ..Stop::default() }, ..SolveOptions::default() };
+    let solution = solved(&iiwa, &target, &options);
+    // Stretched out, the tip lies 0.946 m from the shoulder.
+    let shortfall = 3.0 - 0.946;
+    assert_eq!(solution.status, Status::BudgetSpent);
+    assert!((shortfall - 1e-9..1.2 * shortfall).contains(&solution.error.position), "{:?}", solution.error);
+}
+
+#[test]
+fn one_start_alone_stalls_with_advice() {
+    let solver = AnySolver::Single(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default()));
+    let options = SolveOptions { solver, start: Some(vec![0.1; 5]), ..SolveOptions::default() };
+    let solution = solved(&robot("planar5"), &Target::Position([0.0, 7.0, 0.0]), &options);
+    assert_eq!((solution.status, solution.restarts), (Status::Stalled, 0));
+    let advice = "try another start or seed, or MultiStart; the target may be out of reach";
+    assert_eq!(solution.message(), format!("no further progress 2.000e0 m away: {advice}"));
+}
+
+#[test]
+fn a_start_that_is_solved_comes_back_as_it_is() {
+    let iiwa = robot("iiwa14");
+    let start = vec![0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
+    let options = SolveOptions { start: Some(start.clone()), ..SolveOptions::default() };
+    let solution = solved(&iiwa, &pose_at(&iiwa, &start), &options);
+    assert_eq!((solution.q.to_vec(), solution.evaluations, solution.iterations), (start, 1, 0));
+    assert_eq!(solution.message(), "solved to 0.000e0 m and 0.000e0 rad");
+}
+
+#[test]
+fn a_start_nearby_is_used() {
+    let iiwa = robot("iiwa14");
+    let goal = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
+    let options = SolveOptions { start: Some(goal.map(|q| q + 0.01).to_vec()), ..SolveOptions::default() };
+    let solution = solved(&iiwa, &pose_at(&iiwa, &goal), &options);
+    assert_eq!((solution.status, solution.restarts), (Status::Solved, 0));
+    assert!(solution.q.iter().zip(goal).all(|(q, goal)| (q - goal).abs() < 0.05), "{:?}", solution.q);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits() {
+    let ur = robot("ur5e");
+    let target = pose_at(&ur, &[0.4, -1.0, 1.2, -0.5, 0.9, 0.2]);
+    let q = |seed| bits(&solved(&ur, &target, &SolveOptions { seed, ..SolveOptions::default() }).q);
+    assert_eq!(q(5), q(5));
+    assert_ne!(q(5), q(6));
+}
+
+#[test]
+fn beetles_solve_positions() {
+    let iiwa = robot("iiwa14");
+    for variant in [Variant::Star, Variant::Chain, Variant::Greedy] {
+        // A beetle gains unevenly from pass to pass: it is given more patience than a descent.
+        let rule = RestartRule { patience: 20, ..RestartRule::default() };
+        let solver = AnySolver::MultiStart(MultiStart { solver: Algorithm::Bas(Bas::of(variant)), rule });
+        let mut reached = 0;
+        for (i, q) in configurations(&iiwa, 50).iter().enumerate() {
+            let options = SolveOptions { solver: solver.clone(), seed: i as u64, ..SolveOptions::default() };
+            let solution = solved(&iiwa, &position_at(&iiwa, q), &options);
+            assert_honest(&iiwa, &position_at(&iiwa, q), &solution);
+            assert!(solution.error.position < 0.01, "{variant} target {i}: {}", solution.message());
+            reached += usize::from(solution.status == Status::Solved);
+        }
+        assert!(reached >= 45, "{variant} reached {reached} of 50 targets");
+    }
+}
+
+#[test]
+fn given_limits_replace_those_of_the_robot() {
+    let iiwa = robot("iiwa14");
+    let limits = Limits::of(&iiwa).replace(Field::Lower, vec![Profile::Constant(-0.5)]).unwrap();
+    let limits = limits.replace(Field::Upper, vec![Profile::Constant(0.9)]).unwrap();
+    let options = SolveOptions { limits: Some(limits), ..SolveOptions::default() };
+    let solution = solved(&iiwa, &pose_at(&iiwa, &[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]), &options);
+    assert_eq!(solution.status, Status::Solved);
+    assert!(solution.q.iter().all(|q| (-0.5..=0.9).contains(q)), "{:?}", solution.q);
+}
+
+#[test]
+fn limits_that_a_single_configuration_cannot_have_are_refused() {
+    let iiwa = robot("iiwa14");
+    let target = Target::Position([0.4, 0.3, 1.0]);
+    let refused = |field, profile: Profile| {
+        let limits = Limits::of(&iiwa).replace(field, vec![profile]).unwrap();
+        let options = SolveOptions { limits: Some(limits), ..SolveOptions::default() };
+        message(solve(&iiwa, &target, &options, &mut Unattended))
+    };
+    assert_eq!(
+        refused(Field::Acceleration, Profile::Constant(1.0)),
+        "solve cannot honour acceleration limits: a single configuration has no motion; leave it out"
+    );
+    let swinging = Sinusoid { mean: 2.0, amplitude: 0.1, angular_frequency: 1.0, phase: 0.0 };
+    assert_eq!(
+        refused(Field::Upper, Profile::Sinusoid(swinging)),
+        "solve cannot honour time-varying upper limits: one configuration has no time; give numbers"
+    );
+}

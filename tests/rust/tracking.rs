@@ -1,0 +1,425 @@
+//! Tracking: the experiments of Cheng et al. (2020) over many seeds, limits that are never broken, targets that cannot be
+//! followed, and what a record holds.
+//!
+//! The bounds on errors and counts are those of this library's own study of the paper, which prints no seeds, bands or
+//! numbers of evaluations; they leave 25 to 50 per cent over the extremes of a hundred seeds.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
+mod common;
+
+use std::f64::consts::FRAC_PI_2;
+
+use common::{bits, robot};
+use ikcore::limits::{Field, LimitAt, Limits, Profile, Sinusoid};
+use ikcore::nalgebra::{Rotation3, Vector3};
+use ikcore::path::{Circle, Path, Plane, Polyline, Reference};
+use ikcore::robot::Robot;
+use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, Monitor, Status, Unattended, Variant};
+use ikcore::task::Tolerance;
+use ikcore::tracking::{Record, TrackOptions, track};
+
+const DT: f64 = 0.2;
+const DURATION: f64 = 30.0;
+const SEEDS: u64 = 20;
+
+/// Half a metre (5-link) and a decimetre (iiwa) off the path's first point.
+const OFF5: [f64; 5] = [0.7197427192, -0.2900667941, -0.1974717864, -0.3088906663, 0.3763813181];
+const OFF7: [f64; 7] = [0.6449219327, 0.2036664288, 0.1969337234, -0.7713896072, 0.2027968992, 0.7179441060, 0.1];
+
+/// A robot on the paper's circle, within limit + 0.004 sin t (rad/s) on every joint.
+struct Task {
+    robot: Robot,
+    start: Vec<f64>,
+    circle: Circle,
+    limit: f64,
+}
+
+fn circle(center: [f64; 3], diameter: f64) -> Circle {
+    Circle::new(Plane::xy(center).unwrap(), diameter, DURATION).unwrap()
+}
+
+fn five_links() -> Task {
+    let circle = circle([4.0, 1.0, 0.0], 1.4);
+    Task { robot: robot("planar5"), start: OFF5.to_vec(), circle, limit: 0.2 }
+}
+
+fn iiwa() -> Task {
+    let circle = circle([0.3, 0.3, 1.0], 0.2);
+    Task { robot: robot("iiwa14"), start: OFF7.to_vec(), circle, limit: 2.0 }
+}
+
+fn sinusoid(mean: f64) -> Sinusoid {
+    Sinusoid { mean, amplitude: 0.004, angular_frequency: 1.0, phase: 0.0 }
+}
+
+fn velocity_limits(robot: &Robot, profile: Profile) -> Limits {
+    Limits::of(robot).replace(Field::Velocity, vec![profile]).unwrap()
+}
+
+fn beetle(variant: Variant, c1: f64, explorations: usize) -> AnySolver {
+    AnySolver::Single(Algorithm::Bas(Bas { variant, c1, explorations, ..Bas::default() }))
+}
+
+fn descent() -> AnySolver {
+    AnySolver::Single(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default()))
+}
+
+impl Task {
+    fn reference(&self) -> Reference {
+        Path::new(self.circle.clone()).sample(DT).unwrap()
+    }
+
+    fn options(&self, solver: AnySolver, band: f64, seed: u64) -> TrackOptions {
+        TrackOptions {
+            solver,
+            tolerance: Tolerance { position: band, ..Tolerance::default() },
+            limits: Some(velocity_limits(&self.robot, Profile::Sinusoid(sinusoid(self.limit)))),
+            seed,
+            ..TrackOptions::default()
+        }
+    }
+
+    fn track_with(&self, options: &TrackOptions) -> Record {
+        track(&self.robot, &self.reference(), Some(&self.start), options, &mut Unattended).unwrap()
+    }
+
+    /// Tracks, and checks what holds whatever becomes of the track.
+    fn track(&self, solver: AnySolver, band: f64, seed: u64) -> Record {
+        let record = self.track_with(&self.options(solver, band, seed));
+        self.check(&record, band);
+        record
+    }
+
+    fn check(&self, record: &Record, band: f64) {
+        assert_eq!(record.time.len(), 151, "time always advances");
+        assert_eq!(record.max_violation, 0.0);
+        let n = record.dof;
+        for i in 1..record.time.len() {
+            let (from, to) = (record.time[i - 1], record.time[i]);
+            // The limit's smallest value over the tick, counted out.
+            let limit = (0..=100).map(|k| sinusoid(self.limit).at(from + (to - from) * f64::from(k) / 100.0));
+            let limit = limit.fold(f64::INFINITY, f64::min);
+            for j in 0..n {
+                let (q, before, joint) = (record.q[i * n + j], record.q[(i - 1) * n + j], &self.robot.joints()[j]);
+                assert!(((q - before) / DT).abs() <= limit + 1e-12, "row {i}, joint {j}");
+                assert!(joint.lower <= q && q <= joint.upper, "row {i}, joint {j}: {q}");
+            }
+            let inside = record.position_error[i] <= band;
+            assert_eq!(record.step_status[i] == Status::Solved, inside, "row {i}: {}", record.position_error[i]);
+        }
+    }
+}
+
+/// Mean error from step 75 on (m).
+fn steady_error(record: &Record) -> f64 {
+    let errors = &record.position_error[76..];
+    errors.iter().sum::<f64>() / errors.len() as f64
+}
+
+/// Root mean square of the change of joint velocity from tick to tick (rad/s), from step 75 on.
+fn roughness(record: &Record) -> f64 {
+    let n = record.dof;
+    let changes: Vec<f64> = (76 * n..record.qd.len()).map(|i| record.qd[i] - record.qd[i - n]).collect();
+    (changes.iter().map(|change| change * change).sum::<f64>() / changes.len() as f64).sqrt()
+}
+
+fn count(record: &Record, status: Status) -> usize {
+    record.step_status[1..].iter().filter(|step| **step == status).count()
+}
+
+/// The mean over the seeds of the steady error, once each track was in its band by step 30 and stayed there within
+/// its budget of evaluations.
+fn mean_steady_error(task: &Task, solver: &AnySolver, band: f64, most_evaluations: usize) -> f64 {
+    let tracks = (1..=SEEDS).map(|seed| {
+        let record = task.track(solver.clone(), band, seed);
+        let name = format!("{} seed {seed}", task.robot.name());
+        assert_eq!(record.status, Status::Solved, "{name}: {}", record.message());
+        assert_eq!(count(&record, Status::Capped), 0, "{name}");
+        assert!(record.joined().unwrap() <= 30, "{name} joined at step {:?}", record.joined());
+        assert!(record.evaluations() <= most_evaluations, "{name}: {} evaluations", record.evaluations());
+        steady_error(&record)
+    });
+    tracks.sum::<f64>() / SEEDS as f64
+}
+
+#[test]
+fn five_links_track_to_twenty_micrometres() {
+    let star = mean_steady_error(&five_links(), &beetle(Variant::Star, 1.0, 50), 4e-5, 140_000);
+    assert!((1.5e-5..2.5e-5).contains(&star), "{star:.3e}");
+    let chain = mean_steady_error(&five_links(), &beetle(Variant::Chain, 0.3, 30), 5e-5, 70_000);
+    assert!((1.5e-5..2.5e-5).contains(&chain), "{chain:.3e}");
+}
+
+#[test]
+fn iiwa_tracks_to_ten_micrometres() {
+    let star = mean_steady_error(&iiwa(), &beetle(Variant::Star, 3.0, 50), 1.7e-5, 200_000);
+    assert!((8e-6..1.3e-5).contains(&star), "{star:.3e}");
+    let chain = mean_steady_error(&iiwa(), &beetle(Variant::Chain, 1.0, 30), 2.2e-5, 65_000);
+    assert!((8e-6..1.3e-5).contains(&chain), "{chain:.3e}");
+}
+
+#[test]
+fn iiwa_tracks_to_a_millimetre_in_few_evaluations() {
+    let chain = mean_steady_error(&iiwa(), &beetle(Variant::Chain, 1.0, 30), 1e-3, 25_000);
+    assert!((3e-4..7e-4).contains(&chain), "{chain:.3e}");
+}
+
+#[test]
+fn greedy_beetle_tracks_to_a_nanometre() {
+    let solver = beetle(Variant::Greedy, 3.0, 5);
+    let record = iiwa().track(solver, 1e-9, 1);
+    assert_eq!(record.status, Status::Solved, "{}", record.message());
+}
+
+/// The mean over five seeds of (steps to the band, roughness, evaluations) for a star.
+fn star_trend(task: &Task, c1: f64, explorations: usize, band: f64) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for seed in 1..=5 {
+        let record = task.track(beetle(Variant::Star, c1, explorations), band, seed);
+        let figures = [record.joined().unwrap() as f64, roughness(&record), record.evaluations() as f64];
+        sum = std::array::from_fn(|k| sum[k] + figures[k] / 5.0);
+    }
+    sum
+}
+
+#[test]
+fn more_explorations_join_sooner_and_smoother_at_more_cost() {
+    let (few, many) = (star_trend(&five_links(), 1.0, 5, 4e-5), star_trend(&five_links(), 1.0, 200, 4e-5));
+    assert!(many[0] < 0.7 * few[0] && many[1] < 0.9 * few[1] && many[2] > 5.0 * few[2], "{few:?} {many:?}");
+}
+
+#[test]
+fn longer_antennae_cost_less_and_shake_more() {
+    let (short, long) = (star_trend(&five_links(), 0.3, 50, 4e-5), star_trend(&five_links(), 1.0, 50, 4e-5));
+    assert!(2.0 * long[2] <= short[2] && long[1] >= 2.0 * short[1], "{short:?} {long:?}");
+}
+
+#[test]
+fn a_circle_that_leaves_the_reach_is_followed_where_it_can_be() {
+    let task = Task { circle: circle([4.0, 1.0, 0.0], 2.2), ..five_links() };
+    for (solver, band) in
+        [(beetle(Variant::Star, 1.0, 50), 4e-5), (beetle(Variant::Chain, 0.3, 30), 5e-5), (descent(), 1e-6)]
+    {
+        let record = task.track(solver.clone(), band, 1);
+        assert_eq!(record.status, Status::Lost, "{solver:?}: {}", record.message());
+        let capped = count(&record, Status::Capped);
+        assert!((5..40).contains(&capped), "{solver:?}: {capped} capped steps");
+        let worst = record.position_error[76..].iter().copied().fold(0.0, f64::max);
+        // At its farthest the circle is 0.22 m out of reach, and the arm must slow down to turn there.
+        assert!(worst < 0.35, "{solver:?}: {worst}");
+        // The circle begins and ends out of reach; half-way round it is well inside.
+        assert_eq!(record.step_status[60..90], [Status::Solved; 30], "{solver:?}");
+    }
+}
+
+#[test]
+fn limits_too_small_to_follow_end_in_statuses() {
+    let task = Task { limit: 0.02, ..five_links() };
+    for (solver, band) in
+        [(beetle(Variant::Star, 1.0, 50), 4e-5), (beetle(Variant::Chain, 0.3, 30), 5e-5), (descent(), 1e-6)]
+    {
+        let record = task.track(solver.clone(), band, 1);
+        assert!(record.status != Status::Solved, "{solver:?}: {}", record.message());
+        let capped = count(&record, Status::Capped);
+        assert!((50..150).contains(&capped), "{solver:?}: {capped} capped steps");
+        assert!(record.position_error.iter().all(|error| *error < 2.0), "{solver:?}: the best is kept");
+        // A capped step is worse than the one before only because the path moved on: standing still is no better.
+        for i in (1..151).filter(|i| record.step_status[*i] == Status::Capped) {
+            let before = task.robot.tip_position(&record.q[(i - 1) * 5..i * 5]);
+            let wanted = record.reference[i];
+            let standing = (0..3).map(|k| (before[k] - wanted[k]).powi(2)).sum::<f64>().sqrt();
+            assert!(record.position_error[i] <= standing, "{solver:?}: row {i}");
+        }
+    }
+}
+
+#[test]
+fn a_descent_tracks_to_a_nanometre() {
+    for task in [five_links(), iiwa()] {
+        let record = task.track(descent(), 1e-9, 0);
+        assert_eq!(record.status, Status::Solved, "{}", record.message());
+        assert!(record.evaluations() < 1500, "{} evaluations", record.evaluations());
+    }
+}
+
+#[test]
+fn a_record_holds_a_row_for_the_start_and_one_a_tick() {
+    let task = iiwa();
+    let record = task.track(beetle(Variant::Chain, 1.0, 30), 2.2e-5, 3);
+    let (rows, n) = (151, 7);
+    assert_eq!((record.dof, record.time.len(), record.q.len(), record.qd.len()), (n, rows, rows * n, rows * n));
+    assert_eq!((record.position.len(), record.reference.len(), record.velocity_limit.len()), (rows, rows, rows * n));
+    assert_eq!(
+        (record.step_status.len(), record.step_evaluations.len(), record.step_iterations.len()),
+        (rows, rows, rows)
+    );
+    assert_eq!(record.evaluations(), record.step_evaluations.iter().sum::<usize>());
+    assert_eq!((&record.q[..n], &record.qd[..n], record.time[0]), (&OFF7[..], &[0.0; 7][..], 0.0));
+    assert!(record.velocity_limit[..n].iter().all(|limit| limit.is_nan()));
+    assert!((record.position_error[0] - 0.1).abs() < 0.02, "{}", record.position_error[0]);
+    assert!(record.rotation_error.iter().all(|error| error.is_nan()));
+    for i in 0..rows {
+        assert_eq!(record.time[i], i as f64 * DT);
+        assert_eq!(record.reference[i], task.reference().position(i));
+        assert_eq!(record.position[i], task.robot.tip_position(&record.q[i * n..(i + 1) * n]));
+        let distance = (0..3).map(|k| (record.position[i][k] - record.reference[i][k]).powi(2)).sum::<f64>().sqrt();
+        assert!((record.position_error[i] - distance).abs() < 1e-15);
+    }
+    for i in n..rows * n {
+        assert_eq!(record.qd[i], (record.q[i] - record.q[i - n]) / DT);
+    }
+    assert_eq!(record.limits, velocity_limits(&task.robot, Profile::Sinusoid(sinusoid(2.0))), "the limits in force");
+}
+
+#[test]
+fn limits_left_out_are_those_of_the_robot() {
+    let task = iiwa();
+    let record = task.track_with(&TrackOptions { limits: None, ..task.options(descent(), 1e-6, 0) });
+    assert_eq!((record.limits.clone(), record.max_violation), (Limits::of(&task.robot), 0.0));
+    let own: Vec<f64> = task.robot.joints().iter().map(|joint| joint.velocity).collect();
+    assert_eq!(record.velocity_limit[7..14], own);
+}
+
+#[test]
+fn without_a_start_the_first_point_is_solved_for() {
+    let task = iiwa();
+    let options = task.options(descent(), 1e-6, 0);
+    let record = track(&task.robot, &task.reference(), None, &options, &mut Unattended).unwrap();
+    assert_eq!((record.joined(), record.status), (Some(0), Status::Solved), "{}", record.message());
+    assert!(record.position_error[0] <= 1e-7, "{}", record.position_error[0]);
+}
+
+#[test]
+fn the_seed_decides_every_bit() {
+    let q = |seed| bits(&five_links().track(beetle(Variant::Star, 1.0, 50), 4e-5, seed).q);
+    assert_eq!(q(1), q(1));
+    assert_ne!(q(1), q(2));
+}
+
+#[test]
+fn a_limit_is_taken_over_the_tick_or_at_its_start() {
+    let task = five_links();
+    for (limit_at, expected) in [(LimitAt::Interval, 0.2 - 0.004), (LimitAt::Start, 0.2)] {
+        // Falls from 0.2 to 0.196 within the first tick.
+        let falling = Profile::Sampled { step: 0.2, values: vec![0.2, 0.196] };
+        let limits = Some(velocity_limits(&task.robot, falling));
+        let record = task.track_with(&TrackOptions { limits, limit_at, ..task.options(descent(), 1e-6, 0) });
+        assert_eq!(record.velocity_limit[5..10], [expected; 5]);
+        let fastest = record.qd[5..10].iter().fold(0.0_f64, |fastest, qd| fastest.max(qd.abs()));
+        assert!((fastest - expected).abs() < 1e-12, "{limit_at:?}: the arm is in a hurry, {fastest}");
+        assert_eq!(record.max_violation, 0.0);
+    }
+}
+
+#[test]
+fn position_limits_may_close_in_over_time() {
+    let task = iiwa();
+    // Joint 2 starts at 0.2 rad and must be below 0.08 rad after 10 s.
+    let closing = Profile::Sampled { step: 10.0, values: vec![0.3, 0.08] };
+    let upper: Vec<Profile> = task.robot.joints().iter().map(|joint| Profile::Constant(joint.upper)).collect();
+    let upper = upper.into_iter().enumerate().map(|(j, own)| if j == 1 { closing.clone() } else { own }).collect();
+    let limits = Limits::of(&task.robot).replace(Field::Upper, upper).unwrap();
+    let record = task.track_with(&TrackOptions { limits: Some(limits), ..task.options(descent(), 1e-6, 0) });
+    assert_eq!((record.status, record.max_violation), (Status::Solved, 0.0), "{}", record.message());
+    for (row, q) in record.q.chunks_exact(7).enumerate() {
+        assert!(q[1] <= closing.at(record.time[row]), "row {row}: {}", q[1]);
+    }
+    assert!(record.q.chunks_exact(7).any(|q| q[1] == 0.08), "the limit is never felt");
+}
+
+#[test]
+fn a_velocity_limit_of_zero_locks_its_joint() {
+    let task = iiwa();
+    let mut velocity = vec![Profile::Constant(2.0); 7];
+    velocity[2] = Profile::Constant(0.0);
+    let limits = Some(Limits::of(&task.robot).replace(Field::Velocity, velocity).unwrap());
+    for (solver, band) in [(descent(), 1e-6), (beetle(Variant::Chain, 1.0, 30), 2.2e-5)] {
+        let record = task.track_with(&TrackOptions { limits: limits.clone(), ..task.options(solver, band, 0) });
+        assert_eq!(record.status, Status::Solved, "{}", record.message());
+        assert!(record.q.chunks_exact(7).all(|q| q[2].to_bits() == OFF7[2].to_bits()));
+    }
+}
+
+#[test]
+fn orientations_are_held_along_the_path() {
+    let task = iiwa();
+    let rotation = task.robot.fk(&OFF7).unwrap().rotation.into_inner();
+    let path = Path::new(task.circle.clone()).with_orientation(rotation).unwrap();
+    let tolerance = Tolerance { position: 1e-6, rotation: 1e-6 };
+    let options = TrackOptions { tolerance, ..task.options(descent(), 1e-6, 0) };
+    let record = track(&task.robot, &path.sample(DT).unwrap(), Some(&OFF7), &options, &mut Unattended).unwrap();
+    assert_eq!(record.status, Status::Solved, "{}", record.message());
+    assert!(record.rotation_error[record.joined().unwrap()..].iter().all(|error| *error <= 1e-6));
+    assert!(
+        record.message().starts_with("in the band of 1.000e-6 m and 1.000e-6 rad from t = "),
+        "{}",
+        record.message()
+    );
+}
+
+#[test]
+fn an_orientation_that_cannot_be_held_is_told_in_radians() {
+    // A planar arm cannot turn its tip out of the plane.
+    let task = five_links();
+    let upright = Rotation3::from_axis_angle(&Vector3::x_axis(), FRAC_PI_2).into_inner();
+    let path = Path::new(task.circle.clone()).with_orientation(upright).unwrap();
+    let options = task.options(descent(), 1e-6, 0);
+    let record = track(&task.robot, &path.sample(DT).unwrap(), Some(&OFF5), &options, &mut Unattended).unwrap();
+    assert!(record.status != Status::Solved && record.joined().is_none());
+    let nearest = record.rotation_error.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(nearest > FRAC_PI_2 - 1e-9, "{nearest}");
+    assert!(record.message().contains(&format!(" m and {nearest:.3e} rad): ")), "{}", record.message());
+}
+
+/// Says stop once this many rows are done.
+struct StopAfterRows(usize);
+
+impl Monitor for StopAfterRows {
+    fn keep_going(&mut self) -> bool {
+        self.0 > 0
+    }
+
+    fn progress(&mut self, _done: usize, total: usize) {
+        assert_eq!(total, 150);
+        self.0 -= 1;
+    }
+}
+
+#[test]
+fn an_interrupted_track_keeps_the_ticks_that_were_finished() {
+    let task = iiwa();
+    for (solver, band) in [(beetle(Variant::Star, 3.0, 50), 1.7e-5), (descent(), 1e-9)] {
+        let options = task.options(solver, band, 1);
+        let full = task.track_with(&options);
+        let start = Some(task.start.as_slice());
+        let record = track(&task.robot, &task.reference(), start, &options, &mut StopAfterRows(40)).unwrap();
+        assert_eq!((record.status, record.time.len()), (Status::Interrupted, 41));
+        assert_eq!(bits(&record.q), bits(&full.q[..41 * 7]));
+        assert_eq!(record.message(), "interrupted at t = 8 s: run again to finish");
+    }
+}
+
+#[test]
+fn an_interruption_before_the_band_is_told_as_one() {
+    let task = Task { limit: 0.02, ..five_links() };
+    let options = task.options(descent(), 1e-6, 0);
+    let start = Some(task.start.as_slice());
+    let record = track(&task.robot, &task.reference(), start, &options, &mut StopAfterRows(3)).unwrap();
+    assert_eq!(record.message(), "interrupted at t = 0.6 s: run again to finish");
+}
+
+#[test]
+fn messages_say_how_it_went() {
+    let record = iiwa().track(descent(), 1e-6, 0);
+    let since = record.time[record.joined().unwrap()];
+    assert!(
+        record.message().starts_with(&format!("in the band of 1.000e-6 m from t = {since} s on; worst error there "))
+    );
+    let far = Path::new(Polyline::new(&[[9.0, 0.0, 0.0], [9.0, 1.0, 0.0]], 1.0).unwrap()).sample(DT).unwrap();
+    let options = TrackOptions::default();
+    let record = track(&robot("planar5"), &far, Some(&[0.0; 5]), &options, &mut Unattended).unwrap();
+    let advice = "slow the path down, raise the velocity limits, or move the path into reach";
+    let message = format!("never came within 1.000e-6 m (nearest 4.000e0 m): {advice}");
+    assert_eq!((record.message(), record.status), (message, Status::Capped));
+}
