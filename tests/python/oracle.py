@@ -28,7 +28,9 @@ class Oracle:
         self.data = self.model.createData()
         self.base, self.tip = (self.model.getFrameId(link, self.pin.BODY) for link in (base, tip))
         self.couplings = {
-            joint.attrib["name"]: joint.find("mimic") for joint in ET.fromstring(xml).iter("joint") if "name" in joint.attrib
+            joint.attrib["name"]: joint.find("mimic")
+            for joint in ET.fromstring(xml).iter("joint")
+            if "name" in joint.attrib
         }
 
     def drive(self, joint: str) -> tuple[str, float, float]:

@@ -2,6 +2,7 @@
 
 import doctest
 import inspect
+import os
 import re
 import subprocess
 import sys
@@ -25,7 +26,11 @@ def blocks_of_readme() -> list[str]:
 def documented() -> Iterator[tuple[str, str]]:
     """Names and docstrings of everything public."""
     yield "beetle_ik", inspect.getdoc(bik) or ""
-    for space, names in ((bik, bik.__all__), (bik.paths, bik.paths.__all__), (bik.plot, ["robot", "track", "trajectory"])):
+    for space, names in (
+        (bik, bik.__all__),
+        (bik.paths, bik.paths.__all__),
+        (bik.plot, ["robot", "track", "trajectory"]),
+    ):
         for name in names:
             thing = getattr(space, name)
             yield name, getattr(thing, "__doc__", None) or ""
@@ -36,7 +41,9 @@ def documented() -> Iterator[tuple[str, str]]:
 
 def run(program: str, folder: Path) -> None:
     command = [sys.executable, "-W", "error", "-c", program]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env={"MPLBACKEND": "Agg"}, check=False)
+    done = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, env=os.environ | {"MPLBACKEND": "Agg"}, check=False
+    )
     assert done.returncode == 0, done.stderr
 
 
@@ -50,15 +57,21 @@ def test_every_fence_of_the_readme_says_what_it_holds() -> None:
     assert "" not in opened
 
 
-def examples() -> list[tuple[str, str]]:
-    found = [(name, inspect.cleandoc(match[0])) for name, text in documented() for match in INDENTED.finditer(text)]
-    assert found, "the package's own docstring has an example"
-    return found
+def examples() -> list[object]:
+    return [
+        pytest.param(inspect.cleandoc(match[0]), id=name)
+        for name, text in documented()
+        for match in INDENTED.finditer(text)
+    ]
 
 
-@pytest.mark.parametrize(("name", "example"), examples(), ids=lambda value: value if "\n" not in value else "")
-def test_examples_in_docstrings_run(name: str, example: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("example", examples())
+def test_examples_in_docstrings_run(example: str, tmp_path: Path) -> None:
     run(example, tmp_path)
+
+
+def test_the_package_has_an_example() -> None:
+    assert INDENTED.search(bik.__doc__ or "")
 
 
 def test_prompts_in_docstrings_give_what_they_show() -> None:

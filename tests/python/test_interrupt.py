@@ -5,7 +5,8 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import pytest
 
@@ -23,11 +24,6 @@ def track_for_minutes() -> object:
     return bik.track(IIWA, FAR, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12)
 
 
-def track_one_endless_step() -> object:
-    solver = bik.BAS(variant="star", explorations=10**6, max_passes=10**6)
-    return bik.track(IIWA, FAR, START, dt=3600.0, solver=solver, position_tolerance=1e-12)
-
-
 def solve_for_minutes() -> object:
     return bik.solve(IIWA, [5.0, 5.0, 5.0], stop=bik.Stop(max_evaluations=10**12))
 
@@ -37,10 +33,11 @@ def solve_one_endless_iteration() -> object:
     return bik.solve(IIWA, [5.0, 5.0, 5.0], solver=solver, stop=bik.Stop(max_evaluations=10**13))
 
 
-LONG_CALLS = [track_for_minutes, track_one_endless_step, solve_for_minutes, solve_one_endless_iteration]
+LONG_CALLS = [track_for_minutes, solve_for_minutes, solve_one_endless_iteration]
 
 
-def interrupt_after(seconds: float) -> list[float]:
+@contextmanager
+def interrupted(after: float) -> Iterator[list[float]]:
     """Sends SIGINT to this process from a thread; the list then holds when."""
     sent: list[float] = []
 
@@ -48,14 +45,18 @@ def interrupt_after(seconds: float) -> list[float]:
         sent.append(time.monotonic())
         os.kill(os.getpid(), signal.SIGINT)
 
-    threading.Timer(seconds, send).start()
-    return sent
+    timer = threading.Timer(after, send)
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            yield sent
+    finally:
+        timer.cancel()  # a call that ended by itself must not have the next test interrupted
 
 
 @pytest.mark.parametrize("call", LONG_CALLS)
 def test_ctrl_c_stops_a_long_call(call: Callable[[], object]) -> None:
-    sent = interrupt_after(0.15)
-    with pytest.raises(KeyboardInterrupt):
+    with interrupted(after=0.15) as sent:
         call()
     # 0.2 s is promised; a loaded machine may take longer.
     assert time.monotonic() - sent[0] < 1.0
@@ -63,8 +64,7 @@ def test_ctrl_c_stops_a_long_call(call: Callable[[], object]) -> None:
 
 
 def test_ctrl_c_stops_a_track_with_a_progress_bar() -> None:
-    interrupt_after(0.15)
-    with pytest.raises(KeyboardInterrupt):
+    with interrupted(after=0.15):
         bik.track(IIWA, FAR, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12, progress=True)
 
 
@@ -75,7 +75,7 @@ def test_what_progress_raises_stops_a_long_track() -> None:
         if time.monotonic() - began > 0.1:
             raise ValueError(f"enough after {done} of {total}")
 
-    with pytest.raises(ValueError, match="^enough after [0-9]+ of 360000$"):
+    with pytest.raises(ValueError, match=r"^enough after [0-9]+ of 360000$"):
         bik.track(IIWA, FAR, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12, progress=progress)
     assert time.monotonic() - began < 2.0
 
@@ -93,12 +93,11 @@ def test_other_threads_run_meanwhile(call: Callable[[], object]) -> None:
 
     counter = threading.Thread(target=count)
     counter.start()
-    interrupt_after(0.3)
-    with pytest.raises(KeyboardInterrupt):
+    with interrupted(after=0.3):
         call()
     stopped.set()
     counter.join()
-    assert turns > 20
+    assert turns > 10  # with the interpreter held throughout it would be one or two
 
 
 def test_threads_solve_at_the_same_time() -> None:

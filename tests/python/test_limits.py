@@ -72,7 +72,9 @@ def test_a_function_is_a_velocity_limit(per_joint: bool) -> None:
 
 
 def test_functions_are_position_limits() -> None:
-    closing = bik.Limits(lower=lambda t: -np.pi + 0.1 * t, upper=lambda t: np.array([1.0, 0.5, 0.5, 0.5, 1.0]) - 0.02 * t)
+    closing = bik.Limits(
+        lower=lambda t: -np.pi + 0.1 * t, upper=lambda t: np.array([1.0, 0.5, 0.5, 0.5, 1.0]) - 0.02 * t
+    )
     result = track(closing, solver=bik.BAS(variant="chain"))
     upper = np.array([1.0, 0.5, 0.5, 0.5, 1.0]) - 0.02 * result.time[:, None]
     assert np.all(result.q <= upper + 1e-12)

@@ -80,7 +80,9 @@ def test_pentagram() -> None:
 
 def test_polyline_keeps_its_speed() -> None:
     path = bik.paths.polyline([[0, 0, 0], [1, 0, 0], [1, 3, 0]], duration=4.0)
-    np.testing.assert_allclose(path.position([0, 0.5, 1, 2, 4]), [[0, 0, 0], [0.5, 0, 0], [1, 0, 0], [1, 1, 0], [1, 3, 0]])
+    np.testing.assert_allclose(
+        path.position([0, 0.5, 1, 2, 4]), [[0, 0, 0], [0.5, 0, 0], [1, 0, 0], [1, 1, 0], [1, 3, 0]]
+    )
     np.testing.assert_allclose(path.velocity([0.5, 3.0]), [[1, 0, 0], [0, 1, 0]])
 
 
@@ -101,7 +103,9 @@ def test_numbers_and_arrays_of_time() -> None:
 def test_samples_of_positions() -> None:
     time, points = [0.0, 1.0, 3.0], np.array([[0, 0, 0], [1, 2, 3], [1, 2, 5]])
     path = bik.paths.from_samples(time, points)
-    np.testing.assert_allclose(path.position([0, 0.5, 1, 2, 3]), [[0, 0, 0], [0.5, 1, 1.5], [1, 2, 3], [1, 2, 4], [1, 2, 5]])
+    np.testing.assert_allclose(
+        path.position([0, 0.5, 1, 2, 3]), [[0, 0, 0], [0.5, 1, 1.5], [1, 2, 3], [1, 2, 4], [1, 2, 5]]
+    )
     assert path.duration == 3.0
 
 

@@ -186,7 +186,9 @@ def test_dh_tables_are_products_of_four_transforms(convention: str) -> None:
     expected = base
     for i, kind in enumerate(kinds):
         slides = kind == "prismatic"
-        joint = rotation("z", theta[i] + (0.0 if slides else q[i])) @ translation(0, 0, d[i] + (q[i] if slides else 0.0))
+        joint = rotation("z", theta[i] + (0.0 if slides else q[i])) @ translation(
+            0, 0, d[i] + (q[i] if slides else 0.0)
+        )
         link = rotation("x", alpha[i]) @ translation(a[i], 0, 0)
         expected = expected @ (link @ joint if convention == "modified" else joint @ link)
     np.testing.assert_allclose(robot.fk(q), expected @ tool, rtol=0, atol=1e-13)
