@@ -112,8 +112,10 @@ impl Bounds {
     /// Clips `x` to the box: R(.) of BAS, eq. (10).
     #[inline]
     pub fn clip(&self, x: &mut [f64]) {
-        for ((x, lower), upper) in x.iter_mut().zip(&self.lower).zip(&self.upper) {
-            *x = x.max(*lower).min(*upper);
+        for ((x, lower), upper) in x.iter_mut().zip(self.lower()).zip(self.upper()) {
+            // One instruction each, where `max` and `min` would sort out NaN; a NaN becomes the lower bound.
+            let raised = if *x > *lower { *x } else { *lower };
+            *x = if raised < *upper { raised } else { *upper };
         }
     }
 

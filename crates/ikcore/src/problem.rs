@@ -2,7 +2,7 @@
 
 use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
 use crate::rng::LazyRng;
-use crate::robot::{LANES, Robot};
+use crate::robot::Robot;
 use crate::task::{SquaredError, Target, TipError, Tolerance};
 
 /// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
@@ -41,16 +41,12 @@ impl Objective for Problem<'_> {
     }
 
     fn evaluate_all(&mut self, qs: &[f64], out: &mut [Score]) {
-        let n = self.dimension();
-        let mut groups = out.chunks_exact_mut(LANES);
-        for (scores, group) in groups.by_ref().zip(qs.chunks_exact(LANES * n)) {
-            let errors = self.target.errors(self.robot, group);
-            scores.iter_mut().zip(errors).for_each(|(score, error)| *score = self.score(error));
-        }
-        let rest = groups.into_remainder();
-        for (score, q) in rest.iter_mut().rev().zip(qs.rchunks_exact(n)) {
-            *score = self.evaluate(q);
-        }
+        let mut scores = out.iter_mut();
+        self.target.errors(self.robot, qs, |error| {
+            if let Some(score) = scores.next() {
+                *score = self.score(error);
+            }
+        });
     }
 
     /// Uniform in the box; a side without a limit is drawn from the joint's sampling range.

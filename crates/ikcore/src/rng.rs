@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// Numbers drawn at once; a quarter of the cost of single draws.
-const BUFFER: usize = 32;
+const BUFFER: usize = 64;
 
 /// A generator that is built at its first draw. Equal (seed, stream) give equal draws on every platform.
 #[derive(Debug, Clone)]
@@ -68,13 +68,26 @@ impl LazyRng {
         // A draw of almost zero length has no direction.
         while squared < 1e-12 {
             squared = 0.0;
-            for v in &mut *b {
-                *v = 2.0 * self.uniform() - 1.0;
+            self.draw(b, |v, uniform| {
+                *v = 2.0 * uniform - 1.0;
                 squared += *v * *v;
-            }
+            });
         }
         let scale = 1.0 / squared.sqrt();
         b.iter_mut().for_each(|v| *v *= scale);
+    }
+
+    /// Hands every entry of `out` a draw of its own, in order; straight from the buffer where that has enough.
+    #[inline]
+    fn draw(&mut self, out: &mut [f64], mut set: impl FnMut(&mut f64, f64)) {
+        match &mut self.source {
+            Some(source) if source.next + out.len() <= BUFFER => {
+                let drawn = &source.uniforms[source.next..source.next + out.len()];
+                out.iter_mut().zip(drawn).for_each(|(v, uniform)| set(v, *uniform));
+                source.next += out.len();
+            }
+            _ => out.iter_mut().for_each(|v| set(v, self.uniform())),
+        }
     }
 }
 

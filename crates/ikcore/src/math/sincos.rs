@@ -69,7 +69,8 @@ fn sincos_one<A: Arithmetic>(x: f64) -> (f64, f64) {
 
 #[inline(always)]
 fn horner<A: Arithmetic>(coefficients: &[f64; 6], u: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| A::mul_add(sum, u, *c))
+    let [rest @ .., last] = coefficients;
+    rest.iter().rev().fold(*last, |sum, c| A::mul_add(sum, u, *c))
 }
 
 #[cfg(test)]

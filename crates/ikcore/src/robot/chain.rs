@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::builder::Element;
-use super::kinematics::Kernels;
+use super::dispatch::Kernels;
 use crate::math::{Frame, Pose, pose};
 
 /// What drives a stage: turn = turn_scale * q\[joint\] + turn_offset, and likewise the slide. One of the scales is zero.

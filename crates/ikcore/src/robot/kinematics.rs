@@ -1,135 +1,19 @@
 //! Forward kinematics and Jacobian: one pass from base to tip, in plain arrays, without allocation.
 //!
-//! Each kernel has one body, compiled for every padded number of stages ([`SIZES`](super::chain::SIZES)) and for
-//! machines with and without AVX2 and FMA.
+//! Each kernel has one straight-line body over N stages, their sines padded to L; [`dispatch`](super::dispatch) holds
+//! its compilations.
 
 use super::MAX_DOF;
 use super::chain::Chain;
 use crate::math::Frame;
-use crate::math::arithmetic::{Arithmetic, Fused, Separate, has_fused};
+use crate::math::arithmetic::{Arithmetic, Separate};
 use crate::math::sincos::sincos;
 
 /// Columns of a 6 x n matrix, one per joint: linear rows (m per rad or m), then angular rows; the first n are in use.
 pub type Columns = [[f64; 6]; MAX_DOF];
 
-/// `$table!(N, L)` for the size that `$stages` is: N stages, their sines padded to L.
-macro_rules! for_each_size {
-    ($stages:expr, $table:ident) => {
-        match $stages {
-            4 => $table!(4, 4),
-            5 => $table!(5, 8),
-            6 => $table!(6, 8),
-            7 => $table!(7, 8),
-            8 => $table!(8, 8),
-            12 => $table!(12, 12),
-            16 => $table!(16, 16),
-            _ => $table!(32, 32),
-        }
-    };
-}
-
-/// A table of kernels that any machine runs.
-#[cfg(not(target_arch = "aarch64"))]
-macro_rules! portable {
-    ($n:literal, $l:literal) => {
-        Kernels {
-            tip: tip::<Separate, $n, $l>,
-            tip_position: tip_position::<Separate, $n, $l>,
-            tip_positions: tip_positions::<Separate, $n>,
-            jacobian: jacobian::<Separate, $n, $l>,
-            stage_frames: stage_frames::<Separate, $n, $l>,
-        }
-    };
-}
-
-/// The same where FMA belongs to the baseline.
-#[cfg(target_arch = "aarch64")]
-macro_rules! native {
-    ($n:literal, $l:literal) => {
-        Kernels {
-            tip: tip::<Fused, $n, $l>,
-            tip_position: tip_position::<Fused, $n, $l>,
-            tip_positions: tip_positions::<Fused, $n>,
-            jacobian: jacobian::<Fused, $n, $l>,
-            stage_frames: stage_frames::<Fused, $n, $l>,
-        }
-    };
-}
-
-/// The same for machines that have AVX2 and FMA.
-#[cfg(target_arch = "x86_64")]
-macro_rules! fused {
-    ($n:literal, $l:literal) => {
-        // SAFETY (all five): the table is handed out only where `has_fused` found the instructions.
-        Kernels {
-            tip: |chain, q| unsafe { fused::tip::<$n, $l>(chain, q) },
-            tip_position: |chain, q| unsafe { fused::tip_position::<$n, $l>(chain, q) },
-            tip_positions: |chain, qs| unsafe { fused::tip_positions::<$n>(chain, qs) },
-            jacobian: |chain, q, columns| unsafe { fused::jacobian::<$n, $l>(chain, q, columns) },
-            stage_frames: |chain, q, reached| unsafe { fused::stage_frames::<$n, $l>(chain, q, reached) },
-        }
-    };
-}
-
-/// The kernels compiled for one padded number of stages and one instruction set; a chain chooses when it is built.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Kernels {
-    tip: fn(&Chain, &[f64]) -> Frame,
-    tip_position: fn(&Chain, &[f64]) -> [f64; 3],
-    tip_positions: fn(&Chain, &[f64]) -> [[f64; LANES]; 3],
-    jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
-    stage_frames: fn(&Chain, &[f64], &mut StageFrames),
-}
-
-/// Configurations side by side in [`Chain::tip_positions`]: four doubles fill one register of AVX2.
-pub const LANES: usize = 4;
-
-type StageFrames = [Frame; MAX_DOF + 1];
-
-impl Kernels {
-    /// The fastest that this machine runs, for a chain padded to `stages` (one of [`SIZES`](super::chain::SIZES)).
-    pub fn for_stages(stages: usize) -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if has_fused() {
-            return for_each_size!(stages, fused);
-        }
-        #[cfg(target_arch = "aarch64")]
-        return for_each_size!(stages, native);
-        #[cfg(not(target_arch = "aarch64"))]
-        for_each_size!(stages, portable)
-    }
-}
-
-/// The kernels compiled for AVX2 and FMA.
-#[cfg(target_arch = "x86_64")]
-mod fused {
-    use super::{Chain, Columns, Frame, Fused, LANES, StageFrames};
-
-    #[target_feature(enable = "avx2,fma")]
-    pub fn tip<const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
-        super::tip::<Fused, N, L>(chain, q)
-    }
-
-    #[target_feature(enable = "avx2,fma")]
-    pub fn tip_position<const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
-        super::tip_position::<Fused, N, L>(chain, q)
-    }
-
-    #[target_feature(enable = "avx2,fma")]
-    pub fn tip_positions<const N: usize>(chain: &Chain, qs: &[f64]) -> [[f64; LANES]; 3] {
-        super::tip_positions::<Fused, N>(chain, qs)
-    }
-
-    #[target_feature(enable = "avx2,fma")]
-    pub fn jacobian<const N: usize, const L: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
-        super::jacobian::<Fused, N, L>(chain, q, columns)
-    }
-
-    #[target_feature(enable = "avx2,fma")]
-    pub fn stage_frames<const N: usize, const L: usize>(chain: &Chain, q: &[f64], reached: &mut StageFrames) {
-        super::stage_frames::<Fused, N, L>(chain, q, reached);
-    }
-}
+/// Frames reached after 0, 1, 2, ... stages.
+pub(super) type StageFrames = [Frame; MAX_DOF + 1];
 
 impl Chain {
     /// The tip's frame. `q` has one finite entry per independent joint.
@@ -144,11 +28,21 @@ impl Chain {
         (self.kernels.tip_position)(self, q)
     }
 
-    /// The tip's positions (m), coordinate by coordinate, at [`LANES`] configurations stored one after another; lane by
-    /// lane the same bits as [`tip_position`](Self::tip_position).
+    /// Hands the tip's positions (m) at configurations of `n` entries, stored one after another, to `visit`, in order:
+    /// four side by side as long as there are four, then two; the same bits as [`tip_position`](Self::tip_position).
     #[inline]
-    pub fn tip_positions(&self, qs: &[f64]) -> [[f64; LANES]; 3] {
-        (self.kernels.tip_positions)(self, qs)
+    pub fn tip_positions(&self, mut qs: &[f64], n: usize, mut visit: impl FnMut([f64; 3])) {
+        while let Some((group, rest)) = qs.split_at_checked(4 * n) {
+            transposed((self.kernels.tip_four)(self, group)).into_iter().for_each(&mut visit);
+            qs = rest;
+        }
+        if let Some((group, rest)) = qs.split_at_checked(2 * n) {
+            transposed((self.kernels.tip_pair)(self, group)).into_iter().for_each(&mut visit);
+            qs = rest;
+        }
+        if qs.len() == n {
+            visit(self.tip_position(qs));
+        }
     }
 
     /// The tip's frame and the geometric Jacobian at the tip, world axes, linear rows before angular rows.
@@ -163,6 +57,13 @@ impl Chain {
         (self.kernels.stage_frames)(self, q, &mut reached);
         self.links.iter().map(|link| reached[link.stages].then::<Separate>(&link.offset)).collect()
     }
+}
+
+/// Point by point what is given coordinate by coordinate. Kept out of the kernels: there it makes the compiler vectorise
+/// along coordinates instead of lanes (27 ns a configuration instead of 17).
+#[inline]
+fn transposed<const W: usize>(coordinates: [[f64; W]; 3]) -> [[f64; 3]; W] {
+    std::array::from_fn(|w| coordinates.map(|coordinate| coordinate[w]))
 }
 
 /// Sines, cosines and slides (m) of all stages.
@@ -202,12 +103,12 @@ fn pass<A: Arithmetic, const N: usize, const L: usize>(
 }
 
 #[inline(always)]
-fn tip<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
+pub(super) fn tip<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
     pass::<A, N, L>(chain, q, |_, _| ())
 }
 
 #[inline(always)]
-fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
+pub(super) fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
     let (sines, cosines, slides) = motions::<A, L>(chain, q);
     let mut point = chain.tip.origin;
     for i in (0..N).rev() {
@@ -218,20 +119,23 @@ fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q:
     point
 }
 
-/// [`tip_position`] for several configurations at once, coordinate by coordinate.
+/// [`tip_position`] for W configurations at once, coordinate by coordinate: lane w of every array is configuration w.
 #[inline(always)]
-fn tip_positions<A: Arithmetic, const N: usize>(chain: &Chain, qs: &[f64]) -> [[f64; LANES]; 3] {
-    const W: usize = LANES;
-    let rows: [&[f64]; W] = std::array::from_fn(|w| &qs[w * (qs.len() / W)..]);
-    let (mut angles, mut slides) = ([[0.0; W]; N], [[0.0; W]; N]);
-    for (i, motion) in chain.motions[..N].iter().enumerate() {
+pub(super) fn side_by_side<A: Arithmetic, const N: usize, const L: usize, const W: usize>(
+    chain: &Chain,
+    qs: &[f64],
+) -> [[f64; W]; 3] {
+    let n = qs.len() / W;
+    let rows: [&[f64]; W] = std::array::from_fn(|w| &qs[w * n..(w + 1) * n]);
+    let (mut angles, mut slides) = ([[0.0; W]; L], [[0.0; W]; L]);
+    for (i, motion) in chain.motions[..L].iter().enumerate() {
         for w in 0..W {
             let value = rows[w][motion.joint];
             angles[i][w] = A::mul_add(motion.turn_scale, value, motion.turn_offset);
             slides[i][w] = A::mul_add(motion.slide_scale, value, motion.slide_offset);
         }
     }
-    let (mut sines, mut cosines) = ([[0.0; W]; N], [[0.0; W]; N]);
+    let (mut sines, mut cosines) = ([[0.0; W]; L], [[0.0; W]; L]);
     sincos::<A>(angles.as_flattened(), sines.as_flattened_mut(), cosines.as_flattened_mut());
     let mut point = chain.tip.origin.map(|coordinate| [coordinate; W]);
     for i in (0..N).rev() {
@@ -251,7 +155,11 @@ fn tip_positions<A: Arithmetic, const N: usize>(chain: &Chain, qs: &[f64]) -> [[
 }
 
 #[inline(always)]
-fn jacobian<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
+pub(super) fn jacobian<A: Arithmetic, const N: usize, const L: usize>(
+    chain: &Chain,
+    q: &[f64],
+    columns: &mut Columns,
+) -> Frame {
     let (mut axes, mut origins) = ([[0.0; 3]; N], [[0.0; 3]; N]);
     let tip = pass::<A, N, L>(chain, q, |i, frame| {
         axes[i] = frame.axes[2];
@@ -278,7 +186,11 @@ fn jacobian<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f
 }
 
 #[inline(always)]
-fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64], reached: &mut StageFrames) {
+pub(super) fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(
+    chain: &Chain,
+    q: &[f64],
+    reached: &mut StageFrames,
+) {
     let (sines, cosines, _) = motions::<A, L>(chain, q);
     pass::<A, N, L>(chain, q, |i, frame| reached[i + 1] = frame.turned::<A>(sines[i], cosines[i]));
 }

@@ -4,6 +4,7 @@ mod builder;
 mod catalog;
 mod chain;
 mod dh;
+mod dispatch;
 mod joint;
 mod kinematics;
 mod many;
@@ -14,7 +15,7 @@ mod urdf;
 pub use builder::{ChainBuilder, Drive};
 pub use dh::{Dh, DhTable};
 pub use joint::{Joint, JointKind};
-pub use kinematics::{Columns, LANES};
+pub use kinematics::Columns;
 pub use model::Robot;
 
 use crate::math::MAX_DOF;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::builder::{ChainBuilder, Element};
 use super::chain::Chain;
 use super::joint::Joint;
-use super::{Columns, LANES, MAX_DOF};
+use super::{Columns, MAX_DOF};
 use crate::error::{Error, Result, require_finite};
 use crate::math::{Frame, Pose, pose};
 use crate::rng::LazyRng;
@@ -165,11 +165,11 @@ impl Robot {
         self.chain.tip_position(q)
     }
 
-    /// Positions of the tip (m) at [`LANES`] configurations stored one after another, (x, y, z) by configuration; the same bits
-    /// as one by one.
+    /// Hands the tip's positions (m) at configurations stored one after another to `visit`, in order; quicker than
+    /// [`tip_position`](Self::tip_position) one by one, and the same bits.
     #[inline]
-    pub fn tip_positions(&self, qs: &[f64]) -> [[f64; LANES]; 3] {
-        self.chain.tip_positions(qs)
+    pub fn tip_positions(&self, qs: &[f64], visit: impl FnMut([f64; 3])) {
+        self.chain.tip_positions(qs, self.dof(), visit);
     }
 
     /// Tip and Jacobian in one pass, without the check: `q` has one finite entry per joint.

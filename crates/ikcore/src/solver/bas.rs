@@ -108,15 +108,30 @@ pub struct State {
     group: Group,
 }
 
-/// Explorations of a star do not depend on each other, so that four at a time go to the objective.
+/// The beetle within a pass.
+struct Pass {
+    /// From where it explores.
+    current: Point,
+    current_value: f64,
+    /// Antenna length (rad).
+    lambda: f64,
+    /// Where it went to in this pass, at best.
+    best: Point,
+    best_value: f64,
+}
+
+/// Explorations of a star do not depend on each other, so that several at a time go to the objective.
 const LARGEST_GROUP: usize = 4;
+
+/// Points one after another; on the stack up to eight entries each.
+type Points = SmallVec<[f64; 2 * LARGEST_GROUP * 8]>;
 
 /// Room for a group of explorations, one after another.
 #[derive(Debug, Clone)]
 struct Group {
-    directions: SmallVec<[f64; LARGEST_GROUP * 8]>,
-    antennae: SmallVec<[f64; 2 * LARGEST_GROUP * 8]>,
-    beetles: SmallVec<[f64; LARGEST_GROUP * 8]>,
+    directions: Points,
+    antennae: Points,
+    beetles: Points,
 }
 
 impl<O: Objective + ?Sized> Solver<O> for Bas {
@@ -125,74 +140,36 @@ impl<O: Objective + ?Sized> Solver<O> for Bas {
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
         let mut base = Point::from_slice(x0);
         let base_value = evaluator.evaluate(&mut base)?;
-        let entries = self.group() * base.len();
-        let group = Group {
-            directions: SmallVec::from_elem(0.0, entries),
-            antennae: SmallVec::from_elem(0.0, 2 * entries),
-            beetles: SmallVec::from_elem(0.0, entries),
-        };
-        Ok(State { base, base_value, passes: 0, group })
+        Ok(State { group: Group::new(self.group(), base.len()), base, base_value, passes: 0 })
     }
 
+    /// Lines 5 to 15 of Algorithm 1.
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
         if state.passes == self.max_passes {
             return Err(Halt::Stalled);
         }
         state.passes += 1;
-        let n = state.base.len();
-        let (mut current, mut current_value) = (state.base.clone(), state.base_value);
-        let (mut pass_best, mut pass_value) = (current.clone(), f64::INFINITY);
-        let mut lambda = self.antenna_length(state.base_value);
-        let mut explored = 0;
-        while explored < self.explorations {
+        let State { base, base_value, group, .. } = state;
+        let mut pass = Pass {
+            current: base.clone(),
+            current_value: *base_value,
+            lambda: self.antenna_length(*base_value),
+            best: base.clone(),
+            best_value: f64::INFINITY,
+        };
+        for explored in (0..self.explorations).step_by(self.group()) {
             let count = self.group().min(self.explorations - explored);
-            explored += count;
-            // i) random directions, ii) to iv) smell at the antennae, eq. (8) to (10)
-            let Group { directions, antennae, beetles } = &mut state.group;
-            for e in 0..count {
-                let b = &mut directions[e * n..(e + 1) * n];
-                evaluator.rng().direction(b);
-                for k in 0..n {
-                    antennae[2 * e * n + k] = current[k] + lambda * b[k];
-                    antennae[(2 * e + 1) * n + k] = current[k] - lambda * b[k];
-                }
-            }
-            let mut smells = [0.0; 2 * LARGEST_GROUP];
-            evaluator.evaluate_all(&mut antennae[..2 * count * n], &mut smells[..2 * count])?;
-            // v) move towards the lower value, eq. (11) and (13); equal smells leave the beetle where it is
-            for e in 0..count {
-                let delta = self.c2 * lambda * sign(smells[2 * e] - smells[2 * e + 1]);
-                for k in 0..n {
-                    beetles[e * n + k] = current[k] - delta * directions[e * n + k];
-                }
-            }
-            let mut values = [0.0; LARGEST_GROUP];
-            evaluator.evaluate_all(&mut beetles[..count * n], &mut values[..count])?;
-            for (beetle, value) in beetles.chunks_exact(n).zip(values).take(count) {
-                // vi) record
-                if value < pass_value {
-                    pass_best.copy_from_slice(beetle);
-                    pass_value = value;
-                }
-                // vii) update the location
-                match self.variant {
-                    Variant::Star => {}
-                    Variant::Chain => current.copy_from_slice(beetle),
-                    Variant::Greedy if value < current_value => {
-                        current.copy_from_slice(beetle);
-                        current_value = value;
-                        lambda = self.antenna_length(value);
-                    }
-                    Variant::Greedy => {}
-                }
+            let values = self.explore(&pass, group, count, evaluator)?;
+            for (beetle, value) in group.beetles.chunks_exact(base.len()).zip(values).take(count) {
+                self.walk(&mut pass, beetle, value);
             }
             if self.variant == Variant::Greedy {
                 evaluator.check_solved()?;
             }
         }
-        // Line 15; a pass that found nothing better starts again from the same place.
-        if pass_value < state.base_value {
-            (state.base, state.base_value) = (pass_best, pass_value);
+        // A pass that found nothing better starts again from the same place.
+        if pass.best_value < *base_value {
+            (*base, *base_value) = (pass.best, pass.best_value);
         }
         Ok(())
     }
@@ -208,15 +185,77 @@ impl Bas {
     fn antenna_length(&self, value: f64) -> f64 {
         self.c1 * if value.is_finite() { value.sqrt() } else { 1.0 }
     }
+
+    /// Steps i) to v) of `count` explorations from one point: leaves in `group` where the beetles go, and returns o there.
+    #[inline]
+    fn explore<O: Objective + ?Sized>(
+        &self,
+        pass: &Pass,
+        group: &mut Group,
+        count: usize,
+        evaluator: &mut Evaluator<'_, O>,
+    ) -> Result<[f64; LARGEST_GROUP], Halt> {
+        let Pass { current: x, lambda, .. } = pass;
+        let n = x.len();
+        let antennae = &mut group.antennae[..2 * count * n];
+        let beetles = &mut group.beetles[..count * n];
+        // i) random directions b, ii) to iv) smell at both antennae, eq. (8) to (10)
+        for (b, pair) in group.directions.chunks_exact_mut(n).zip(antennae.chunks_exact_mut(2 * n)) {
+            evaluator.rng().direction(b);
+            let (right, left) = pair.split_at_mut(n);
+            place(right, x, *lambda, b);
+            place(left, x, -lambda, b);
+        }
+        let mut smells = [[0.0; 2]; LARGEST_GROUP];
+        evaluator.evaluate_all(antennae, smells[..count].as_flattened_mut())?;
+        // v) move towards the lower value, eq. (11) and (13); equal smells leave the beetle where it is
+        let delta = self.c2 * lambda;
+        for ((b, beetle), [right, left]) in
+            group.directions.chunks_exact(n).zip(beetles.chunks_exact_mut(n)).zip(smells)
+        {
+            place(beetle, x, -delta * sign(right - left), b);
+        }
+        let mut values = [0.0; LARGEST_GROUP];
+        evaluator.evaluate_all(beetles, &mut values[..count])?;
+        Ok(values)
+    }
+
+    /// Steps vi) record and vii) update the location, for a beetle that went to `beetle` and found `value`.
+    #[inline]
+    fn walk(&self, pass: &mut Pass, beetle: &[f64], value: f64) {
+        if value < pass.best_value {
+            pass.best.copy_from_slice(beetle);
+            pass.best_value = value;
+        }
+        match self.variant {
+            Variant::Star => {}
+            Variant::Chain => pass.current.copy_from_slice(beetle),
+            Variant::Greedy if value < pass.current_value => {
+                pass.current.copy_from_slice(beetle);
+                pass.current_value = value;
+                pass.lambda = self.antenna_length(value);
+            }
+            Variant::Greedy => {}
+        }
+    }
+}
+
+impl Group {
+    fn new(explorations: usize, dimension: usize) -> Self {
+        let room = |points: usize| Points::from_elem(0.0, points * dimension);
+        Self { directions: room(explorations), antennae: room(2 * explorations), beetles: room(explorations) }
+    }
+}
+
+/// x + distance b.
+#[inline]
+fn place(out: &mut [f64], x: &[f64], distance: f64, b: &[f64]) {
+    for ((out, x), b) in out.iter_mut().zip(x).zip(b) {
+        *out = x + distance * b;
+    }
 }
 
 /// The plain sign of eq. (11): zero at zero, and for antennae that both smell nothing finite.
 fn sign(z: f64) -> f64 {
-    if z > 0.0 {
-        1.0
-    } else if z < 0.0 {
-        -1.0
-    } else {
-        0.0
-    }
+    f64::from(i8::from(z > 0.0) - i8::from(z < 0.0))
 }

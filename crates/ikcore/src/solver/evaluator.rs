@@ -46,7 +46,7 @@ impl Best {
 const POLL_EVERY: usize = 256;
 
 /// Points handed to the objective at once.
-const CHUNK: usize = 16;
+const CHUNK: usize = 8;
 
 /// A budgeted view of an objective in a box.
 pub struct Evaluator<'a, O: ?Sized> {
@@ -147,19 +147,26 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     ///
     /// # Errors
     /// As for one point; with a budget for some of them only, the first ones are evaluated before the halt.
-    pub fn evaluate_all(&mut self, xs: &mut [f64], values: &mut [f64]) -> Result<(), Halt> {
+    pub fn evaluate_all(&mut self, mut xs: &mut [f64], values: &mut [f64]) -> Result<(), Halt> {
         let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
         self.spend(affordable)?;
-        let mut scores = [Score { value: f64::INFINITY, solved: false }; CHUNK];
-        for (xs, values) in xs.chunks_mut(CHUNK * self.dimension).zip(values[..affordable].chunks_mut(CHUNK)) {
-            let (xs, scores) = (&mut xs[..values.len() * self.dimension], &mut scores[..values.len()]);
-            xs.chunks_exact_mut(self.dimension).for_each(|x| self.bounds.clip(x));
-            self.objective.evaluate_all(xs, scores);
-            for ((x, score), value) in xs.chunks_exact(self.dimension).zip(scores).zip(values) {
-                *value = self.record(x, *score);
-            }
+        for values in values[..affordable].chunks_mut(CHUNK) {
+            let (chunk, rest) = xs.split_at_mut(values.len() * self.dimension);
+            self.evaluate_chunk(chunk, values);
+            xs = rest;
         }
         if affordable < values.len() { Err(Halt::Budget) } else { Ok(()) }
+    }
+
+    #[inline]
+    fn evaluate_chunk(&mut self, xs: &mut [f64], values: &mut [f64]) {
+        let mut scores = [Score { value: f64::INFINITY, solved: false }; CHUNK];
+        let scores = &mut scores[..values.len()];
+        xs.chunks_mut(self.dimension).for_each(|x| self.bounds.clip(x));
+        self.objective.evaluate_all(xs, scores);
+        for (i, (score, value)) in scores.iter().zip(values).enumerate() {
+            *value = self.record(&xs[i * self.dimension..(i + 1) * self.dimension], *score);
+        }
     }
 
     /// What the driver asks after every step: is it time to stop?

@@ -18,7 +18,7 @@ pub struct RestartRule {
 
 impl Default for RestartRule {
     fn default() -> Self {
-        Self { max_starts: usize::MAX, patience: 4, min_reduction: 4.0 }
+        Self { max_starts: usize::MAX, patience: 3, min_reduction: 2.0 }
     }
 }
 

@@ -9,7 +9,7 @@ pub use error::{SquaredError, TipError, Tolerance};
 use crate::error::{Result, require_finite};
 use crate::math::{Frame, Pose};
 use crate::objective::Linearization;
-use crate::robot::{LANES, Robot};
+use crate::robot::Robot;
 
 /// Where the tip is to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,15 +49,13 @@ impl Target {
         }
     }
 
-    /// [`error`](Self::error) at [`LANES`] configurations stored one after another, side by side where only positions matter.
+    /// Hands [`error`](Self::error) at the configurations stored one after another to `keep`, in order; side by side
+    /// where only positions matter.
     #[inline]
-    pub fn errors(&self, robot: &Robot, qs: &[f64]) -> [SquaredError; LANES] {
+    pub fn errors(&self, robot: &Robot, qs: &[f64], mut keep: impl FnMut(SquaredError)) {
         match self {
-            Self::Position(target) => {
-                let [x, y, z] = robot.tip_positions(qs);
-                std::array::from_fn(|w| position::error(target, &[x[w], y[w], z[w]]))
-            }
-            Self::Pose(_) => std::array::from_fn(|w| self.error(robot, &qs[w * robot.dof()..(w + 1) * robot.dof()])),
+            Self::Position(target) => robot.tip_positions(qs, |tip| keep(position::error(target, &tip))),
+            Self::Pose(_) => qs.chunks(robot.dof()).for_each(|q| keep(self.error(robot, q))),
         }
     }
 
