@@ -13,9 +13,7 @@ use ikcore::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
 use ikcore::problem::Problem;
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
-use ikcore::solver::{
-    Algorithm, AnySolver, Best, Evaluator, Halt, Monitor, MultiStart, Outcome, Status, Stop, Unattended,
-};
+use ikcore::solver::{Algorithm, AnySolver, Best, Evaluator, Halt, Monitor, Outcome, Status, Stop, Unattended};
 use ikcore::task::{Target, Tolerance};
 
 /// Evaluations between two looks at monitor and clock, and the largest group handed in at once.
@@ -154,8 +152,10 @@ fn arm() -> Case {
 /// Every algorithm, alone and from many starts.
 fn solvers() -> Vec<AnySolver> {
     let all = Algorithm::all().into_iter();
-    all.flat_map(|algorithm| [AnySolver::Single(algorithm.clone()), AnySolver::MultiStart(MultiStart::new(algorithm))])
-        .collect()
+    all.flat_map(|algorithm| {
+        [AnySolver::Single(algorithm.clone()), AnySolver::MultiStart(algorithm.into_multi_start())]
+    })
+    .collect()
 }
 
 /// Whether the solver's path depends on its seed even without a restart.
@@ -221,9 +221,7 @@ impl Run {
         let made = self.values.len();
         assert!(made <= case.stop.max_evaluations, "{what}: {made} evaluations");
         assert!(iterations <= case.stop.max_iterations, "{what}: {iterations} iterations");
-        if !matches!(halt, Halt::Interrupted | Halt::Time) {
-            assert_eq!(made, self.evaluations, "{what}: evaluations made and reported");
-        }
+        assert_eq!(made, self.evaluations, "{what}: evaluations made and reported");
         if halt == Halt::Budget {
             let spent = made == case.stop.max_evaluations || iterations == case.stop.max_iterations;
             assert!(spent, "{what}: gave up after {made} evaluations and {iterations} iterations");

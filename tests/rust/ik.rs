@@ -13,8 +13,7 @@ use ikcore::objective::{LeastSquares, Linearization};
 use ikcore::problem::Problem;
 use ikcore::rng;
 use ikcore::robot::Robot;
-use ikcore::solver::multi_start::RestartRule;
-use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, MultiStart, Status, Stop, Unattended, Variant};
+use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, Status, Stop, Unattended, Variant};
 use ikcore::task::{Target, Tolerance};
 
 fn solved(robot: &Robot, target: &Target, options: &SolveOptions) -> Solution {
@@ -190,8 +189,7 @@ fn beetles_solve_positions() {
     let iiwa = robot("iiwa14");
     for variant in [Variant::Star, Variant::Chain, Variant::Greedy] {
         // A beetle gains unevenly from pass to pass: it is given more patience than a descent.
-        let rule = RestartRule { patience: 20, ..RestartRule::default() };
-        let solver = AnySolver::MultiStart(MultiStart { solver: Algorithm::Bas(Bas::of(variant)), rule });
+        let solver = AnySolver::MultiStart(Algorithm::Bas(Bas::of(variant)).into_multi_start());
         let mut reached = 0;
         for (i, q) in configurations(&iiwa, 50).iter().enumerate() {
             let options = SolveOptions { solver: solver.clone(), seed: i as u64, ..SolveOptions::default() };

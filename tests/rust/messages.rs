@@ -15,7 +15,7 @@ use ikcore::math::pose;
 use ikcore::nalgebra::{Matrix4, Vector3};
 use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
-use ikcore::solver::multi_start::RestartRule;
+use ikcore::solver::RestartRule;
 use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, MultiStart, Stop, Unattended, Variant};
 use ikcore::task::{Target, Tolerance};
 use ikcore::tracking::{Session, TrackOptions, track};
@@ -193,7 +193,7 @@ fn options_of_solvers_out_of_range() {
         let solver = Algorithm::LevenbergMarquardt(LevenbergMarquardt::default());
         AnySolver::MultiStart(MultiStart { solver, rule })
     };
-    let (beetle, descent, rule) = (Bas::default(), LevenbergMarquardt::default(), RestartRule::default());
+    let (beetle, descent, rule) = (Bas::default(), LevenbergMarquardt::default(), RestartRule::with_patience(3));
     for (solver, says) in [
         (bas(Bas { explorations: 0, ..beetle }), "explorations must be at least 1, got 0"),
         (bas(Bas { max_passes: 0, ..beetle }), "max_passes must be at least 1, got 0"),

@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-use ikcore::solver::multi_start::RestartRule;
 use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, MultiStart, Status, Stop, Variant};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -175,10 +174,10 @@ impl PyMultiStart {
         let AnySolver::Single(algorithm) = any_solver(solver)? else {
             return Err(invalid("MultiStart takes a single solver, not another MultiStart".into()));
         };
-        let rule = RestartRule::default();
-        let rule =
-            RestartRule { max_starts: optional_count("max_starts", max_starts)?.unwrap_or(rule.max_starts), ..rule };
-        let multi_start = MultiStart { solver: algorithm, rule };
+        let mut multi_start = algorithm.into_multi_start();
+        if let Some(starts) = max_starts {
+            multi_start.rule.max_starts = count("max_starts", starts)?;
+        }
         multi_start.validate().map_err(raise)?;
         Ok(Self(multi_start))
     }
@@ -195,7 +194,7 @@ impl PyMultiStart {
     /// Starts in all; None: as many as the evaluation budget allows.
     #[getter]
     fn max_starts(&self) -> Option<usize> {
-        (self.0.rule.max_starts != RestartRule::default().max_starts).then_some(self.0.rule.max_starts)
+        Some(self.0.rule.max_starts).filter(|starts| *starts != usize::MAX)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

@@ -31,6 +31,13 @@ impl Arithmetic for Fused {
     }
 }
 
+/// What every machine of this architecture runs quickly.
+#[cfg(target_arch = "aarch64")]
+pub type Baseline = Fused;
+/// What every machine of this architecture runs quickly.
+#[cfg(not(target_arch = "aarch64"))]
+pub type Baseline = Separate;
+
 /// Whether this machine runs the kernels compiled for AVX2 and FMA.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]

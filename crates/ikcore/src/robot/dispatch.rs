@@ -4,12 +4,9 @@
 use super::chain::Chain;
 use super::kinematics::{self, Columns, StageFrames};
 use crate::math::Frame;
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
-use crate::math::arithmetic::Fused;
-#[cfg(not(target_arch = "aarch64"))]
-use crate::math::arithmetic::Separate;
+use crate::math::arithmetic::Baseline;
 #[cfg(target_arch = "x86_64")]
-use crate::math::arithmetic::has_fused;
+use crate::math::arithmetic::{Fused, has_fused};
 
 /// `$table!(N, L)` for the size that `$stages` is: N stages, their sines padded to L.
 macro_rules! for_each_size {
@@ -27,32 +24,16 @@ macro_rules! for_each_size {
     };
 }
 
-/// A table of kernels that any machine runs.
-#[cfg(not(target_arch = "aarch64"))]
-macro_rules! portable {
+/// A table of kernels for the instructions that every machine of this architecture has.
+macro_rules! baseline {
     ($n:literal, $l:literal) => {
         Kernels {
-            tip: kinematics::tip::<Separate, $n, $l>,
-            tip_position: kinematics::tip_position::<Separate, $n, $l>,
-            tip_pair: kinematics::side_by_side::<Separate, $n, $l, 2>,
-            tip_four: kinematics::side_by_side::<Separate, $n, $n, 4>,
-            jacobian: kinematics::jacobian::<Separate, $n, $l>,
-            stage_frames: kinematics::stage_frames::<Separate, $n, $l>,
-        }
-    };
-}
-
-/// The same where FMA belongs to the baseline.
-#[cfg(target_arch = "aarch64")]
-macro_rules! native {
-    ($n:literal, $l:literal) => {
-        Kernels {
-            tip: kinematics::tip::<Fused, $n, $l>,
-            tip_position: kinematics::tip_position::<Fused, $n, $l>,
-            tip_pair: kinematics::side_by_side::<Fused, $n, $l, 2>,
-            tip_four: kinematics::side_by_side::<Fused, $n, $n, 4>,
-            jacobian: kinematics::jacobian::<Fused, $n, $l>,
-            stage_frames: kinematics::stage_frames::<Fused, $n, $l>,
+            tip: kinematics::tip::<Baseline, $n, $l>,
+            tip_position: kinematics::tip_position::<Baseline, $n, $l>,
+            tip_pair: kinematics::side_by_side::<Baseline, $n, $l, 2>,
+            tip_four: kinematics::side_by_side::<Baseline, $n, $n, 4>,
+            jacobian: kinematics::jacobian::<Baseline, $n, $l>,
+            stage_frames: kinematics::stage_frames::<Baseline, $n, $l>,
         }
     };
 }
@@ -91,10 +72,7 @@ impl Kernels {
         if has_fused() {
             return for_each_size!(stages, fused);
         }
-        #[cfg(target_arch = "aarch64")]
-        return for_each_size!(stages, native);
-        #[cfg(not(target_arch = "aarch64"))]
-        for_each_size!(stages, portable)
+        for_each_size!(stages, baseline)
     }
 }
 

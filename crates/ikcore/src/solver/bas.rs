@@ -202,18 +202,18 @@ impl Bas {
         // i) random directions b, ii) to iv) smell at both antennae, eq. (8) to (10)
         for (b, pair) in group.directions.chunks_exact_mut(n).zip(antennae.chunks_exact_mut(2 * n)) {
             evaluator.rng().direction(b);
-            let (right, left) = pair.split_at_mut(n);
-            place(right, x, *lambda, b);
-            place(left, x, -lambda, b);
+            let (left, right) = pair.split_at_mut(n);
+            place(left, x, *lambda, b);
+            place(right, x, -lambda, b);
         }
         let mut smells = [[0.0; 2]; LARGEST_GROUP];
         evaluator.evaluate_all(antennae, smells[..count].as_flattened_mut())?;
         // v) move towards the lower value, eq. (11) and (13); equal smells leave the beetle where it is
         let delta = self.c2 * lambda;
-        for ((b, beetle), [right, left]) in
+        for ((b, beetle), [left, right]) in
             group.directions.chunks_exact(n).zip(beetles.chunks_exact_mut(n)).zip(smells)
         {
-            place(beetle, x, -delta * sign(right - left), b);
+            place(beetle, x, -delta * sign(left - right), b);
         }
         let mut values = [0.0; LARGEST_GROUP];
         evaluator.evaluate_all(beetles, &mut values[..count])?;

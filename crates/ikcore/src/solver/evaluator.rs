@@ -195,8 +195,11 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         if self.evaluations + count > self.stop.max_evaluations {
             return Err(Halt::Budget);
         }
+        if self.evaluations >= self.next_poll {
+            self.poll()?;
+        }
         self.evaluations += count;
-        if self.evaluations >= self.next_poll { self.poll() } else { Ok(()) }
+        Ok(())
     }
 
     #[cold]

