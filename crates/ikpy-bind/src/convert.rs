@@ -21,6 +21,10 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyA
     {
         return Ok(array.readonly());
     }
+    let no_numbers = || invalid(format!("{what} must be an array of numbers, got {}", summary(value)));
+    if value.is_none() {
+        return Err(no_numbers()); // numpy would read NaN
+    }
     let py = value.py();
     let numpy = py.import(intern!(py, "numpy"))?;
     let options = [("dtype", "float64"), ("order", "C")];
@@ -28,8 +32,19 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyA
         numpy.call_method(intern!(py, "asarray"), (value,), Some(&pyo3::types::IntoPyDict::into_py_dict(options, py)?));
     match converted {
         Ok(array) => Ok(array.cast_into::<PyArrayDyn<f64>>()?.readonly()),
-        Err(_) => Err(invalid(format!("{what} must be an array of numbers, got {}", summary(value)))),
+        Err(_) => Err(no_numbers()),
     }
+}
+
+/// A count or a seed. Taken as i128, because the overflow error of a narrower type would not say what was wrong.
+pub fn count<T: TryFrom<i128>>(what: &str, value: i128) -> PyResult<T> {
+    let bound = if value < 0 { "zero or more" } else { "smaller" };
+    T::try_from(value).map_err(|_| invalid(format!("{what} must be {bound}, got {value}")))
+}
+
+/// [`count`] where one was given.
+pub fn optional_count<T: TryFrom<i128>>(what: &str, value: Option<i128>) -> PyResult<Option<T>> {
+    value.map(|value| count(what, value)).transpose()
 }
 
 /// The repr of a value, cut to a readable length.

@@ -35,6 +35,11 @@ fn classes(py: Python<'_>) -> PyResult<&Classes> {
             "An argument with a wrong value, shape or unit; the message says what would be right.",
             vec![bound(&base), value_error],
         )?;
+        let limit = class(
+            "LimitError",
+            "Limits that contradict themselves or exclude the start.",
+            vec![bound(&invalid_input)],
+        )?;
         Ok(Classes {
             unknown_name: class(
                 "UnknownNameError",
@@ -46,18 +51,14 @@ fn classes(py: Python<'_>) -> PyResult<&Classes> {
                 "A robot description that cannot be read; the message names line and joint.",
                 vec![bound(&invalid_input)],
             )?,
-            limit: class(
-                "LimitError",
-                "Limits that contradict themselves or exclude the start.",
-                vec![bound(&invalid_input)],
-            )?,
             unsupported_limit: class(
                 "UnsupportedLimit",
                 "A limit that the method cannot honour. No method ignores one.",
-                vec![bound(&invalid_input)],
+                vec![bound(&limit)],
             )?,
             base,
             invalid_input,
+            limit,
         })
     })
 }

@@ -7,7 +7,7 @@ use ikcore::task::{Target, TipError, Tolerance};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::convert::{array, point, rigid_rows, row, shape_text, vector};
+use crate::convert::{array, count, point, rigid_rows, row, shape_text, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::Watcher;
@@ -130,7 +130,7 @@ pub fn solve(
     rotation_tolerance: f64,
     limits: Option<&PyLimits>,
     stop: Option<&PyStop>,
-    seed: u64,
+    seed: i128,
 ) -> PyResult<PySolution> {
     let target = read_target(target)?;
     let (in_force, resolved) = limits_of_call(py, limits, &robot.core, &Sampling::once())?;
@@ -140,7 +140,7 @@ pub fn solve(
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
         limits: limits.map(|_| resolved),
         stop: stop.map_or(Stop::default(), PyStop::core),
-        seed,
+        seed: count("seed", seed)?,
     };
     let mut watcher = Watcher::new();
     let core = py.detach(|| ik::solve(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;

@@ -11,12 +11,13 @@ use crate::convert::summary;
 use crate::error::invalid;
 use crate::upward;
 
-/// Time between two looks at Python: short enough to feel immediate, long enough to cost nothing.
+/// Time between two looks at Python, and between two reports of progress: short enough to feel immediate, long enough to cost nothing.
 const INTERVAL: Duration = Duration::from_millis(20);
 
 /// Watches a call that runs without the interpreter.
 pub struct Watcher {
     since_last_look: Stopwatch,
+    since_last_report: Stopwatch,
     progress: Option<Py<PyAny>>,
     failure: Option<PyErr>,
 }
@@ -24,7 +25,8 @@ pub struct Watcher {
 impl Watcher {
     /// A watcher for Ctrl-C alone.
     pub fn new() -> Self {
-        Self { since_last_look: Stopwatch::start(), progress: None, failure: None }
+        let now = Stopwatch::start();
+        Self { since_last_look: now, since_last_report: now, progress: None, failure: None }
     }
 
     /// A watcher that also reports progress to `update(done, total)`.
@@ -36,38 +38,29 @@ impl Watcher {
     pub fn finish(self) -> PyResult<()> {
         self.failure.map_or(Ok(()), Err)
     }
+}
 
-    fn due(&mut self) -> bool {
-        let due = self.since_last_look.elapsed() >= INTERVAL;
-        if due {
-            self.since_last_look = Stopwatch::start();
-        }
-        due
+/// Whether the interval is over, which then begins anew.
+fn due(since: &mut Stopwatch) -> bool {
+    let due = since.elapsed() >= INTERVAL;
+    if due {
+        *since = Stopwatch::start();
     }
-
-    fn look(&mut self, action: impl FnOnce(Python<'_>) -> PyResult<()>) {
-        if self.failure.is_none() {
-            self.failure = Python::attach(action).err();
-        }
-    }
+    due
 }
 
 impl Monitor for Watcher {
     fn keep_going(&mut self) -> bool {
-        if self.due() {
-            self.look(|py| py.check_signals());
+        if self.failure.is_none() && due(&mut self.since_last_look) {
+            self.failure = Python::attach(|py| py.check_signals()).err();
         }
         self.failure.is_none()
     }
 
     fn progress(&mut self, done: usize, total: usize) {
         let Some(update) = &self.progress else { return };
-        let update = Python::attach(|py| update.clone_ref(py));
-        if done == total || self.due() {
-            self.look(|py| {
-                py.check_signals()?;
-                update.call1(py, (done, total)).map(|_| ())
-            });
+        if self.failure.is_none() && (done == total || due(&mut self.since_last_report)) {
+            self.failure = Python::attach(|py| update.call1(py, (done, total))).err();
         }
     }
 }

@@ -7,7 +7,7 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::convert::{
-    Array, array, matrix3, point, rigid_rows, row, scalar_or_vector, shape_text, summary, table, vector,
+    Array, array, count, matrix3, point, rigid_rows, row, scalar_or_vector, shape_text, summary, table, vector,
 };
 use crate::error::{invalid, raise};
 
@@ -249,8 +249,8 @@ fn pentagram(center: &Bound<'_, PyAny>, duration: f64, radius: f64, a: [f64; 3],
 #[pyfunction]
 #[pyo3(signature = (center, duration, *, radius, k, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
        text_signature = "(center, duration, *, radius, k, a=(1, 0, 0), b=(0, 1, 0))")]
-fn rose(center: &Bound<'_, PyAny>, duration: f64, radius: f64, k: u32, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
-    Ok(Path::new(Rose::new(plane(center, a, b)?, radius, k, duration).map_err(raise)?).into())
+fn rose(center: &Bound<'_, PyAny>, duration: f64, radius: f64, k: i128, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
+    Ok(Path::new(Rose::new(plane(center, a, b)?, radius, count("k", k)?, duration).map_err(raise)?).into())
 }
 
 /// Straight strokes through `points` (k, 3) (m) at constant speed, `duration` (s) in all.

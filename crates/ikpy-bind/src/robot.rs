@@ -10,7 +10,7 @@ use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::convert::{self, Rows, array, pose_array, row, rows, shape_text, table, vector};
+use crate::convert::{self, Rows, array, count, pose_array, row, rows, shape_text, table, vector};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
 
@@ -277,9 +277,10 @@ impl PyRobot {
     fn random_configurations<'py>(
         &self,
         py: Python<'py>,
-        m: usize,
-        seed: u64,
+        m: i128,
+        seed: i128,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (m, seed) = (count("m", m)?, count("seed", seed)?);
         table(py, self.core.random_configurations(m, &mut rng::stream(seed, 0)), &[m, self.core.dof()])
     }
 

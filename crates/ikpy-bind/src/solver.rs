@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
-use crate::convert::summary;
+use crate::convert::{count, optional_count, summary};
 use crate::error::{invalid, raise};
 
 static STATUS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
@@ -61,15 +61,15 @@ impl PyBas {
         variant: &str,
         c1: Option<f64>,
         c2: Option<f64>,
-        explorations: Option<usize>,
-        max_passes: usize,
+        explorations: Option<i128>,
+        max_passes: i128,
     ) -> PyResult<Self> {
         let standard = Bas::of(variant.parse::<Variant>().map_err(raise)?);
         let bas = Bas {
             c1: c1.unwrap_or(standard.c1),
             c2: c2.unwrap_or(standard.c2),
-            explorations: explorations.unwrap_or(standard.explorations),
-            max_passes,
+            explorations: optional_count("explorations", explorations)?.unwrap_or(standard.explorations),
+            max_passes: count("max_passes", max_passes)?,
             ..standard
         };
         bas.validate().map_err(raise)?;
@@ -170,12 +170,14 @@ pub struct PyMultiStart(MultiStart<Algorithm>);
 impl PyMultiStart {
     #[new]
     #[pyo3(signature = (solver, *, max_starts=None))]
-    fn new(solver: &Bound<'_, PyAny>, max_starts: Option<usize>) -> PyResult<Self> {
+    fn new(solver: &Bound<'_, PyAny>, max_starts: Option<i128>) -> PyResult<Self> {
         let AnySolver::Single(algorithm) = any_solver(solver)? else {
             return Err(invalid("MultiStart takes a single solver, not another MultiStart".into()));
         };
         let mut multi_start = algorithm.into_multi_start();
-        multi_start.rule.max_starts = max_starts.unwrap_or(multi_start.rule.max_starts);
+        if let Some(starts) = max_starts {
+            multi_start.rule.max_starts = count("max_starts", starts)?;
+        }
         multi_start.validate().map_err(raise)?;
         Ok(Self(multi_start))
     }
@@ -232,13 +234,17 @@ pub struct PyStop {
 impl PyStop {
     #[new]
     #[pyo3(signature = (*, max_evaluations=None, max_iterations=None, max_time=None))]
-    fn new(max_evaluations: Option<usize>, max_iterations: Option<usize>, max_time: Option<f64>) -> PyResult<Self> {
+    fn new(max_evaluations: Option<i128>, max_iterations: Option<i128>, max_time: Option<f64>) -> PyResult<Self> {
         if let Some(seconds) = max_time
             && Duration::try_from_secs_f64(seconds).is_err()
         {
             return Err(invalid(format!("max_time must be zero or more seconds, got {seconds}")));
         }
-        let stop = Self { max_evaluations, max_iterations, max_time };
+        let stop = Self {
+            max_evaluations: optional_count("max_evaluations", max_evaluations)?,
+            max_iterations: optional_count("max_iterations", max_iterations)?,
+            max_time,
+        };
         stop.core().validate().map_err(raise)?;
         Ok(stop)
     }

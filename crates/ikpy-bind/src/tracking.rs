@@ -8,7 +8,7 @@ use ikcore::trajectory::Trajectory;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 
-use crate::convert::{row, table, vector};
+use crate::convert::{count, row, table, vector};
 use crate::error::raise;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::{Progress, Watcher};
@@ -246,7 +246,7 @@ pub fn track(
     limits: Option<&PyLimits>,
     position_tolerance: f64,
     rotation_tolerance: f64,
-    seed: u64,
+    seed: i128,
     limit_at: &str,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTrackResult> {
@@ -261,7 +261,7 @@ pub fn track(
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
         limits: Some(resolved),
         limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
-        seed,
+        seed: count("seed", seed)?,
     };
     let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
     let mut watcher = Watcher::with_progress(progress.update(py));

@@ -1,0 +1,27 @@
+"""Tables of wrong calls, the exceptions they raise, and the exact messages."""
+
+from collections.abc import Callable
+
+import pytest
+
+import beetle_ik as bik
+
+Invalid, Limit, Urdf, Unknown = bik.InvalidInputError, bik.LimitError, bik.UrdfError, bik.UnknownNameError
+Case = tuple[Callable[[], object], type[Exception], str]
+
+
+def with_entry(index: int, value: float) -> list[float]:
+    """Seven joint angles of zero, but for one."""
+    angles = [0.0] * 7
+    angles[index] = value
+    return angles
+
+
+def told(cases: list[Case]) -> pytest.MarkDecorator:
+    return pytest.mark.parametrize(("call", "error", "message"), cases, ids=[case[2][:60] for case in cases])
+
+
+def assert_told(call: Callable[[], object], error: type[Exception], message: str) -> None:
+    with pytest.raises(Exception) as caught:  # noqa: PT011  the class is compared exactly
+        call()
+    assert (type(caught.value), str(caught.value)) == (error, message)

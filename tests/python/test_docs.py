@@ -1,0 +1,86 @@
+"""The README's Python and the examples in docstrings run as they stand."""
+
+import doctest
+import inspect
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import beetle_ik as bik
+
+README = Path(__file__).parents[2] / "README.md"
+FENCED = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
+# An indented block that begins with the import every example begins with.
+INDENTED = re.compile(r"^( +)import beetle_ik as bik\n(?:\1.*\n|\s*\n)*", re.MULTILINE)
+
+
+def blocks_of_readme() -> list[str]:
+    return FENCED.findall(README.read_text(encoding="utf-8"))
+
+
+def documented() -> Iterator[tuple[str, str]]:
+    """Names and docstrings of everything public."""
+    yield "beetle_ik", inspect.getdoc(bik) or ""
+    for space, names in (
+        (bik, bik.__all__),
+        (bik.paths, bik.paths.__all__),
+        (bik.plot, ["robot", "track", "trajectory"]),
+    ):
+        for name in names:
+            thing = getattr(space, name)
+            yield name, getattr(thing, "__doc__", None) or ""
+            if inspect.isclass(thing):
+                members = [(key, value) for key, value in vars(thing).items() if not key.startswith("_")]
+                yield from ((f"{name}.{key}", getattr(value, "__doc__", None) or "") for key, value in members)
+
+
+def run(program: str, folder: Path) -> None:
+    command = [sys.executable, "-W", "error", "-c", program]
+    done = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, env=os.environ | {"MPLBACKEND": "Agg"}, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("block", blocks_of_readme(), ids=lambda block: block.splitlines()[0])
+def test_the_readme_runs(block: str, tmp_path: Path) -> None:
+    run(block, tmp_path)
+
+
+def test_every_fence_of_the_readme_says_what_it_holds() -> None:
+    opened = re.findall(r"^```(\w*)\n.*?^```", README.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    assert "" not in opened
+
+
+def examples() -> list[object]:
+    return [
+        pytest.param(inspect.cleandoc(match[0]), id=name)
+        for name, text in documented()
+        for match in INDENTED.finditer(text)
+    ]
+
+
+@pytest.mark.parametrize("example", examples())
+def test_examples_in_docstrings_run(example: str, tmp_path: Path) -> None:
+    run(example, tmp_path)
+
+
+def test_the_package_has_an_example() -> None:
+    assert INDENTED.search(bik.__doc__ or "")
+
+
+def test_prompts_in_docstrings_give_what_they_show() -> None:
+    runner = doctest.DocTestRunner()
+    for name, text in documented():
+        runner.run(doctest.DocTestParser().get_doctest(text, {"bik": bik}, name, None, 0))
+    assert runner.summarize(verbose=False).failed == 0
+
+
+def test_everything_public_is_documented() -> None:
+    bare = [name for name, text in documented() if not text.strip()]
+    assert not bare
