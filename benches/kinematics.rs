@@ -17,7 +17,7 @@ fn robot(name: &str) -> Robot {
 fn single(c: &mut Criterion) {
     for name in ROBOTS {
         let robot = robot(name);
-        let qs = robot.random_configurations(4, &mut rng::stream(0, 0));
+        let qs = robot.random_configurations(4, &mut rng::stream(0, 0)).expect("they fit into memory");
         let q = &qs[..robot.dof()];
         let mut columns = [[0.0; 6]; MAX_DOF];
         let mut group = c.benchmark_group(name);
@@ -37,7 +37,7 @@ fn batch(c: &mut Criterion) {
     group.throughput(Throughput::Elements(COUNT as u64)).sample_size(20);
     for name in ROBOTS {
         let robot = robot(name);
-        let qs = robot.random_configurations(COUNT, &mut rng::stream(0, 0));
+        let qs = robot.random_configurations(COUNT, &mut rng::stream(0, 0)).expect("they fit into memory");
         group.bench_function(format!("{name} fk"), |b| {
             b.iter(|| qs.chunks_exact(robot.dof()).for_each(|q| _ = black_box(robot.tip(q))));
         });

@@ -16,7 +16,8 @@ fn poses(c: &mut Criterion) {
     group.throughput(Throughput::Elements(TARGETS));
     for name in ["iiwa14", "panda", "ur5e"] {
         let robot = Robot::named(name).expect("a built-in robot");
-        let goals = robot.random_configurations(TARGETS as usize, &mut rng::stream(1, 0));
+        let goals =
+            robot.random_configurations(TARGETS as usize, &mut rng::stream(1, 0)).expect("they fit into memory");
         let targets: Vec<_> = goals.chunks_exact(robot.dof()).map(|q| Target::Pose(robot.tip(q))).collect();
         group.bench_function(name, |b| {
             b.iter(|| {

@@ -21,7 +21,7 @@ fn solved(robot: &Robot, target: &Target, options: &SolveOptions) -> Solution {
 }
 
 fn configurations(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
-    let flat = robot.random_configurations(count, &mut rng::stream(11, 0));
+    let flat = robot.random_configurations(count, &mut rng::stream(11, 0)).unwrap();
     flat.chunks_exact(robot.dof()).map(<[f64]>::to_vec).collect()
 }
 

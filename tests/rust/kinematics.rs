@@ -99,7 +99,7 @@ fn side_by_side_gives_the_bits_of_one_by_one() {
         let robot = &chain.robot;
         // Every way in which a count splits into fours, a pair and a single one.
         for count in 0..=11 {
-            let qs = robot.random_configurations(count, &mut rng::stream(3, count as u64));
+            let qs = robot.random_configurations(count, &mut rng::stream(3, count as u64)).unwrap();
             let mut side_by_side = vec![];
             robot.tip_positions(&qs, |tip| side_by_side.push(bits(&tip)));
             let one_by_one: Vec<_> = qs.chunks_exact(robot.dof()).map(|q| bits(&robot.tip_position(q))).collect();
@@ -114,7 +114,7 @@ fn any_number_of_points_scores_as_one_by_one() {
         let target = Target::Position(chain.robot.tip_position(&q));
         let mut problem = Problem::new(&chain.robot, &target, Tolerance::default());
         for count in 1..=9 {
-            let qs = chain.robot.random_configurations(count, &mut rng::stream(4, 0));
+            let qs = chain.robot.random_configurations(count, &mut rng::stream(4, 0)).unwrap();
             let mut scores = vec![Score { value: f64::NAN, solved: false }; count];
             problem.evaluate_all(&qs, &mut scores);
             let one_by_one: Vec<Score> = qs.chunks_exact(q.len()).map(|q| problem.evaluate(q)).collect();
@@ -195,7 +195,7 @@ fn robots_are_equal_when_everything_is() {
 fn configurations_are_drawn_inside_the_limits_and_repeat() {
     for name in Robot::names() {
         let robot = robot(name);
-        let draw = |seed| robot.random_configurations(200, &mut rng::stream(seed, 0));
+        let draw = |seed| robot.random_configurations(200, &mut rng::stream(seed, 0)).unwrap();
         assert_eq!(bits(&draw(1)), bits(&draw(1)));
         assert_ne!(draw(1), draw(2));
         for q in draw(1).chunks_exact(robot.dof()) {

@@ -1,8 +1,8 @@
 //! The only place where random generators are born: repeatable from (seed, stream), and lazily, since most targets
 //! are solved without a draw.
 
-use rand_chacha::ChaCha8Rng;
 use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 /// Numbers drawn at once; a quarter of the cost of single draws.
 const BUFFER: usize = 64;

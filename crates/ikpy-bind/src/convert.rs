@@ -79,6 +79,15 @@ pub fn scalar_or_vector(what: &str, value: &Bound<'_, PyAny>) -> PyResult<(Vec<f
     }
 }
 
+/// Times (s) to look at, a number or one dimension; whether it was a number. Infinite ones are clamped later.
+pub fn times(value: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, bool)> {
+    let (times, single) = scalar_or_vector("t", value)?;
+    match times.iter().position(|t| t.is_nan()) {
+        None => Ok((times, single)),
+        Some(i) => Err(invalid(format!("t must be a time, but entry {i} is NaN"))),
+    }
+}
+
 /// Three numbers.
 pub fn point(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
     let array = array(what, value)?;

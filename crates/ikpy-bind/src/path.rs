@@ -6,9 +6,7 @@ use ikcore::path::{Circle, Hypotrochoid, Path, Plane, Polyline, Reference, Rose,
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::convert::{
-    Array, array, count, matrix3, point, rigid_rows, row, scalar_or_vector, shape_text, summary, table, vector,
-};
+use crate::convert::{Array, array, count, matrix3, point, rigid_rows, row, shape_text, summary, table, times, vector};
 use crate::error::{invalid, raise};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -91,7 +89,7 @@ impl PyPath {
             Orientation::Function(orientation.clone().unbind())
         } else {
             let rotation = matrix3("orientation", orientation)?;
-            let pose = ikcore::math::pose::from_rotation_matrix(rotation, [0.0; 3]).map_err(raise)?;
+            let pose = ikcore::math::pose::from_rotation_matrix("orientation", rotation, [0.0; 3]).map_err(raise)?;
             Orientation::Constant(*pose.rotation.matrix())
         };
         Ok(Self { curve: self.curve.clone_ref(py), orientation })
@@ -179,7 +177,7 @@ fn each<'py, const D: usize>(
     shape: [usize; D],
     value: impl Fn(f64) -> PyResult<Vec<f64>>,
 ) -> PyResult<Array<'py>> {
-    let (times, single) = scalar_or_vector("t", t)?;
+    let (times, single) = times(t)?;
     let mut values = vec![];
     for t in &times {
         values.extend(value(*t)?);

@@ -281,7 +281,7 @@ impl PyRobot {
         seed: i128,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (m, seed) = (count("m", m)?, count("seed", seed)?);
-        table(py, self.core.random_configurations(m, &mut rng::stream(seed, 0)), &[m, self.core.dof()])
+        table(py, self.core.random_configurations(m, &mut rng::stream(seed, 0)).map_err(raise)?, &[m, self.core.dof()])
     }
 
     /// Yoshikawa's manipulability sqrt(det(J J')) at q (n,) or (m, n); below six joints sqrt(det(J' J)).
@@ -361,7 +361,7 @@ pub fn pose<'py>(
         [("rpy", value)] => poses::from_rpy(convert::point("rpy", value)?, position_xyz),
         [("rotvec", value)] => poses::from_rotation_vector(convert::point("rotvec", value)?, position_xyz),
         [("matrix", value)] => {
-            poses::from_rotation_matrix(convert::matrix3("matrix", value)?, position_xyz).map_err(raise)?
+            poses::from_rotation_matrix("matrix", convert::matrix3("matrix", value)?, position_xyz).map_err(raise)?
         }
         _ => {
             let names = given.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");

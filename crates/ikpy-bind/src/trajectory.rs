@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
-use crate::convert::{Array, array, row, scalar_or_vector, shape_text, table, vector};
+use crate::convert::{Array, array, row, shape_text, table, times, vector};
 use crate::error::{invalid, raise};
 use crate::upward;
 
@@ -144,7 +144,7 @@ impl PyTrajectory {
 
     /// (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside are clamped.
     fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
-        let (times, single) = scalar_or_vector("t", t)?;
+        let (times, single) = times(t)?;
         self.at_times(py, &times, single)
     }
 

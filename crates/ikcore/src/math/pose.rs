@@ -51,14 +51,14 @@ pub fn from_rotation_vector(rotation_vector: [f64; 3], translation: [f64; 3]) ->
     Pose::from_parts(Translation3::from(translation), Rotation3::new(Vector3::from(rotation_vector)))
 }
 
-/// The rotation of a 3x3 matrix.
+/// The rotation of a 3x3 matrix; `what` names it in errors.
 ///
 /// # Errors
 /// As [`from_matrix`].
-pub fn from_rotation_matrix(rotation: Matrix3<f64>, translation: [f64; 3]) -> Result<Pose> {
+pub fn from_rotation_matrix(what: &str, rotation: Matrix3<f64>, translation: [f64; 3]) -> Result<Pose> {
     let mut matrix = rotation.to_homogeneous();
     matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&Vector3::from(translation));
-    from_matrix("matrix", &matrix)
+    from_matrix(what, &matrix)
 }
 
 /// The pose itself if all its numbers are finite.

@@ -179,9 +179,19 @@ impl Robot {
     }
 
     /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).
-    pub fn random_configurations(&self, count: usize, rng: &mut LazyRng) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for more than memory holds.
+    pub fn random_configurations(&self, count: usize, rng: &mut LazyRng) -> Result<Vec<f64>> {
         let ranges: Vec<_> = self.joints().iter().map(Joint::sampling_range).collect();
-        (0..count).flat_map(|_| ranges.iter()).map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect()
+        let mut qs = Vec::new();
+        if qs.try_reserve_exact(count.saturating_mul(self.dof())).is_err() {
+            return Err(Error::out_of_range("number of configurations", "small enough for memory", count as f64));
+        }
+        for _ in 0..count {
+            qs.extend(ranges.iter().map(|(lower, upper)| rng.uniform_in(*lower, *upper)));
+        }
+        Ok(qs)
     }
 
     /// The robot as bytes, for storing and for copying between processes.
