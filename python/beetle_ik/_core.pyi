@@ -361,6 +361,55 @@ class TrackResult:
     def trajectory(self) -> Trajectory: ...  # straight lines between the ticks: its velocities are exactly qd
     def plot(self) -> Figure: ...
 
+@final
+class Tracker:
+    def __new__(
+        cls,
+        robot: Robot,
+        start: ArrayLike,
+        *,
+        dt: float,
+        solver: _Solver | None = None,
+        limits: Limits | None = None,
+        position_tolerance: float = 1e-6,
+        rotation_tolerance: float = 1e-6,
+        seed: int = 0,
+        limit_at: Literal["interval", "start"] = "interval",
+    ) -> Tracker: ...
+    def step(self, target: ArrayLike) -> Step: ...  # (4, 4) pose or (3,) position
+    def reset(self, q: ArrayLike) -> None: ...
+    @property
+    def q(self) -> _Array: ...  # (n,)
+    @property
+    def time(self) -> float: ...  # s
+    @property
+    def dt(self) -> float: ...  # s
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def limits(self) -> Limits: ...  # those in force
+
+@final
+class Step:
+    @property
+    def q(self) -> _Array: ...  # (n,): what to command
+    @property
+    def qd(self) -> _Array: ...  # (n,): the velocity that leads there
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def position_error(self) -> float: ...  # m
+    @property
+    def rotation_error(self) -> float: ...  # rad; NaN where no orientation was asked
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
+
 # --- trajectories -------------------------------------------------------------------------------
 
 @final

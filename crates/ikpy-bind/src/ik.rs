@@ -148,7 +148,8 @@ pub fn solve(
     Ok(PySolution { q: row(py, core.q.to_vec()).unbind(), limits: Py::new(py, in_force)?, core })
 }
 
-fn read_target(value: &Bound<'_, PyAny>) -> PyResult<Target> {
+/// A pose (4, 4) or a position (3,).
+pub fn read_target(value: &Bound<'_, PyAny>) -> PyResult<Target> {
     let numbers = array("target", value)?;
     match numbers.shape() {
         [3] => Ok(Target::Position(point("target", value)?)),

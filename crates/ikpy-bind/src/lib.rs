@@ -9,6 +9,7 @@ mod path;
 mod robot;
 mod sinusoid;
 mod solver;
+mod tracker;
 mod tracking;
 mod trajectory;
 mod upward;
@@ -29,6 +30,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     path::register(module)?;
     module.add_class::<tracking::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;
+    module.add_class::<tracker::PyStep>()?;
+    module.add_class::<tracker::PyTracker>()?;
     module.add_class::<trajectory::PyTrajectory>()?;
     // The package names what is public; a second list here would only go stale.
     module.dict().del_item("__all__")

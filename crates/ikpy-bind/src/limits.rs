@@ -1,5 +1,6 @@
 //! `Limits`.
 
+use ikcore::Error;
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::robot::Robot;
 use pyo3::prelude::*;
@@ -205,6 +206,19 @@ impl PyLimits {
             }
         }
         Self { given }
+    }
+
+    /// Err if a field is a callable of t, for motions without a known end.
+    pub fn require_no_functions(&self) -> PyResult<()> {
+        let is_function = |given: &Option<Given>| matches!(given, Some(Given::Function(_)));
+        match self.given.iter().position(is_function) {
+            None => Ok(()),
+            Some(i) => Err(raise(Error::UnsupportedLimit {
+                field: format!("callable {}", FIELDS[i]),
+                method: "Tracker".into(),
+                remedy: "it has no end to be sampled to; give numbers or a Sinusoid, or use track".into(),
+            })),
+        }
     }
 
     /// The same for the core, functions of time sampled.

@@ -4,7 +4,7 @@ mod profile;
 mod tick_box;
 
 pub use profile::{Profile, Sinusoid};
-pub use tick_box::LimitAt;
+pub use tick_box::{LimitAt, TickBox};
 
 use std::fmt;
 

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::session::{Session, Step};
-use crate::limits::{LimitAt, Limits};
+use crate::limits::Limits;
 use crate::solver::Status;
 use crate::task::Tolerance;
 
@@ -51,13 +51,12 @@ pub struct Record {
     pub status: Status,
     /// Time taken.
     pub elapsed: Duration,
-    limit_at: LimitAt,
     dt: f64,
 }
 
 impl Record {
     /// An empty record with room for `rows`.
-    pub(super) fn new(session: &Session<'_>, rows: usize) -> Self {
+    pub(super) fn new(session: &Session, rows: usize) -> Self {
         let dof = session.q().len();
         Self {
             dof,
@@ -78,13 +77,12 @@ impl Record {
             tolerance: session.tolerance(),
             status: Status::Lost,
             elapsed: Duration::ZERO,
-            limit_at: session.limit_at(),
             dt: session.dt(),
         }
     }
 
     /// Appends what `session` has just accepted.
-    pub(super) fn push(&mut self, session: &Session<'_>, reference: [f64; 3], step: &Step) {
+    pub(super) fn push(&mut self, session: &Session, reference: [f64; 3], step: &Step) {
         self.push_velocities(session);
         self.time.push(session.time());
         self.q.extend_from_slice(session.q());
@@ -98,19 +96,17 @@ impl Record {
     }
 
     /// Velocities of the tick that has just ended, what they were held against, and the violations.
-    fn push_velocities(&mut self, session: &Session<'_>) {
+    fn push_velocities(&mut self, session: &Session) {
+        self.qd.extend_from_slice(session.qd());
         let (Some(from), to) = (self.time.last().copied(), session.time()) else {
-            self.qd.resize(self.dof, 0.0);
             self.velocity_limit.resize(self.dof, f64::NAN);
             return;
         };
+        self.velocity_limit.extend_from_slice(session.velocity_limit());
         for (j, q) in session.q().iter().enumerate() {
             let before = self.q[self.q.len() - self.dof + j];
-            let limit = self.limits.velocity_over(j, from, to, self.limit_at);
-            self.qd.push((q - before) / self.dt);
-            self.velocity_limit.push(limit);
             let [lower, upper] = self.limits.position_range(j, from, to);
-            let too_fast = (q - before).abs() - limit * self.dt;
+            let too_fast = (q - before).abs() - session.velocity_limit()[j] * self.dt;
             // From displacements, which keep the limit to the last bit; velocities round once more.
             self.limit_margin = self.limit_margin.min(-too_fast / self.dt);
             let excess = too_fast.max(lower - q).max(q - upper);
