@@ -27,16 +27,33 @@ def read_table(file: str | os.PathLike[str], required: Sequence[str]) -> dict[st
     """Read the columns of `file` by name, in the file's order.
 
     Raises:
-        InvalidInputError: a column of `required` is missing, or an entry is no finite number: names line and column.
+        InvalidInputError: the file is no CSV in UTF-8, a column of `required` is missing, or an entry is no finite
+            number: names line and column.
     """
-    with Path(file).open(encoding="utf-8-sig", newline="") as stream:
-        lines = csv.reader(stream, skipinitialspace=True)
+    lines = csv.reader(io.StringIO(_text(file), newline=""), skipinitialspace=True, strict=True)
+    try:
         columns = [name.strip() for name in next(lines, [])]
         _check_header(file, columns, required)
         rows = [_numbers(file, lines.line_num, columns, line) for line in lines if line]
+    except csv.Error as error:
+        raise InvalidInputError(
+            f"{os.fspath(file)}, line {lines.line_num}: broken CSV: {error}; check the quotes up to this line"
+        ) from error
     if not rows:
         raise InvalidInputError(f"{os.fspath(file)}: no rows below the header")
     return dict(zip(columns, np.array(rows).T, strict=True))
+
+
+def _text(file: str | os.PathLike[str]) -> str:
+    content = Path(file).read_bytes()
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise InvalidInputError(
+            f"{os.fspath(file)}, line {line}: byte 0x{error.object[error.start]:02x} is not UTF-8; "
+            "save the file as CSV with the encoding UTF-8"
+        ) from error
 
 
 def _check_header(file: str | os.PathLike[str], columns: list[str], required: Sequence[str]) -> None:

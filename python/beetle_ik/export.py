@@ -18,6 +18,7 @@ from ._files import whole_file
 
 # Columns are named "q:joint", "qd:joint", "qdd:joint": position, velocity and acceleration of each joint.
 _DERIVATIVES = ("q", "qd", "qdd")
+_PREFIXES = tuple(f"{derivative}:" for derivative in _DERIVATIVES)
 
 
 def to_csv(trajectory: Trajectory, file: str | os.PathLike[str]) -> None:
@@ -32,17 +33,22 @@ def to_csv(trajectory: Trajectory, file: str | os.PathLike[str]) -> None:
 def from_csv(file: str | os.PathLike[str]) -> Trajectory:
     """Read a trajectory from CSV; the columns present decide the degree of its pieces.
 
+    Positions are in columns `q:joint`. A file without any has them under the plain names of the joints.
+
     Raises:
         InvalidInputError: a column is missing or an entry is no number: names line and column.
     """
     table = read_table(file, ["time"])
     joints = [column.removeprefix("q:") for column in table if column.startswith("q:")]
+    positions = [f"q:{joint}" for joint in joints]
+    if not joints:
+        joints = positions = [column for column in table if column != "time" and not column.startswith(_PREFIXES)]
     if not joints:
         raise InvalidInputError(
-            f"{os.fspath(file)}, line 1: no joint positions: expected columns named 'q:joint'; "
-            f"columns found: {', '.join(table)}"
+            f"{os.fspath(file)}, line 1: no joint positions: expected a column for each joint, "
+            f"named 'q:joint' or by the joint alone; columns found: {', '.join(table)}"
         )
-    q = np.column_stack([table[f"q:{joint}"] for joint in joints])
+    q = np.column_stack([table[column] for column in positions])
     qd, qdd = (_joint_columns(file, table, derivative, joints) for derivative in _DERIVATIVES[1:])
     return Trajectory.from_samples(table["time"], q, qd=qd, qdd=qdd, joint_names=joints)
 
@@ -87,7 +93,13 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
                 f"{os.fspath(file)}: not a trajectory: '{name}' is missing; "
                 f"the file holds: {', '.join(stored) or 'nothing'}"
             )
-    return Trajectory(stored["time"], stored["coefficients"], joint_names=stored["joint_names"].tolist())
+    joint_names = stored["joint_names"]
+    if joint_names.ndim != 1 or joint_names.dtype.kind != "U":
+        raise InvalidInputError(
+            f"{os.fspath(file)}: not a trajectory: 'joint_names' must be a list of text, "
+            f"got shape {joint_names.shape} of {joint_names.dtype}"
+        )
+    return Trajectory(stored["time"], stored["coefficients"], joint_names=joint_names.tolist())
 
 
 def _arrays(file: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:

@@ -123,6 +123,10 @@ def test_points_from_a_file(tmp_path: Path) -> None:
     assert refused("track", "planar5", "--path", str(timed), "--duration", "4") == (
         f"Error: --duration: '{timed}' has a column 'time', which sets the duration; leave one of them out"
     )
+    untimed.write_bytes(b"x,y,z\n4,1,\xb0\n")
+    assert refused("track", "planar5", "--path", str(untimed)) == (
+        f"Error: {untimed}, line 2: byte 0xb0 is not UTF-8; save the file as CSV with the encoding UTF-8"
+    )
     untimed.write_text("x,y\n4,1\n")
     assert refused("track", "planar5", "--path", str(untimed)) == (
         f"Error: {untimed}, line 1: column 'z' is missing; columns found: x, y"

@@ -40,6 +40,36 @@ def test_mistakes_are_told_with_line_and_column(tmp_path: Path, text: str, probl
     assert str(caught.value) == f"{file}{problem}"
 
 
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [
+        ("x,y\n1,2\n3,é\n".encode("latin-1"), "line 3: byte 0xe9 is not UTF-8"),
+        ("x,y\n1,2\n".encode("utf-16"), "line 1: byte 0xff is not UTF-8"),
+    ],
+)
+def test_other_encodings_are_told(tmp_path: Path, content: bytes, problem: str) -> None:
+    file = tmp_path / "points.csv"
+    file.write_bytes(content)
+    with pytest.raises(InvalidInputError) as caught:
+        read_table(file, ["x", "y"])
+    assert str(caught.value) == f"{file}, {problem}; save the file as CSV with the encoding UTF-8"
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ('x,"y\n1,2\n', "line 2: broken CSV: unexpected end of data"),
+        ('x,y\n"1"1,2\n', "line 2: broken CSV: ',' expected after '\"'"),
+    ],
+)
+def test_broken_quotes_are_told(tmp_path: Path, text: str, problem: str) -> None:
+    file = tmp_path / "points.csv"
+    file.write_text(text)
+    with pytest.raises(InvalidInputError) as caught:
+        read_table(file, ["x", "y"])
+    assert str(caught.value) == f"{file}, {problem}; check the quotes up to this line"
+
+
 def test_spreadsheet_habits_are_understood(tmp_path: Path) -> None:
     file = tmp_path / "points.csv"
     file.write_bytes(b"\xef\xbb\xbfx, y\r\n1, 2\r\n\r\n3, 4\r\n")  # byte order mark, spaces, CRLF, an empty line

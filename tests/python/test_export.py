@@ -34,6 +34,28 @@ def test_csv_names_its_columns(tmp_path: Path) -> None:
     assert (tmp_path / "motion.csv").read_text().splitlines()[0] == 'time,q:shoulder,"q:elbow, left"'
 
 
+def test_csv_with_plain_joint_names(tmp_path: Path) -> None:
+    file = tmp_path / "motion.csv"
+    file.write_text("time,b,a,qd:a,qd:b\n0,1,2,0,0\n1,3,4,5,6\n")
+    read = bik.Trajectory.from_csv(file)
+    assert read.joint_names == ["b", "a"]
+    np.testing.assert_array_equal(read.q, [[1.0, 2.0], [3.0, 4.0]])
+    np.testing.assert_allclose(read.qd, [[0.0, 0.0], [6.0, 5.0]], atol=1e-12)
+
+
+def test_csv_beside_prefixed_positions_plain_columns_are_no_joints(tmp_path: Path) -> None:
+    file = tmp_path / "motion.csv"
+    file.write_text("time,q:a,temperature\n0,1,20\n1,2,21\n")
+    assert bik.Trajectory.from_csv(file).joint_names == ["a"]
+
+
+def test_csv_in_another_encoding(tmp_path: Path) -> None:
+    file = tmp_path / "motion.csv"
+    file.write_bytes("time,gelenk_für_arm\n0,1\n".encode("latin-1"))
+    with pytest.raises(bik.InvalidInputError, match="line 1: byte 0xfc is not UTF-8; save the file as CSV"):
+        bik.Trajectory.from_csv(file)
+
+
 def test_npz_keeps_every_bit(tmp_path: Path, tracked: bik.TrackResult) -> None:
     tracked.trajectory.to_npz(tmp_path / "motion.npz")
     read = bik.Trajectory.from_npz(tmp_path / "motion.npz")
@@ -52,7 +74,12 @@ def test_a_tracked_path_survives_csv(tmp_path: Path, tracked: bik.TrackResult) -
     ("text", "problem"),
     [
         ("t,q:a\n0,1\n", ", line 1: column 'time' is missing; columns found: t, q:a"),
-        ("time,a\n0,1\n", ", line 1: no joint positions: expected columns named 'q:joint'; columns found: time, a"),
+        (
+            "time,qd:a\n0,1\n",
+            ", line 1: no joint positions: expected a column for each joint, named 'q:joint' or by the joint alone; "
+            "columns found: time, qd:a",
+        ),
+        ("time,a,b,qd:a\n0,1,2,3\n", ", line 1: column 'qd:b' is missing, though 'qd:a' is there"),
         ("time,q:a,q:b,qd:a\n0,1,2,3\n", ", line 1: column 'qd:b' is missing, though 'qd:a' is there"),
     ],
 )
@@ -70,6 +97,14 @@ def test_npz_that_is_no_trajectory(tmp_path: Path) -> None:
     with pytest.raises(bik.InvalidInputError) as caught:
         bik.Trajectory.from_npz(file)
     assert str(caught.value) == (f"{file}: not a trajectory: 'coefficients' is missing; the file holds: time, data")
+
+
+def test_npz_with_one_name_for_all_joints(tmp_path: Path, tracked: bik.TrackResult) -> None:
+    file = tmp_path / "other.npz"
+    np.savez(file, time=TIME, coefficients=tracked.trajectory.coefficients, joint_names="a")
+    with pytest.raises(bik.InvalidInputError) as caught:
+        bik.Trajectory.from_npz(file)
+    assert str(caught.value) == (f"{file}: not a trajectory: 'joint_names' must be a list of text, got shape () of <U1")
 
 
 @pytest.mark.parametrize("content", [b"", b"plain text", b"PK\x03\x04 but no archive", b"\x93NUMPY"])
