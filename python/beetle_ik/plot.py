@@ -1,4 +1,8 @@
-"""Figures of results. Each function returns a matplotlib Figure and never shows it."""
+"""Figures of results. Each function returns a matplotlib Figure and never shows it.
+
+`figure.savefig("result.png")` writes it; a notebook shows it where it is the last value of a cell. Nobody has to
+close it.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from ._text import counted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,7 +33,10 @@ _BLUE, _VERMILION, _GREEN, _PURPLE, _ORANGE, _SKY, _BLACK = (
 )
 _CYCLE = (_BLUE, _VERMILION, _GREEN, _PURPLE, _ORANGE, _SKY, _BLACK)
 _FORBIDDEN = "#D9D9D9"
+_ROW_HEIGHT = 2.4  # inches, of a panel over time
 _VELOCITY_PANELS_A_ROW = 7
+_VELOCITY_ROW_HEIGHT = 2.0
+_LEGEND_ROWS = 10
 _TRAJECTORY_SAMPLES = 2001
 
 
@@ -40,24 +49,30 @@ def robot(robot: Robot, q: ArrayLike) -> Figure:
         axes.plot(*origins.T, color=_BLUE, linewidth=3, marker="o", markersize=6, label="links")
         axes.plot(*origins[-1:].T, color=_VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
         _equal_axes(axes, origins)
-        axes.set_title(f"{robot.name}, {robot.dof} joints")
+        axes.set_title(f"{robot.name}, {counted(robot.dof, 'joint')}")
         axes.legend(loc="upper left")
     return figure
 
 
 def track(result: TrackResult) -> Figure:
-    """A tracked path: tip and target in space, error, joint positions, evaluations, velocities within their limits."""
-    joints = result.robot.joint_names
-    velocity_rows = -(-len(joints) // _VELOCITY_PANELS_A_ROW)
+    """A tracked path: tip and target in space, errors, joint positions, evaluations, velocities within their limits."""
+    panels = [_draw_position_error, _draw_joint_positions, _draw_evaluations]
+    if np.isfinite(result.rotation_error).any():
+        panels.insert(1, _draw_rotation_error)
+    velocity_rows = -(-result.robot.dof // _VELOCITY_PANELS_A_ROW)
+    heights = [_ROW_HEIGHT * len(panels), _VELOCITY_ROW_HEIGHT * velocity_rows]
     with _style():
-        figure = _new_figure(13.0, 7.2 + 2.0 * velocity_rows)
-        above, below = np.asarray(figure.subfigures(2, 1, height_ratios=[7.2, 2.0 * velocity_rows]))
-        grid = above.add_gridspec(3, 2, width_ratios=[1.0, 1.25])
+        figure = _new_figure(13.0, sum(heights) + 0.3)
+        figure.suptitle(f"{result.robot.name}, {counted(len(result.time) - 1, 'step')} of {result.time[1]:g} s")
+        above, below = np.asarray(figure.subfigures(2, 1, height_ratios=heights))
+        grid = above.add_gridspec(len(panels), 2, width_ratios=[1.0, 1.25])
         _draw_space(above.add_subplot(grid[:, 0], projection="3d"), result)
-        error = above.add_subplot(grid[0, 1])
-        _draw_error(error, result)
-        _draw_positions(above.add_subplot(grid[1, 1], sharex=error), result)
-        _draw_evaluations(above.add_subplot(grid[2, 1], sharex=error), result)
+        for row, draw in enumerate(panels):
+            axes = above.add_subplot(grid[row, 1])
+            draw(axes, result)
+            axes.set_xlim(result.time[0], result.time[-1])
+            axes.tick_params(labelbottom=row == len(panels) - 1)
+        axes.set_xlabel("time [s]")
         above.align_ylabels()
         _draw_velocities(below, result, velocity_rows)
     return figure
@@ -69,13 +84,14 @@ def trajectory(trajectory: Trajectory) -> Figure:
     labels = ["position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]"][: 3 if curved else 2]
     time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
     with _style():
-        figure = _new_figure(9.0, 2.4 * len(labels) + 0.6)
+        figure = _new_figure(9.0, _ROW_HEIGHT * len(labels) + 0.6)
         panels = figure.subplots(len(labels), 1, sharex=True)
         for axes, label, values in zip(panels, labels, trajectory.at(time), strict=False):
             _draw_joints(axes, time, values, trajectory.joint_names)
             axes.set_ylabel(label)
         panels[-1].set_xlabel("time [s]")
-        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper")
+        columns = _legend_columns(trajectory.joint_names)
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper", ncols=columns)
     return figure
 
 
@@ -88,26 +104,29 @@ def _draw_space(axes: Any, result: TrackResult) -> None:
     axes.legend(loc="upper left")
 
 
-def _draw_error(axes: Axes, result: TrackResult) -> None:
+def _draw_position_error(axes: Axes, result: TrackResult) -> None:
     axes.semilogy(result.time, result.position_error, color=_BLUE)
     axes.axhline(result.position_tolerance, color=_VERMILION, linestyle="--", label="tolerance")
     axes.set_ylabel("position error [m]")
-    axes.tick_params(labelbottom=False)
-    axes.legend(loc="upper right")
+    axes.legend(loc="best")
 
 
-def _draw_positions(axes: Axes, result: TrackResult) -> None:
-    _draw_joints(axes, result.time, result.q, result.robot.joint_names)
+def _draw_rotation_error(axes: Axes, result: TrackResult) -> None:
+    axes.semilogy(result.time, result.rotation_error, color=_BLUE)
+    axes.set_ylabel("rotation error [rad]")
+
+
+def _draw_joint_positions(axes: Axes, result: TrackResult) -> None:
+    names = result.robot.joint_names
+    _draw_joints(axes, result.time, result.q, names)
     axes.set_ylabel("joint position [rad]" if _all_turn(result.robot) else "joint position [rad, m]")
-    axes.tick_params(labelbottom=False)
-    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), ncols=_legend_columns(names))
 
 
 def _draw_evaluations(axes: Axes, result: TrackResult) -> None:
     axes.step(result.time[1:], result.step_evaluations[1:], where="mid", color=_GREEN)
     axes.set_ylim(bottom=0)
     axes.set_ylabel("evaluations per step")
-    axes.set_xlabel("time [s]")
 
 
 def _draw_velocities(figure: Any, result: TrackResult, rows: int) -> None:
@@ -134,6 +153,10 @@ def _draw_velocities(figure: Any, result: TrackResult, rows: int) -> None:
 def _draw_joints(axes: Axes, time: NDArray[np.float64], values: NDArray[np.float64], names: list[str]) -> None:
     for j, name in enumerate(names):
         axes.plot(time, values[:, j], label=name, **_joint_style(j))
+
+
+def _legend_columns(names: list[str]) -> int:
+    return -(-len(names) // _LEGEND_ROWS)
 
 
 def _joint_style(j: int) -> dict[str, Any]:
@@ -181,7 +204,7 @@ def _style() -> Iterator[None]:
 
 
 def _new_figure(width: float, height: float) -> Figure:
-    """A figure of this size (inches) that `matplotlib.pyplot.show` knows, so that callers can show it."""
-    import matplotlib.pyplot as plt
+    """A figure of this size (inches)."""
+    from ._figure import PlotFigure  # not before it is needed: matplotlib takes long to import and may be missing
 
-    return plt.figure(figsize=(width, height), layout="constrained", dpi=120)
+    return PlotFigure(figsize=(width, height), layout="constrained", dpi=120)

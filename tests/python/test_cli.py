@@ -102,8 +102,10 @@ def test_every_solver_tracks(solver: str) -> None:
 
 
 @pytest.mark.parametrize("curve", ["circle", "hypotrochoid", "letter-m", "pentagram", "rose"])
-def test_every_curve_is_within_reach_of_the_iiwa14(curve: str) -> None:
-    assert run("track", "iiwa14", "--curve", curve).exit_code == 0
+@pytest.mark.parametrize("robot", [name for name in bik.Robot.names() if name != "hydraulic3"])
+def test_every_arm_follows_every_curve_as_it_is_placed_for_it(robot: str, curve: str) -> None:
+    result = run("track", robot, "--curve", curve)
+    assert result.exit_code == 0, result.output
 
 
 def test_a_limit_above_the_real_arm_is_told() -> None:

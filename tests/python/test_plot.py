@@ -30,6 +30,7 @@ def test_a_tracked_path(tracked: bik.TrackResult) -> None:
     assert legend(positions) == tracked.robot.joint_names
     assert (evaluations.get_ylabel(), evaluations.get_xlabel()) == ("evaluations per step", "time [s]")
     assert [axes.get_title() for axes in velocities] == tracked.robot.joint_names
+    assert figure.get_suptitle() == "planar5, 30 steps of 0.2 s"
     figure.savefig(io.BytesIO())
 
 
@@ -62,6 +63,33 @@ def test_a_robot() -> None:
     (axes,) = bik.plot.robot(robot, [0.0, 0.0]).get_axes()
     assert axes.get_title() == f"{robot.name}, 2 joints"
     np.testing.assert_allclose(axes.get_lines()[1].get_data_3d(), [[2.0], [0.0], [0.0]], atol=1e-12)
+
+
+def test_a_tracked_pose_shows_its_rotation_error() -> None:
+    robot = bik.Robot.named("iiwa14")
+    start = [0.3, 0.5, 0.2, -1.2, 0.1, 0.8, 0.1]
+    pose = robot.fk(start)
+    path = bik.paths.circle(pose[:3, 3], diameter=0.1, duration=1.0).with_orientation(pose[:3, :3])
+    result = bik.track(robot, path, dt=0.1)
+    rotation = result.plot().get_axes()[2]
+    assert (rotation.get_ylabel(), rotation.get_yscale()) == ("rotation error [rad]", "log")
+    np.testing.assert_array_equal(rotation.get_lines()[0].get_ydata(), result.rotation_error)
+
+
+def test_many_joints_keep_the_layout() -> None:
+    robot = bik.Robot.planar([0.2] * 24)
+    result = bik.track(robot, bik.paths.circle((2.0, 1.0, 0.0), diameter=0.4, duration=0.4), dt=0.2)
+    for figure in (result.plot(), result.trajectory.plot()):
+        figure.draw_without_rendering()
+        for axes in figure.get_axes():
+            box = axes.get_window_extent()
+            assert min(box.width, box.height) > 60 * figure.dpi / 72
+
+
+def test_notebooks_can_show_a_figure_that_nobody_has_to_close(tracked: bik.TrackResult) -> None:
+    figure = tracked.plot()
+    assert figure._repr_png_().startswith(b"\x89PNG")  # type: ignore[attr-defined]
+    assert plt.get_fignums() == []
 
 
 def test_figures_are_not_shown(tracked: bik.TrackResult, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,14 +1,15 @@
 """Reference paths from the command line: a built-in curve with its parameters, or points from a file."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .. import InvalidInputError, paths
+from .. import InvalidInputError, Robot, paths
 from .. import Path as ReferencePath
 from .._csv import read_table
 
@@ -28,30 +29,47 @@ class CurveName(StrEnum):
 @dataclass(frozen=True)
 class _Curve:
     make: Callable[..., ReferencePath]
-    defaults: dict[str, Any]
+    lengths: dict[str, float]  # as shares of the arm's stretched length
+    others: dict[str, Any] = field(default_factory=dict)
 
 
-# Sized and placed for arms with about a metre of reach; the circle is that of the BAS paper for the iiwa 14.
-_PLACE = (0.3, 0.3, 1.0)
 _CURVES = {
-    CurveName.CIRCLE: _Curve(paths.circle, {"center": _PLACE, "diameter": 0.2}),
-    CurveName.HYPOTROCHOID: _Curve(
-        paths.hypotrochoid, {"center": _PLACE, "outer_radius": 0.1, "inner_radius": 0.06, "distance": 0.06}
-    ),
-    CurveName.LETTER_M: _Curve(paths.letter_m, {"center": (0.4, 0.25, 0.75), "width": 0.3, "height": 0.3}),
-    CurveName.PENTAGRAM: _Curve(paths.pentagram, {"center": _PLACE, "radius": 0.1}),
-    CurveName.ROSE: _Curve(paths.rose, {"center": _PLACE, "radius": 0.1, "k": 3}),
+    CurveName.CIRCLE: _Curve(paths.circle, {"diameter": 0.1}),
+    CurveName.HYPOTROCHOID: _Curve(paths.hypotrochoid, {"outer_radius": 0.05, "inner_radius": 0.03, "distance": 0.03}),
+    CurveName.LETTER_M: _Curve(paths.letter_m, {"width": 0.1, "height": 0.1}),
+    CurveName.PENTAGRAM: _Curve(paths.pentagram, {"radius": 0.05}),
+    CurveName.ROSE: _Curve(paths.rose, {"radius": 0.05}, {"k": 3}),
 }
+# The plane that planar arms reach as well.
+_PLANE = {"a": (1.0, 0.0, 0.0), "b": (0.0, 1.0, 0.0)}
+_PLACES_TRIED = 1000
+_FULL_RANK = 1e-9
 
 
-def make_curve(name: CurveName, duration: float | None, given: dict[str, Any]) -> ReferencePath:
-    """The curve `name` with the parameters that were given and defaults for the others."""
+def make_curve(name: CurveName, robot: Robot, duration: float | None, given: dict[str, Any]) -> ReferencePath:
+    """The curve `name` with the parameters that were given and defaults that suit the robot for the others."""
     curve = _CURVES[name]
+    parameters = ("center", *curve.lengths, *curve.others, "a", "b")
     for parameter in given:
-        if parameter not in (*curve.defaults, "a", "b"):
-            takes = ", ".join(_option(p) for p in (*curve.defaults, "a", "b"))
+        if parameter not in parameters:
+            takes = ", ".join(_option(p) for p in parameters)
             raise InvalidInputError(f"{_option(parameter)} does not belong to the curve '{name}', which takes {takes}")
-    return curve.make(**(curve.defaults | given), duration=_DEFAULT_DURATION if duration is None else duration)
+    center, arm_length = _agile_place(robot)
+    lengths = {length: share * arm_length for length, share in curve.lengths.items()}
+    defaults = {"center": center, **lengths, **curve.others, **_PLANE}
+    return curve.make(**(defaults | given), duration=_DEFAULT_DURATION if duration is None else duration)
+
+
+def _agile_place(robot: Robot) -> tuple[NDArray[np.float64], float]:
+    """Where the tip is at the most manipulable of many configurations (m), and how long the arm is (m).
+
+    Directions in which no configuration moves the tip, as out of a planar arm's plane, do not count.
+    """
+    configurations = robot.random_configurations(_PLACES_TRIED)
+    gains = np.linalg.svd(robot.jacobian(configurations), compute_uv=False)
+    rank = (gains > _FULL_RANK).sum(axis=1).max()
+    origins = robot.link_poses(configurations[gains[:, :rank].prod(axis=1).argmax()])[:, :3, 3]
+    return origins[-1], float(np.linalg.norm(np.diff(origins, axis=0), axis=1).sum())
 
 
 def read_points(file: Path, duration: float | None) -> ReferencePath:

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .. import InvalidInputError, Limits
+from .. import InvalidInputError, Limits, Robot
 from .. import Path as ReferencePath
 from .. import track as track_path
 from .curves import CurveName, make_curve, read_points
@@ -30,7 +30,7 @@ from .summary import print_summary, summarize
 from .track_files import write_files
 
 _PATH = "Path"
-_CURVE = "Parameters of the curve"
+_CURVE = "Parameters of the curve; without them place and size suit the arm, in the plane of x and y"
 
 # The BAS paper's mean error of 1e-5 m comes out of a band 1.7 times as wide.
 _BAND = 1.7e-5
@@ -66,7 +66,7 @@ def track(
         str | None,
         typer.Option(
             "--velocity-limit",
-            help="In rad/s: a number, or mean,amplitude,angular_frequency of a sinusoid; without it the robot's own.",
+            help="In rad/s: a number, or a sinusoid's mean,amplitude,frequency; without it the robot's own.",
         ),
     ] = None,
     solver: Annotated[
@@ -99,7 +99,7 @@ def track(
     }
     given: dict[str, Any] = {name: numbers(f"--{name}", text, 3) for name, text in triples.items() if text is not None}
     given |= {name: value for name, value in others.items() if value is not None}
-    path = _reference(curve, points, duration, given)
+    path = _reference(arm, curve, points, duration, given)
     limits = None if velocity_limit_text is None else Limits(velocity=velocity_limit(velocity_limit_text))
     with nullcontext() if out is None else output_folder(out) as folder:
         result = track_path(
@@ -124,7 +124,7 @@ def track(
 
 
 def _reference(
-    curve: CurveName | None, points: Path | None, duration: float | None, given: dict[str, Any]
+    robot: Robot, curve: CurveName | None, points: Path | None, duration: float | None, given: dict[str, Any]
 ) -> ReferencePath:
     if points is not None:
         if curve is not None or given:
@@ -132,4 +132,4 @@ def _reference(
         return read_points(points, duration)
     if curve is None:
         raise InvalidInputError(f"no path was given: use --path FILE or --curve with one of {', '.join(CurveName)}")
-    return make_curve(curve, duration, given)
+    return make_curve(curve, robot, duration, given)

@@ -16,9 +16,6 @@ def write_files(result: TrackResult, summary: dict[str, Any], folder: Path) -> N
     with whole_file(folder / "summary.json") as stream:
         stream.write(to_json(summary).encode() + b"\n")
     if can_draw():
-        import matplotlib as mpl
-
-        mpl.use("Agg")  # a file needs no window
         result.plot().savefig(folder / "track.png")
 
 
