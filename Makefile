@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 .PHONY: help demo test lint bench docs
 
 help:  ## list the targets
-	@sed -nE 's/^([a-z]+):.*## (.*)/\1\t\2/p' $(MAKEFILE_LIST) | expand -t 10
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "%-8s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 # The limit is the BAS paper's. It is above the real arm's in four joints: the command says so.
 demo: $(VENV)/with-plot  ## a KUKA iiwa 14 follows the BAS paper's circle; results in demo/

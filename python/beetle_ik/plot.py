@@ -6,8 +6,10 @@ close it.
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -204,7 +206,15 @@ def _style() -> Iterator[None]:
 
 
 def _new_figure(width: float, height: float) -> Figure:
-    """A figure of this size (inches)."""
-    from ._figure import PlotFigure  # not before it is needed: matplotlib takes long to import and may be missing
+    """A figure of this size (inches), which pyplot does not know: its list would keep it until somebody closes it."""
+    from matplotlib.figure import Figure
 
-    return PlotFigure(figsize=(width, height), layout="constrained", dpi=120)
+    figure = Figure(figsize=(width, height), layout="constrained", dpi=120)
+    figure._repr_png_ = partial(_png, figure)  # type: ignore[attr-defined]  # notebooks ask for it
+    return figure
+
+
+def _png(figure: Figure) -> bytes:
+    picture = io.BytesIO()
+    figure.savefig(picture, format="png")
+    return picture.getvalue()

@@ -1,6 +1,7 @@
 """The command line: exit codes, JSON, files, messages."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -62,6 +63,35 @@ def test_fk_takes_a_negative_first_angle() -> None:
     assert "position [m]" in run("fk", "planar5", "--q", "-0.1,0,0,0,0").stdout
 
 
+def test_fk_shows_rounding_noise_as_zero() -> None:
+    shown = run("fk", "planar5", "--q", "3.141592653589793,0,0,0,0").stdout
+    assert re.search(r"position \[m\] +-5, 0, 0 *\n", shown)
+
+
+def test_solved_angles_can_be_fed_back() -> None:
+    shown = run("solve", "planar5", "--position", "3,1,0").stdout
+    q = re.search(r"q \[rad, m\]: (.*)", shown)
+    assert q is not None
+    pose = run_json("fk", "planar5", "--q", q[1])["pose"]
+    assert [row[3] for row in pose[:2]] == pytest.approx([3.0, 1.0], abs=2e-6)
+
+
+def test_a_budget_of_evaluations_is_kept() -> None:
+    result = run("solve", "iiwa14", "--position", "9,0,0", "--max-evaluations", "50", "--json")
+    answer = json.loads(result.stdout)
+    assert (result.exit_code, answer["status"]) == (1, "BUDGET_SPENT")
+    assert answer["evaluations"] <= 50
+
+
+def test_one_step_is_no_plural() -> None:
+    assert "planar5, 1 step of 0.2 s: " in run(*TRACK, "--duration", "0.2").stdout
+
+
+def test_version() -> None:
+    result = run("--version")
+    assert (result.exit_code, result.stdout) == (0, f"beetle-ik {bik.__version__}\n")
+
+
 def test_solve_reaches_a_position_and_a_pose() -> None:
     free = run_json("solve", "iiwa14", "--position", "0.4,0.3,1.0")
     assert free["success"]
@@ -102,7 +132,7 @@ def test_every_solver_tracks(solver: str) -> None:
 
 
 @pytest.mark.parametrize("curve", ["circle", "hypotrochoid", "letter-m", "pentagram", "rose"])
-@pytest.mark.parametrize("robot", [name for name in bik.Robot.names() if name != "hydraulic3"])
+@pytest.mark.parametrize("robot", bik.Robot.names())
 def test_every_arm_follows_every_curve_as_it_is_placed_for_it(robot: str, curve: str) -> None:
     result = run("track", robot, "--curve", curve)
     assert result.exit_code == 0, result.output

@@ -1,6 +1,7 @@
 """Figures: what they hold and how it is labelled."""
 
 import io
+import pickle
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -90,6 +91,7 @@ def test_notebooks_can_show_a_figure_that_nobody_has_to_close(tracked: bik.Track
     figure = tracked.plot()
     assert figure._repr_png_().startswith(b"\x89PNG")  # type: ignore[attr-defined]
     assert plt.get_fignums() == []
+    assert pickle.loads(pickle.dumps(figure))._repr_png_() == figure._repr_png_()  # type: ignore[attr-defined]
 
 
 def test_figures_are_not_shown(tracked: bik.TrackResult, monkeypatch: pytest.MonkeyPatch) -> None:

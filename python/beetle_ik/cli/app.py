@@ -1,11 +1,11 @@
 """The commands in one place, and how mistakes are told."""
 
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
-from .. import BeetleIkError
+from .. import BeetleIkError, __version__
 from .fk import fk
 from .robots import robots
 from .solve import solve
@@ -35,6 +35,24 @@ app = typer.Typer(
     help="Inverse kinematics and path tracking for robot manipulators. SI units and radians.",
     epilog="Exit status: 0 reached, 1 computed but not reached, 2 wrong input.",
 )
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"beetle-ik {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options_of_all(
+    *,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    """Take what belongs to no single command."""
+
+
 for command in (robots, fk, solve, track):
     app.command()(command)
 

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import typer
 
+_NOISE_DECIMALS = 12
+
 
 def print_json(value: Any) -> None:
     """Print `value` as JSON."""
@@ -39,8 +41,18 @@ def print_table(title: str, columns: tuple[str, ...], rows: Iterable[tuple[str, 
 
 
 def listed(values: Iterable[float]) -> str:
-    """Numbers as a short list."""
-    return ", ".join(f"{value:.6g}" for value in values)
+    """Numbers as a short list to read."""
+    return ", ".join(_decimal(value, digits=6) for value in values)
+
+
+def as_argument(values: Iterable[float]) -> str:
+    """Numbers as options such as --q and --start take them, in ten digits."""
+    return ",".join(_decimal(value, digits=10) for value in values)
+
+
+def _decimal(value: float, digits: int) -> str:
+    """`value` in so many significant digits; rounding noise about zero is 0."""
+    return f"{round(value, _NOISE_DECIMALS) + 0.0:.{digits}g}"  # -0.0 + 0.0 is 0.0
 
 
 def _plain(value: Any) -> Any:

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from .. import Robot, Solution, pose
+from .. import Robot, Solution, Stop, pose
 from .. import solve as solve_target
 from .options import (
     AsJson,
@@ -19,7 +19,7 @@ from .options import (
     make_solver,
     numbers,
 )
-from .show import listed, print_json, print_pairs
+from .show import as_argument, print_json, print_pairs
 
 
 def solve(
@@ -33,6 +33,9 @@ def solve(
     solver: Annotated[SolverName | None, typer.Option(help="Without it: the library's own choice.")] = None,
     tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = 1e-6,
     rotation_tolerance: Annotated[float, typer.Option(help="Allowed rotation error in rad.")] = 1e-6,
+    max_evaluations: Annotated[
+        int | None, typer.Option(help="Budget of forward kinematics: stop=Stop(...) in Python.")
+    ] = None,
     seed: Seed = 0,
     urdf: UrdfFile = None,
     tip: TipLink = None,
@@ -49,6 +52,7 @@ def solve(
         solver=None if solver is None else make_solver(solver),
         position_tolerance=tolerance,
         rotation_tolerance=rotation_tolerance,
+        stop=None if max_evaluations is None else Stop(max_evaluations=max_evaluations),
         seed=seed,
     )
     _show(arm, solution, rpy is not None, as_json)
@@ -74,10 +78,10 @@ def _show(robot: Robot, solution: Solution, oriented: bool, as_json: bool) -> No
     print_pairs(
         f"{robot.name}: {solution.message}",
         [
-            ("q [rad, m]", listed(solution.q)),
             ("position error [m]", f"{solution.position_error:.3g}"),
             *rotation,
             ("evaluations", str(solution.evaluations)),
             ("time [ms]", f"{1e3 * solution.elapsed:.3g}"),
         ],
     )
+    typer.echo(f"q [rad, m]: {as_argument(solution.q)}")  # on a line of its own, which no terminal width breaks

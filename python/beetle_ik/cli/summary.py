@@ -8,6 +8,7 @@ import typer
 from numpy.typing import NDArray
 
 from .. import TrackResult
+from .._text import counted
 from .show import listed, print_pairs
 from .track_files import can_draw
 
@@ -54,7 +55,7 @@ def print_summary(summary: dict[str, Any], out: Path | None) -> None:
     """Print the summary as a table, what to know about its limits, and where the files are."""
     error, limit = summary["position_error"], summary["velocity_limit"]
     print_pairs(
-        f"{summary['robot']}, {summary['steps']} steps of {summary['dt']:g} s: {summary['message']}",
+        f"{summary['robot']}, {counted(summary['steps'], 'step')} of {summary['dt']:g} s: {summary['message']}",
         [
             ("mean position error [m]", f"{error['mean']:.3g}"),
             ("  second half", f"{error['steady_mean']:.3g}"),

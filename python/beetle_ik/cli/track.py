@@ -66,7 +66,7 @@ def track(
         str | None,
         typer.Option(
             "--velocity-limit",
-            help="In rad/s: a number, or a sinusoid's mean,amplitude,frequency; without it the robot's own.",
+            help="In rad/s: a number, or mean,amplitude,omega of a sinusoid; without it the robot's own.",
         ),
     ] = None,
     solver: Annotated[
