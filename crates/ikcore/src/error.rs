@@ -106,7 +106,7 @@ pub enum Error {
         problem: String,
     },
     /// A lower limit above its upper limit.
-    #[error("joint '{joint}': lower limit {lower} is above upper limit {upper}")]
+    #[error("joint '{joint}': lower limit {lower} is above upper limit {upper}{}", .time.map(|t| format!(" at t = {t} s")).unwrap_or_default())]
     EmptyRange {
         /// The joint's name.
         joint: String,
@@ -114,6 +114,8 @@ pub enum Error {
         lower: f64,
         /// Its upper limit (rad or m).
         upper: f64,
+        /// When, for limits that vary (s).
+        time: Option<f64>,
     },
     /// A configuration outside the position limits.
     #[error("{what}: joint '{joint}' at {value} is outside its limits [{lower}, {upper}]")]

@@ -45,7 +45,7 @@
 //!
 //! | layer | modules |
 //! |---|---|
-//! | 0 | [`error`], [`rng`], [`math`] |
+//! | 0 | [`error`], [`rng`], [`math`], `wording` |
 //! | 1 | [`robot`], [`path`], [`trajectory`], [`objective`] |
 //! | 2 | [`limits`], [`manipulability`] |
 //! | 3 | [`task`], [`solver`] |
@@ -67,6 +67,7 @@ pub mod solver;
 pub mod task;
 pub mod tracking;
 pub mod trajectory;
+mod wording;
 
 pub use error::{Error, Result};
 pub use nalgebra;

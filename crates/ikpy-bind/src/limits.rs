@@ -73,9 +73,15 @@ impl Sampling {
     }
 }
 
+/// Functions written in C do not look for Ctrl-C themselves: so many calls take some milliseconds.
+pub const CALLS_BETWEEN_LOOKS: usize = 4096;
+
 fn sampled(function: &Bound<'_, PyAny>, field: Field, sampling: &Sampling, n: usize) -> PyResult<Vec<Profile>> {
     let mut columns: Vec<Vec<f64>> = vec![];
     for i in 0..sampling.count {
+        if i % CALLS_BETWEEN_LOOKS == 0 {
+            function.py().check_signals()?;
+        }
         let t = i as f64 * sampling.step;
         let what = format!("{field} limit at t = {t} s");
         let (values, _) = scalar_or_vector(&what, &function.call1((t,))?)?;

@@ -273,7 +273,12 @@ impl PyStop {
     pub fn core(&self) -> Stop {
         let standard = Stop::default();
         Stop {
-            max_evaluations: self.max_evaluations.unwrap_or(standard.max_evaluations),
+            max_evaluations: match (self.max_evaluations, self.max_time) {
+                (Some(count), _) => count,
+                // Who gives a time and no count means the time.
+                (None, Some(_)) => usize::MAX,
+                (None, None) => standard.max_evaluations,
+            },
             max_iterations: self.max_iterations.unwrap_or(standard.max_iterations),
             max_time: self.max_time.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
             ..standard

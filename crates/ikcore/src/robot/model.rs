@@ -274,7 +274,7 @@ impl Joint {
         }
         let joint = self.name.clone();
         if lower > upper {
-            return Err(Error::EmptyRange { joint, lower, upper });
+            return Err(Error::EmptyRange { joint, lower, upper, time: None });
         }
         if velocity < 0.0 {
             return Err(Error::NegativeLimit { field: "velocity".into(), joint, value: velocity, time: 0.0 });

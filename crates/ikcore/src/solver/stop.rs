@@ -11,6 +11,8 @@ pub struct Stop {
     pub max_evaluations: usize,
     /// Iterations as the solver counts them.
     pub max_iterations: usize,
+    /// Iterations that are made even from a start that is solved already.
+    pub min_iterations: usize,
     /// Wall-clock time. Setting it gives up repeatability.
     pub max_time: Option<Duration>,
     /// Stop after a step whose best value is below this. The start itself is not held against it.
@@ -20,7 +22,13 @@ pub struct Stop {
 impl Default for Stop {
     /// 30 000 evaluations: about 10 ms for a 7-joint arm.
     fn default() -> Self {
-        Self { max_evaluations: 30_000, max_iterations: usize::MAX, max_time: None, value_below: None }
+        Self {
+            max_evaluations: 30_000,
+            max_iterations: usize::MAX,
+            min_iterations: 0,
+            max_time: None,
+            value_below: None,
+        }
     }
 }
 
@@ -97,7 +105,9 @@ impl Status {
             Self::BudgetSpent => "raise the budget in stop=Stop(...); the target may be out of reach",
             Self::TimeUp => "raise max_time",
             Self::Interrupted => "run again to finish",
-            Self::Lost => "slow the path down, raise the velocity limits, or move the path into reach",
+            Self::Lost => {
+                "slow the path down, raise the velocity limits, start elsewhere (another start or seed), or move the path into reach"
+            }
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Following a path, tick by tick, inside the limits.
 //!
 //! Algorithm 1 of Cheng et al. (2020), read so that it can be run: in every tick the box is the position limits
-//! intersected with what the velocity limit lets the accepted configuration reach, so that no answer can break either;
+//! intersected with what the velocity limit lets the accepted configuration reach, so that no answer can break either
+//! (a position limit that closes in faster than its joint may move is followed as fast as that, and reported);
 //! the tick's rule works until the error is in its band or, for random searches, below that of the tick before; time
 //! always advances, and the best configuration found is always kept.
 
@@ -51,7 +52,7 @@ pub fn track(
 ) -> Result<Record> {
     let stopwatch = Stopwatch::start();
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(robot));
-    limits.validate(reference.time(reference.len() - 1))?;
+    limits.validate(reference.dt(), reference.len() - 1)?;
     let start = match start {
         Some(q) => q.to_vec(),
         None => first_configuration(robot, reference, &limits, options, monitor)?,

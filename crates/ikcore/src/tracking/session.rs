@@ -73,7 +73,7 @@ impl Session {
         options.rule.validate()?;
         options.tolerance.validate()?;
         limits.require_for(robot)?;
-        limits.validate(0.0)?;
+        limits.validate(dt, 0)?;
         let remedy = "this tracker keeps position and velocity limits; leave it out";
         limits.require_none(&[Field::Acceleration, Field::Jerk], "track", remedy)?;
         robot.check("start", start)?;
