@@ -56,6 +56,7 @@ impl Solution {
         let rotation = if rotation.is_nan() { String::new() } else { format!(" and {rotation:.3e} rad") };
         let errors = format!("{position:.3e} m{rotation}");
         match self.status {
+            _ if position.is_nan() => format!("not solved: {}", self.status.advice()),
             Status::Solved => format!("solved to {errors}"),
             Status::Stalled => format!("no further progress {errors} away: {}", self.status.advice()),
             Status::BudgetSpent => format!("budget spent {errors} away: {}", self.status.advice()),
@@ -72,7 +73,8 @@ impl Solution {
 pub fn solve(robot: &Robot, target: &Target, options: &SolveOptions, monitor: &mut dyn Monitor) -> Result<Solution> {
     let prepared = Prepared::new(robot, options)?;
     let start = options.start.as_deref();
-    prepared.check(target, start)?;
+    target.validate()?;
+    start.map_or(Ok(()), |q| prepared.check_start(q))?;
     Ok(prepared.run(target, start, 0, monitor))
 }
 
@@ -96,18 +98,16 @@ impl<'a> Prepared<'a> {
         Ok(Self { robot, options, bounds: position_box(robot, options.limits.as_ref())? })
     }
 
-    /// Checks what is one target's own.
+    /// Checks a start.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; for the start also [`Error::WrongLength`] and [`Error::OutsideLimits`].
-    pub(crate) fn check(&self, target: &Target, start: Option<&[f64]>) -> Result<()> {
-        target.validate()?;
-        let Some(q) = start else { return Ok(()) };
+    /// [`Error::WrongLength`], [`Error::NotFinite`] or [`Error::OutsideLimits`].
+    pub(crate) fn check_start(&self, q: &[f64]) -> Result<()> {
         self.robot.check("start", q)?;
         require_inside(self.robot, "start", q, &self.bounds)
     }
 
-    /// Solves for a target and a start that passed [`check`](Self::check), drawing from `stream` of the seed.
+    /// Solves for a target and a start that are in order, drawing from `stream` of the seed.
     pub(crate) fn run(
         &self,
         target: &Target,
