@@ -15,6 +15,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
 from . import paths, plot
 from ._core import (
     BAS,
+    BatchSolution,
     BeetleIkError,
     InvalidInputError,
     LevenbergMarquardt,
@@ -35,11 +36,13 @@ from ._core import (
     __version__,
     pose,
     solve,
+    solve_batch,
     track,
 )
 
 __all__ = [
     "BAS",
+    "BatchSolution",
     "BeetleIkError",
     "InvalidInputError",
     "LevenbergMarquardt",
@@ -62,5 +65,6 @@ __all__ = [
     "plot",
     "pose",
     "solve",
+    "solve_batch",
     "track",
 ]

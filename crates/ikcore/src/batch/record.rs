@@ -30,12 +30,19 @@ impl Item {
         let error = TipError { position: f64::NAN, rotation: f64::NAN };
         Self { status, error, iterations: 0, restarts: 0, evaluations: 0, elapsed: Duration::ZERO }
     }
+
+    /// The same with its configuration.
+    pub fn solution(&self, q: &[f64]) -> Solution {
+        let Self { status, error, iterations, restarts, evaluations, elapsed } = *self;
+        Solution { q: Point::from_slice(q), status, error, iterations, restarts, evaluations, elapsed }
+    }
 }
 
 /// Solutions in the order of the targets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Batch {
-    dof: usize,
+    /// Degrees of freedom, n.
+    pub dof: usize,
     /// The best configurations found, (m, n) row after row (rad, m); NaN where nothing was solved.
     pub q: Vec<f64>,
     /// What became of each target (m,).
@@ -52,9 +59,7 @@ impl Batch {
 
     /// Item `i` on its own; None past the end.
     pub fn solution(&self, i: usize) -> Option<Solution> {
-        let Item { status, error, iterations, restarts, evaluations, elapsed } = *self.items.get(i)?;
-        let q = Point::from_slice(&self.q[i * self.dof..(i + 1) * self.dof]);
-        Some(Solution { q, status, error, iterations, restarts, evaluations, elapsed })
+        self.items.get(i).map(|item| item.solution(&self.q[i * self.dof..(i + 1) * self.dof]))
     }
 
     /// How many were solved, and what to try for the others.
