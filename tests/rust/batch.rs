@@ -202,7 +202,7 @@ fn wrong_rows_are_named() {
     assert_eq!(says(&targets, &starts), text);
     starts[4 * robot.dof() + 2] = NAN;
     assert_eq!(says(&targets, &starts), "row 4: start must be finite, but joint 'joint_3' is NaN");
-    let says = "starts: expected 6 rows of 7 joints, one row per target, got 35";
+    let says = "starts: expected 42 numbers, 6 rows (one per target) of 7 joints, got 35";
     let options = BatchOptions { starts: Some(&starts[..35]), ..BatchOptions::default() };
     assert_eq!(message(solve_batch(&robot, Targets::Poses(&targets), &options, &mut Unattended)), says);
     let targets = Targets::Positions(&[[0.0; 3], [0.0, f64::INFINITY, 0.0]]);

@@ -110,7 +110,7 @@ impl<'a> Job<'a> {
         if let Some(starts) = options.starts
             && starts.len() != rows * dof
         {
-            let expected = format!("{rows} rows of {dof} joints, one row per target");
+            let expected = format!("{} numbers, {rows} rows (one per target) of {dof} joints", rows * dof);
             return Err(Error::WrongLength { what: "starts".into(), expected, got: starts.len() });
         }
         let prepared = Prepared::new(robot, &options.each)?;
