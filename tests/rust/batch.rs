@@ -13,7 +13,7 @@ use ikcore::math::pose;
 use ikcore::nalgebra::Matrix4;
 use ikcore::rng;
 use ikcore::robot::Robot;
-use ikcore::solver::{Monitor, Status, Stop, Unattended};
+use ikcore::solver::{Algorithm, AnySolver, Bas, Monitor, Status, Stop, Unattended, Variant};
 use ikcore::task::Target;
 
 const NAN: f64 = f64::NAN;
@@ -90,14 +90,26 @@ fn the_first_item_is_what_solve_finds() {
 #[test]
 fn items_draw_from_streams_of_their_own() {
     let robot = robot("iiwa14");
-    let target = poses(&robot, 1)[0];
-    let batch = solved(&robot, &[target; 5], &BatchOptions::default());
-    let (first, fifth) = (batch.solution(0).unwrap(), batch.solution(4).unwrap());
-    assert_eq!((first.status, fifth.status), (Status::Solved, Status::Solved));
-    // From the same start there is nothing to draw.
-    let each = SolveOptions { start: Some(fifth.q.to_vec()), ..SolveOptions::default() };
-    let again = solved(&robot, &[target; 5], &BatchOptions { each, ..BatchOptions::default() });
-    assert!(all_facts(&again).iter().all(|item| item.0 == bits(&fifth.q)));
+    let solver = AnySolver::Single(Algorithm::Bas(Bas::of(Variant::Greedy)));
+    let each = SolveOptions { solver, start: Some(vec![0.3; 7]), ..SolveOptions::default() };
+    let options = BatchOptions { each, ..on_threads(2) };
+    let [first, second] = [[0.4, 0.3, 0.9], [0.5, 0.1, 0.8]];
+    let found = |targets: &[[f64; 3]]| {
+        all_facts(&solve_batch(&robot, Targets::Positions(targets), &options, &mut Unattended).unwrap())
+    };
+    let (twice, mixed) = (found(&[first; 3]), found(&[second, first, second]));
+    assert_ne!(twice[0], twice[1]);
+    assert_eq!(twice[1], mixed[1]);
+    assert_ne!(mixed[0], mixed[2]);
+}
+
+#[test]
+fn one_start_serves_all() {
+    let robot = robot("iiwa14");
+    let q = robot.random_configurations(1, &mut rng::stream(5, 0)).unwrap();
+    let each = SolveOptions { start: Some(q.clone()), ..SolveOptions::default() };
+    let batch = solved(&robot, &[poses(&robot, 1)[0]; 5], &BatchOptions { each, ..on_threads(2) });
+    assert_eq!(bits(&batch.q), bits(&q.repeat(5)));
 }
 
 #[test]
