@@ -116,8 +116,8 @@ fn column<T: Element>(py: Python<'_>, items: &[Item], of: impl Fn(&Item) -> T) -
 ///     targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free.
 ///     starts: where to begin, (m, n), or (n,) for all; None begins at random configurations.
 ///     threads: None: one per core. With 1, nothing leaves the calling thread.
-///     on_invalid: what to do about a target or start that is wrong: "raise" names its row; "skip" solves the others and
-///         marks the row `Status.INVALID`, its q NaN.
+///     on_invalid: what to do about a target or start that is wrong: "raise" names its row; "skip" solves the others
+///         and marks the row `Status.INVALID`, its q NaN.
 ///     progress: True for a bar on the terminal, or a callable of (done, total).
 ///     solver: None: Levenberg-Marquardt from many starts.
 ///     position_tolerance: m.

@@ -65,8 +65,8 @@ pub struct BatchOptions<'a> {
 /// The monitor is asked and told from the calling thread alone.
 ///
 /// # Errors
-/// Any [`Error`] for wrong input; [`Error::InRow`] for a wrong target or start, unless those are to be skipped. A target
-/// that is not reached is a status, not an error.
+/// Any [`Error`] for wrong input; [`Error::InRow`] for a wrong target or start, unless those are to be skipped. A
+/// target that is not reached is a status, not an error.
 pub fn solve_batch(
     robot: &Robot,
     targets: Targets<'_>,
