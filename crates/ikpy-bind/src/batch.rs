@@ -106,7 +106,7 @@ fn column<T: Element>(py: Python<'_>, items: &[Item], of: impl Fn(&Item) -> T) -
     row(py, items.iter().map(of).collect()).unbind()
 }
 
-/// Solves many targets at once, on all cores: much faster than a loop over `solve`.
+/// Solves many targets at once, on all cores.
 ///
 /// The result is the same, to the bit, for any number of threads; an item does not depend on the items behind it, and
 /// item 0 is what `solve` finds.
