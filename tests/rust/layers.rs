@@ -22,6 +22,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("solver", &["objective"]),
     ("problem", &["robot", "task", "limits", "objective"]),
     ("ik", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem"]),
+    ("batch", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"]),
     (
         "tracking",
         &["robot", "path", "trajectory", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"],

@@ -185,6 +185,22 @@ pub enum Error {
         /// What is wrong and what would be right.
         problem: String,
     },
+    /// A mistake in one row of a batch.
+    #[error("row {row}: {error}")]
+    InRow {
+        /// The row, from 0.
+        row: usize,
+        /// What is wrong with it.
+        error: Box<Error>,
+    },
+    /// The operating system does not give as many threads.
+    #[error("cannot start {threads} threads ({problem}): ask for fewer; threads=1 needs none")]
+    NoThreads {
+        /// How many were asked for.
+        threads: usize,
+        /// The operating system's reason.
+        problem: String,
+    },
     /// Stored bytes that are not what they should be.
     #[error("cannot restore {what}: {problem}")]
     Corrupt {

@@ -20,7 +20,7 @@
 //!      robot ───────────────┐
 //! path (reference)          ├─> task ─> problem ··implements··> objective <──uses── solver ─> solution
 //!      limits ──────────────┘                                                                    │
-//!                                           tracking  <──────────────────────────────────────────┘
+//!                                           tracking · batch  <──────────────────────────────────┘
 //!                                              │
 //!                                          trajectory
 //! ```
@@ -51,8 +51,9 @@
 //! | 3 | [`task`], [`solver`] |
 //! | 4 | [`problem`] |
 //! | 5 | [`ik`] |
-//! | 6 | [`tracking`] |
+//! | 6 | [`tracking`], [`batch`] |
 
+pub mod batch;
 pub mod error;
 pub mod ik;
 pub mod limits;

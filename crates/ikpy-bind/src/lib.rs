@@ -1,5 +1,6 @@
 //! The native module `beetle_ik._core`: registration only. Each file converts for one module of the core.
 
+mod batch;
 mod convert;
 mod error;
 mod ik;
@@ -27,6 +28,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<limits::PyLimits>()?;
     module.add_class::<ik::PySolution>()?;
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;
+    module.add_class::<batch::PyBatchSolution>()?;
+    module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
     path::register(module)?;
     module.add_class::<tracking::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;

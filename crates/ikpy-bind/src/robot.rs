@@ -331,7 +331,8 @@ fn in_pieces(
     let mut results = vec![];
     for piece in rows.chunks(PIECE * n) {
         py.check_signals()?;
-        results.extend(py.detach(|| work(piece)).map_err(raise)?);
+        // A wrong row is counted from the first of all rows.
+        results.extend(py.detach(|| work(piece).or_else(|_| work(rows))).map_err(raise)?);
     }
     Ok(results)
 }

@@ -26,7 +26,10 @@ fn status_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
         let members: Vec<(&str, u8)> = Status::ALL.iter().map(|status| (status.name(), *status as u8)).collect();
         let options = [("module", "beetle_ik")].into_py_dict(py)?;
         let class = py.import("enum")?.getattr("IntEnum")?.call(("Status", members), Some(&options))?;
-        class.setattr("__doc__", "How a solve, or one step of a track, ended. `SOLVED` alone is success.")?;
+        class.setattr(
+            "__doc__",
+            "How a solve, one item of a batch or one step of a track ended. `SOLVED` alone is success.",
+        )?;
         Ok::<_, PyErr>(class.unbind())
     })?;
     Ok(class.bind(py))

@@ -47,7 +47,7 @@ impl Stop {
     }
 }
 
-/// How a solve, or one step of a track, ended.
+/// How a solve, one item of a batch or one step of a track ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Status {
@@ -67,11 +67,13 @@ pub enum Status {
     Interrupted = 6,
     /// A track that did not stay within its tolerance.
     Lost = 7,
+    /// An item of a batch whose target or start is wrong: nothing was solved.
+    Invalid = 8,
 }
 
 impl Status {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Solved,
         Self::Improved,
         Self::Capped,
@@ -80,6 +82,7 @@ impl Status {
         Self::TimeUp,
         Self::Interrupted,
         Self::Lost,
+        Self::Invalid,
     ];
 
     /// The name as Python shows it.
@@ -93,6 +96,7 @@ impl Status {
             Self::TimeUp => "TIME_UP",
             Self::Interrupted => "INTERRUPTED",
             Self::Lost => "LOST",
+            Self::Invalid => "INVALID",
         }
     }
 
@@ -108,6 +112,7 @@ impl Status {
             Self::Lost => {
                 "slow the path down, raise the velocity limits, start elsewhere (another start or seed), or move the path into reach"
             }
+            Self::Invalid => "on_invalid=\"raise\" says what is wrong",
         }
     }
 }
@@ -117,7 +122,7 @@ pub trait Monitor {
     /// False ends the run with [`Status::Interrupted`].
     fn keep_going(&mut self) -> bool;
 
-    /// Told of the steps of a track that are done, out of `total`.
+    /// Told of the steps of a track, or of the items of a batch, that are done, out of `total`.
     fn progress(&mut self, _done: usize, _total: usize) {}
 }
 
