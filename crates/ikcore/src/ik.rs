@@ -69,7 +69,7 @@ impl Solution {
 /// Finds a configuration that brings the tip of `robot` to `target`.
 ///
 /// # Errors
-/// Any [`Error`](crate::Error) for wrong input. A target that is not reached is a status, not an error.
+/// Any [`enum@Error`] for wrong input. A target that is not reached is a status, not an error.
 pub fn solve(robot: &Robot, target: &Target, options: &SolveOptions, monitor: &mut dyn Monitor) -> Result<Solution> {
     let prepared = Prepared::new(robot, options)?;
     let start = options.start.as_deref();

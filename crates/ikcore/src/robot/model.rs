@@ -166,7 +166,7 @@ impl Robot {
     }
 
     /// Hands the tip's positions (m) at configurations stored one after another to `visit`, in order; quicker than
-    /// [`tip_position`](Self::tip_position) one by one, and the same bits.
+    /// [`tip_position`](Self::tip_position) one by one, and the same bits (for joint angles below 8e5 rad).
     #[inline]
     pub fn tip_positions(&self, qs: &[f64], visit: impl FnMut([f64; 3])) {
         self.chain.tip_positions(qs, self.dof(), visit);
