@@ -81,7 +81,7 @@ impl PyBatchSolution {
 }
 
 impl PyBatchSolution {
-    fn new(py: Python<'_>, batch: Batch, limits: PyLimits) -> PyResult<Self> {
+    fn new(py: Python<'_>, batch: Batch, limits: Py<PyLimits>) -> PyResult<Self> {
         let message = batch.message();
         let Batch { dof, q, items, elapsed } = batch;
         Ok(Self {
@@ -95,7 +95,7 @@ impl PyBatchSolution {
             restarts: column(py, &items, |item| item.restarts as i64),
             evaluations: column(py, &items, |item| item.evaluations as i64),
             elapsed: elapsed.as_secs_f64(),
-            limits: Py::new(py, limits)?,
+            limits,
             message,
             items,
         })
@@ -160,12 +160,12 @@ pub fn solve_batch(
         Some(Rows::One(start)) => (None, Some(start.as_slice()?.to_vec())),
         None => (None, None),
     };
-    let (in_force, resolved) = limits_of_call(py, limits, arm, &Sampling::once())?;
+    let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let each = SolveOptions {
         solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
         start: start_of_all,
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
-        limits: limits.map(|_| resolved),
+        limits: resolved,
         stop: stop.map_or(Stop::default(), PyStop::core),
         seed: count("seed", seed)?,
     };

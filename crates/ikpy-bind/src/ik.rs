@@ -139,19 +139,19 @@ pub fn solve(
     seed: i128,
 ) -> PyResult<PySolution> {
     let target = read_target(target)?;
-    let (in_force, resolved) = limits_of_call(py, limits, &robot.core, &Sampling::once())?;
+    let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let options = SolveOptions {
         solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
         start: start.map(|start| vector("start", start)).transpose()?,
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
-        limits: limits.map(|_| resolved),
+        limits: resolved,
         stop: stop.map_or(Stop::default(), PyStop::core),
         seed: count("seed", seed)?,
     };
     let mut watcher = Watcher::new();
     let core = py.detach(|| ik::solve(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;
     watcher.finish()?;
-    Ok(PySolution::new(py, core, Py::new(py, in_force)?))
+    Ok(PySolution::new(py, core, in_force))
 }
 
 /// A pose (4, 4) or a position (3,).

@@ -9,6 +9,7 @@ use ikcore::rng;
 use ikcore::robot::{Dh, DhTable, Joint, JointKind, Robot};
 use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::PyBytes;
 
 use crate::convert::{self, Rows, array, count, pose_array, row, rows, shape_text, table, vector};
@@ -21,14 +22,21 @@ use crate::limits::PyLimits;
 /// Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow theirs. Poses are 4x4
 /// matrices in the frame of the robot's base.
 #[pyclass(name = "Robot", module = "beetle_ik", frozen, eq)]
-#[derive(PartialEq)]
 pub struct PyRobot {
     pub core: Arc<Robot>,
+    /// Made when it is first asked for: most results only carry it along.
+    limits: PyOnceLock<Py<PyLimits>>,
+}
+
+impl PartialEq for PyRobot {
+    fn eq(&self, other: &Self) -> bool {
+        self.core == other.core
+    }
 }
 
 impl From<Robot> for PyRobot {
     fn from(robot: Robot) -> Self {
-        Self { core: Arc::new(robot) }
+        Self { core: Arc::new(robot), limits: PyOnceLock::new() }
     }
 }
 
@@ -205,8 +213,9 @@ impl PyRobot {
 
     /// All limits of the robot.
     #[getter]
-    fn limits(&self) -> PyLimits {
-        PyLimits::of(&self.core)
+    pub fn limits(&self, py: Python<'_>) -> PyResult<Py<PyLimits>> {
+        let limits = self.limits.get_or_try_init(py, || Py::new(py, PyLimits::of(&self.core)))?;
+        Ok(limits.clone_ref(py))
     }
 
     /// The same robot with a tool: `tool` (4, 4) is the pose of the new tip in the frame of the tip link.

@@ -38,6 +38,13 @@ pub struct TrackOptions {
     pub seed: u64,
 }
 
+impl TrackOptions {
+    /// The limits in force for `robot`.
+    fn limits_for(&self, robot: &Robot) -> Limits {
+        self.limits.clone().unwrap_or_else(|| Limits::of(robot))
+    }
+}
+
 /// Follows `reference` with the tip of `robot`, from `start` (n,), or from a configuration solved for its first point.
 ///
 /// # Errors
@@ -51,13 +58,13 @@ pub fn track(
     monitor: &mut dyn Monitor,
 ) -> Result<Record> {
     let stopwatch = Stopwatch::start();
-    let limits = options.limits.clone().unwrap_or_else(|| Limits::of(robot));
+    let limits = options.limits_for(robot);
     limits.validate(reference.dt(), reference.len() - 1)?;
     let start = match start {
         Some(q) => q.to_vec(),
         None => first_configuration(robot, reference, &limits, options, monitor)?,
     };
-    let mut session = Session::new(robot, &start, reference.dt(), limits, options)?;
+    let mut session = Session::new(robot, &start, reference.dt(), options)?;
     let mut record = Record::new(&session, reference.len());
     let beginning = session.begin(&target(reference, 0));
     record.push(&session, reference.position(0), &beginning);

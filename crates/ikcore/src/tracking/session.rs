@@ -68,7 +68,8 @@ impl Session {
     /// # Errors
     /// Any [`Error`](crate::Error) for wrong input: a start outside its limits, limits that this tracker cannot keep, a
     /// time step that is not positive.
-    pub fn new(robot: &Robot, start: &[f64], dt: f64, limits: Limits, options: &TrackOptions) -> Result<Self> {
+    pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
+        let limits = options.limits_for(robot);
         require_positive("dt", dt)?;
         options.rule.validate()?;
         options.tolerance.validate()?;
