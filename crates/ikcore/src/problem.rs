@@ -51,14 +51,15 @@ impl Objective for Problem<'_> {
         });
     }
 
-    /// The nearest of the robot's indexed configurations; when they are used up, uniform in the box, where a side without
-    /// a limit is drawn from the joint's sampling range.
+    /// The nearest of the robot's indexed configurations, then uniform in the box, where a side without a limit is drawn
+    /// from the joint's sampling range. Whoever brings a start of their own gets the nearest as their second.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
-        if let Target::Pose(pose) = self.target {
-            let seeds = self.seeds.get_or_insert_with(|| self.robot.seeds_near(pose));
-            if seeds.write_next(bounds.lower(), bounds.upper(), q) {
-                return;
-            }
+        let seeds = self.seeds.get_or_insert_with(|| match self.target {
+            Target::Position(position) => self.robot.seeds_near_position(position),
+            Target::Pose(pose) => self.robot.seeds_near_pose(pose),
+        });
+        if seeds.write_next(bounds.lower(), bounds.upper(), q) {
+            return;
         }
         for (i, joint) in self.robot.joints().iter().enumerate() {
             let (lower, upper) = joint.sampling_range_within(bounds.lower()[i], bounds.upper()[i]);

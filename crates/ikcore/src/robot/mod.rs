@@ -7,6 +7,7 @@ mod dh;
 mod dispatch;
 mod joint;
 mod kinematics;
+mod lane_search;
 mod many;
 mod model;
 mod planar;
