@@ -11,7 +11,7 @@ use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::robot::Robot;
 use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, Unattended, Variant};
 use ikcore::task::Tolerance;
-use ikcore::tracking::{TrackOptions, track};
+use ikcore::tracking::{TickRule, TrackOptions, track};
 
 const SEEDS: u64 = 20;
 
@@ -55,16 +55,20 @@ impl Scene {
     }
 }
 
-fn beetle(variant: Variant, c1: f64, explorations: usize) -> Algorithm {
-    Algorithm::Bas(Bas { variant, c1, explorations, ..Bas::default() })
+fn each_tick(algorithm: Algorithm) -> TickRule {
+    TickRule::EachTick(AnySolver::Single(algorithm))
+}
+
+fn beetle(variant: Variant, c1: f64, explorations: usize) -> TickRule {
+    each_tick(Algorithm::Bas(Bas { variant, c1, explorations, ..Bas::default() }))
 }
 
 fn circles(c: &mut Criterion) {
     let (iiwa14, planar5) = (Scene::iiwa14(), Scene::planar5());
-    let lm = Algorithm::LevenbergMarquardt(LevenbergMarquardt::default());
+    let lm = each_tick(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default()));
     let mut group = c.benchmark_group("circle");
     group.throughput(Throughput::Elements(SEEDS));
-    for (name, scene, algorithm, band) in [
+    for (name, scene, rule, band) in [
         ("iiwa14 chain 1 mm", &iiwa14, beetle(Variant::Chain, 1.0, 30), 1e-3),
         ("iiwa14 star 1 mm", &iiwa14, beetle(Variant::Star, 3.0, 20), 1e-3),
         ("iiwa14 chain 22 um", &iiwa14, beetle(Variant::Chain, 1.0, 30), 2.2e-5),
@@ -73,9 +77,11 @@ fn circles(c: &mut Criterion) {
         ("planar5 chain 50 um", &planar5, beetle(Variant::Chain, 0.3, 30), 5e-5),
         ("planar5 star 40 um", &planar5, beetle(Variant::Star, 1.0, 50), 4e-5),
         ("planar5 Levenberg-Marquardt 1 nm", &planar5, lm, 1e-9),
+        ("iiwa14 model-based 1 nm", &iiwa14, TickRule::MidStep, 1e-9),
+        ("planar5 model-based 1 nm", &planar5, TickRule::MidStep, 1e-9),
     ] {
         let options = TrackOptions {
-            solver: AnySolver::Single(algorithm),
+            rule,
             tolerance: Tolerance { position: band, ..Tolerance::default() },
             limits: Some(scene.limits()),
             ..TrackOptions::default()

@@ -15,6 +15,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
 from . import paths, plot
 from ._core import (
     BAS,
+    BatchSolution,
     BeetleIkError,
     InvalidInputError,
     LevenbergMarquardt,
@@ -26,7 +27,9 @@ from ._core import (
     Sinusoid,
     Solution,
     Status,
+    Step,
     Stop,
+    Tracker,
     TrackResult,
     Trajectory,
     UnknownNameError,
@@ -35,11 +38,13 @@ from ._core import (
     __version__,
     pose,
     solve,
+    solve_batch,
     track,
 )
 
 __all__ = [
     "BAS",
+    "BatchSolution",
     "BeetleIkError",
     "InvalidInputError",
     "LevenbergMarquardt",
@@ -51,8 +56,10 @@ __all__ = [
     "Sinusoid",
     "Solution",
     "Status",
+    "Step",
     "Stop",
     "TrackResult",
+    "Tracker",
     "Trajectory",
     "UnknownNameError",
     "UnsupportedLimit",
@@ -62,5 +69,6 @@ __all__ = [
     "plot",
     "pose",
     "solve",
+    "solve_batch",
     "track",
 ]

@@ -153,6 +153,7 @@ class Status(IntEnum):
     TIME_UP = 5
     INTERRUPTED = 6
     LOST = 7
+    INVALID = 8
 
 @final
 class BAS:
@@ -245,6 +246,49 @@ class Solution:
     def elapsed(self) -> float: ...  # s
     @property
     def limits(self) -> Limits: ...  # those in force
+
+def solve_batch(
+    robot: Robot,
+    targets: ArrayLike,  # (m, 4, 4) poses or (m, 3) positions
+    *,
+    starts: ArrayLike | None = None,  # (m, n), or (n,) for all
+    threads: int | None = None,  # None: one per core
+    on_invalid: Literal["raise", "skip"] = "raise",
+    progress: _Progress = None,
+    solver: _Solver | None = None,
+    position_tolerance: float = 1e-6,
+    rotation_tolerance: float = 1e-6,
+    limits: Limits | None = None,
+    stop: Stop | None = None,  # budgets of each target
+    seed: int = 0,
+) -> BatchSolution: ...
+
+@final
+class BatchSolution:
+    @property
+    def q(self) -> _Array: ...  # (m, n); NaN where INVALID
+    @property
+    def success(self) -> NDArray[np.bool_]: ...  # (m,)
+    @property
+    def status(self) -> NDArray[np.uint8]: ...  # (m,), values of Status
+    @property
+    def message(self) -> str: ...
+    @property
+    def position_error(self) -> _Array: ...  # (m,), m
+    @property
+    def rotation_error(self) -> _Array: ...  # (m,), rad; NaN where no orientation was asked
+    @property
+    def iterations(self) -> NDArray[np.int64]: ...  # (m,)
+    @property
+    def restarts(self) -> NDArray[np.int64]: ...  # (m,)
+    @property
+    def evaluations(self) -> NDArray[np.int64]: ...  # (m,)
+    @property
+    def elapsed(self) -> float: ...  # s, in all
+    @property
+    def limits(self) -> Limits: ...  # those in force
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int, /) -> Solution: ...
 
 # --- reference paths (public as beetle_ik.paths) ------------------------------------------------
 
@@ -360,6 +404,55 @@ class TrackResult:
     @property
     def trajectory(self) -> Trajectory: ...  # straight lines between the ticks: its velocities are exactly qd
     def plot(self) -> Figure: ...
+
+@final
+class Tracker:
+    def __new__(
+        cls,
+        robot: Robot,
+        start: ArrayLike,
+        *,
+        dt: float,
+        solver: _Solver | None = None,
+        limits: Limits | None = None,
+        position_tolerance: float = 1e-6,
+        rotation_tolerance: float = 1e-6,
+        seed: int = 0,
+        limit_at: Literal["interval", "start"] = "interval",
+    ) -> Tracker: ...
+    def step(self, target: ArrayLike) -> Step: ...  # (4, 4) pose or (3,) position
+    def reset(self, q: ArrayLike) -> None: ...
+    @property
+    def q(self) -> _Array: ...  # (n,)
+    @property
+    def time(self) -> float: ...  # s
+    @property
+    def dt(self) -> float: ...  # s
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def limits(self) -> Limits: ...  # those in force
+
+@final
+class Step:
+    @property
+    def q(self) -> _Array: ...  # (n,): what to command
+    @property
+    def qd(self) -> _Array: ...  # (n,): the velocity that leads there
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def position_error(self) -> float: ...  # m
+    @property
+    def rotation_error(self) -> float: ...  # rad; NaN where no orientation was asked
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
 
 # --- trajectories -------------------------------------------------------------------------------
 

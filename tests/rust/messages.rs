@@ -18,7 +18,7 @@ use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 use ikcore::solver::RestartRule;
 use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, MultiStart, Stop, Unattended, Variant};
 use ikcore::task::{Target, Tolerance};
-use ikcore::tracking::{Session, TrackOptions, track};
+use ikcore::tracking::{Session, TickRule, TrackOptions, track};
 
 const NAN: f64 = f64::NAN;
 const INFINITE: f64 = f64::INFINITY;
@@ -211,7 +211,10 @@ fn options_of_solvers_out_of_range() {
         (again(RestartRule { min_reduction: 0.5, ..rule }), "min_reduction must be at least 1 and finite, got 0.5"),
     ] {
         assert_eq!(solve_says(SolveOptions { solver: solver.clone(), ..SolveOptions::default() }), says);
-        assert_eq!(track_says(&[0.0; 5], TrackOptions { solver, ..TrackOptions::default() }), says);
+        assert_eq!(
+            track_says(&[0.0; 5], TrackOptions { rule: TickRule::EachTick(solver), ..TrackOptions::default() }),
+            says
+        );
     }
     let says = "variant must be one of 'star', 'chain', 'greedy', got 'cain'";
     assert_eq!(message("cain".parse::<Variant>()), says);

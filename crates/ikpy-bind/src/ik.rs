@@ -97,6 +97,12 @@ impl PySolution {
     }
 }
 
+impl PySolution {
+    pub fn new(py: Python<'_>, core: ik::Solution, limits: Py<PyLimits>) -> Self {
+        Self { q: row(py, core.q.to_vec()).unbind(), limits, core }
+    }
+}
+
 /// Finds a configuration that brings the tip of `robot` to `target`, inside the limits.
 ///
 /// Args:
@@ -145,10 +151,11 @@ pub fn solve(
     let mut watcher = Watcher::new();
     let core = py.detach(|| ik::solve(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;
     watcher.finish()?;
-    Ok(PySolution { q: row(py, core.q.to_vec()).unbind(), limits: Py::new(py, in_force)?, core })
+    Ok(PySolution::new(py, core, Py::new(py, in_force)?))
 }
 
-fn read_target(value: &Bound<'_, PyAny>) -> PyResult<Target> {
+/// A pose (4, 4) or a position (3,).
+pub fn read_target(value: &Bound<'_, PyAny>) -> PyResult<Target> {
     let numbers = array("target", value)?;
     match numbers.shape() {
         [3] => Ok(Target::Position(point("target", value)?)),

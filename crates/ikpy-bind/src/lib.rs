@@ -1,5 +1,6 @@
 //! The native module `beetle_ik._core`: registration only. Each file converts for one module of the core.
 
+mod batch;
 mod convert;
 mod error;
 mod ik;
@@ -9,6 +10,7 @@ mod path;
 mod robot;
 mod sinusoid;
 mod solver;
+mod tracker;
 mod tracking;
 mod trajectory;
 mod upward;
@@ -26,9 +28,13 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<limits::PyLimits>()?;
     module.add_class::<ik::PySolution>()?;
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;
+    module.add_class::<batch::PyBatchSolution>()?;
+    module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
     path::register(module)?;
     module.add_class::<tracking::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;
+    module.add_class::<tracker::PyStep>()?;
+    module.add_class::<tracker::PyTracker>()?;
     module.add_class::<trajectory::PyTrajectory>()?;
     // The package names what is public; a second list here would only go stale.
     module.dict().del_item("__all__")

@@ -1,5 +1,6 @@
 //! `Limits`.
 
+use ikcore::Error;
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::robot::Robot;
 use pyo3::prelude::*;
@@ -72,9 +73,15 @@ impl Sampling {
     }
 }
 
+/// Functions written in C do not look for Ctrl-C themselves: so many calls take some milliseconds.
+pub const CALLS_BETWEEN_LOOKS: usize = 4096;
+
 fn sampled(function: &Bound<'_, PyAny>, field: Field, sampling: &Sampling, n: usize) -> PyResult<Vec<Profile>> {
     let mut columns: Vec<Vec<f64>> = vec![];
     for i in 0..sampling.count {
+        if i % CALLS_BETWEEN_LOOKS == 0 {
+            function.py().check_signals()?;
+        }
         let t = i as f64 * sampling.step;
         let what = format!("{field} limit at t = {t} s");
         let (values, _) = scalar_or_vector(&what, &function.call1((t,))?)?;
@@ -205,6 +212,19 @@ impl PyLimits {
             }
         }
         Self { given }
+    }
+
+    /// Err if a field is a callable of t, for motions without a known end.
+    pub fn require_no_functions(&self) -> PyResult<()> {
+        let is_function = |given: &Option<Given>| matches!(given, Some(Given::Function(_)));
+        match self.given.iter().position(is_function) {
+            None => Ok(()),
+            Some(i) => Err(raise(Error::UnsupportedLimit {
+                field: format!("callable {}", FIELDS[i]),
+                method: "Tracker".into(),
+                remedy: "it has no end to be sampled to; give numbers or a Sinusoid, or use track".into(),
+            })),
+        }
     }
 
     /// The same for the core, functions of time sampled.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use ikcore::manipulability;
 use ikcore::math::{Pose, pose as poses};
 use ikcore::rng;
 use ikcore::robot::{Dh, DhTable, Joint, JointKind, Robot};
@@ -243,7 +244,7 @@ impl PyRobot {
             Rows::One(q) => Ok(pose_array(py, &self.core.fk(q.as_slice()?).map_err(raise)?)?.into_any()),
             Rows::Many(q, m) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                let poses = py.detach(|| robot.fk_all(q)).map_err(raise)?;
+                let poses = in_pieces(py, q, robot.dof(), |q| robot.fk_all(q))?;
                 Ok(table(py, poses, &[m, 4, 4])?.into_any())
             }
         }
@@ -267,7 +268,7 @@ impl PyRobot {
             }
             Rows::Many(q, m) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                table(py, py.detach(|| robot.jacobian_all(q)).map_err(raise)?, &[m, 6, n])
+                table(py, in_pieces(py, q, n, |q| robot.jacobian_all(q))?, &[m, 6, n])
             }
         }
     }
@@ -288,13 +289,13 @@ impl PyRobot {
     fn manipulability<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         match rows("joint angles", self.core.name(), self.core.dof(), q)? {
             Rows::One(q) => {
-                let value = ikcore::manipulability::manipulability(&self.core, q.as_slice()?).map_err(raise)?;
+                let value = manipulability::manipulability(&self.core, q.as_slice()?).map_err(raise)?;
                 Ok(value.into_pyobject(py)?.into_any())
             }
             Rows::Many(q, _) => {
-                let of = |q: &[f64]| ikcore::manipulability::manipulability(&self.core, q);
-                let values = q.as_slice()?.chunks_exact(self.core.dof()).map(of).collect::<Result<_, _>>();
-                Ok(row(py, values.map_err(raise)?).into_any())
+                let (robot, q) = (&*self.core, q.as_slice()?);
+                let values = in_pieces(py, q, robot.dof(), |q| manipulability::manipulability_all(robot, q))?;
+                Ok(row(py, values).into_any())
             }
         }
     }
@@ -313,6 +314,27 @@ impl PyRobot {
     fn _from_bytes(bytes: &[u8]) -> PyResult<Self> {
         Robot::from_bytes(bytes).map(Self::from).map_err(raise)
     }
+}
+
+/// `work` on whole rows of `n` numbers, without the interpreter, looking for Ctrl-C in between.
+fn in_pieces(
+    py: Python<'_>,
+    rows: &[f64],
+    n: usize,
+    work: impl Fn(&[f64]) -> ikcore::Result<Vec<f64>> + Sync,
+) -> PyResult<Vec<f64>> {
+    /// Rows that take some ten milliseconds.
+    const PIECE: usize = 1 << 17;
+    if rows.len() <= PIECE * n {
+        return py.detach(|| work(rows)).map_err(raise);
+    }
+    let mut results = vec![];
+    for piece in rows.chunks(PIECE * n) {
+        py.check_signals()?;
+        // A wrong row is counted from the first of all rows.
+        results.extend(py.detach(|| work(piece).or_else(|_| work(rows))).map_err(raise)?);
+    }
+    Ok(results)
 }
 
 impl PyRobot {

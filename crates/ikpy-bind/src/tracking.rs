@@ -3,7 +3,7 @@
 use ikcore::limits::LimitAt;
 use ikcore::solver::Status;
 use ikcore::task::Tolerance;
-use ikcore::tracking::{self, Record, TrackOptions};
+use ikcore::tracking::{self, Record, TickRule, TrackOptions};
 use ikcore::trajectory::Trajectory;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
@@ -217,7 +217,7 @@ impl PyTrackResult {
 ///     path: positions or poses over time.
 ///     start: (n,), configuration at t = 0; None solves for the path's first point.
 ///     dt: time step (s).
-///     solver: what runs in every tick; None: Levenberg-Marquardt from the tick before.
+///     solver: what runs in every tick; None: the library's model-based rule, which needs one or two evaluations a step.
 ///     limits: None: the robot's.
 ///     position_tolerance: the error band (m).
 ///     rotation_tolerance: the same for orientations (rad).
@@ -255,9 +255,8 @@ pub fn track(
     let sampling = Sampling::of_ticks(dt, reference.len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, &arm, &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
-    let standard = TrackOptions::default();
     let options = TrackOptions {
-        solver: solver.map_or(Ok(standard.solver), any_solver)?,
+        rule: tick_rule(solver)?,
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
         limits: Some(resolved),
         limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
@@ -275,4 +274,9 @@ pub fn track(
         limits: Py::new(py, in_force)?,
         core,
     })
+}
+
+/// A solver, or the library's own rule.
+pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
+    solver.map_or(Ok(TickRule::default()), |solver| any_solver(solver).map(TickRule::EachTick))
 }

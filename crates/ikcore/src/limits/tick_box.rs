@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use super::Limits;
 use crate::error::{Error, Result};
-use crate::objective::Bounds;
+use crate::objective::{Bounds, Point};
 
 /// Where in a tick its limit is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -14,6 +14,22 @@ pub enum LimitAt {
     Interval,
     /// The limit at the tick's beginning, as Cheng et al. (2020) take it.
     Start,
+}
+
+/// Where one tick may end, and the velocity limits that it came from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TickBox {
+    /// The box of the joints (rad, m).
+    pub bounds: Bounds,
+    /// The velocity limit of each joint for this tick (rad/s, m/s).
+    pub velocity: Point,
+}
+
+impl TickBox {
+    /// The box of an arm that stands still at `q`.
+    pub fn around(q: &[f64]) -> Self {
+        Self { bounds: Bounds::from_ranges(q.iter().map(|q| (*q, *q))), velocity: Point::from_elem(0.0, q.len()) }
+    }
 }
 
 impl FromStr for LimitAt {
@@ -44,17 +60,24 @@ impl Limits {
 
     /// Narrows `tick` to what `q` may become in the tick from `from` to `to` (s). Returns whether every joint can be
     /// within its position limits at the end of the tick; one that cannot is sent towards them as fast as it may go.
-    pub fn narrow(&self, q: &[f64], from: f64, to: f64, at: LimitAt, tick: &mut Bounds) -> bool {
-        let (lower, upper) = tick.parts_mut();
+    pub fn narrow(&self, q: &[f64], from: f64, to: f64, at: LimitAt, tick: &mut TickBox) -> bool {
+        let TickBox { bounds, velocity } = tick;
+        let (lower, upper) = bounds.parts_mut();
         let mut feasible = true;
         for j in 0..q.len() {
-            // A session without a known end cannot refuse a limit that will fall below zero: there it stands still.
-            let reach = (self.velocity_over(j, from, to, at) * (to - from)).max(0.0);
+            // Most often all joints share a limit, and its extremes take longer to find than to compare.
+            velocity[j] = match j {
+                1.. if self.velocity[j] == self.velocity[j - 1] => velocity[j - 1],
+                _ => self.velocity_over(j, from, to, at),
+            };
+            // Without a known end nobody can refuse a limit that will fall below zero: there the joint stands still.
+            let reach = (velocity[j] * (to - from)).max(0.0);
             let (slowest, fastest) = (reachable(q[j], -reach), reachable(q[j], reach));
             let [floor, ceiling] = self.position_range(j, from, to);
             lower[j] = slowest.max(floor).min(fastest);
-            upper[j] = fastest.min(ceiling).max(slowest);
-            feasible &= floor <= fastest && slowest <= ceiling;
+            // Limits that cross later than could be checked leave a point between them, not an empty box.
+            upper[j] = fastest.min(ceiling).max(slowest).max(lower[j]);
+            feasible &= floor <= fastest && slowest <= ceiling && floor <= ceiling;
         }
         feasible
     }
@@ -92,9 +115,9 @@ mod tests {
     }
 
     fn tick(limits: &Limits, q: f64, dt: f64) -> (bool, f64, f64) {
-        let mut bounds = Bounds::new(&[0.0], &[0.0]).unwrap();
-        let feasible = limits.narrow(&[q], 0.0, dt, LimitAt::Interval, &mut bounds);
-        (feasible, bounds.lower()[0], bounds.upper()[0])
+        let mut tick = TickBox::around(&[q]);
+        let feasible = limits.narrow(&[q], 0.0, dt, LimitAt::Interval, &mut tick);
+        (feasible, tick.bounds.lower()[0], tick.bounds.upper()[0])
     }
 
     #[test]

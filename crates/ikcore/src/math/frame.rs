@@ -1,13 +1,12 @@
 //! A rigid transform in plain arrays, for the kernels.
 
 use nalgebra::Matrix3;
-use serde::{Deserialize, Serialize};
 
 use super::arithmetic::Arithmetic;
 use super::pose::{self, Pose};
 
 /// A rigid transform: the columns of its rotation (its axes, seen from the base) and its origin (m).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// x, y and z axis.
     pub axes: [[f64; 3]; 3],

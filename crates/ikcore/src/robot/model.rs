@@ -172,7 +172,7 @@ impl Robot {
     }
 
     /// Hands the tip's positions (m) at configurations stored one after another to `visit`, in order; quicker than
-    /// [`tip_position`](Self::tip_position) one by one, and the same bits.
+    /// [`tip_position`](Self::tip_position) one by one, and the same bits (for joint angles below 8e5 rad).
     #[inline]
     pub fn tip_positions(&self, qs: &[f64], visit: impl FnMut([f64; 3])) {
         self.chain.tip_positions(qs, self.dof(), visit);
@@ -293,7 +293,7 @@ impl Joint {
         }
         let joint = self.name.clone();
         if lower > upper {
-            return Err(Error::EmptyRange { joint, lower, upper });
+            return Err(Error::EmptyRange { joint, lower, upper, time: None });
         }
         if velocity < 0.0 {
             return Err(Error::NegativeLimit { field: "velocity".into(), joint, value: velocity, time: 0.0 });

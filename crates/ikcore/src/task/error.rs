@@ -1,6 +1,9 @@
 //! How far a tip is from its target, and when that is near enough.
 
+use std::fmt;
+
 use crate::error::{Error, Result};
+use crate::wording::number;
 
 /// When a target counts as reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,5 +71,13 @@ pub struct TipError {
 impl From<SquaredError> for TipError {
     fn from(squared: SquaredError) -> Self {
         Self { position: squared.position.sqrt(), rotation: squared.rotation.map_or(f64::NAN, f64::sqrt) }
+    }
+}
+
+impl fmt::Display for TipError {
+    /// Both errors with their units; the angle only where it was asked for.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} m", number(self.position))?;
+        if self.rotation.is_nan() { Ok(()) } else { write!(f, " and {} rad", number(self.rotation)) }
     }
 }

@@ -59,13 +59,28 @@ impl Target {
         }
     }
 
+    /// How far a tip is from here.
+    #[inline]
+    pub fn error_of(&self, tip: &Frame) -> SquaredError {
+        match self {
+            Self::Position(target) => position::error(target, &tip.origin),
+            Self::Pose(target) => pose::error(target, tip),
+        }
+    }
+
     /// Residual and Jacobian at `q`, and the error.
     #[inline]
     pub fn linearize(&self, robot: &Robot, q: &[f64], out: &mut Linearization) -> SquaredError {
         let tip = robot.tip_and_jacobian(q, &mut out.columns);
+        self.complete(&tip, q.len(), out)
+    }
+
+    /// The same from a tip and its geometric Jacobian, which stands in the first `dof` columns of `out`.
+    #[inline]
+    pub fn complete(&self, tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
         match self {
-            Self::Position(target) => position::linearize(target, &tip, q.len(), out),
-            Self::Pose(target) => pose::linearize(target, &tip, q.len(), out),
+            Self::Position(target) => position::linearize(target, tip, dof, out),
+            Self::Pose(target) => pose::linearize(target, tip, dof, out),
         }
     }
 }

@@ -1,14 +1,17 @@
 //! Following a path, tick by tick, inside the limits.
 //!
 //! Algorithm 1 of Cheng et al. (2020), read so that it can be run: in every tick the box is the position limits
-//! intersected with what the velocity limit lets the accepted configuration reach, so that no answer can break either;
-//! the solver works until the error is in its band or, for random searches, below that of the tick before; time always
-//! advances, and the best configuration found is always kept.
+//! intersected with what the velocity limit lets the accepted configuration reach, so that no answer can break either
+//! (a position limit that closes in faster than its joint may move is followed as fast as that, and reported);
+//! the tick's rule works until the error is in its band or, for random searches, below that of the tick before; time
+//! always advances, and the best configuration found is always kept.
 
 mod record;
+mod rule;
 mod session;
 
 pub use record::Record;
+pub use rule::TickRule;
 pub use session::{Session, Step};
 
 use crate::error::Result;
@@ -16,15 +19,15 @@ use crate::ik::{SolveOptions, solve};
 use crate::limits::{Field, LimitAt, Limits};
 use crate::path::Reference;
 use crate::robot::Robot;
+use crate::solver::Monitor;
 use crate::solver::stop::Stopwatch;
-use crate::solver::{Algorithm, AnySolver, LevenbergMarquardt, Monitor};
 use crate::task::{Target, Tolerance};
 
 /// How to track.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct TrackOptions {
     /// What runs in every tick.
-    pub solver: AnySolver,
+    pub rule: TickRule,
     /// The error band.
     pub tolerance: Tolerance,
     /// Limits to keep; None keeps the robot's.
@@ -33,19 +36,6 @@ pub struct TrackOptions {
     pub limit_at: LimitAt,
     /// Seed of the random draws: the same seed, the same bits.
     pub seed: u64,
-}
-
-impl Default for TrackOptions {
-    /// Levenberg-Marquardt from the configuration of the tick before.
-    fn default() -> Self {
-        Self {
-            solver: AnySolver::Single(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default())),
-            tolerance: Tolerance::default(),
-            limits: None,
-            limit_at: LimitAt::default(),
-            seed: 0,
-        }
-    }
 }
 
 /// Follows `reference` with the tip of `robot`, from `start` (n,), or from a configuration solved for its first point.
@@ -62,7 +52,7 @@ pub fn track(
 ) -> Result<Record> {
     let stopwatch = Stopwatch::start();
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(robot));
-    limits.validate(reference.time(reference.len() - 1))?;
+    limits.validate(reference.dt(), reference.len() - 1)?;
     let start = match start {
         Some(q) => q.to_vec(),
         None => first_configuration(robot, reference, &limits, options, monitor)?,
@@ -79,7 +69,7 @@ pub fn track(
 /// Ticks to the end of `reference`; false where the monitor asked to stop before.
 fn follow(
     reference: &Reference,
-    session: &mut Session<'_>,
+    session: &mut Session,
     record: &mut Record,
     monitor: &mut dyn Monitor,
 ) -> Result<bool> {

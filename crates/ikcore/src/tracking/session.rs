@@ -1,13 +1,13 @@
-//! One control loop: the accepted configuration, the clock, the box of the tick and the solver that moves within it.
+//! One control loop: the accepted configuration, the clock, the box of the tick and the rule that moves within it.
 
 use super::TrackOptions;
+use super::rule::{Found, Running, Tick, TickRule};
 use crate::error::{Result, require_positive};
-use crate::limits::{Field, LimitAt, Limits};
-use crate::objective::{Bounds, LeastSquares, Objective, Point};
-use crate::problem::Problem;
+use crate::limits::{Field, LimitAt, Limits, TickBox};
+use crate::objective::Point;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
-use crate::solver::{AnySolver, Evaluator, Halt, Monitor, Status, Stop};
+use crate::solver::{Monitor, Status};
 use crate::task::{Target, TipError, Tolerance};
 
 /// What became of one tick.
@@ -21,7 +21,7 @@ pub struct Step {
     pub position: [f64; 3],
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
-    /// Iterations of the solver; passes of the beetle.
+    /// Iterations of the rule; passes of the beetle.
     pub iterations: usize,
     /// False where a joint cannot be brought within its position limits in this tick.
     pub inside_limits: bool,
@@ -29,50 +29,69 @@ pub struct Step {
     pub interrupted: bool,
 }
 
+impl Step {
+    /// What happened, and what to try.
+    pub fn message(&self) -> String {
+        let error = &self.error;
+        let limits = if self.inside_limits { "" } else { "; a joint is outside its position limits and returns" };
+        match self.status {
+            Status::Solved => format!("within the tolerances, {error} away{limits}"),
+            Status::Improved => format!("nearer than before, {error} away{limits}"),
+            status => format!("no nearer than before, {error} away{limits}: {}", status.advice()),
+        }
+    }
+}
+
 /// A tracker in progress.
 #[derive(Debug)]
-pub struct Session<'a> {
-    robot: &'a Robot,
+pub struct Session {
+    robot: Robot,
     limits: Limits,
     limit_at: LimitAt,
-    solver: AnySolver,
+    rule: TickRule,
+    running: Running,
     tolerance: Tolerance,
     dt: f64,
     ticks: usize,
     q: Point,
+    qd: Point,
     /// The value accepted in the tick before: what a random search has to beat.
     last_value: Option<f64>,
-    tick_box: Bounds,
+    tick_box: TickBox,
+    seed: u64,
     rng: LazyRng,
 }
 
-impl<'a> Session<'a> {
+impl Session {
     /// A session at rest in `start` (n,) at t = 0, with ticks of `dt` (s).
     ///
     /// # Errors
     /// Any [`Error`](crate::Error) for wrong input: a start outside its limits, limits that this tracker cannot keep, a
     /// time step that is not positive.
-    pub fn new(robot: &'a Robot, start: &[f64], dt: f64, limits: Limits, options: &TrackOptions) -> Result<Self> {
+    pub fn new(robot: &Robot, start: &[f64], dt: f64, limits: Limits, options: &TrackOptions) -> Result<Self> {
         require_positive("dt", dt)?;
-        options.solver.validate()?;
+        options.rule.validate()?;
         options.tolerance.validate()?;
         limits.require_for(robot)?;
-        limits.validate(0.0)?;
+        limits.validate(dt, 0)?;
         let remedy = "this tracker keeps position and velocity limits; leave it out";
         limits.require_none(&[Field::Acceleration, Field::Jerk], "track", remedy)?;
         robot.check("start", start)?;
         limits.require_inside("start", 0.0, start)?;
         Ok(Self {
-            robot,
+            robot: robot.clone(),
             limits,
             limit_at: options.limit_at,
-            solver: options.solver.clone(),
+            rule: options.rule.clone(),
+            running: options.rule.start(),
             tolerance: options.tolerance,
             dt,
             ticks: 0,
             q: Point::from_slice(start),
+            qd: Point::from_elem(0.0, start.len()),
             last_value: None,
-            tick_box: Bounds::from_ranges(start.iter().map(|q| (*q, *q))),
+            tick_box: TickBox::around(start),
+            seed: options.seed,
             rng: rng::stream(options.seed, 0),
         })
     }
@@ -80,6 +99,11 @@ impl<'a> Session<'a> {
     /// The accepted configuration (n,).
     pub fn q(&self) -> &[f64] {
         &self.q
+    }
+
+    /// The velocity of the last tick (n,) (rad/s, m/s); zero before the first.
+    pub fn qd(&self) -> &[f64] {
+        &self.qd
     }
 
     /// Time of the accepted configuration (s).
@@ -97,22 +121,27 @@ impl<'a> Session<'a> {
         self.dt
     }
 
-    pub(super) fn limit_at(&self) -> LimitAt {
-        self.limit_at
+    /// The velocity limits of the last tick (n,) (rad/s, m/s).
+    pub fn velocity_limit(&self) -> &[f64] {
+        &self.tick_box.velocity
     }
 
     pub(super) fn tolerance(&self) -> Tolerance {
         self.tolerance
     }
 
+    /// The robot that is moved.
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
     /// Stands still and takes the error to `target` as what the first tick has to beat.
     pub fn begin(&mut self, target: &Target) -> Step {
-        let mut problem = Problem::new(self.robot, target, self.tolerance);
-        let score = problem.evaluate(&self.q);
-        let error = problem.verify(&self.q);
-        self.last_value = Some(score.value);
-        let status = if score.solved { Status::Solved } else { Status::Improved };
+        let error = target.error(&self.robot, &self.q);
+        self.last_value = Some(error.sum());
+        let status = if error.within(&self.tolerance) { Status::Solved } else { Status::Improved };
         let position = self.robot.tip_position(&self.q);
+        let error = error.into();
         Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false }
     }
 
@@ -124,40 +153,44 @@ impl<'a> Session<'a> {
         target.validate()?;
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
         let inside_limits = self.limits.narrow(&self.q, from, to, self.limit_at, &mut self.tick_box);
-        let stop = self.stop();
-        let mut problem = Problem::new(self.robot, target, self.tolerance);
-        let objective: &mut dyn LeastSquares = &mut problem;
-        let mut evaluator = Evaluator::new(objective, &self.tick_box, stop, &mut self.rng, monitor);
-        let outcome = self.solver.run(&mut evaluator, &self.q);
-        let best = evaluator.best();
-        let improved = self.last_value.is_none_or(|last| best.value < last);
-        let (value, evaluations, iterations) = (best.value, evaluator.evaluations(), outcome.iterations);
-        let interrupted = outcome.halt == Halt::Interrupted;
-        if !interrupted {
-            self.q.copy_from_slice(&best.x);
+        let tick = Tick {
+            robot: &self.robot,
+            target,
+            tolerance: self.tolerance,
+            tick_box: &self.tick_box.bounds,
+            last_value: self.last_value,
+            rng: &mut self.rng,
+            monitor,
+        };
+        let found = self.running.advance(&self.q, tick);
+        let value = found.error.sum();
+        let status = match self.last_value {
+            _ if found.error.within(&self.tolerance) => Status::Solved,
+            Some(last) if value >= last => Status::Capped,
+            _ => Status::Improved,
+        };
+        if !found.interrupted {
+            for (j, q) in found.q.iter().enumerate() {
+                self.qd[j] = (q - self.q[j]) / self.dt;
+            }
+            self.q.copy_from_slice(&found.q);
             (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
         }
-        let status = match outcome.status() {
-            Status::Solved => Status::Solved,
-            _ if improved => Status::Improved,
-            _ => Status::Capped,
-        };
-        let error = problem.verify(&self.q);
-        let position = self.robot.tip_position(&self.q);
-        Ok(Step { status, error, position, evaluations, iterations, inside_limits, interrupted })
+        let Found { error, position, evaluations, iterations, interrupted, .. } = found;
+        Ok(Step { status, error: error.into(), position, evaluations, iterations, inside_limits, interrupted })
     }
 
-    /// When a tick's search ends short of its band. A single solver ends by its own rule, a multi-start by its budget.
-    fn stop(&self) -> Stop {
-        let standard = Stop::default();
-        Stop {
-            // Line 16 of Algorithm 1: a random search may go on to the next tick once it beats the last one.
-            value_below: if self.solver.settles_for_improvement() { self.last_value } else { None },
-            max_evaluations: match self.solver {
-                AnySolver::Single(_) => usize::MAX,
-                AnySolver::MultiStart(_) => standard.max_evaluations,
-            },
-            ..standard
-        }
+    /// Back to rest in `start` (n,), at t = 0.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new) for the start.
+    pub fn reset(&mut self, start: &[f64]) -> Result<()> {
+        self.robot.check("start", start)?;
+        self.limits.require_inside("start", 0.0, start)?;
+        self.q.copy_from_slice(start);
+        self.qd.fill(0.0);
+        (self.ticks, self.last_value, self.running) = (0, None, self.rule.start());
+        self.rng = rng::stream(self.seed, 0);
+        Ok(())
     }
 }
