@@ -18,7 +18,7 @@ use crate::task::{Target, TipError, Tolerance};
 pub struct SolveOptions {
     /// The algorithm.
     pub solver: AnySolver,
-    /// Where to begin (n,); None begins at a random configuration.
+    /// Where to begin (n,); None begins at the indexed configuration nearest to the target.
     pub start: Option<Vec<f64>>,
     /// When the target counts as reached.
     pub tolerance: Tolerance,
@@ -26,7 +26,8 @@ pub struct SolveOptions {
     pub limits: Option<Limits>,
     /// Budgets.
     pub stop: Stop,
-    /// Seed of the random draws: the same seed, the same bits.
+    /// Seed of the random draws: the same seed, the same bits. Most targets are solved without a draw, to the same bits
+    /// whatever the seed.
     pub seed: u64,
 }
 

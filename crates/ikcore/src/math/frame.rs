@@ -40,6 +40,13 @@ impl Frame {
         Self { axes, origin: self.place::<A>(&next.origin) }
     }
 
+    /// The frame that undoes this one.
+    pub fn inverse(&self) -> Self {
+        let axes: [[f64; 3]; 3] = std::array::from_fn(|row| std::array::from_fn(|column| self.axes[column][row]));
+        let origin = self.axes.map(|axis| -(0..3).map(|k| axis[k] * self.origin[k]).sum::<f64>());
+        Self { axes, origin }
+    }
+
     /// Turned about its own z axis, given sine and cosine of the angle.
     #[inline(always)]
     pub fn turned<A: Arithmetic>(&self, sine: f64, cosine: f64) -> Self {
