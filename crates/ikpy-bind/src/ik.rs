@@ -108,7 +108,7 @@ impl PySolution {
 /// Args:
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m) with the orientation left free.
-///     start: (n,), where to begin; None begins at a random configuration.
+///     start: (n,), where to begin; None begins at stored configurations of the robot whose tip is near the target.
 ///     solver: None: Levenberg-Marquardt from many starts.
 ///     position_tolerance: m.
 ///     rotation_tolerance: rad, geodesic angle.
