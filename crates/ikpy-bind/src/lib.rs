@@ -7,6 +7,7 @@ mod ik;
 mod limits;
 mod monitor;
 mod path;
+mod pose;
 mod robot;
 mod sinusoid;
 mod solver;
@@ -23,7 +24,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     error::register(module)?;
     solver::register(module)?;
     module.add_class::<robot::PyRobot>()?;
-    module.add_function(wrap_pyfunction!(robot::pose, module)?)?;
+    module.add_function(wrap_pyfunction!(pose::pose, module)?)?;
     module.add_class::<sinusoid::PySinusoid>()?;
     module.add_class::<limits::PyLimits>()?;
     module.add_class::<ik::PySolution>()?;
