@@ -53,11 +53,9 @@ pub struct Solution {
 impl Solution {
     /// What happened, and what to try.
     pub fn message(&self) -> String {
-        let TipError { position, rotation } = self.error;
-        let rotation = if rotation.is_nan() { String::new() } else { format!(" and {rotation:.3e} rad") };
-        let errors = format!("{position:.3e} m{rotation}");
+        let errors = self.error;
         match self.status {
-            _ if position.is_nan() => format!("not solved: {}", self.status.advice()),
+            _ if errors.position.is_nan() => format!("not solved: {}", self.status.advice()),
             Status::Solved => format!("solved to {errors}"),
             Status::Stalled => format!("no further progress {errors} away: {}", self.status.advice()),
             Status::BudgetSpent => format!("budget spent {errors} away: {}", self.status.advice()),
