@@ -130,7 +130,7 @@ fn a_target_out_of_reach_is_approached_and_said_to_be() {
     let distance = solution.error.position;
     assert!((shortfall..1.01 * shortfall).contains(&distance), "{:?}", solution.error);
     let advice = "raise the budget in stop=Stop(...); the target may be out of reach";
-    assert_eq!(solution.message(), format!("budget spent {distance:.3e} m away: {advice}"));
+    assert_eq!(solution.message(), format!("budget spent {distance:.4} m away: {advice}"));
 }
 
 #[test]
