@@ -1,34 +1,71 @@
-//! Poses by the default solver: random reachable targets, each from its own random start, within the robot's limits.
+//! Targets by the default solver: random and reachable, without a start, within the robot's limits; and what the index
+//! of starts costs to build.
 
+use std::hint::black_box;
 use std::time::Duration;
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use ikcore::ik::{SolveOptions, solve};
+use ikcore::math::Frame;
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
-use ikcore::task::Target;
+use ikcore::task::{Target, Tolerance};
 
+const ROBOTS: [&str; 4] = ["iiwa14", "panda", "ur5e", "kr210"];
 const TARGETS: u64 = 200;
 
-fn poses(c: &mut Criterion) {
-    let mut group = c.benchmark_group("pose");
-    group.throughput(Throughput::Elements(TARGETS));
-    for name in ["iiwa14", "panda", "ur5e"] {
-        let robot = Robot::named(name).expect("a built-in robot");
-        let goals =
-            robot.random_configurations(TARGETS as usize, &mut rng::stream(1, 0)).expect("they fit into memory");
-        let targets: Vec<_> = goals.chunks_exact(robot.dof()).map(|q| Target::Pose(robot.tip(q))).collect();
-        group.bench_function(name, |b| {
-            b.iter(|| {
-                for (target, seed) in targets.iter().zip(0..) {
-                    let options = SolveOptions { seed, ..SolveOptions::default() };
-                    solve(&robot, target, &options, &mut Unattended).expect("a solution");
-                }
+type TargetAt = fn(Frame) -> Target;
+
+/// What is asked of the solver, and how exactly (m, rad).
+const TASKS: [(&str, TargetAt, f64); 3] = [
+    ("pose", Target::Pose, 1e-6),
+    ("pose to 1e-9", Target::Pose, 1e-9),
+    ("position", |tip| Target::Position(tip.origin), 1e-6),
+];
+
+fn named(name: &str) -> Robot {
+    Robot::named(name).expect("a built-in robot")
+}
+
+fn targets(c: &mut Criterion) {
+    for (task, target_at, tolerance) in TASKS {
+        let mut group = c.benchmark_group(task);
+        group.throughput(Throughput::Elements(TARGETS));
+        for name in ROBOTS {
+            let robot = named(name);
+            let goals =
+                robot.random_configurations(TARGETS as usize, &mut rng::stream(1, 0)).expect("they fit into memory");
+            let targets: Vec<_> = goals.chunks_exact(robot.dof()).map(|q| target_at(robot.tip(q))).collect();
+            let tolerance = Tolerance { position: tolerance, rotation: tolerance };
+            group.bench_function(name, |b| {
+                b.iter(|| {
+                    for (target, seed) in targets.iter().zip(0..) {
+                        let options = SolveOptions { seed, tolerance, ..SolveOptions::default() };
+                        solve(&robot, target, &options, &mut Unattended).expect("a solution");
+                    }
+                });
             });
+        }
+    }
+}
+
+fn index(c: &mut Criterion) {
+    let mut group = c.benchmark_group("index of starts");
+    for name in ROBOTS {
+        let robot = named(name);
+        // Other limits, even equal ones, mean another index.
+        let fresh = || robot.with_limits(|_, _| ()).expect("the same limits");
+        group.bench_function(name, |b| {
+            b.iter_batched_ref(
+                fresh,
+                |robot| {
+                    black_box(robot.seeds_near_pose(&Frame::IDENTITY));
+                },
+                BatchSize::LargeInput,
+            );
         });
     }
-    group.finish();
 }
 
 criterion_group! {
@@ -36,7 +73,7 @@ criterion_group! {
     config = Criterion::default()
         .sample_size(20)
         .warm_up_time(Duration::from_millis(500))
-        .measurement_time(Duration::from_secs(3));
-    targets = poses
+        .measurement_time(Duration::from_secs(2));
+    targets = targets, index
 }
 criterion_main!(benches);

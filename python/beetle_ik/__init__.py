@@ -15,6 +15,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
 from . import paths, plot
 from ._core import (
     BAS,
+    BatchSolution,
     BeetleIkError,
     InvalidInputError,
     LevenbergMarquardt,
@@ -37,11 +38,13 @@ from ._core import (
     __version__,
     pose,
     solve,
+    solve_batch,
     track,
 )
 
 __all__ = [
     "BAS",
+    "BatchSolution",
     "BeetleIkError",
     "InvalidInputError",
     "LevenbergMarquardt",
@@ -66,5 +69,6 @@ __all__ = [
     "plot",
     "pose",
     "solve",
+    "solve_batch",
     "track",
 ]

@@ -153,6 +153,7 @@ class Status(IntEnum):
     TIME_UP = 5
     INTERRUPTED = 6
     LOST = 7
+    INVALID = 8
 
 @final
 class BAS:
@@ -245,6 +246,49 @@ class Solution:
     def elapsed(self) -> float: ...  # s
     @property
     def limits(self) -> Limits: ...  # those in force
+
+def solve_batch(
+    robot: Robot,
+    targets: ArrayLike,  # (m, 4, 4) poses or (m, 3) positions
+    *,
+    starts: ArrayLike | None = None,  # (m, n), or (n,) for all
+    threads: int | None = None,  # None: one per core
+    on_invalid: Literal["raise", "skip"] = "raise",
+    progress: _Progress = None,
+    solver: _Solver | None = None,
+    position_tolerance: float = 1e-6,
+    rotation_tolerance: float = 1e-6,
+    limits: Limits | None = None,
+    stop: Stop | None = None,  # budgets of each target
+    seed: int = 0,
+) -> BatchSolution: ...
+
+@final
+class BatchSolution:
+    @property
+    def q(self) -> _Array: ...  # (m, n); NaN where INVALID
+    @property
+    def success(self) -> NDArray[np.bool_]: ...  # (m,)
+    @property
+    def status(self) -> NDArray[np.uint8]: ...  # (m,), values of Status
+    @property
+    def message(self) -> str: ...
+    @property
+    def position_error(self) -> _Array: ...  # (m,), m
+    @property
+    def rotation_error(self) -> _Array: ...  # (m,), rad; NaN where no orientation was asked
+    @property
+    def iterations(self) -> NDArray[np.int64]: ...  # (m,)
+    @property
+    def restarts(self) -> NDArray[np.int64]: ...  # (m,)
+    @property
+    def evaluations(self) -> NDArray[np.int64]: ...  # (m,)
+    @property
+    def elapsed(self) -> float: ...  # s, in all
+    @property
+    def limits(self) -> Limits: ...  # those in force
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int, /) -> Solution: ...
 
 # --- reference paths (public as beetle_ik.paths) ------------------------------------------------
 

@@ -153,7 +153,7 @@ def test_solvers_and_budgets(call: Callable[[], object], error: type[Exception],
         (
             lambda: track(limits=bik.Limits(lower=lambda t: t - 1, upper=1.5)),
             Limit,
-            "joint 'joint_1': lower limit 2 is above upper limit 1.5",
+            "joint 'joint_1': lower limit 1.6 is above upper limit 1.5 at t = 2.5 s",
         ),
         (
             lambda: track(limits=bik.Limits(velocity=np.nan)),

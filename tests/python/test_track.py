@@ -129,7 +129,9 @@ def test_limits_hold_where_the_path_is_out_of_reach(solver: object) -> None:
     assert np.all(np.abs(result.qd[1:]) <= result.velocity_limit[1:] + 1e-12)
     assert result.max_violation == 0.0
     assert len(result) == 51
-    assert result.message.endswith("slow the path down, raise the velocity limits, or move the path into reach")
+    assert result.message.endswith(
+        "raise the velocity limits, start elsewhere (another start or seed), or move the path into reach"
+    )
 
 
 def test_limits_too_small_to_follow_end_in_a_status() -> None:

@@ -312,7 +312,7 @@ fn the_seed_decides_every_draw() {
         let points = |seed| {
             let poison: Poison = |_, number| (number == 0).then_some(f64::NAN);
             let stop = Stop { max_evaluations: 500, ..Stop::default() };
-            bits(&Case { seed, poison, ..arm().with_stop(stop) }.run(&solver).seen)
+            bits(&Case { seed, poison, ..valley().with_stop(stop) }.run(&solver).seen)
         };
         assert_eq!(points(1), points(1), "{solver:?}");
         assert_eq!(points(1) != points(2), is_random(&solver), "{solver:?}");

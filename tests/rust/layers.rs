@@ -4,13 +4,14 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const FOUNDATION: &[&str] = &["error", "rng", "math"];
+const FOUNDATION: &[&str] = &["error", "rng", "math", "wording"];
 
 /// Which modules a module may use, besides itself and those of [`FOUNDATION`]. No solver knows of robots, no robot of solvers.
 const LAYERS: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("rng", &[]),
     ("math", &[]),
+    ("wording", &[]),
     ("robot", &[]),
     ("path", &[]),
     ("trajectory", &[]),
@@ -21,6 +22,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("solver", &["objective"]),
     ("problem", &["robot", "task", "limits", "objective"]),
     ("ik", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem"]),
+    ("batch", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"]),
     (
         "tracking",
         &["robot", "path", "trajectory", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"],

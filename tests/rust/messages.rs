@@ -179,7 +179,7 @@ fn targets_that_are_nowhere() {
     let mut frame = iiwa.tip(&[0.0; 7]);
     frame.axes[1][2] = INFINITE;
     assert_eq!(says(Target::Pose(frame)), "target must be finite, but rotation entry 5 is inf");
-    let mut session = Session::new(&iiwa, &[0.0; 7], 0.1, Limits::of(&iiwa), &TrackOptions::default()).unwrap();
+    let mut session = Session::new(&iiwa, &[0.0; 7], 0.1, &TrackOptions::default()).unwrap();
     let step = session.step(&Target::Position([INFINITE, 0.0, 0.0]), &mut Unattended);
     assert_eq!(message(step), "target must be finite, but coordinate x is inf");
     assert_eq!(session.time(), 0.0, "a refused target takes no time");
@@ -247,7 +247,7 @@ fn time_steps_and_durations_out_of_range() {
         let circle = Circle::new(Plane::xy([0.0; 3]).unwrap(), 1.0, 6.0).unwrap();
         assert_eq!(message(Path::new(circle).sample(value)), says);
         let (planar, options) = (robot("planar5"), TrackOptions::default());
-        assert_eq!(message(Session::new(&planar, &[0.0; 5], value, Limits::of(&planar), &options)), says);
+        assert_eq!(message(Session::new(&planar, &[0.0; 5], value, &options)), says);
         let says = format!("duration must be positive and finite, got {shown}");
         assert_eq!(message(Circle::new(Plane::xy([0.0; 3]).unwrap(), 1.0, value)), says);
     }
@@ -265,9 +265,8 @@ fn paths_without_points() {
 fn velocity_limits_below_zero() {
     let says = "velocity limit of joint 'joint_1' is -0.5 at t = 0 s: a limit cannot be negative";
     assert_eq!(track_says(&[0.0; 5], within(Field::Velocity, Profile::Constant(-0.5))), says);
-    let (planar, options) = (robot("planar5"), TrackOptions::default());
-    let limits = planar_limits(Field::Velocity, Profile::Constant(-0.5)).unwrap();
-    assert_eq!(message(Session::new(&planar, &[0.0; 5], 0.1, limits, &options)), says);
+    let options = within(Field::Velocity, Profile::Constant(-0.5));
+    assert_eq!(message(Session::new(&robot("planar5"), &[0.0; 5], 0.1, &options)), says);
     // 0.1 + 0.2 sin t is lowest at 3 pi / 2 s.
     let dipping = Sinusoid { mean: 0.1, amplitude: 0.2, angular_frequency: 1.0, phase: 0.0 };
     let says = "velocity limit of joint 'joint_1' is -0.1 at t = 4.71238898038469 s: a limit cannot be negative";

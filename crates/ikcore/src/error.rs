@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// `Result` with this crate's [`Error`].
+/// `Result` with this crate's [`enum@Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Everything that a caller can get wrong.
@@ -106,7 +106,7 @@ pub enum Error {
         problem: String,
     },
     /// A lower limit above its upper limit.
-    #[error("joint '{joint}': lower limit {lower} is above upper limit {upper}")]
+    #[error("joint '{joint}': lower limit {lower} is above upper limit {upper}{}", .time.map(|t| format!(" at t = {t} s")).unwrap_or_default())]
     EmptyRange {
         /// The joint's name.
         joint: String,
@@ -114,6 +114,8 @@ pub enum Error {
         lower: f64,
         /// Its upper limit (rad or m).
         upper: f64,
+        /// When, for limits that vary (s).
+        time: Option<f64>,
     },
     /// A configuration outside the position limits.
     #[error("{what}: joint '{joint}' at {value} is outside its limits [{lower}, {upper}]")]
@@ -181,6 +183,22 @@ pub enum Error {
     #[error("trajectory: {problem}")]
     InvalidTrajectory {
         /// What is wrong and what would be right.
+        problem: String,
+    },
+    /// A mistake in one row of a batch.
+    #[error("row {row}: {error}")]
+    InRow {
+        /// The row, from 0.
+        row: usize,
+        /// What is wrong with it.
+        error: Box<Error>,
+    },
+    /// The operating system does not give as many threads.
+    #[error("cannot start {threads} threads ({problem}): ask for fewer; threads=1 needs none")]
+    NoThreads {
+        /// How many were asked for.
+        threads: usize,
+        /// The operating system's reason.
         problem: String,
     },
     /// Stored bytes that are not what they should be.

@@ -18,7 +18,7 @@ use crate::task::{Target, TipError, Tolerance};
 pub struct SolveOptions {
     /// The algorithm.
     pub solver: AnySolver,
-    /// Where to begin (n,); None begins at a random configuration.
+    /// Where to begin (n,); None begins at the indexed configuration nearest to the target.
     pub start: Option<Vec<f64>>,
     /// When the target counts as reached.
     pub tolerance: Tolerance,
@@ -26,7 +26,8 @@ pub struct SolveOptions {
     pub limits: Option<Limits>,
     /// Budgets.
     pub stop: Stop,
-    /// Seed of the random draws: the same seed, the same bits.
+    /// Seed of the random draws: the same seed, the same bits. Most targets are solved without a draw, to the same bits
+    /// whatever the seed.
     pub seed: u64,
 }
 
@@ -52,10 +53,9 @@ pub struct Solution {
 impl Solution {
     /// What happened, and what to try.
     pub fn message(&self) -> String {
-        let TipError { position, rotation } = self.error;
-        let rotation = if rotation.is_nan() { String::new() } else { format!(" and {rotation:.3e} rad") };
-        let errors = format!("{position:.3e} m{rotation}");
+        let errors = self.error;
         match self.status {
+            _ if errors.position.is_nan() => format!("not solved: {}", self.status.advice()),
             Status::Solved => format!("solved to {errors}"),
             Status::Stalled => format!("no further progress {errors} away: {}", self.status.advice()),
             Status::BudgetSpent => format!("budget spent {errors} away: {}", self.status.advice()),
@@ -68,40 +68,76 @@ impl Solution {
 /// Finds a configuration that brings the tip of `robot` to `target`.
 ///
 /// # Errors
-/// Any [`Error`](crate::Error) for wrong input. A target that is not reached is a status, not an error.
+/// Any [`enum@Error`] for wrong input. A target that is not reached is a status, not an error.
 pub fn solve(robot: &Robot, target: &Target, options: &SolveOptions, monitor: &mut dyn Monitor) -> Result<Solution> {
-    let stopwatch = Stopwatch::start();
+    let prepared = Prepared::new(robot, options)?;
+    let start = options.start.as_deref();
     target.validate()?;
-    options.solver.validate()?;
-    options.tolerance.validate()?;
-    options.stop.validate()?;
-    let bounds = position_box(robot, options.limits.as_ref())?;
-    let mut rng = rng::stream(options.seed, 0);
-    let mut problem = Problem::new(robot, target, options.tolerance);
-    let mut buffer = [0.0; MAX_DOF];
-    let start = &mut buffer[..robot.dof()];
-    match &options.start {
-        Some(q) => {
-            robot.check("start", q)?;
-            require_inside(robot, "start", q, &bounds)?;
-            start.copy_from_slice(q);
-        }
-        None => problem.propose_start(0, &bounds, &mut rng, start),
+    start.map_or(Ok(()), |q| prepared.check_start(q))?;
+    Ok(prepared.run(target, start, 0, monitor))
+}
+
+/// A robot and options that were found in order, ready for any number of targets.
+#[derive(Debug)]
+pub(crate) struct Prepared<'a> {
+    robot: &'a Robot,
+    options: &'a SolveOptions,
+    bounds: Bounds,
+}
+
+impl<'a> Prepared<'a> {
+    /// Checks what all targets have in common, but for [`SolveOptions::start`]: that is an argument of each.
+    ///
+    /// # Errors
+    /// Any [`Error`] for wrong options.
+    pub(crate) fn new(robot: &'a Robot, options: &'a SolveOptions) -> Result<Self> {
+        options.solver.validate()?;
+        options.tolerance.validate()?;
+        options.stop.validate()?;
+        Ok(Self { robot, options, bounds: position_box(robot, options.limits.as_ref())? })
     }
-    let objective: &mut dyn LeastSquares = &mut problem;
-    let mut evaluator = Evaluator::new(objective, &bounds, options.stop, &mut rng, monitor);
-    let outcome = options.solver.run(&mut evaluator, start);
-    let (evaluations, restarts) = (evaluator.evaluations(), evaluator.attempts() - 1);
-    let q = evaluator.best().x.clone();
-    Ok(Solution {
-        status: outcome.status(),
-        error: problem.verify(&q),
-        iterations: outcome.iterations,
-        restarts,
-        evaluations,
-        elapsed: stopwatch.elapsed(),
-        q,
-    })
+
+    /// Checks a start.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::NotFinite`] or [`Error::OutsideLimits`].
+    pub(crate) fn check_start(&self, q: &[f64]) -> Result<()> {
+        self.robot.check("start", q)?;
+        require_inside(self.robot, "start", q, &self.bounds)
+    }
+
+    /// Solves for a target and a start that are in order, drawing from `stream` of the seed.
+    pub(crate) fn run(
+        &self,
+        target: &Target,
+        start: Option<&[f64]>,
+        stream: u64,
+        monitor: &mut dyn Monitor,
+    ) -> Solution {
+        let stopwatch = Stopwatch::start();
+        let mut rng = rng::stream(self.options.seed, stream);
+        let mut problem = Problem::new(self.robot, target, self.options.tolerance);
+        let mut buffer = [0.0; MAX_DOF];
+        let x0 = &mut buffer[..self.robot.dof()];
+        match start {
+            Some(q) => x0.copy_from_slice(q),
+            None => problem.propose_start(0, &self.bounds, &mut rng, x0),
+        }
+        let objective: &mut dyn LeastSquares = &mut problem;
+        let mut evaluator = Evaluator::new(objective, &self.bounds, self.options.stop, &mut rng, monitor);
+        let outcome = self.options.solver.run(&mut evaluator, x0);
+        let (evaluations, restarts) = (evaluator.evaluations(), evaluator.attempts() - 1);
+        let q = evaluator.best().x.clone();
+        Solution {
+            status: outcome.status(),
+            error: problem.verify(&q),
+            iterations: outcome.iterations,
+            restarts,
+            evaluations,
+            elapsed: stopwatch.elapsed(),
+            q,
+        }
+    }
 }
 
 /// The position limits as a box. Velocities do not matter to a single configuration.

@@ -20,7 +20,7 @@
 //!      robot ───────────────┐
 //! path (reference)          ├─> task ─> problem ··implements··> objective <──uses── solver ─> solution
 //!      limits ──────────────┘                                                                    │
-//!                                           tracking  <──────────────────────────────────────────┘
+//!                                           tracking · batch  <──────────────────────────────────┘
 //!                                              │
 //!                                          trajectory
 //! ```
@@ -45,14 +45,15 @@
 //!
 //! | layer | modules |
 //! |---|---|
-//! | 0 | [`error`], [`rng`], [`math`] |
+//! | 0 | [`error`], [`rng`], [`math`], `wording` |
 //! | 1 | [`robot`], [`path`], [`trajectory`], [`objective`] |
 //! | 2 | [`limits`], [`manipulability`] |
 //! | 3 | [`task`], [`solver`] |
 //! | 4 | [`problem`] |
 //! | 5 | [`ik`] |
-//! | 6 | [`tracking`] |
+//! | 6 | [`tracking`], [`batch`] |
 
+pub mod batch;
 pub mod error;
 pub mod ik;
 pub mod limits;
@@ -67,6 +68,7 @@ pub mod solver;
 pub mod task;
 pub mod tracking;
 pub mod trajectory;
+mod wording;
 
 pub use error::{Error, Result};
 pub use nalgebra;

@@ -9,7 +9,14 @@ use crate::robot::Robot;
 /// # Errors
 /// As [`Robot::jacobian`].
 pub fn manipulability(robot: &Robot, q: &[f64]) -> Result<f64> {
-    let jacobian = robot.jacobian(q)?;
     // The product of the singular values is that root, without squaring small numbers away.
-    Ok(jacobian.singular_values().product())
+    Ok(robot.jacobian(q)?.singular_values().product())
+}
+
+/// The same at `qs`, (m, n) row after row.
+///
+/// # Errors
+/// As [`Robot::jacobian_all`].
+pub fn manipulability_all(robot: &Robot, qs: &[f64]) -> Result<Vec<f64>> {
+    robot.rows(qs)?.map(|q| manipulability(robot, q)).collect()
 }

@@ -3,8 +3,8 @@
 use smallvec::SmallVec;
 
 use crate::error::{Error, Result};
-use crate::math::MAX_DOF;
 use crate::math::box_step::ROWS;
+use crate::math::{MAX_DOF, interval};
 use crate::rng::LazyRng;
 
 /// A point of the search space; on the stack up to [`MAX_DOF`] entries.
@@ -69,8 +69,8 @@ pub struct Bounds {
     upper: Point,
 }
 
-/// From a bound that is finite on one side only, samples reach this far.
-const OPEN_REACH: f64 = 2.0 * std::f64::consts::PI;
+/// How far samples reach on an open side.
+const HALF_TURN: f64 = std::f64::consts::PI;
 
 impl Bounds {
     /// # Errors
@@ -127,12 +127,7 @@ impl Bounds {
     /// A uniform draw; an open side reaches one turn from the other bound, or half a turn from zero.
     pub fn sample(&self, rng: &mut LazyRng, x: &mut [f64]) {
         for ((x, lower), upper) in x.iter_mut().zip(&self.lower).zip(&self.upper) {
-            let (from, to) = match (lower.is_finite(), upper.is_finite()) {
-                (true, true) => (*lower, *upper),
-                (true, false) => (*lower, lower + OPEN_REACH),
-                (false, true) => (upper - OPEN_REACH, *upper),
-                (false, false) => (-0.5 * OPEN_REACH, 0.5 * OPEN_REACH),
-            };
+            let (from, to) = interval::finite(*lower, *upper, HALF_TURN);
             *x = rng.uniform_in(from, to);
         }
     }

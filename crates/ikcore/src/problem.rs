@@ -2,7 +2,7 @@
 
 use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
 use crate::rng::LazyRng;
-use crate::robot::Robot;
+use crate::robot::{Robot, Seeds};
 use crate::task::{SquaredError, Target, TipError, Tolerance};
 
 /// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
@@ -11,12 +11,14 @@ pub struct Problem<'a> {
     robot: &'a Robot,
     target: &'a Target,
     tolerance: Tolerance,
+    /// Found when the first start is asked for.
+    seeds: Option<Seeds<'a>>,
 }
 
 impl<'a> Problem<'a> {
     /// The problem of bringing the tip of `robot` to `target`.
     pub fn new(robot: &'a Robot, target: &'a Target, tolerance: Tolerance) -> Self {
-        Self { robot, target, tolerance }
+        Self { robot, target, tolerance, seeds: None }
     }
 
     /// The errors at `q`, by forward kinematics.
@@ -49,8 +51,16 @@ impl Objective for Problem<'_> {
         });
     }
 
-    /// Uniform in the box; a side without a limit is drawn from the joint's sampling range.
+    /// The nearest of the robot's indexed configurations, then uniform in the box, where a side without a limit is drawn
+    /// from the joint's sampling range. Whoever brings a start of their own gets the nearest as their second.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
+        let seeds = self.seeds.get_or_insert_with(|| match self.target {
+            Target::Position(position) => self.robot.seeds_near_position(position),
+            Target::Pose(pose) => self.robot.seeds_near_pose(pose),
+        });
+        if seeds.write_next(bounds.lower(), bounds.upper(), q) {
+            return;
+        }
         for (i, joint) in self.robot.joints().iter().enumerate() {
             let (lower, upper) = joint.sampling_range_within(bounds.lower()[i], bounds.upper()[i]);
             q[i] = rng.uniform_in(lower, upper);

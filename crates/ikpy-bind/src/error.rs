@@ -16,6 +16,19 @@ struct Classes {
     unsupported_limit: Py<PyType>,
 }
 
+impl Classes {
+    fn of(&self, error: &Error) -> &Py<PyType> {
+        match error {
+            Error::InRow { error, .. } => self.of(error),
+            Error::UnknownRobot { .. } | Error::UnknownLink { .. } => &self.unknown_name,
+            Error::Urdf { .. } | Error::AmbiguousTip { .. } => &self.urdf,
+            Error::EmptyRange { .. } | Error::OutsideLimits { .. } | Error::NegativeLimit { .. } => &self.limit,
+            Error::UnsupportedLimit { .. } => &self.unsupported_limit,
+            _ => &self.invalid_input,
+        }
+    }
+}
+
 static CLASSES: PyOnceLock<Classes> = PyOnceLock::new();
 
 fn classes(py: Python<'_>) -> PyResult<&Classes> {
@@ -80,13 +93,7 @@ pub fn raise(error: Error) -> PyErr {
             Ok(classes) => classes,
             Err(failure) => return failure,
         };
-        let class = match error {
-            Error::UnknownRobot { .. } | Error::UnknownLink { .. } => &classes.unknown_name,
-            Error::Urdf { .. } | Error::AmbiguousTip { .. } => &classes.urdf,
-            Error::EmptyRange { .. } | Error::OutsideLimits { .. } | Error::NegativeLimit { .. } => &classes.limit,
-            Error::UnsupportedLimit { .. } => &classes.unsupported_limit,
-            _ => &classes.invalid_input,
-        };
+        let class = classes.of(&error);
         PyErr::from_type(class.bind(py).clone(), error.to_string())
     })
 }

@@ -97,12 +97,18 @@ impl PySolution {
     }
 }
 
+impl PySolution {
+    pub fn new(py: Python<'_>, core: ik::Solution, limits: Py<PyLimits>) -> Self {
+        Self { q: row(py, core.q.to_vec()).unbind(), limits, core }
+    }
+}
+
 /// Finds a configuration that brings the tip of `robot` to `target`, inside the limits.
 ///
 /// Args:
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m) with the orientation left free.
-///     start: (n,), where to begin; None begins at a random configuration.
+///     start: (n,), where to begin; None begins at stored configurations of the robot whose tip is near the target.
 ///     solver: None: Levenberg-Marquardt from many starts.
 ///     position_tolerance: m.
 ///     rotation_tolerance: rad, geodesic angle.
@@ -133,19 +139,19 @@ pub fn solve(
     seed: i128,
 ) -> PyResult<PySolution> {
     let target = read_target(target)?;
-    let (in_force, resolved) = limits_of_call(py, limits, &robot.core, &Sampling::once())?;
+    let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let options = SolveOptions {
         solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
         start: start.map(|start| vector("start", start)).transpose()?,
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
-        limits: limits.map(|_| resolved),
+        limits: resolved,
         stop: stop.map_or(Stop::default(), PyStop::core),
         seed: count("seed", seed)?,
     };
     let mut watcher = Watcher::new();
     let core = py.detach(|| ik::solve(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;
     watcher.finish()?;
-    Ok(PySolution { q: row(py, core.q.to_vec()).unbind(), limits: Py::new(py, in_force)?, core })
+    Ok(PySolution::new(py, core, in_force))
 }
 
 /// A pose (4, 4) or a position (3,).

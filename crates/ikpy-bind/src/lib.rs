@@ -1,11 +1,13 @@
 //! The native module `beetle_ik._core`: registration only. Each file converts for one module of the core.
 
+mod batch;
 mod convert;
 mod error;
 mod ik;
 mod limits;
 mod monitor;
 mod path;
+mod pose;
 mod robot;
 mod sinusoid;
 mod solver;
@@ -22,11 +24,13 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     error::register(module)?;
     solver::register(module)?;
     module.add_class::<robot::PyRobot>()?;
-    module.add_function(wrap_pyfunction!(robot::pose, module)?)?;
+    module.add_function(wrap_pyfunction!(pose::pose, module)?)?;
     module.add_class::<sinusoid::PySinusoid>()?;
     module.add_class::<limits::PyLimits>()?;
     module.add_class::<ik::PySolution>()?;
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;
+    module.add_class::<batch::PyBatchSolution>()?;
+    module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
     path::register(module)?;
     module.add_class::<tracking::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;

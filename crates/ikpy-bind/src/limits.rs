@@ -8,6 +8,7 @@ use pyo3::types::PyDict;
 
 use crate::convert::{scalar_or_vector, summary};
 use crate::error::{invalid, raise};
+use crate::robot::PyRobot;
 use crate::sinusoid::{Numbers, PySinusoid};
 
 /// What a field of `Limits` was given.
@@ -73,9 +74,15 @@ impl Sampling {
     }
 }
 
+/// Functions written in C do not look for Ctrl-C themselves: so many calls take some milliseconds.
+pub const CALLS_BETWEEN_LOOKS: usize = 4096;
+
 fn sampled(function: &Bound<'_, PyAny>, field: Field, sampling: &Sampling, n: usize) -> PyResult<Vec<Profile>> {
     let mut columns: Vec<Vec<f64>> = vec![];
     for i in 0..sampling.count {
+        if i % CALLS_BETWEEN_LOOKS == 0 {
+            function.py().check_signals()?;
+        }
         let t = i as f64 * sampling.step;
         let what = format!("{field} limit at t = {t} s");
         let (values, _) = scalar_or_vector(&what, &function.call1((t,))?)?;
@@ -238,15 +245,18 @@ impl PyLimits {
     }
 }
 
-/// The limits of a call: those given or the robot's, for the result and for the core.
+/// The limits of a call: those in force, for the result, and for the core those that differ from the robot's own.
 pub fn limits_of_call(
     py: Python<'_>,
     limits: Option<&PyLimits>,
-    robot: &Robot,
+    robot: &PyRobot,
     sampling: &Sampling,
-) -> PyResult<(PyLimits, Limits)> {
+) -> PyResult<(Py<PyLimits>, Option<Limits>)> {
     match limits {
-        None => Ok((PyLimits::of(robot), Limits::of(robot))),
-        Some(limits) => Ok((limits.in_force(py, robot), limits.resolve(py, robot, sampling)?)),
+        None => Ok((robot.limits(py)?, None)),
+        Some(limits) => {
+            let in_force = Py::new(py, limits.in_force(py, &robot.core))?;
+            Ok((in_force, Some(limits.resolve(py, &robot.core, sampling)?)))
+        }
     }
 }

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 use crate::convert::{Array, array, count, matrix3, point, rigid_rows, row, shape_text, summary, table, times, vector};
 use crate::error::{invalid, raise};
+use crate::limits::CALLS_BETWEEN_LOOKS;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyPath>()?;
@@ -130,8 +131,16 @@ impl PyPath {
         }
         let count = ticks(self.duration(), dt).map_err(raise)? + 1;
         let time = |i: usize| (i as f64 * dt).min(self.duration());
-        let positions = (0..count).map(|i| self.position_at(py, time(i))).collect::<PyResult<_>>()?;
-        let rotations = (0..count).map(|i| self.rotation_at(py, time(i))).collect::<PyResult<_>>()?;
+        let mut positions = Vec::with_capacity(count);
+        let mut rotations = Vec::new();
+        for i in 0..count {
+            if i % CALLS_BETWEEN_LOOKS == 0 {
+                py.check_signals()?;
+            }
+            positions.push(self.position_at(py, time(i))?);
+            rotations.extend(self.rotation_at(py, time(i))?);
+        }
+        let rotations = (!rotations.is_empty()).then_some(rotations);
         Reference::new(dt, positions, rotations).map_err(raise)
     }
 

@@ -3,14 +3,15 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use ikcore::math::{Pose, pose as poses};
+use ikcore::manipulability;
 use ikcore::rng;
 use ikcore::robot::{Dh, DhTable, Joint, JointKind, Robot};
-use numpy::{PyArray1, PyArray2, PyArrayDyn};
+use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::PyBytes;
 
-use crate::convert::{self, Rows, array, count, pose_array, row, rows, shape_text, table, vector};
+use crate::convert::{self, Rows, count, pose_array, row, rows, table, vector};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
 
@@ -20,14 +21,21 @@ use crate::limits::PyLimits;
 /// Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow theirs. Poses are 4x4
 /// matrices in the frame of the robot's base.
 #[pyclass(name = "Robot", module = "beetle_ik", frozen, eq)]
-#[derive(PartialEq)]
 pub struct PyRobot {
     pub core: Arc<Robot>,
+    /// Made when it is first asked for: most results only carry it along.
+    limits: PyOnceLock<Py<PyLimits>>,
+}
+
+impl PartialEq for PyRobot {
+    fn eq(&self, other: &Self) -> bool {
+        self.core == other.core
+    }
 }
 
 impl From<Robot> for PyRobot {
     fn from(robot: Robot) -> Self {
-        Self { core: Arc::new(robot) }
+        Self { core: Arc::new(robot), limits: PyOnceLock::new() }
     }
 }
 
@@ -204,8 +212,9 @@ impl PyRobot {
 
     /// All limits of the robot.
     #[getter]
-    fn limits(&self) -> PyLimits {
-        PyLimits::of(&self.core)
+    pub fn limits(&self, py: Python<'_>) -> PyResult<Py<PyLimits>> {
+        let limits = self.limits.get_or_try_init(py, || Py::new(py, PyLimits::of(&self.core)))?;
+        Ok(limits.clone_ref(py))
     }
 
     /// The same robot with a tool: `tool` (4, 4) is the pose of the new tip in the frame of the tip link.
@@ -243,7 +252,7 @@ impl PyRobot {
             Rows::One(q) => Ok(pose_array(py, &self.core.fk(q.as_slice()?).map_err(raise)?)?.into_any()),
             Rows::Many(q, m) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                let poses = py.detach(|| robot.fk_all(q)).map_err(raise)?;
+                let poses = in_pieces(py, q, robot.dof(), |q| robot.fk_all(q))?;
                 Ok(table(py, poses, &[m, 4, 4])?.into_any())
             }
         }
@@ -267,7 +276,7 @@ impl PyRobot {
             }
             Rows::Many(q, m) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                table(py, py.detach(|| robot.jacobian_all(q)).map_err(raise)?, &[m, 6, n])
+                table(py, in_pieces(py, q, n, |q| robot.jacobian_all(q))?, &[m, 6, n])
             }
         }
     }
@@ -288,13 +297,13 @@ impl PyRobot {
     fn manipulability<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         match rows("joint angles", self.core.name(), self.core.dof(), q)? {
             Rows::One(q) => {
-                let value = ikcore::manipulability::manipulability(&self.core, q.as_slice()?).map_err(raise)?;
+                let value = manipulability::manipulability(&self.core, q.as_slice()?).map_err(raise)?;
                 Ok(value.into_pyobject(py)?.into_any())
             }
             Rows::Many(q, _) => {
-                let of = |q: &[f64]| ikcore::manipulability::manipulability(&self.core, q);
-                let values = q.as_slice()?.chunks_exact(self.core.dof()).map(of).collect::<Result<_, _>>();
-                Ok(row(py, values.map_err(raise)?).into_any())
+                let (robot, q) = (&*self.core, q.as_slice()?);
+                let values = in_pieces(py, q, robot.dof(), |q| manipulability::manipulability_all(robot, q))?;
+                Ok(row(py, values).into_any())
             }
         }
     }
@@ -315,68 +324,30 @@ impl PyRobot {
     }
 }
 
+/// `work` on whole rows of `n` numbers, without the interpreter, looking for Ctrl-C in between.
+fn in_pieces(
+    py: Python<'_>,
+    rows: &[f64],
+    n: usize,
+    work: impl Fn(&[f64]) -> ikcore::Result<Vec<f64>> + Sync,
+) -> PyResult<Vec<f64>> {
+    /// Rows that take some ten milliseconds.
+    const PIECE: usize = 1 << 17;
+    if rows.len() <= PIECE * n {
+        return py.detach(|| work(rows)).map_err(raise);
+    }
+    let mut results = vec![];
+    for piece in rows.chunks(PIECE * n) {
+        py.check_signals()?;
+        // A wrong row is counted from the first of all rows.
+        results.extend(py.detach(|| work(piece).or_else(|_| work(rows))).map_err(raise)?);
+    }
+    Ok(results)
+}
+
 impl PyRobot {
     fn end(&self, base: bool) -> &str {
         let mut links = self.core.link_names();
         if base { links.next() } else { links.last() }.unwrap_or_default()
     }
-}
-
-/// A pose (4, 4) from a position (3,) (m) and one description of the orientation, whose keyword names its order.
-///
-/// Args:
-///     position: (3,).
-///     xyzw, wxyz: quaternion (4,), of any length but zero.
-///     rpy: fixed-axis roll, pitch, yaw (rad): Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
-///     rotvec: rotation vector (rad).
-///     matrix: rotation matrix (3, 3).
-///
-/// Without a description of the orientation the axes are those of the base.
-#[pyfunction]
-#[pyo3(signature = (position, *, xyzw=None, wxyz=None, rpy=None, rotvec=None, matrix=None))]
-pub fn pose<'py>(
-    position: &Bound<'py, PyAny>,
-    xyzw: Option<&Bound<'py, PyAny>>,
-    wxyz: Option<&Bound<'py, PyAny>>,
-    rpy: Option<&Bound<'py, PyAny>>,
-    rotvec: Option<&Bound<'py, PyAny>>,
-    matrix: Option<&Bound<'py, PyAny>>,
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let position_xyz = convert::point("position", position)?;
-    let given: Vec<(&str, &Bound<'py, PyAny>)> =
-        [("xyzw", xyzw), ("wxyz", wxyz), ("rpy", rpy), ("rotvec", rotvec), ("matrix", matrix)]
-            .into_iter()
-            .filter_map(|(name, value)| value.map(|value| (name, value)))
-            .collect();
-    let made: Pose = match given[..] {
-        [] => poses::translation(position_xyz[0], position_xyz[1], position_xyz[2]),
-        [("xyzw", value)] => {
-            let [x, y, z, w] = quaternion("xyzw", value)?;
-            poses::from_quaternion([x, y, z, w], position_xyz).map_err(raise)?
-        }
-        [("wxyz", value)] => {
-            let [w, x, y, z] = quaternion("wxyz", value)?;
-            poses::from_quaternion([x, y, z, w], position_xyz).map_err(raise)?
-        }
-        [("rpy", value)] => poses::from_rpy(convert::point("rpy", value)?, position_xyz),
-        [("rotvec", value)] => poses::from_rotation_vector(convert::point("rotvec", value)?, position_xyz),
-        [("matrix", value)] => {
-            poses::from_rotation_matrix("matrix", convert::matrix3("matrix", value)?, position_xyz).map_err(raise)?
-        }
-        _ => {
-            let names = given.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-            return Err(invalid(format!("give one description of the orientation, got {names}")));
-        }
-    };
-    pose_array(position.py(), &poses::checked("pose", made).map_err(raise)?)
-}
-
-fn quaternion(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 4]> {
-    let array = array(what, value)?;
-    <[f64; 4]>::try_from(array.as_slice()?).map_err(|_| {
-        invalid(format!(
-            "{what}: expected shape (4,), got {}",
-            shape_text(numpy::PyUntypedArrayMethods::shape(&*array))
-        ))
-    })
 }

@@ -26,7 +26,10 @@ fn status_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
         let members: Vec<(&str, u8)> = Status::ALL.iter().map(|status| (status.name(), *status as u8)).collect();
         let options = [("module", "beetle_ik")].into_py_dict(py)?;
         let class = py.import("enum")?.getattr("IntEnum")?.call(("Status", members), Some(&options))?;
-        class.setattr("__doc__", "How a solve, or one step of a track, ended. `SOLVED` alone is success.")?;
+        class.setattr(
+            "__doc__",
+            "How a solve, one item of a batch or one step of a track ended. `SOLVED` alone is success.",
+        )?;
         Ok::<_, PyErr>(class.unbind())
     })?;
     Ok(class.bind(py))
@@ -273,7 +276,12 @@ impl PyStop {
     pub fn core(&self) -> Stop {
         let standard = Stop::default();
         Stop {
-            max_evaluations: self.max_evaluations.unwrap_or(standard.max_evaluations),
+            max_evaluations: match (self.max_evaluations, self.max_time) {
+                (Some(count), _) => count,
+                // Who gives a time and no count means the time.
+                (None, Some(_)) => usize::MAX,
+                (None, None) => standard.max_evaluations,
+            },
             max_iterations: self.max_iterations.unwrap_or(standard.max_iterations),
             max_time: self.max_time.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
             ..standard

@@ -120,16 +120,16 @@ impl PyTracker {
     ) -> PyResult<Self> {
         let (py, arm) = (robot.py(), &robot.get().core);
         limits.map_or(Ok(()), PyLimits::require_no_functions)?;
-        let (in_force, resolved) = limits_of_call(py, limits, arm, &Sampling::once())?;
+        let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
         let options = TrackOptions {
             rule: tick_rule(solver)?,
             tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
-            limits: None,
+            limits: resolved,
             limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
             seed: count("seed", seed)?,
         };
-        let session = Session::new(arm, &vector("start", start)?, dt, resolved, &options).map_err(raise)?;
-        Ok(Self { session: Mutex::new(session), robot: robot.clone().unbind(), limits: Py::new(py, in_force)? })
+        let session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
+        Ok(Self { session: Mutex::new(session), robot: robot.clone().unbind(), limits: in_force })
     }
 
     /// Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.

@@ -253,12 +253,12 @@ pub fn track(
     let arm = robot.get().core.clone();
     let reference = path.reference(py, dt)?;
     let sampling = Sampling::of_ticks(dt, reference.len() - 1);
-    let (in_force, resolved) = limits_of_call(py, limits, &arm, &sampling)?;
+    let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
     let options = TrackOptions {
         rule: tick_rule(solver)?,
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
-        limits: Some(resolved),
+        limits: resolved,
         limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
         seed: count("seed", seed)?,
     };
@@ -268,12 +268,7 @@ pub fn track(
     progress.close(py)?;
     watcher.finish()?;
     let core = record.map_err(raise)?;
-    Ok(PyTrackResult {
-        tables: Tables::new(py, &core)?,
-        robot: robot.clone().unbind(),
-        limits: Py::new(py, in_force)?,
-        core,
-    })
+    Ok(PyTrackResult { tables: Tables::new(py, &core)?, robot: robot.clone().unbind(), limits: in_force, core })
 }
 
 /// A solver, or the library's own rule.

@@ -170,7 +170,7 @@ impl PyTrajectory {
         upward::write(slf.into_any(), "to_npz", file)
     }
 
-    /// Reads what `to_csv` wrote, or any CSV with a column `time` and one per joint.
+    /// Reads what `to_csv` wrote, or any CSV with a column `time` and one column per joint.
     #[staticmethod]
     fn from_csv<'py>(file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         upward::read("from_csv", file)

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
 
 pub mod chains;
+pub mod circles;
 
 use ikcore::robot::Robot;
 use ikcore::task::Target;

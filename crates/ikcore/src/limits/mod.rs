@@ -102,23 +102,32 @@ impl Limits {
         }
     }
 
-    /// Checks over \[0, `duration`\] (s) that no velocity limit is negative and no range is empty.
+    /// Checks for `ticks` ticks of `dt` (s), or for t = 0 alone, that no velocity limit is negative and that every tick
+    /// leaves each joint a position.
     ///
     /// # Errors
-    /// [`Error::NegativeLimit`] says when, [`Error::EmptyRange`] which joint.
-    pub fn validate(&self, duration: f64) -> Result<()> {
+    /// [`Error::NegativeLimit`] and [`Error::EmptyRange`] say which joint and when.
+    pub fn validate(&self, dt: f64, ticks: usize) -> Result<()> {
         for field in [Field::Velocity, Field::Acceleration, Field::Jerk] {
             for (profile, joint) in self.field(field).unwrap_or_default().iter().zip(&self.joints) {
-                let (time, value) = profile.smallest(0.0, duration);
+                let (time, value) = profile.smallest(0.0, ticks as f64 * dt);
                 if value < 0.0 {
                     return Err(Error::NegativeLimit { field: field.to_string(), joint: joint.clone(), value, time });
                 }
             }
         }
-        for ((lower, upper), joint) in self.lower.iter().zip(&self.upper).zip(&self.joints) {
-            let (lower, upper) = (lower.largest(0.0, duration).1, upper.smallest(0.0, duration).1);
+        (0..self.joints.len()).try_for_each(|j| self.validate_range(j, dt, ticks))
+    }
+
+    fn validate_range(&self, j: usize, dt: f64, ticks: usize) -> Result<()> {
+        let constant = matches!((&self.lower[j], &self.upper[j]), (Profile::Constant(_), Profile::Constant(_)));
+        let last = if constant { 0 } else { ticks };
+        for i in 0..=last {
+            let (from, to) = (i.saturating_sub(1) as f64 * dt, i as f64 * dt);
+            let [lower, upper] = self.position_range(j, from, to);
             if !(lower <= upper) || lower == f64::INFINITY || upper == f64::NEG_INFINITY {
-                return Err(Error::EmptyRange { joint: joint.clone(), lower, upper });
+                let time = (!constant).then_some(from);
+                return Err(Error::EmptyRange { joint: self.joints[j].clone(), lower, upper, time });
             }
         }
         Ok(())
@@ -146,7 +155,7 @@ impl Limits {
     /// # Errors
     /// [`Error::UnsupportedLimit`] where they vary in time; [`Error::EmptyRange`].
     pub fn position_box(&self) -> Result<Bounds> {
-        self.validate(0.0)?;
+        self.validate(0.0, 0)?;
         let constant = |field: Field, profile: &Profile| match profile {
             Profile::Constant(value) => Ok(*value),
             _ => Err(Error::UnsupportedLimit {
@@ -158,6 +167,11 @@ impl Limits {
         let lower = self.lower.iter().map(|p| constant(Field::Lower, p)).collect::<Result<Vec<_>>>()?;
         let upper = self.upper.iter().map(|p| constant(Field::Upper, p)).collect::<Result<Vec<_>>>()?;
         Bounds::new(&lower, &upper)
+    }
+
+    /// Name of a joint.
+    pub(crate) fn joint_name(&self, joint: usize) -> &str {
+        &self.joints[joint]
     }
 
     /// Err unless these are limits for the joints of `robot`.

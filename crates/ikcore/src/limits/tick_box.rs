@@ -75,8 +75,9 @@ impl Limits {
             let (slowest, fastest) = (reachable(q[j], -reach), reachable(q[j], reach));
             let [floor, ceiling] = self.position_range(j, from, to);
             lower[j] = slowest.max(floor).min(fastest);
-            upper[j] = fastest.min(ceiling).max(slowest);
-            feasible &= floor <= fastest && slowest <= ceiling;
+            // Limits that cross later than could be checked leave a point between them, not an empty box.
+            upper[j] = fastest.min(ceiling).max(slowest).max(lower[j]);
+            feasible &= floor <= fastest && slowest <= ceiling && floor <= ceiling;
         }
         feasible
     }

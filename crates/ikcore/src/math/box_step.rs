@@ -1,5 +1,9 @@
 //! The one bounded step: damped least squares on six rows, with joints that hit a bound fixed and the step re-solved.
 
+use super::arithmetic::{Arithmetic, Baseline};
+#[cfg(target_arch = "x86_64")]
+use super::arithmetic::{Fused, has_fused};
+
 /// Task rows of every least-squares problem here; unused rows are zero.
 pub const ROWS: usize = 6;
 
@@ -23,21 +27,54 @@ pub fn box_step(
     upper: &[f64],
     out: &mut [f64],
 ) {
+    #[cfg(target_arch = "x86_64")]
+    if has_fused() {
+        // SAFETY: the instructions were found.
+        return unsafe { fused(columns, residual, lambda, x, lower, upper, out) };
+    }
+    step::<Baseline>(columns, residual, lambda, x, lower, upper, out);
+}
+
+/// [`step`] compiled for AVX2 and FMA.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn fused(
+    columns: &[[f64; ROWS]],
+    residual: &[f64; ROWS],
+    lambda: f64,
+    x: &[f64],
+    lower: &[f64],
+    upper: &[f64],
+    out: &mut [f64],
+) {
+    step::<Fused>(columns, residual, lambda, x, lower, upper, out);
+}
+
+#[inline(always)]
+fn step<A: Arithmetic>(
+    columns: &[[f64; ROWS]],
+    residual: &[f64; ROWS],
+    lambda: f64,
+    x: &[f64],
+    lower: &[f64],
+    upper: &[f64],
+    out: &mut [f64],
+) {
     let n = x.len();
     let mut remaining = *residual;
     // Bit j: joint j sits at a bound.
     let mut fixed = 0_u64;
     for _ in 0..ROUNDS {
-        let z = solve(&gram(columns, lambda, n, fixed), &remaining);
+        let z = solve::<A>(gram::<A>(columns, lambda, n, fixed), &remaining);
         let fixed_before = fixed;
         for j in (0..n).filter(|j| fixed_before & (1 << j) == 0) {
-            let step = -dot(&columns[j], &z);
-            let bounded = (x[j] + step).max(lower[j]).min(upper[j]);
+            let wanted = x[j] - dot::<A>(&columns[j], &z);
+            let bounded = wanted.max(lower[j]).min(upper[j]);
             out[j] = bounded;
-            if bounded != x[j] + step {
+            if bounded != wanted {
                 fixed |= 1 << j;
                 for (rest, column) in remaining.iter_mut().zip(&columns[j]) {
-                    *rest += column * (bounded - x[j]);
+                    *rest = A::mul_add(*column, bounded - x[j], *rest);
                 }
             }
         }
@@ -47,16 +84,18 @@ pub fn box_step(
     }
 }
 
-/// Lower triangle of J J' + lambda I over the joints that are not fixed.
-fn gram(columns: &[[f64; ROWS]], lambda: f64, n: usize, fixed: u64) -> [[f64; ROWS]; ROWS] {
+/// J J' + lambda I over the joints that are not fixed; both triangles, which takes fewer instructions than one where
+/// several entries of a row fit into a register.
+#[inline(always)]
+fn gram<A: Arithmetic>(columns: &[[f64; ROWS]], lambda: f64, n: usize, fixed: u64) -> [[f64; ROWS]; ROWS] {
     let mut sum = [[0.0; ROWS]; ROWS];
     for (i, row) in sum.iter_mut().enumerate() {
         row[i] = lambda;
     }
     for column in (0..n).filter(|j| fixed & (1 << j) == 0).map(|j| &columns[j]) {
         for i in 0..ROWS {
-            for k in 0..=i {
-                sum[i][k] += column[i] * column[k];
+            for k in 0..ROWS {
+                sum[i][k] = A::mul_add(column[i], column[k], sum[i][k]);
             }
         }
     }
@@ -64,41 +103,35 @@ fn gram(columns: &[[f64; ROWS]], lambda: f64, n: usize, fixed: u64) -> [[f64; RO
 }
 
 /// Solves A z = b by LDL', A symmetric positive semi-definite in its lower triangle.
-fn solve(a: &[[f64; ROWS]; ROWS], b: &[f64; ROWS]) -> [f64; ROWS] {
-    let smallest = SINGULAR * (0..ROWS).map(|i| a[i][i]).sum::<f64>();
-    let mut l = *a;
+#[inline(always)]
+fn solve<A: Arithmetic>(mut l: [[f64; ROWS]; ROWS], b: &[f64; ROWS]) -> [f64; ROWS] {
+    let smallest = SINGULAR * (0..ROWS).map(|i| l[i][i]).sum::<f64>();
     let mut inverse_pivot = [0.0; ROWS];
+    let mut z = *b;
+    // Column by column: what a pivot settles is taken off everything behind it, the right-hand side included.
     for j in 0..ROWS {
-        let mut scaled = [0.0; ROWS];
-        for k in 0..j {
-            scaled[k] = l[j][k] * l[k][k];
-        }
-        for i in j..ROWS {
-            let correction: f64 = (0..j).map(|k| l[i][k] * scaled[k]).sum();
-            l[i][j] -= correction;
-        }
         inverse_pivot[j] = if l[j][j] > smallest { 1.0 / l[j][j] } else { 0.0 };
         for i in j + 1..ROWS {
-            l[i][j] *= inverse_pivot[j];
-        }
-    }
-    let mut z = *b;
-    for i in 0..ROWS {
-        for k in 0..i {
-            z[i] -= l[i][k] * z[k];
+            let factor = l[i][j] * inverse_pivot[j];
+            for k in j + 1..=i {
+                l[i][k] = A::mul_add(-factor, l[k][j], l[i][k]);
+            }
+            z[i] = A::mul_add(-factor, z[j], z[i]);
         }
     }
     for i in (0..ROWS).rev() {
-        z[i] *= inverse_pivot[i];
         for k in i + 1..ROWS {
-            z[i] -= l[k][i] * z[k];
+            z[i] = A::mul_add(-l[k][i], z[k], z[i]);
         }
+        z[i] *= inverse_pivot[i];
     }
     z
 }
 
-fn dot(a: &[f64; ROWS], b: &[f64; ROWS]) -> f64 {
-    (0..ROWS).map(|k| a[k] * b[k]).sum()
+#[inline(always)]
+fn dot<A: Arithmetic>(a: &[f64; ROWS], b: &[f64; ROWS]) -> f64 {
+    let pair = |i: usize| A::mul_add(a[i], b[i], a[i + 1] * b[i + 1]);
+    pair(0) + pair(2) + pair(4)
 }
 
 #[cfg(test)]

@@ -1,13 +1,12 @@
 //! A rigid transform in plain arrays, for the kernels.
 
 use nalgebra::Matrix3;
-use serde::{Deserialize, Serialize};
 
 use super::arithmetic::Arithmetic;
 use super::pose::{self, Pose};
 
 /// A rigid transform: the columns of its rotation (its axes, seen from the base) and its origin (m).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// x, y and z axis.
     pub axes: [[f64; 3]; 3],
@@ -39,6 +38,13 @@ impl Frame {
     pub fn then<A: Arithmetic>(&self, next: &Self) -> Self {
         let axes = std::array::from_fn(|column| self.turn::<A>(&next.axes[column]));
         Self { axes, origin: self.place::<A>(&next.origin) }
+    }
+
+    /// The frame that undoes this one.
+    pub fn inverse(&self) -> Self {
+        let axes: [[f64; 3]; 3] = std::array::from_fn(|row| std::array::from_fn(|column| self.axes[column][row]));
+        let origin = self.axes.map(|axis| -(0..3).map(|k| axis[k] * self.origin[k]).sum::<f64>());
+        Self { axes, origin }
     }
 
     /// Turned about its own z axis, given sine and cosine of the angle.

@@ -4,6 +4,7 @@
 pub mod arithmetic;
 pub mod box_step;
 pub mod frame;
+pub mod interval;
 pub mod knots;
 pub mod polynomial;
 pub mod pose;

@@ -69,7 +69,7 @@ impl ChainBuilder {
     }
 
     /// The independent joint of this index, to narrow its limits.
-    pub fn joint_mut(&mut self, index: usize) -> &mut Joint {
+    pub(super) fn joint_mut(&mut self, index: usize) -> &mut Joint {
         &mut self.joints[index]
     }
 

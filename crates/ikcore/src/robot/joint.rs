@@ -5,6 +5,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::math::interval;
 
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -86,11 +87,6 @@ impl Joint {
     /// [`sampling_range`](Self::sampling_range) under other limits (rad or m).
     pub fn sampling_range_within(&self, lower: f64, upper: f64) -> (f64, f64) {
         let reach = if self.kind.turns() { std::f64::consts::PI } else { UNLIMITED_SLIDE };
-        match (lower.is_finite(), upper.is_finite()) {
-            (true, true) => (lower, upper),
-            (true, false) => (lower, lower + 2.0 * reach),
-            (false, true) => (upper - 2.0 * reach, upper),
-            (false, false) => (-reach, reach),
-        }
+        interval::finite(lower, upper, reach)
     }
 }

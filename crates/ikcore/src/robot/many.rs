@@ -42,7 +42,8 @@ impl Robot {
         Ok(jacobians)
     }
 
-    fn rows<'q>(&self, qs: &'q [f64]) -> Result<std::slice::ChunksExact<'q, f64>> {
+    /// The rows of `qs`, all whole and finite.
+    pub(crate) fn rows<'q>(&self, qs: &'q [f64]) -> Result<std::slice::ChunksExact<'q, f64>> {
         let n = self.dof();
         if !qs.len().is_multiple_of(n) {
             let what = format!("joint angles of robot '{}'", self.name());

@@ -7,9 +7,12 @@ mod dh;
 mod dispatch;
 mod joint;
 mod kinematics;
+mod lane_search;
 mod many;
 mod model;
 mod planar;
+mod seed_index;
+mod seeds;
 mod urdf;
 
 pub use builder::{ChainBuilder, Drive};
@@ -17,5 +20,6 @@ pub use dh::{Dh, DhTable};
 pub use joint::{Joint, JointKind};
 pub use kinematics::Columns;
 pub use model::Robot;
+pub use seeds::Seeds;
 
 use crate::math::MAX_DOF;

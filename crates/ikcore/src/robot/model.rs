@@ -1,6 +1,7 @@
 //! The robot: immutable, validated once, shared between threads without locks.
 
 use std::collections::HashSet;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::Matrix6xX;
 use serde::{Deserialize, Serialize};
@@ -8,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::builder::{ChainBuilder, Element};
 use super::chain::Chain;
 use super::joint::Joint;
+use super::seed_index::SeedIndex;
 use super::{Columns, MAX_DOF};
 use crate::error::{Error, Result, require_finite};
 use crate::math::{Frame, Pose, pose};
@@ -23,6 +25,8 @@ pub struct Robot {
     base: Pose,
     tool: Pose,
     chain: Chain,
+    /// Built when first asked for; copies that differ in base and tool share it.
+    seed_index: Arc<OnceLock<SeedIndex>>,
 }
 
 impl PartialEq for Robot {
@@ -51,7 +55,7 @@ impl Robot {
     fn assembled(description: ChainBuilder, base: Pose, tool: Pose) -> Result<Self> {
         description.validate()?;
         let chain = Chain::new(&description.elements, &base, &tool);
-        Ok(Self { description, base, tool, chain })
+        Ok(Self { description, base, tool, chain, seed_index: Arc::default() })
     }
 
     /// The robot's name.
@@ -90,7 +94,8 @@ impl Robot {
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
     pub fn with_base(&self, base: Pose) -> Result<Self> {
         let base = pose::checked("base", base)?;
-        Self::assembled(self.description.clone(), base, self.tool)
+        let robot = Self::assembled(self.description.clone(), base, self.tool)?;
+        Ok(Self { seed_index: self.seed_index.clone(), ..robot })
     }
 
     /// The same robot, its tip moved by `tool` from the tip link.
@@ -99,7 +104,8 @@ impl Robot {
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
     pub fn with_tool(&self, tool: Pose) -> Result<Self> {
         let tool = pose::checked("tool", tool)?;
-        Self::assembled(self.description.clone(), self.base, tool)
+        let robot = Self::assembled(self.description.clone(), self.base, tool)?;
+        Ok(Self { seed_index: self.seed_index.clone(), ..robot })
     }
 
     /// The same robot with other joint limits; `change` gets each joint with its index.
@@ -166,7 +172,7 @@ impl Robot {
     }
 
     /// Hands the tip's positions (m) at configurations stored one after another to `visit`, in order; quicker than
-    /// [`tip_position`](Self::tip_position) one by one, and the same bits.
+    /// [`tip_position`](Self::tip_position) one by one, and the same bits (for joint angles below 8e5 rad).
     #[inline]
     pub fn tip_positions(&self, qs: &[f64], visit: impl FnMut([f64; 3])) {
         self.chain.tip_positions(qs, self.dof(), visit);
@@ -192,6 +198,19 @@ impl Robot {
             qs.extend(ranges.iter().map(|(lower, upper)| rng.uniform_in(*lower, *upper)));
         }
         Ok(qs)
+    }
+
+    pub(super) fn chain(&self) -> &Chain {
+        &self.chain
+    }
+
+    pub(super) fn seed_index(&self) -> &SeedIndex {
+        self.seed_index.get_or_init(|| {
+            let elements = &self.description.elements;
+            let moving = elements.iter().filter(|element| matches!(element, Element::Moving { .. })).count();
+            let chain = Chain::new(elements, &Pose::identity(), &Pose::identity());
+            SeedIndex::new(&chain, moving, self.joints())
+        })
     }
 
     /// The robot as bytes, for storing and for copying between processes.
@@ -274,7 +293,7 @@ impl Joint {
         }
         let joint = self.name.clone();
         if lower > upper {
-            return Err(Error::EmptyRange { joint, lower, upper });
+            return Err(Error::EmptyRange { joint, lower, upper, time: None });
         }
         if velocity < 0.0 {
             return Err(Error::NegativeLimit { field: "velocity".into(), joint, value: velocity, time: 0.0 });

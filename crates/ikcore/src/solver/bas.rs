@@ -4,7 +4,12 @@
 //! algorithm does with the pass (line 16) is the caller's: the driver stops in the error band or below a given value.
 //!
 //! Readings of what the paper leaves open: o in eq. (12) is the squared norm of the error, so that the antennae shrink
-//! in proportion to the error; it is taken at the best point so far against the target being sought.
+//! in proportion to the error; it is taken at the best point so far against the target being sought. Passes beyond the
+//! first are made from the best beetle so far.
+//!
+//! Two things follow from the paper's letter. With c2 = 1 a beetle goes exactly where one of its antennae was, so that a
+//! third of all evaluations repeats one already made; we repeat it too, for counts that compare. And the best point is
+//! kept over all evaluations, antennae included, which for c2 = 1 is the best beetle of line 15.
 
 use std::fmt;
 use std::str::FromStr;
@@ -163,7 +168,7 @@ impl<O: Objective + ?Sized> Solver<O> for Bas {
             for (beetle, value) in group.beetles.chunks_exact(base.len()).zip(values).take(count) {
                 self.walk(&mut pass, beetle, value);
             }
-            if self.variant == Variant::Greedy {
+            if self.variant == Variant::Greedy && pass.best_value < *base_value {
                 evaluator.check_solved()?;
             }
         }

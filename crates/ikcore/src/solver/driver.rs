@@ -62,7 +62,7 @@ pub fn run<O: Objective + ?Sized, S: Solver<O>>(solver: &S, evaluator: &mut Eval
     let mut iterations = 0;
     let mut until_halt = || -> Result<std::convert::Infallible, Halt> {
         let mut state = solver.start(evaluator, x0)?;
-        evaluator.check_solved()?;
+        evaluator.before_steps()?;
         loop {
             solver.step(&mut state, evaluator)?;
             iterations += 1;

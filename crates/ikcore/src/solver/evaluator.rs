@@ -169,11 +169,22 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         }
     }
 
+    /// What the driver asks before the first step: is the start solved already?
+    ///
+    /// # Errors
+    /// [`Halt::Solved`].
+    pub fn before_steps(&self) -> Result<(), Halt> {
+        if self.stop.min_iterations == 0 { self.check_solved() } else { Ok(()) }
+    }
+
     /// What the driver asks after every step: is it time to stop?
     ///
     /// # Errors
     /// The reason to stop.
     pub fn after_step(&self, iterations: usize) -> Result<(), Halt> {
+        if iterations < self.stop.min_iterations {
+            return Ok(());
+        }
         self.check_solved()?;
         match self.stop.value_below {
             Some(value) if self.best.value < value => Err(Halt::BelowValue),

@@ -11,6 +11,8 @@ pub struct Stop {
     pub max_evaluations: usize,
     /// Iterations as the solver counts them.
     pub max_iterations: usize,
+    /// Iterations that are made even from a start that is solved already.
+    pub min_iterations: usize,
     /// Wall-clock time. Setting it gives up repeatability.
     pub max_time: Option<Duration>,
     /// Stop after a step whose best value is below this. The start itself is not held against it.
@@ -20,7 +22,13 @@ pub struct Stop {
 impl Default for Stop {
     /// 30 000 evaluations: about 10 ms for a 7-joint arm.
     fn default() -> Self {
-        Self { max_evaluations: 30_000, max_iterations: usize::MAX, max_time: None, value_below: None }
+        Self {
+            max_evaluations: 30_000,
+            max_iterations: usize::MAX,
+            min_iterations: 0,
+            max_time: None,
+            value_below: None,
+        }
     }
 }
 
@@ -39,7 +47,7 @@ impl Stop {
     }
 }
 
-/// How a solve, or one step of a track, ended.
+/// How a solve, one item of a batch or one step of a track ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Status {
@@ -59,11 +67,13 @@ pub enum Status {
     Interrupted = 6,
     /// A track that did not stay within its tolerance.
     Lost = 7,
+    /// An item of a batch whose target or start is wrong: nothing was solved.
+    Invalid = 8,
 }
 
 impl Status {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Solved,
         Self::Improved,
         Self::Capped,
@@ -72,6 +82,7 @@ impl Status {
         Self::TimeUp,
         Self::Interrupted,
         Self::Lost,
+        Self::Invalid,
     ];
 
     /// The name as Python shows it.
@@ -85,6 +96,7 @@ impl Status {
             Self::TimeUp => "TIME_UP",
             Self::Interrupted => "INTERRUPTED",
             Self::Lost => "LOST",
+            Self::Invalid => "INVALID",
         }
     }
 
@@ -97,7 +109,10 @@ impl Status {
             Self::BudgetSpent => "raise the budget in stop=Stop(...); the target may be out of reach",
             Self::TimeUp => "raise max_time",
             Self::Interrupted => "run again to finish",
-            Self::Lost => "slow the path down, raise the velocity limits, or move the path into reach",
+            Self::Lost => {
+                "slow the path down, raise the velocity limits, start elsewhere (another start or seed), or move the path into reach"
+            }
+            Self::Invalid => "on_invalid=\"raise\" says what is wrong",
         }
     }
 }
@@ -107,7 +122,7 @@ pub trait Monitor {
     /// False ends the run with [`Status::Interrupted`].
     fn keep_going(&mut self) -> bool;
 
-    /// Told of the steps of a track that are done, out of `total`.
+    /// Told of the steps of a track, or of the items of a batch, that are done, out of `total`.
     fn progress(&mut self, _done: usize, _total: usize) {}
 }
 

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::error::{Error, Result};
+use crate::wording::number;
 
 /// When a target counts as reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,7 +77,7 @@ impl From<SquaredError> for TipError {
 impl fmt::Display for TipError {
     /// Both errors with their units; the angle only where it was asked for.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:.3e} m", self.position)?;
-        if self.rotation.is_nan() { Ok(()) } else { write!(f, " and {:.3e} rad", self.rotation) }
+        write!(f, "{} m", number(self.position))?;
+        if self.rotation.is_nan() { Ok(()) } else { write!(f, " and {} rad", number(self.rotation)) }
     }
 }

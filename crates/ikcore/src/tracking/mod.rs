@@ -1,7 +1,8 @@
 //! Following a path, tick by tick, inside the limits.
 //!
 //! Algorithm 1 of Cheng et al. (2020), read so that it can be run: in every tick the box is the position limits
-//! intersected with what the velocity limit lets the accepted configuration reach, so that no answer can break either;
+//! intersected with what the velocity limit lets the accepted configuration reach, so that no answer can break either
+//! (a position limit that closes in faster than its joint may move is followed as fast as that, and reported);
 //! the tick's rule works until the error is in its band or, for random searches, below that of the tick before; time
 //! always advances, and the best configuration found is always kept.
 
@@ -37,6 +38,13 @@ pub struct TrackOptions {
     pub seed: u64,
 }
 
+impl TrackOptions {
+    /// The limits in force for `robot`.
+    fn limits_for(&self, robot: &Robot) -> Limits {
+        self.limits.clone().unwrap_or_else(|| Limits::of(robot))
+    }
+}
+
 /// Follows `reference` with the tip of `robot`, from `start` (n,), or from a configuration solved for its first point.
 ///
 /// # Errors
@@ -50,13 +58,13 @@ pub fn track(
     monitor: &mut dyn Monitor,
 ) -> Result<Record> {
     let stopwatch = Stopwatch::start();
-    let limits = options.limits.clone().unwrap_or_else(|| Limits::of(robot));
-    limits.validate(reference.time(reference.len() - 1))?;
+    let limits = options.limits_for(robot);
+    limits.validate(reference.dt(), reference.len() - 1)?;
     let start = match start {
         Some(q) => q.to_vec(),
         None => first_configuration(robot, reference, &limits, options, monitor)?,
     };
-    let mut session = Session::new(robot, &start, reference.dt(), limits, options)?;
+    let mut session = Session::new(robot, &start, reference.dt(), options)?;
     let mut record = Record::new(&session, reference.len());
     let beginning = session.begin(&target(reference, 0));
     record.push(&session, reference.position(0), &beginning);

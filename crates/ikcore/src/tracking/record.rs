@@ -5,7 +5,8 @@ use std::time::Duration;
 use super::session::{Session, Step};
 use crate::limits::Limits;
 use crate::solver::Status;
-use crate::task::Tolerance;
+use crate::task::{TipError, Tolerance};
+use crate::wording::{number, time};
 
 /// Rounding that a limit may be exceeded by: units in the last place of q.
 const ALLOWED_ULPS: f64 = 4.0;
@@ -40,6 +41,8 @@ pub struct Record {
     pub step_iterations: Vec<usize>,
     /// Largest excess of a displacement over v dt or of a position over its limit (rad, m); 0 within 4 ulp.
     pub max_violation: f64,
+    /// The joint of that excess, and when (s).
+    pub worst_violation: Option<(usize, f64)>,
     /// Smallest distance of a speed from its limit (rad/s, m/s); infinite without limits, below zero only where
     /// `max_violation` is above.
     pub limit_margin: f64,
@@ -72,6 +75,7 @@ impl Record {
             step_evaluations: Vec::with_capacity(rows),
             step_iterations: Vec::with_capacity(rows),
             max_violation: 0.0,
+            worst_violation: None,
             limit_margin: f64::INFINITY,
             limits: session.limits().clone(),
             tolerance: session.tolerance(),
@@ -108,21 +112,23 @@ impl Record {
             let [lower, upper] = self.limits.position_range(j, from, to);
             let too_fast = (q - before).abs() - session.velocity_limit()[j] * self.dt;
             // From displacements, which keep the limit to the last bit; velocities round once more.
-            self.limit_margin = self.limit_margin.min(-too_fast / self.dt);
+            self.limit_margin = self.limit_margin.min(0.0 - too_fast / self.dt);
             let excess = too_fast.max(lower - q).max(q - upper);
             let rounding = ALLOWED_ULPS * f64::EPSILON * q.abs().max(1.0);
-            if excess > rounding {
-                self.max_violation = self.max_violation.max(excess);
+            if excess > rounding && excess > self.max_violation {
+                self.max_violation = excess;
+                self.worst_violation = Some((j, to));
             }
         }
     }
 
-    /// Sums up: the track has succeeded if, once in its band, it stayed there.
+    /// Sums up: the track has succeeded if, once in its band, it stayed there, and every limit was kept.
     pub(super) fn finish(&mut self, interrupted: bool, elapsed: Duration) {
         self.elapsed = elapsed;
         let last = *self.step_status.last().unwrap_or(&Status::Capped);
         self.status = match self.joined() {
             _ if interrupted => Status::Interrupted,
+            Some(_) if self.worst_violation.is_some() => Status::Lost,
             Some(joined) if self.step_status[joined..].iter().all(|s| *s == Status::Solved) => Status::Solved,
             Some(_) => Status::Lost,
             None => last,
@@ -143,7 +149,15 @@ impl Record {
     pub fn message(&self) -> String {
         let last = self.time.len() - 1;
         if self.status == Status::Interrupted {
-            return format!("interrupted at t = {} s: {}", rounded(self.time[last]), Status::Interrupted.advice());
+            return format!("interrupted at t = {} s: {}", time(self.time[last]), Status::Interrupted.advice());
+        }
+        if let Some((joint, when)) = self.worst_violation {
+            let (joint, excess) = (self.limits.joint_name(joint), number(self.max_violation));
+            return format!(
+                "joint '{joint}' is {excess} (rad or m) beyond its position limit at t = {} s: the limit closes in faster than \
+                 the joint may move; slow it down, raise the velocity limit, or start farther inside",
+                time(when)
+            );
         }
         let band = self.in_words(self.tolerance.position, self.tolerance.rotation);
         let advice = Status::Lost.advice();
@@ -151,7 +165,7 @@ impl Record {
             let (position, rotation) = (smallest(&self.position_error), smallest(&self.rotation_error));
             return format!("never came within {band} (nearest {}): {advice}", self.in_words(position, rotation));
         };
-        let since = rounded(self.time[joined]);
+        let since = time(self.time[joined]);
         let (position, rotation) = (largest(&self.position_error[joined..]), largest(&self.rotation_error[joined..]));
         let worst = self.in_words(position, rotation);
         if self.status == Status::Solved {
@@ -166,7 +180,7 @@ impl Record {
     /// Errors (m, rad) with their units; the angle only where orientations were asked for.
     fn in_words(&self, position: f64, rotation: f64) -> String {
         let asked = self.rotation_error.iter().any(|error| !error.is_nan());
-        if asked { format!("{position:.3e} m and {rotation:.3e} rad") } else { format!("{position:.3e} m") }
+        TipError { position, rotation: if asked { rotation } else { f64::NAN } }.to_string()
     }
 }
 
@@ -178,9 +192,4 @@ fn smallest(errors: &[f64]) -> f64 {
 /// The largest error; NaN, which was not asked for, does not count.
 fn largest(errors: &[f64]) -> f64 {
     errors.iter().copied().fold(0.0, f64::max)
-}
-
-/// A time (s) without the digits that sums of dt leave behind.
-fn rounded(time: f64) -> f64 {
-    (time * 1e9).round() / 1e9
 }

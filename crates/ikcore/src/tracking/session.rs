@@ -68,12 +68,13 @@ impl Session {
     /// # Errors
     /// Any [`Error`](crate::Error) for wrong input: a start outside its limits, limits that this tracker cannot keep, a
     /// time step that is not positive.
-    pub fn new(robot: &Robot, start: &[f64], dt: f64, limits: Limits, options: &TrackOptions) -> Result<Self> {
+    pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
+        let limits = options.limits_for(robot);
         require_positive("dt", dt)?;
         options.rule.validate()?;
         options.tolerance.validate()?;
         limits.require_for(robot)?;
-        limits.validate(0.0)?;
+        limits.validate(dt, 0)?;
         let remedy = "this tracker keeps position and velocity limits; leave it out";
         limits.require_none(&[Field::Acceleration, Field::Jerk], "track", remedy)?;
         robot.check("start", start)?;

@@ -67,11 +67,9 @@ impl Trajectory {
         if qdd.is_some() && qd.is_none() {
             return Err(Error::InvalidTrajectory { problem: "accelerations need velocities too".into() });
         }
-        for (samples, what) in
-            [(Some(q), "trajectory samples"), (qd, "velocity samples"), (qdd, "acceleration samples")]
-        {
-            let samples = samples.unwrap_or_default();
-            if !samples.is_empty() && samples.len() != times.len() * n {
+        let given = [(Some(q), "trajectory samples"), (qd, "velocity samples"), (qdd, "acceleration samples")];
+        for (samples, what) in given.into_iter().filter_map(|(samples, what)| Some((samples?, what))) {
+            if samples.len() != times.len() * n {
                 let expected = format!("{} numbers ({} times of {n} joints)", times.len() * n, times.len());
                 return Err(Error::WrongLength { what: what.into(), expected, got: samples.len() });
             }

@@ -32,6 +32,8 @@ fn stop(solver: &AnySolver, last_value: Option<f64>) -> Stop {
             AnySolver::Single(_) => usize::MAX,
             AnySolver::MultiStart(_) => standard.max_evaluations,
         },
+        // Lines 5 to 15 come before line 16: an arm that waited until it is out of its band would move in jerks.
+        min_iterations: 1,
         ..standard
     }
 }

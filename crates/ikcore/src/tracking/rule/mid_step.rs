@@ -77,7 +77,8 @@ impl Memory {
     fn gauss_newton(&mut self, found: &mut Found, tick: &Tick<'_>) -> bool {
         let (n, mut moved) = (found.q.len(), false);
         let mut extrapolate = self.before_known;
-        while found.iterations < MOST_STEPS && !found.error.within(&tick.tolerance) {
+        // One step at least: an arm that waited until it is out of its band would move in jerks.
+        while found.iterations == 0 || (found.iterations < MOST_STEPS && !found.error.within(&tick.tolerance)) {
             let current = if moved { &self.here } else { &self.begin };
             let Linearization { columns, .. } = &mut *self.linearization;
             columns[..n].copy_from_slice(&current.columns[..n]);

@@ -1,0 +1,77 @@
+//! What became of a batch.
+
+use std::time::Duration;
+
+use crate::ik::Solution;
+use crate::objective::Point;
+use crate::solver::Status;
+use crate::task::TipError;
+
+/// What became of one target; its configuration is a row of [`Batch::q`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Item {
+    /// Why the search ended.
+    pub status: Status,
+    /// Errors by forward kinematics; NaN where nothing was solved.
+    pub error: TipError,
+    /// Iterations over all starts.
+    pub iterations: usize,
+    /// Starts beyond the first.
+    pub restarts: usize,
+    /// Evaluations of the forward kinematics.
+    pub evaluations: usize,
+    /// Time taken by this target.
+    pub elapsed: Duration,
+}
+
+impl Item {
+    /// An item that nothing was done about.
+    pub(super) fn untouched(status: Status) -> Self {
+        let error = TipError { position: f64::NAN, rotation: f64::NAN };
+        Self { status, error, iterations: 0, restarts: 0, evaluations: 0, elapsed: Duration::ZERO }
+    }
+
+    /// The same with its configuration.
+    pub fn solution(&self, q: &[f64]) -> Solution {
+        let Self { status, error, iterations, restarts, evaluations, elapsed } = *self;
+        Solution { q: Point::from_slice(q), status, error, iterations, restarts, evaluations, elapsed }
+    }
+}
+
+/// Solutions in the order of the targets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Batch {
+    /// Degrees of freedom, n.
+    pub dof: usize,
+    /// The best configurations found, (m, n) row after row (rad, m); NaN where nothing was solved.
+    pub q: Vec<f64>,
+    /// What became of each target (m,).
+    pub items: Vec<Item>,
+    /// Time taken in all.
+    pub elapsed: Duration,
+}
+
+impl Batch {
+    pub(super) fn untouched(dof: usize, len: usize) -> Self {
+        let items = vec![Item::untouched(Status::Interrupted); len];
+        Self { dof, q: vec![f64::NAN; dof * len], items, elapsed: Duration::ZERO }
+    }
+
+    /// Item `i` on its own; None past the end.
+    pub fn solution(&self, i: usize) -> Option<Solution> {
+        self.items.get(i).map(|item| item.solution(&self.q[i * self.dof..(i + 1) * self.dof]))
+    }
+
+    /// How many were solved, and what to try for the others.
+    pub fn message(&self) -> String {
+        let count = |status| self.items.iter().filter(|item| item.status == status).count();
+        let (solved, total) = (count(Status::Solved), self.items.len());
+        if solved == total {
+            return format!("all {total} solved");
+        }
+        let unsolved = Status::ALL[1..].iter().map(|status| (count(*status), status)).filter(|(count, _)| *count > 0);
+        let reasons: Vec<String> =
+            unsolved.map(|(count, status)| format!("{count} {}: {}", status.name(), status.advice())).collect();
+        format!("{solved} of {total} solved; {}", reasons.join("; "))
+    }
+}

@@ -1,0 +1,40 @@
+//! What a batch is to reach.
+
+use nalgebra::Matrix4;
+
+use crate::error::Result;
+use crate::math::pose;
+use crate::task::Target;
+
+/// The targets of a batch as arrays hold them: m rows, of which none has been checked yet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Targets<'a> {
+    /// Positions (m), the orientation left free.
+    Positions(&'a [[f64; 3]]),
+    /// Poses, homogeneous 4x4 matrices, each stored row after row.
+    Poses(&'a [[f64; 16]]),
+}
+
+impl Targets<'_> {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Positions(rows) => rows.len(),
+            Self::Poses(rows) => rows.len(),
+        }
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Target `i`, checked.
+    pub(super) fn read(&self, i: usize) -> Result<Target> {
+        let target = match self {
+            Self::Positions(rows) => Target::Position(rows[i]),
+            Self::Poses(rows) => Target::from(&pose::from_matrix("target", &Matrix4::from_row_slice(&rows[i]))?),
+        };
+        target.validate().map(|()| target)
+    }
+}

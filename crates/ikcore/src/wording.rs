@@ -1,0 +1,29 @@
+//! Numbers in sentences.
+
+/// Four significant digits; an exponent only where it helps to read.
+pub(crate) fn number(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || (1e-3..1e4).contains(&size) {
+        // As many decimals as leave four digits in all.
+        let decimals = if size == 0.0 { 0 } else { (3 - size.log10().floor() as i32).max(0) as usize };
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+/// A time (s) without the digits that sums of dt leave behind.
+pub(crate) fn time(seconds: f64) -> f64 {
+    (seconds * 1e9).round() / 1e9
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn four_digits_whatever_the_size() {
+        let shown = [1.0864, 0.0031416, 3195.2, 0.0, 1.7e-5, 123456.0, -0.25, f64::INFINITY].map(number);
+        assert_eq!(shown, ["1.086", "0.003142", "3195", "0", "1.700e-5", "1.235e5", "-0.2500", "inf"]);
+    }
+}

@@ -1,0 +1,195 @@
+//! `solve_batch` and `BatchSolution`.
+
+use ikcore::batch::{self, Batch, BatchOptions, Item, OnInvalid, Targets};
+use ikcore::ik::SolveOptions;
+use ikcore::solver::{AnySolver, Status, Stop};
+use ikcore::task::Tolerance;
+use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+
+use crate::convert::{Rows, array, count, optional_count, row, rows, shape_text, table};
+use crate::error::{invalid, raise};
+use crate::ik::PySolution;
+use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::monitor::{Progress, Watcher};
+use crate::robot::PyRobot;
+use crate::solver::{PyStop, any_solver};
+
+/// Solutions in the order of the targets, as columns; `b[i]` is one of them as a `Solution`.
+#[pyclass(name = "BatchSolution", module = "beetle_ik", frozen)]
+pub struct PyBatchSolution {
+    items: Vec<Item>,
+    dof: usize,
+    /// The best configurations found (m, n) (rad, m), inside the limits; NaN where `status` is INVALID.
+    #[pyo3(get)]
+    q: Py<PyArrayDyn<f64>>,
+    /// Whether each target was reached within the tolerances (m,).
+    #[pyo3(get)]
+    success: Py<PyArray1<bool>>,
+    /// Why each search ended (m,), values of `Status`.
+    #[pyo3(get)]
+    status: Py<PyArray1<u8>>,
+    /// Distances of the tip from its targets (m,) (m), by forward kinematics of `q`.
+    #[pyo3(get)]
+    position_error: Py<PyArray1<f64>>,
+    /// Geodesic angles to the targets' orientations (m,) (rad); NaN where none was asked for.
+    #[pyo3(get)]
+    rotation_error: Py<PyArray1<f64>>,
+    /// Iterations over all starts (m,).
+    #[pyo3(get)]
+    iterations: Py<PyArray1<i64>>,
+    /// Starts beyond the first (m,).
+    #[pyo3(get)]
+    restarts: Py<PyArray1<i64>>,
+    /// Evaluations of the forward kinematics (m,).
+    #[pyo3(get)]
+    evaluations: Py<PyArray1<i64>>,
+    /// Time taken in all (s).
+    #[pyo3(get)]
+    elapsed: f64,
+    /// The limits in force.
+    #[pyo3(get)]
+    limits: Py<PyLimits>,
+    /// How many were solved, and what to try for the others.
+    #[pyo3(get)]
+    message: String,
+}
+
+#[pymethods]
+impl PyBatchSolution {
+    fn __len__(&self) -> usize {
+        self.items.len()
+    }
+
+    fn __getitem__(&self, py: Python<'_>, index: isize) -> PyResult<PySolution> {
+        let len = self.items.len();
+        let from_start = if index < 0 { index.checked_add_unsigned(len) } else { Some(index) };
+        match from_start.and_then(|i| usize::try_from(i).ok()).filter(|i| *i < len) {
+            Some(i) => {
+                let q = self.q.bind(py).readonly();
+                let solution = self.items[i].solution(&q.as_slice()?[i * self.dof..(i + 1) * self.dof]);
+                Ok(PySolution::new(py, solution, self.limits.clone_ref(py)))
+            }
+            None => Err(PyIndexError::new_err(format!("index {index} is outside a batch of {len}"))),
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<BatchSolution: {}>", self.message)
+    }
+}
+
+impl PyBatchSolution {
+    fn new(py: Python<'_>, batch: Batch, limits: Py<PyLimits>) -> PyResult<Self> {
+        let message = batch.message();
+        let Batch { dof, q, items, elapsed } = batch;
+        Ok(Self {
+            dof,
+            q: table(py, q, &[items.len(), dof])?.unbind(),
+            success: column(py, &items, |item| item.status == Status::Solved),
+            status: column(py, &items, |item| item.status as u8),
+            position_error: column(py, &items, |item| item.error.position),
+            rotation_error: column(py, &items, |item| item.error.rotation),
+            iterations: column(py, &items, |item| item.iterations as i64),
+            restarts: column(py, &items, |item| item.restarts as i64),
+            evaluations: column(py, &items, |item| item.evaluations as i64),
+            elapsed: elapsed.as_secs_f64(),
+            limits,
+            message,
+            items,
+        })
+    }
+}
+
+fn column<T: Element>(py: Python<'_>, items: &[Item], of: impl Fn(&Item) -> T) -> Py<PyArray1<T>> {
+    row(py, items.iter().map(of).collect()).unbind()
+}
+
+/// Solves many targets at once, on all cores.
+///
+/// The result is the same, to the bit, for any number of threads; an item does not depend on the items behind it, and
+/// item 0 is what `solve` finds.
+///
+/// Args:
+///     robot: the arm.
+///     targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free.
+///     starts: where to begin, (m, n), or (n,) for all; None begins at random configurations.
+///     threads: None: one per core. With 1, nothing leaves the calling thread.
+///     on_invalid: what to do about a target or start that is wrong: "raise" names its row; "skip" solves the others
+///         and marks the row `Status.INVALID`, its q NaN.
+///     progress: True for a bar on the terminal, or a callable of (done, total).
+///     solver: None: Levenberg-Marquardt from many starts.
+///     position_tolerance: m.
+///     rotation_tolerance: rad, geodesic angle.
+///     limits: position limits to keep; None keeps the robot's.
+///     stop: budgets of each target; None: as for `solve`.
+///     seed: of the random draws: the same seed, the same bits.
+///
+/// Returns:
+///     A `BatchSolution`. A target that is not reached is a status beside the best configuration found, not an error.
+///
+/// Raises:
+///     InvalidInputError: wrong shape; NaN or a target that is not a rigid transform, with its row.
+///     LimitError: a start outside the limits, with its row.
+#[pyfunction]
+#[pyo3(signature = (robot, targets, *, starts=None, threads=None, on_invalid="raise", progress=None, solver=None,
+                    position_tolerance=1e-6, rotation_tolerance=1e-6, limits=None, stop=None, seed=0))]
+#[allow(clippy::too_many_arguments)]
+pub fn solve_batch(
+    py: Python<'_>,
+    robot: &PyRobot,
+    targets: &Bound<'_, PyAny>,
+    starts: Option<&Bound<'_, PyAny>>,
+    threads: Option<i128>,
+    on_invalid: &str,
+    progress: Option<&Bound<'_, PyAny>>,
+    solver: Option<&Bound<'_, PyAny>>,
+    position_tolerance: f64,
+    rotation_tolerance: f64,
+    limits: Option<&PyLimits>,
+    stop: Option<&PyStop>,
+    seed: i128,
+) -> PyResult<PyBatchSolution> {
+    let arm = &*robot.core;
+    let targets = array("targets", targets)?;
+    let targets = read_targets(&targets)?;
+    let starts = starts.map(|starts| rows("starts", arm.name(), arm.dof(), starts)).transpose()?;
+    let (start_of_each, start_of_all) = match &starts {
+        Some(Rows::Many(starts, _)) => (Some(starts.as_slice()?), None),
+        Some(Rows::One(start)) => (None, Some(start.as_slice()?.to_vec())),
+        None => (None, None),
+    };
+    let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
+    let each = SolveOptions {
+        solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
+        start: start_of_all,
+        tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
+        limits: resolved,
+        stop: stop.map_or(Stop::default(), PyStop::core),
+        seed: count("seed", seed)?,
+    };
+    let options = BatchOptions {
+        each,
+        starts: start_of_each,
+        threads: optional_count("threads", threads)?,
+        on_invalid: on_invalid.parse::<OnInvalid>().map_err(raise)?,
+    };
+    let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
+    let mut watcher = Watcher::with_progress(progress.update(py));
+    let batch = py.detach(|| batch::solve_batch(arm, targets, &options, &mut watcher));
+    progress.close(py)?;
+    watcher.finish()?;
+    PyBatchSolution::new(py, batch.map_err(raise)?, in_force)
+}
+
+fn read_targets<'a>(numbers: &'a PyReadonlyArrayDyn<'_, f64>) -> PyResult<Targets<'a>> {
+    match numbers.shape() {
+        [0] | [_, 3] => Ok(Targets::Positions(numbers.as_slice()?.as_chunks().0)),
+        [_, 4, 4] => Ok(Targets::Poses(numbers.as_slice()?.as_chunks().0)),
+        shape => {
+            let got = shape_text(shape);
+            Err(invalid(format!("targets: expected poses (m, 4, 4) or positions (m, 3), got shape {got}")))
+        }
+    }
+}

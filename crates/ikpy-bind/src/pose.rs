@@ -1,0 +1,63 @@
+//! `pose`: a 4x4 matrix from a position and one description of the orientation.
+
+use ikcore::math::{Pose, pose as poses};
+use numpy::{PyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::convert::{self, array, pose_array, shape_text};
+use crate::error::{invalid, raise};
+
+/// A pose (4, 4) from a position (3,) (m) and one description of the orientation, whose keyword names its order.
+///
+/// Args:
+///     position: (3,).
+///     xyzw, wxyz: quaternion (4,), of any length but zero.
+///     rpy: fixed-axis roll, pitch, yaw (rad): Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
+///     rotvec: rotation vector (rad).
+///     matrix: rotation matrix (3, 3).
+///
+/// Without a description of the orientation the axes are those of the base.
+#[pyfunction]
+#[pyo3(signature = (position, *, xyzw=None, wxyz=None, rpy=None, rotvec=None, matrix=None))]
+pub fn pose<'py>(
+    position: &Bound<'py, PyAny>,
+    xyzw: Option<&Bound<'py, PyAny>>,
+    wxyz: Option<&Bound<'py, PyAny>>,
+    rpy: Option<&Bound<'py, PyAny>>,
+    rotvec: Option<&Bound<'py, PyAny>>,
+    matrix: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let position_xyz = convert::point("position", position)?;
+    let given: Vec<(&str, &Bound<'py, PyAny>)> =
+        [("xyzw", xyzw), ("wxyz", wxyz), ("rpy", rpy), ("rotvec", rotvec), ("matrix", matrix)]
+            .into_iter()
+            .filter_map(|(name, value)| value.map(|value| (name, value)))
+            .collect();
+    let made: Pose = match given[..] {
+        [] => poses::translation(position_xyz[0], position_xyz[1], position_xyz[2]),
+        [("xyzw", value)] => {
+            let [x, y, z, w] = quaternion("xyzw", value)?;
+            poses::from_quaternion([x, y, z, w], position_xyz).map_err(raise)?
+        }
+        [("wxyz", value)] => {
+            let [w, x, y, z] = quaternion("wxyz", value)?;
+            poses::from_quaternion([x, y, z, w], position_xyz).map_err(raise)?
+        }
+        [("rpy", value)] => poses::from_rpy(convert::point("rpy", value)?, position_xyz),
+        [("rotvec", value)] => poses::from_rotation_vector(convert::point("rotvec", value)?, position_xyz),
+        [("matrix", value)] => {
+            poses::from_rotation_matrix("matrix", convert::matrix3("matrix", value)?, position_xyz).map_err(raise)?
+        }
+        _ => {
+            let names = given.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+            return Err(invalid(format!("give one description of the orientation, got {names}")));
+        }
+    };
+    pose_array(position.py(), &poses::checked("pose", made).map_err(raise)?)
+}
+
+fn quaternion(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 4]> {
+    let array = array(what, value)?;
+    <[f64; 4]>::try_from(array.as_slice()?)
+        .map_err(|_| invalid(format!("{what}: expected shape (4,), got {}", shape_text(array.shape()))))
+}
