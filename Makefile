@@ -26,6 +26,7 @@ lint: $(VENV)/with-test  ## formatting, clippy, ruff and types
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked --quiet
 
 bench:  ## criterion benchmarks of the core
 	cargo bench --locked

@@ -378,6 +378,8 @@ class TrackResult:
     @property
     def position_tolerance(self) -> float: ...  # m, as asked
     @property
+    def rotation_tolerance(self) -> float: ...  # rad, as asked
+    @property
     def step_status(self) -> NDArray[np.uint8]: ...  # (k,), values of Status
     @property
     def step_evaluations(self) -> NDArray[np.int64]: ...  # (k,)

@@ -1,15 +1,12 @@
 """Figures of results. Each function returns a matplotlib Figure and never shows it.
 
-`figure.savefig("result.png")` writes it; a notebook shows it where it is the last value of a cell. Nobody has to
-close it.
+`figure.savefig("result.png")` writes it, `matplotlib.pyplot.show()` opens a window, a notebook shows it by itself.
 """
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -107,15 +104,19 @@ def _draw_space(axes: Any, result: TrackResult) -> None:
 
 
 def _draw_position_error(axes: Axes, result: TrackResult) -> None:
-    axes.semilogy(result.time, result.position_error, color=_BLUE)
-    axes.axhline(result.position_tolerance, color=_VERMILION, linestyle="--", label="tolerance")
+    _draw_error(axes, result.time, result.position_error, result.position_tolerance)
     axes.set_ylabel("position error [m]")
-    axes.legend(loc="best")
 
 
 def _draw_rotation_error(axes: Axes, result: TrackResult) -> None:
-    axes.semilogy(result.time, result.rotation_error, color=_BLUE)
+    _draw_error(axes, result.time, result.rotation_error, result.rotation_tolerance)
     axes.set_ylabel("rotation error [rad]")
+
+
+def _draw_error(axes: Axes, time: NDArray[np.float64], error: NDArray[np.float64], tolerance: float) -> None:
+    axes.semilogy(time, error, color=_BLUE)
+    axes.axhline(tolerance, color=_VERMILION, linestyle="--", label="tolerance")
+    axes.legend(loc="best")
 
 
 def _draw_joint_positions(axes: Axes, result: TrackResult) -> None:
@@ -206,15 +207,7 @@ def _style() -> Iterator[None]:
 
 
 def _new_figure(width: float, height: float) -> Figure:
-    """A figure of this size (inches), which pyplot does not know: its list would keep it until somebody closes it."""
-    from matplotlib.figure import Figure
+    """A figure of this size (inches), which `matplotlib.pyplot.show()` knows of."""
+    import matplotlib.pyplot as plt
 
-    figure = Figure(figsize=(width, height), layout="constrained", dpi=120)
-    figure._repr_png_ = partial(_png, figure)  # type: ignore[attr-defined]  # notebooks ask for it
-    return figure
-
-
-def _png(figure: Figure) -> bytes:
-    picture = io.BytesIO()
-    figure.savefig(picture, format="png")
-    return picture.getvalue()
+    return plt.figure(figsize=(width, height), layout="constrained", dpi=120)

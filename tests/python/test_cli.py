@@ -131,6 +131,12 @@ def test_every_solver_tracks(solver: str) -> None:
     assert run_json(*TRACK, "--solver", solver)["solver"] == solver
 
 
+def test_without_a_solver_the_library_chooses() -> None:
+    summary = run_json(*TRACK)
+    assert summary["solver"] == "model-based"
+    assert summary["evaluations"] < 3 * summary["steps"]
+
+
 @pytest.mark.parametrize("curve", ["circle", "hypotrochoid", "letter-m", "pentagram", "rose"])
 @pytest.mark.parametrize("robot", bik.Robot.names())
 def test_every_arm_follows_every_curve_as_it_is_placed_for_it(robot: str, curve: str) -> None:

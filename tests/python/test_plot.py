@@ -1,7 +1,6 @@
 """Figures: what they hold and how it is labelled."""
 
 import io
-import pickle
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -87,11 +86,9 @@ def test_many_joints_keep_the_layout() -> None:
             assert min(box.width, box.height) > 60 * figure.dpi / 72
 
 
-def test_notebooks_can_show_a_figure_that_nobody_has_to_close(tracked: bik.TrackResult) -> None:
-    figure = tracked.plot()
-    assert figure._repr_png_().startswith(b"\x89PNG")  # type: ignore[attr-defined]
-    assert plt.get_fignums() == []
-    assert pickle.loads(pickle.dumps(figure))._repr_png_() == figure._repr_png_()  # type: ignore[attr-defined]
+def test_pyplot_knows_the_figure(tracked: bik.TrackResult) -> None:
+    assert plt.figure(tracked.plot().number) is plt.gcf()
+    assert len(plt.get_fignums()) == 1
 
 
 def test_figures_are_not_shown(tracked: bik.TrackResult, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -122,6 +122,12 @@ impl PyTrackResult {
         self.core.tolerance.position
     }
 
+    /// The same for orientations (rad), as asked.
+    #[getter]
+    fn rotation_tolerance(&self) -> f64 {
+        self.core.tolerance.rotation
+    }
+
     /// How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED
     /// neither.
     #[getter]

@@ -70,8 +70,9 @@ def track(
         ),
     ] = None,
     solver: Annotated[
-        SolverName, typer.Option(help="Beetle antennae search in three variants, or Levenberg-Marquardt.")
-    ] = (SolverName.BAS),
+        SolverName | None,
+        typer.Option(help="Without it the library's model-based rule; bas, chain and greedy are beetles."),
+    ] = None,
     tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = _BAND,
     dt: Annotated[float, typer.Option(help="Time between two commands in s.")] = 0.2,
     start: Start = None,
@@ -107,13 +108,13 @@ def track(
             path,
             None if start is None else numbers("--start", start),
             dt=dt,
-            solver=make_solver(solver),
+            solver=None if solver is None else make_solver(solver),
             limits=limits,
             position_tolerance=tolerance,
             seed=seed,
             progress=not as_json,
         )
-        summary = summarize(result, solver, dt, seed, velocity_limit_text)
+        summary = summarize(result, solver or "model-based", dt, seed, velocity_limit_text)
         if folder is not None:
             write_files(result, summary, folder)
     if as_json:
