@@ -72,6 +72,11 @@ impl Kernels {
         if has_fused() {
             return for_each_size!(stages, fused);
         }
+        Self::baseline_for(stages)
+    }
+
+    /// Those for machines without AVX2 and FMA.
+    fn baseline_for(stages: usize) -> Self {
         for_each_size!(stages, baseline)
     }
 }
@@ -104,5 +109,48 @@ mod fused {
     #[target_feature(enable = "avx2,fma")]
     pub fn stage_frames<const N: usize, const L: usize>(chain: &Chain, q: &[f64], reached: &mut StageFrames) {
         kinematics::stage_frames::<Fused, N, L>(chain, q, reached);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chain::SIZES;
+    use super::super::{ChainBuilder, Drive, Joint, JointKind, MAX_DOF};
+    use super::*;
+    use crate::math::{Pose, pose};
+    use nalgebra::Vector3;
+
+    /// An arm of so many joints, every third of them sliding, on axes of no special direction.
+    fn arm(joints: usize) -> Chain {
+        let mut arm = ChainBuilder::new("arm", "base");
+        for i in 0..joints {
+            let kind = if i % 3 == 2 { JointKind::Prismatic } else { JointKind::Revolute };
+            let joint = arm.add_joint(Joint::new(format!("joint {i}"), kind));
+            let x = i as f64;
+            arm.fixed(pose::from_rpy([0.3 * x, 0.7 - x, 0.1], [0.1, 0.05 * x, 0.2]));
+            arm.moving(joint, kind, Vector3::new(x.sin(), 0.4, x.cos()), Drive { scale: 1.0, offset: 0.01 * x });
+        }
+        Chain::new(&arm.elements, &Pose::identity(), &pose::translation(0.0, 0.1, 0.2))
+    }
+
+    #[test]
+    fn machines_without_fma_get_the_same_kinematics() {
+        for joints in SIZES {
+            let chain = arm(joints);
+            let (best, baseline) = (Kernels::for_stages(joints), Kernels::baseline_for(joints));
+            let q: Vec<f64> = (0..joints).map(|i| (1.7 * i as f64).sin()).collect();
+            let (mut columns, mut others) = ([[0.0; 6]; MAX_DOF], [[0.0; 6]; MAX_DOF]);
+            let tip = (best.jacobian)(&chain, &q, &mut columns);
+            let other = (baseline.jacobian)(&chain, &q, &mut others);
+            let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+            assert!(near(tip.axes.as_flattened(), other.axes.as_flattened()), "{joints} joints");
+            assert!(near(&tip.origin, &other.origin), "{joints} joints");
+            assert!(near(columns.as_flattened(), others.as_flattened()), "{joints} joints");
+            assert!(near(&(baseline.tip_position)(&chain, &q), &tip.origin), "{joints} joints");
+            assert!(near(&(baseline.tip)(&chain, &q).origin, &tip.origin), "{joints} joints");
+            let four = (baseline.tip_four)(&chain, &q.repeat(4));
+            assert_eq!(four.map(|lane| lane[3]), (baseline.tip_position)(&chain, &q), "{joints} joints");
+            assert_eq!((baseline.tip_pair)(&chain, &q.repeat(2)).map(|lane| lane[1]), four.map(|lane| lane[0]));
+        }
     }
 }
