@@ -1,0 +1,166 @@
+"""Inverse kinematics libraries side by side: the same targets, tolerance, limits and machine.
+
+    python benches/compare.py --robots DIR --targets 1000 --out DIR
+
+Every library gets the same chain (see `peers/chain.py`), target and random start, called one target at a time from one
+thread, the call included. Pinocchio's forward kinematics judges the answers. `benches/README.md` says how to set it up.
+"""
+
+import os
+
+# Read by numerical libraries when they are loaded, so before the first import.
+for variable in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "RAYON"):
+    os.environ[f"{variable}_NUM_THREADS"] = "1"
+
+import argparse
+import functools
+import platform
+import tempfile
+import warnings
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import numpy as np
+from peers import closed_form, local, restarting
+from peers.adapter import Adapter, Unsupported
+from peers.chain import Chain, load_chains
+from peers.measure import Solver, batch_rate, interleave, judge, per_call
+from peers.report import Row, plain_section, plot, times_section, write_csv
+
+BEETLE_IK = restarting.BeetleIk
+GENERAL = [
+    BEETLE_IK,
+    restarting.BeetleIkFromStart,
+    restarting.RoboticsToolbox,
+    restarting.OptIk,
+    restarting.TracIk,
+    closed_form.Eaik,
+    closed_form.Ssik,
+]
+# These take milliseconds and would empty the caches of the others between any two of their calls.
+LOCAL = [local.PinocchioClik]
+
+POSE = "pose, 1e-6 m and 1e-6 rad"
+TASKS = {POSE: ("solve_pose", 1e-6), "pose, 1e-9 m and 1e-9 rad": ("solve_pose", 1e-9), "position, 1e-6 m": ("solve_position", 1e-6)}
+ROUNDS = 2
+BATCH = 20_000
+
+
+def main() -> None:
+    arguments = parse_arguments()
+    warnings.filterwarnings("ignore", category=DeprecationWarning)  # libraries of libraries
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    rows: list[Row] = []
+    calls: list[list[str]] = []
+    rates: list[list[str]] = []
+    with tempfile.TemporaryDirectory() as scratch:
+        for chain in load_chains(arguments.robots, Path(scratch)):
+            print(f"{chain.name} ({chain.dof} joints)", flush=True)
+            for task in TASKS:
+                rows += compare(chain, task, GENERAL, arguments.targets, ROUNDS)
+            rows += compare(chain, POSE, LOCAL, arguments.targets, 1)
+            calls += time_kinematics(chain)
+            rates.append(time_batch(chain))
+    write_csv(rows, arguments.out / "compare.csv")
+    (arguments.out / "compare.md").write_text(markdown(rows, calls, rates, arguments.targets))
+    plot(rows, POSE, f"{arguments.targets} random reachable targets a robot: {POSE}", arguments.out / "compare.png")
+    print(f"wrote compare.csv, compare.md and compare.png to {arguments.out}")
+
+
+def parse_arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument(
+        "--robots",
+        type=Path,
+        default=Path(__file__).parents[2] / "shared" / "robots",
+        help="directory of URDF files; robots.json in it may give base and tip: {NAME: {base: LINK, tip: LINK}}",
+    )
+    parser.add_argument("--targets", type=int, default=1000, help="targets a robot (default: 1000)")
+    parser.add_argument("--out", type=Path, default=Path("compare"), help="where the results go (default: compare)")
+    return parser.parse_args()
+
+
+def compare(chain: Chain, task: str, libraries: list[type[Adapter]], count: int, rounds: int) -> list[Row]:
+    method, tolerance = TASKS[task]
+    adapters, rows = load(chain, task, [library for library in libraries if library.offers(method)])
+    poses, starts = chain.targets(count)
+    targets = poses[:, :3, 3].copy() if method == "solve_position" else poses
+    solvers: dict[str, Solver] = {adapter.name: getattr(adapter, method) for adapter in adapters}
+    for solve in solvers.values():
+        solve(targets[0], starts[0])  # what is loaded at the first call is not timed
+    for name, (times, answers) in interleave(solvers, targets, starts, rounds).items():
+        rows.append(Row(task, chain.name, name, judge(chain, targets, times, answers, tolerance)))
+    return rows
+
+
+def load(chain: Chain, task: str, libraries: list[type[Adapter]]) -> tuple[list[Adapter], list[Row]]:
+    """The libraries that are there and take this robot; for the others a row with the reason."""
+    adapters, missing = [], []
+    for library in libraries:
+        try:
+            adapters.append(library(chain, TASKS[task][1]))
+        except (ImportError, Unsupported) as reason:
+            missing.append(Row(task, chain.name, library.name, None, str(reason)))
+        except Exception as failure:  # of any kind: one library must not end the run of the others
+            missing.append(Row(task, chain.name, library.name, None, f"{type(failure).__name__}: {failure}"))
+    return adapters, missing
+
+
+def time_kinematics(chain: Chain) -> list[list[str]]:
+    configurations = np.random.default_rng(0).uniform(chain.lower, chain.upper, (1000, chain.dof))
+    libraries = [library for library in (*GENERAL, *LOCAL) if library.offers("fk")]
+    adapters, _ = load(chain, POSE, libraries)
+    poses = per_call({adapter.name: adapter.fk for adapter in adapters}, configurations)
+    both = [adapter for adapter in adapters if adapter.offers("fk_and_jacobian")]
+    jacobians = per_call({adapter.name: adapter.fk_and_jacobian for adapter in both}, configurations)
+    return [
+        [chain.name, name, f"{time:.0f}", f"{jacobians[name]:.0f}" if name in jacobians else "-"]
+        for name, time in poses.items()
+    ]
+
+
+def time_batch(chain: Chain) -> list[str]:
+    adapter = BEETLE_IK(chain, 1e-6)
+    targets, _ = chain.targets(BATCH)
+    return [chain.name, *(f"{batch_rate(adapter, targets, threads):,.0f}" for threads in (1, os.cpu_count() or 1))]
+
+
+def markdown(rows: list[Row], calls: list[list[str]], rates: list[list[str]], count: int) -> str:
+    sections = [
+        f"# Inverse kinematics libraries compared\n\n{count} reachable targets a robot, drawn uniformly inside the "
+        "limits, and one random start each. One thread, one call a target from Python, call included; libraries "
+        f"interleaved target by target; the quickest of {ROUNDS} rounds (one for the libraries that solve once from "
+        "the start). Solved: within the tolerance by Pinocchio's forward kinematics and inside the limits. Failures "
+        f"count with the time that they took.\n\n{processor()}, Python {platform.python_version()}, "
+        f"{platform.system()}.\n",
+        plain_section("Libraries and settings", ["library", "version", "settings"], [*map(library_line, (*GENERAL, *LOCAL))]),
+        *(times_section(task, rows) for task in TASKS),
+        plain_section("Kinematics, ns a call", ["robot", "library", "FK", "FK + Jacobian"], calls),
+        plain_section(
+            f"Batch of {BATCH:,} poses by beetle-ik, poses a second",
+            ["robot", "one thread", f"{os.cpu_count()} threads"],
+            rates,
+        ),
+    ]
+    return "\n".join(sections)
+
+
+def library_line(library: type[Adapter]) -> list[str]:
+    try:
+        installed = version(library.distribution)
+    except PackageNotFoundError:
+        installed = "not installed"
+    return [library.name, installed, library.settings]
+
+
+@functools.cache
+def processor() -> str:
+    """The processor's name, which Python itself only knows on some systems."""
+    listing = Path("/proc/cpuinfo")
+    lines = listing.read_text().splitlines() if listing.exists() else []
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return f"{names[0] if names else platform.processor()}, {os.cpu_count()} logical cores"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,48 @@
+"""What `compare.py` asks of a library."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from .chain import Chain
+
+
+class Unsupported(Exception):
+    """The library says that it cannot solve this robot."""
+
+
+class Adapter:
+    """One library on one robot. Each call must do what a user's call would do, conversions included.
+
+    A method that is not overridden is not offered by the library; `compare.py` then leaves the cell empty. The import
+    belongs in `__init__`, so that a library that is not installed is named and not fatal.
+    """
+
+    name: ClassVar[str]
+    distribution: ClassVar[str]
+    settings: ClassVar[str]  # as a reader would need them to repeat the run
+
+    def __init__(self, chain: Chain, tolerance: float) -> None:
+        raise NotImplementedError
+
+    def solve_pose(self, target: np.ndarray, start: np.ndarray) -> np.ndarray | None:
+        """Joint values whose tip pose is `target` (4, 4), in m and rad; None where the library reports failure."""
+        raise NotImplementedError
+
+    def solve_position(self, point: np.ndarray, start: np.ndarray) -> np.ndarray | None:
+        """Joint values whose tip is at `point` (3,), in m, with any orientation."""
+        raise NotImplementedError
+
+    def fk(self, q: np.ndarray) -> object:
+        """Tip pose, in the library's own type."""
+        raise NotImplementedError
+
+    def fk_and_jacobian(self, q: np.ndarray) -> object:
+        """Tip pose and its Jacobian."""
+        raise NotImplementedError
+
+    @classmethod
+    def offers(cls, method: str) -> bool:
+        return getattr(cls, method) is not getattr(Adapter, method)

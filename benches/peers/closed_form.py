@@ -1,0 +1,67 @@
+"""Libraries that derive the solution from the robot's geometry."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import io
+
+import numpy as np
+
+from .adapter import Adapter, Unsupported
+from .chain import Chain
+
+TURN = 2.0 * np.pi
+
+
+class Eaik(Adapter):
+    name = "EAIK"
+    distribution = "EAIK"
+    settings = "UrdfRobot(...).IK, first exact branch that whole turns bring inside the limits"
+
+    def __init__(self, chain: Chain, tolerance: float) -> None:
+        from eaik.IK_URDF import UrdfRobot
+
+        if chain.dof > 6:
+            raise Unsupported("a redundant arm only with joints locked")
+        self._robot = UrdfRobot(str(chain.urdf))
+        if not self._robot.hasKnownDecomposition():
+            raise Unsupported(f"no decomposition known: {self._robot.getKinematicFamily()}")
+        zero = np.zeros(chain.dof)
+        # EAIK's tip is the last joint, world-aligned at zero.
+        self._from_tip = np.linalg.inv(chain.pose(zero)) @ self._robot.fwdKin(zero)
+        self._lower, self._upper = chain.lower, chain.upper
+
+    def solve_pose(self, target: np.ndarray, start: np.ndarray) -> np.ndarray | None:
+        solutions = self._robot.IK(target @ self._from_tip)
+        for q, approximate in zip(solutions.Q, solutions.is_LS, strict=True):
+            if not approximate:
+                q = q + TURN * np.ceil((self._lower - q) / TURN)
+                if (q <= self._upper).all():
+                    return q
+        return None
+
+
+class Ssik(Adapter):
+    name = "ssik"
+    distribution = "ssik"
+    settings = "module built for the robot by `ssik build`, solve(..., max_solutions=1)"
+
+    def __init__(self, chain: Chain, tolerance: float) -> None:
+        from ssik.cli import main as ssik_command
+
+        module = chain.urdf.with_name(f"{chain.name}_ssik.py")
+        if not module.exists():
+            request = ["build", str(chain.urdf), "--base", chain.base, "--ee", chain.tip, "--out", str(module)]
+            with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as complaint:
+                ssik_command([*request, "--no-validate"])
+            if not module.exists():
+                raise Unsupported(complaint.getvalue().strip().splitlines()[-1])
+        specification = importlib.util.spec_from_file_location(module.stem, module)
+        built = importlib.util.module_from_spec(specification)
+        specification.loader.exec_module(built)
+        self._solve = built.solve
+
+    def solve_pose(self, target: np.ndarray, start: np.ndarray) -> np.ndarray | None:
+        solutions = self._solve(target, max_solutions=1)
+        return solutions[0].q if solutions else None
