@@ -6,6 +6,8 @@ Every library gets the same chain (see `peers/chain.py`), target and random star
 thread, the call included. Pinocchio's forward kinematics judges the answers. `benches/README.md` says how to set it up.
 """
 
+# ruff: noqa: E402
+
 import os
 
 # Read by numerical libraries when they are loaded, so before the first import.
@@ -39,14 +41,20 @@ GENERAL = [
 ]
 # These take milliseconds and would empty the caches of the others between any two of their calls.
 LOCAL = [local.PinocchioClik]
+NO_ADAPTER = ["placo", "mink", "pink", "ikpy", "klampt", "pybullet"]  # single local solves too
 
 POSE = "pose, 1e-6 m and 1e-6 rad"
-TASKS = {POSE: ("solve_pose", 1e-6), "pose, 1e-9 m and 1e-9 rad": ("solve_pose", 1e-9), "position, 1e-6 m": ("solve_position", 1e-6)}
+TASKS = {
+    POSE: ("solve_pose", 1e-6),
+    "pose, 1e-9 m and 1e-9 rad": ("solve_pose", 1e-9),
+    "position, 1e-6 m": ("solve_position", 1e-6),
+}
 ROUNDS = 2
 BATCH = 20_000
 
 
 def main() -> None:
+    """Measure everything and write it down."""
     arguments = parse_arguments()
     warnings.filterwarnings("ignore", category=DeprecationWarning)  # libraries of libraries
     arguments.out.mkdir(parents=True, exist_ok=True)
@@ -68,6 +76,7 @@ def main() -> None:
 
 
 def parse_arguments() -> argparse.Namespace:
+    """What to measure, and where the results go."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
         "--robots",
@@ -81,6 +90,7 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def compare(chain: Chain, task: str, libraries: list[type[Adapter]], count: int, rounds: int) -> list[Row]:
+    """The rows of one task on one robot."""
     method, tolerance = TASKS[task]
     adapters, rows = load(chain, task, [library for library in libraries if library.offers(method)])
     poses, starts = chain.targets(count)
@@ -107,6 +117,7 @@ def load(chain: Chain, task: str, libraries: list[type[Adapter]]) -> tuple[list[
 
 
 def time_kinematics(chain: Chain) -> list[list[str]]:
+    """Forward kinematics and Jacobian of every library that has them, in ns a call."""
     configurations = np.random.default_rng(0).uniform(chain.lower, chain.upper, (1000, chain.dof))
     libraries = [library for library in (*GENERAL, *LOCAL) if library.offers("fk")]
     adapters, _ = load(chain, POSE, libraries)
@@ -120,20 +131,24 @@ def time_kinematics(chain: Chain) -> list[list[str]]:
 
 
 def time_batch(chain: Chain) -> list[str]:
+    """What beetle-ik solves in a second, on one core and on all."""
     adapter = BEETLE_IK(chain, 1e-6)
     targets, _ = chain.targets(BATCH)
     return [chain.name, *(f"{batch_rate(adapter, targets, threads):,.0f}" for threads in (1, os.cpu_count() or 1))]
 
 
 def markdown(rows: list[Row], calls: list[list[str]], rates: list[list[str]], count: int) -> str:
+    """The whole report."""
     sections = [
         f"# Inverse kinematics libraries compared\n\n{count} reachable targets a robot, drawn uniformly inside the "
         "limits, and one random start each. One thread, one call a target from Python, call included; libraries "
         f"interleaved target by target; the quickest of {ROUNDS} rounds (one for the libraries that solve once from "
         "the start). Solved: within the tolerance by Pinocchio's forward kinematics and inside the limits. Failures "
         f"count with the time that they took.\n\n{processor()}, Python {platform.python_version()}, "
-        f"{platform.system()}.\n",
-        plain_section("Libraries and settings", ["library", "version", "settings"], [*map(library_line, (*GENERAL, *LOCAL))]),
+        f"{platform.system()}.\n\nNo adapter yet: {', '.join(NO_ADAPTER)}.\n",
+        plain_section(
+            "Libraries and settings", ["library", "version", "settings"], [*map(library_line, (*GENERAL, *LOCAL))]
+        ),
         *(times_section(task, rows) for task in TASKS),
         plain_section("Kinematics, ns a call", ["robot", "library", "FK", "FK + Jacobian"], calls),
         plain_section(
@@ -146,6 +161,7 @@ def markdown(rows: list[Row], calls: list[list[str]], rates: list[list[str]], co
 
 
 def library_line(library: type[Adapter]) -> list[str]:
+    """Name, installed version and settings."""
     try:
         installed = version(library.distribution)
     except PackageNotFoundError:

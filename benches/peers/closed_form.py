@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
+import functools
 import importlib.util
-import io
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 
@@ -12,6 +14,7 @@ from .adapter import Adapter, Unsupported
 from .chain import Chain
 
 TURN = 2.0 * np.pi
+BUILD_SECONDS = 30
 
 
 class Eaik(Adapter):
@@ -48,15 +51,11 @@ class Ssik(Adapter):
     settings = "module built for the robot by `ssik build`, solve(..., max_solutions=1)"
 
     def __init__(self, chain: Chain, tolerance: float) -> None:
-        from ssik.cli import main as ssik_command
+        import ssik  # noqa: F401  a library that is missing is named as such
 
         module = chain.urdf.with_name(f"{chain.name}_ssik.py")
-        if not module.exists():
-            request = ["build", str(chain.urdf), "--base", chain.base, "--ee", chain.tip, "--out", str(module)]
-            with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as complaint:
-                ssik_command([*request, "--no-validate"])
-            if not module.exists():
-                raise Unsupported(complaint.getvalue().strip().splitlines()[-1])
+        if complaint := _build(chain, module):
+            raise Unsupported(complaint)
         specification = importlib.util.spec_from_file_location(module.stem, module)
         built = importlib.util.module_from_spec(specification)
         specification.loader.exec_module(built)
@@ -65,3 +64,19 @@ class Ssik(Adapter):
     def solve_pose(self, target: np.ndarray, start: np.ndarray) -> np.ndarray | None:
         solutions = self._solve(target, max_solutions=1)
         return solutions[0].q if solutions else None
+
+
+@functools.cache
+def _build(chain: Chain, module: Path) -> str:
+    """Write the robot's module; what went wrong, or nothing. The derivation of an arm without a known structure is long."""
+    command = "import sys; from ssik.cli import main; sys.exit(main())"
+    request = ["build", chain.urdf, "--base", chain.base, "--ee", chain.tip, "--out", module, "--no-validate"]
+    try:
+        subprocess.run(
+            [sys.executable, "-c", command, *request], check=True, capture_output=True, timeout=BUILD_SECONDS
+        )
+    except subprocess.TimeoutExpired:
+        return f"`ssik build` takes more than {BUILD_SECONDS} s"
+    except subprocess.CalledProcessError as failure:
+        return f"`ssik build` fails: {failure.stderr.decode().strip().splitlines()[-1]}"
+    return ""

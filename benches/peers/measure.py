@@ -34,10 +34,12 @@ def interleave(
 ) -> dict[str, tuple[np.ndarray, list[np.ndarray | None]]]:
     """Times in µs and answers of each solver in its quickest round.
 
-    All solvers get a target before any gets the next, and who comes first rotates: a busy or slowed-down machine then
-    hurts all alike. A round counts as a whole, since the best of several calls would hide restarts.
+    All solvers get a target before any gets the next, in an order drawn anew each time: a busy machine then hurts all
+    alike, and none always follows the one that leaves it the caches warm. A round counts as a whole, since the best of
+    several calls would hide restarts.
     """
     names = list(solvers)
+    order = np.random.default_rng(0)
     best: dict[str, tuple[np.ndarray, list[np.ndarray | None]]] = {}
     gc.collect()
     gc.disable()
@@ -45,8 +47,7 @@ def interleave(
         times = {name: np.empty(len(targets)) for name in names}
         answers: dict[str, list[np.ndarray | None]] = {name: [] for name in names}
         for i, (target, start) in enumerate(zip(targets, starts, strict=True)):
-            for turn in range(len(names)):
-                name = names[(i + turn) % len(names)]
+            for name in order.permutation(names):
                 solve = solvers[name]
                 begin = perf_counter_ns()
                 q = solve(target, start)
@@ -61,8 +62,12 @@ def interleave(
 
 def judge(chain: Chain, targets: np.ndarray, times: np.ndarray, answers: list, tolerance: float) -> Times:
     """Solved means within the tolerance by Pinocchio's forward kinematics and inside the limits."""
-    solved = [q is not None and _reaches(chain, q, target, tolerance) for q, target in zip(answers, targets, strict=True)]
-    return Times(100.0 * float(np.mean(solved)), *map(float, (np.median(times), times.mean(), np.quantile(times, 0.99))))
+    solved = [
+        q is not None and _reaches(chain, q, target, tolerance) for q, target in zip(answers, targets, strict=True)
+    ]
+    return Times(
+        100.0 * float(np.mean(solved)), *map(float, (np.median(times), times.mean(), np.quantile(times, 0.99)))
+    )
 
 
 def _reaches(chain: Chain, q: np.ndarray, target: np.ndarray, tolerance: float) -> bool:
