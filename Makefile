@@ -28,12 +28,13 @@ lint: $(VENV)/with-test  ## formatting, clippy, ruff and types
 	$(BIN)/mypy
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked --quiet
 
-bench: $(VENV)/wheel  ## criterion benchmarks of the core, then the comparison with other libraries in compare/
+bench: $(VENV)/wheel  ## criterion benchmarks of the core, then the comparison with other libraries in target/compare/
 	cargo bench --locked
 	$(PYTHON) -m venv .venv-bench
+	echo '*' > .venv-bench/.gitignore
 	.venv-bench/bin/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps dist/*.whl
 	.venv-bench/bin/pip install --quiet --disable-pip-version-check --requirement benches/requirements.txt dist/*.whl
-	.venv-bench/bin/python benches/compare.py
+	.venv-bench/bin/python benches/compare.py --out target/compare
 
 docs: $(VENV)/with-docs  ## the Rust pages in target/doc, the Python pages in docs/build
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked

@@ -1,5 +1,7 @@
 """What `compare.py` asks of a library."""
 
+# ruff: noqa: D102, D107, N818
+
 from __future__ import annotations
 
 from typing import ClassVar

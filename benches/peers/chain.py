@@ -1,5 +1,7 @@
 """Robots as every library gets them: one serial chain, one file, one set of limits."""
 
+# ruff: noqa: D102
+
 from __future__ import annotations
 
 import json

@@ -1,5 +1,8 @@
 """Libraries that derive the solution from the robot's geometry."""
 
+# The methods are described in adapter.py.
+# ruff: noqa: ARG002, D101, D102, D107
+
 from __future__ import annotations
 
 import functools
@@ -68,7 +71,7 @@ class Ssik(Adapter):
 
 @functools.cache
 def _build(chain: Chain, module: Path) -> str:
-    """Write the robot's module; what went wrong, or nothing. The derivation of an arm without a known structure is long."""
+    """Write the robot's module; what went wrong, or nothing. For an arm without a known structure this is long."""
     command = "import sys; from ssik.cli import main; sys.exit(main())"
     request = ["build", chain.urdf, "--base", chain.base, "--ee", chain.tip, "--out", module, "--no-validate"]
     try:

@@ -81,7 +81,7 @@ def _reaches(chain: Chain, q: np.ndarray, target: np.ndarray, tolerance: float) 
 
 
 def per_call(functions: dict[str, Callable[[np.ndarray], object]], configurations: np.ndarray) -> dict[str, float]:
-    """ns a call of each function, its best of five interleaved passes over the configurations."""
+    """Nanoseconds a call of each function, its best of five interleaved passes over the configurations."""
     rows = list(configurations)
     best = dict.fromkeys(functions, np.inf)
     for _ in range(5):

@@ -1,5 +1,7 @@
 """The measurements as CSV, Markdown and a picture."""
 
+# ruff: noqa: D103
+
 from __future__ import annotations
 
 import csv

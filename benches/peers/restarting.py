@@ -1,5 +1,8 @@
 """Numerical libraries that start again until they have the target."""
 
+# The methods are described in adapter.py.
+# ruff: noqa: ARG002, D101, D102, D107
+
 from __future__ import annotations
 
 import numpy as np
