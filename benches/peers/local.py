@@ -1,7 +1,7 @@
 """Libraries that follow one descent from the start, without restarts: each iterates to the tolerance or 200 steps."""
 
 # The methods are described in adapter.py.
-# ruff: noqa: ARG002, D101, D102, D107
+# ruff: noqa: D101, D102, D107
 
 from __future__ import annotations
 
