@@ -58,9 +58,10 @@ impl Limits {
         [self.lower[j].largest(from, to).1, self.upper[j].smallest(from, to).1]
     }
 
-    /// Narrows `tick` to what `q` may become in the tick from `from` to `to` (s). Returns whether every joint can be
+    /// Narrows `tick` to what `q` may become in the tick of `dt` from `from` to `to` (s). Late in a motion `to - from` is
+    /// `dt` only up to rounding, and the reach must not depend on that. Returns whether every joint can be
     /// within its position limits at the end of the tick; one that cannot is sent towards them as fast as it may go.
-    pub fn narrow(&self, q: &[f64], from: f64, to: f64, at: LimitAt, tick: &mut TickBox) -> bool {
+    pub fn narrow(&self, q: &[f64], [from, to]: [f64; 2], dt: f64, at: LimitAt, tick: &mut TickBox) -> bool {
         let TickBox { bounds, velocity } = tick;
         let (lower, upper) = bounds.parts_mut();
         let mut feasible = true;
@@ -71,7 +72,7 @@ impl Limits {
                 _ => self.velocity_over(j, from, to, at),
             };
             // Without a known end nobody can refuse a limit that will fall below zero: there the joint stands still.
-            let reach = (velocity[j] * (to - from)).max(0.0);
+            let reach = (velocity[j] * dt).max(0.0);
             let (slowest, fastest) = (reachable(q[j], -reach), reachable(q[j], reach));
             let [floor, ceiling] = self.position_range(j, from, to);
             lower[j] = slowest.max(floor).min(fastest);
@@ -116,7 +117,7 @@ mod tests {
 
     fn tick(limits: &Limits, q: f64, dt: f64) -> (bool, f64, f64) {
         let mut tick = TickBox::around(&[q]);
-        let feasible = limits.narrow(&[q], 0.0, dt, LimitAt::Interval, &mut tick);
+        let feasible = limits.narrow(&[q], [0.0, dt], dt, LimitAt::Interval, &mut tick);
         (feasible, tick.bounds.lower()[0], tick.bounds.upper()[0])
     }
 
@@ -148,6 +149,18 @@ mod tests {
         let limits = Limits::of(&slider(-9.0, 9.0, 1.0)).replace(Field::Velocity, vec![fading]).unwrap();
         assert_eq!(limits.velocity_over(0, 0.0, 1.0, LimitAt::Interval), 0.1);
         assert_eq!(limits.velocity_over(0, 0.0, 1.0, LimitAt::Start), 0.4);
+    }
+
+    #[test]
+    fn the_reach_is_the_same_at_any_time() {
+        let limits = Limits::of(&slider(-9.0, 9.0, 2.0));
+        let dt = 0.0005;
+        for i in (0..60_000).step_by(7) {
+            let mut tick = TickBox::around(&[0.1]);
+            let ends = [f64::from(i) * dt, f64::from(i + 1) * dt];
+            limits.narrow(&[0.1], ends, dt, LimitAt::Interval, &mut tick);
+            assert!(tick.bounds.upper()[0] - 0.1 <= 2.0 * dt && 0.1 - tick.bounds.lower()[0] <= 2.0 * dt, "{ends:?}");
+        }
     }
 
     proptest! {

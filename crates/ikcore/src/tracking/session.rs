@@ -153,7 +153,7 @@ impl Session {
     pub fn step(&mut self, target: &Target, monitor: &mut dyn Monitor) -> Result<Step> {
         target.validate()?;
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
-        let inside_limits = self.limits.narrow(&self.q, from, to, self.limit_at, &mut self.tick_box);
+        let inside_limits = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
         let tick = Tick {
             robot: &self.robot,
             target,
