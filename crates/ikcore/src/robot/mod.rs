@@ -11,6 +11,7 @@ mod lane_search;
 mod many;
 mod model;
 mod planar;
+mod screws;
 mod seed_index;
 mod seeds;
 mod urdf;
@@ -20,6 +21,7 @@ pub use dh::{Dh, DhTable};
 pub use joint::{Joint, JointKind};
 pub use kinematics::Columns;
 pub use model::Robot;
+pub use screws::{Screw, Screws};
 pub use seeds::Seeds;
 
 use crate::math::MAX_DOF;
