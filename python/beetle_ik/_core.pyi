@@ -18,6 +18,7 @@ _Array: TypeAlias = NDArray[np.float64]
 _Solver: TypeAlias = BAS | LevenbergMarquardt | MultiStart
 _LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
 _LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] | None
+_Motion: TypeAlias = Literal["pose", "position", "rotation"]
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
 # --- errors -------------------------------------------------------------------------------------
@@ -90,7 +91,23 @@ class Robot:
     def link_poses(self, q: ArrayLike) -> _Array: ...  # (links, 4, 4), in the order of link_names
     def jacobian(self, q: ArrayLike) -> _Array: ...  # (n,) -> (6, n); (m, n) -> (m, 6, n)
     def random_configurations(self, m: int, seed: int = 0) -> _Array: ...  # (m, n)
-    def manipulability(self, q: ArrayLike) -> Any: ...  # (n,) -> float; (m, n) -> (m,)
+    def manipulability(self, q: ArrayLike, *, motion: _Motion = "pose") -> Any: ...  # (n,) -> float; (m, n) -> (m,)
+    def manipulability_gradient(self, q: ArrayLike, *, motion: _Motion = "pose") -> _Array: ...  # (n,)
+    def link_manipulability(self, q: ArrayLike, *, motion: _Motion = "position") -> _Array: ...  # (links,)
+    def velocity_ellipsoid(self, q: ArrayLike, *, motion: _Motion = "position") -> VelocityEllipsoid: ...
+
+@final
+class VelocityEllipsoid:
+    @property
+    def lengths(self) -> _Array: ...  # (directions,), longest first
+    @property
+    def axes(self) -> _Array: ...  # (directions, 6): linear, then angular part
+    @property
+    def index(self) -> float: ...
+    @property
+    def condition(self) -> float: ...
+    @property
+    def isotropy(self) -> float: ...
 
 def pose(
     position: ArrayLike,

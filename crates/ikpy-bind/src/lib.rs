@@ -5,6 +5,7 @@ mod convert;
 mod error;
 mod ik;
 mod limits;
+mod manipulability;
 mod monitor;
 mod path;
 mod pose;
@@ -24,6 +25,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     error::register(module)?;
     solver::register(module)?;
     module.add_class::<robot::PyRobot>()?;
+    module.add_class::<manipulability::PyVelocityEllipsoid>()?;
     module.add_function(wrap_pyfunction!(pose::pose, module)?)?;
     module.add_class::<sinusoid::PySinusoid>()?;
     module.add_class::<limits::PyLimits>()?;

@@ -12,6 +12,7 @@ mod many;
 mod model;
 mod planar;
 mod reach;
+mod screws;
 mod seed_index;
 mod seeds;
 mod urdf;
@@ -22,6 +23,7 @@ pub use joint::{Joint, JointKind};
 pub use kinematics::Columns;
 pub use model::Robot;
 pub use reach::Reach;
+pub use screws::{Screw, Screws};
 pub use seeds::Seeds;
 
 use crate::math::MAX_DOF;

@@ -26,8 +26,8 @@ pub(super) struct Tick<'a> {
     pub robot: &'a Robot,
     pub target: &'a Target,
     pub criterion: &'a Criterion,
-    /// What to do with the freedom that the target leaves, if anything.
-    pub goals: Option<Goals<'a>>,
+    /// What to do with the freedom that the target leaves.
+    pub goals: &'a mut Goals,
     /// Length of the tick (s).
     pub dt: f64,
     /// Where the tick may end.
