@@ -12,7 +12,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
     result.trajectory.to_csv("trajectory.csv")
 """
 
-from . import paths, plot
+from . import goals, paths, plot, tasks
 from ._core import (
     BAS,
     BatchSolution,
@@ -26,6 +26,7 @@ from ._core import (
     Robot,
     Sinusoid,
     Solution,
+    SolutionSet,
     Status,
     Step,
     Stop,
@@ -39,6 +40,7 @@ from ._core import (
     __version__,
     pose,
     solve,
+    solve_all,
     solve_batch,
     track,
 )
@@ -56,6 +58,7 @@ __all__ = [
     "Robot",
     "Sinusoid",
     "Solution",
+    "SolutionSet",
     "Status",
     "Step",
     "Stop",
@@ -67,10 +70,13 @@ __all__ = [
     "UrdfError",
     "VelocityEllipsoid",
     "__version__",
+    "goals",
     "paths",
     "plot",
     "pose",
     "solve",
+    "solve_all",
     "solve_batch",
+    "tasks",
     "track",
 ]
