@@ -5,7 +5,8 @@
 
 Sphere, Rosenbrock, Rastrigin and Ackley in ten dimensions, their minima shifted for every seed as the CEC competitions
 do; the same population, the same options as far as both have them, the same number of evaluations. The table shows
-medians over the seeds and the one-sided rank test (Mann and Whitney) of "ours is worse": p > 0.01 says that the samples do not show it.
+medians over the seeds and the one-sided rank test (Mann and Whitney) of "ours is worse": p > 0.01 says that the samples
+do not show it.
 """
 
 import argparse
