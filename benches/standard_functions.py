@@ -109,7 +109,7 @@ CLERC = pyswarms(c1=1.49445, c2=1.49445, w=0.729)
 PAIRS: list[tuple[str, Any, str, Rival]] = [
     (
         "PSO",
-        bik.PSO(form="inertia", inertia=0.4, c1=2.05, c2=2.05, **SAME),
+        bik.PSO(form="inertia", inertia=0.4, c1=2.05, c2=2.05, accept="improving", **SAME),
         "mealpy PSO",
         mealpy("PSO", c1=2.05, c2=2.05, w=0.4),
     ),
