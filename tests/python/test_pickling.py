@@ -20,7 +20,7 @@ SOLVERS = [
     bik.LevenbergMarquardt(),
     bik.LevenbergMarquardt(initial_damping=0.125),
     bik.PSO(),
-    bik.PSO(population=20, form="inertia", inertia=0.5, c1=1.5, c2=1.25, velocity_limit=0.25),
+    bik.PSO(population=20, form="inertia", inertia=0.5, c1=1.5, c2=1.25, velocity_limit=0.25, accept="improving"),
     bik.QPSO(expansion=0.5, max_generations=9, stall_generations=None),
     bik.Firefly(population=20, attractiveness=0.5, absorption=2.0, randomness=0.1, randomness_decay=0.9),
     bik.Genetic(elite_share=0.1, crossover_share=0.5, tournament=2, mutation_scale=0.2, mutation_decay=0.9),
