@@ -133,6 +133,8 @@ class Table:
     columns: Sequence[Column]
     rows: Sequence[Sequence[Cell]]
     caption: str = ""
+    folded: bool = False
+    """Shown when the reader asks for it: for the numbers behind a figure."""
 
     def __post_init__(self) -> None:
         """Refuse rows that do not fit the columns."""

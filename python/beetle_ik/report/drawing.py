@@ -39,10 +39,12 @@ def draw_error(axes: Axes, time: ArrayLike, error: ArrayLike, *, band: float | N
     axes.set_ylabel("position error [m]")
 
 
-def draw_velocities(axes: Axes, time: NDArray[np.float64], velocity: NDArray[np.float64], limit: ArrayLike) -> None:
+def draw_velocities(
+    axes: Axes, time: NDArray[np.float64], velocity: NDArray[np.float64], limit: ArrayLike, *, linewidth: float = 0.9
+) -> None:
     """Joint velocities (k, n) in rad/s over time; shaded is what lies beyond `limit`: a number, or (k,)."""
     for j, joint in enumerate(velocity.T):
-        axes.plot(time, joint, label=f"joint {j + 1}", **line(j))
+        axes.plot(time, joint, label=f"joint {j + 1}", linewidth=linewidth, **line(j))
     bound = np.broadcast_to(np.asarray(limit, dtype=float), time.shape)
     if np.isfinite(bound).all():
         top = 1.15 * bound.max()

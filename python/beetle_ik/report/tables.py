@@ -24,7 +24,7 @@ class ShownCell:
 def shown_rows(table: Table) -> list[list[ShownCell]]:
     """The body of the table for the page: one cell a column, two where it is compared."""
     shown = [
-        [ShownCell(_text(entry, column), _kind(entry, part)) for entry in entries]
+        [ShownCell(_text(entry, part, column), _kind(entry, part)) for entry in entries]
         for column, part, entries in _flat_columns(table)
     ]
     return [list(row) for row in zip(*shown, strict=True)]
@@ -71,7 +71,8 @@ def _kind(entry: _Entry, part: str) -> str:
     return f"{'text' if isinstance(entry, str) else 'number'} {part}".rstrip()
 
 
-def _text(entry: _Entry, column: Column) -> str:
+def _text(entry: _Entry, part: str, column: Column) -> str:
+    digits = _printed_digits(entry) if part == "printed" else column.digits
     match entry:
         case None:
             return "–"
@@ -80,5 +81,11 @@ def _text(entry: _Entry, column: Column) -> str:
         case Printed():
             return entry.value
         case Spread(mean, std):
-            return spread(mean, std, column.digits)
-    return number(entry, column.digits)
+            return spread(mean, std, digits)
+    return number(entry, digits)
+
+
+def _printed_digits(entry: _Entry) -> int:
+    """As many digits as the number was given with: what a paper prints is shown as it is printed."""
+    value = entry.mean if isinstance(entry, Spread) else entry
+    return len(str(value).partition("e")[0].replace(".", "").lstrip("-0")) or 1
