@@ -65,6 +65,6 @@ What the library expects of it:
 
 from .experiment import Context, Experiment
 from .registry import experiment, names
-from .reproduce import ALL, reproduce
+from .reproduction import ALL, reproduce
 
 __all__ = ["ALL", "Context", "Experiment", "experiment", "names", "reproduce"]

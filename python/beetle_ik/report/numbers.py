@@ -3,6 +3,7 @@
 import math
 
 _THIN_SPACE = "\u202f"
+_SPACE = "\u00a0"  # where no line may break
 _MINUS = "\u2212"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -23,7 +24,7 @@ def spread(mean: float, std: float, digits: int = 3) -> str:
         return number(mean, digits)
     exponent = _exponent(mean, digits)
     decimals = digits - 1 - _magnitude(mean, digits)
-    both = f"{_scaled(mean, exponent, decimals)} ± {_scaled(std, exponent, decimals)}"
+    both = f"{_scaled(mean, exponent, decimals)}{_SPACE}±{_SPACE}{_scaled(std, exponent, decimals)}"
     return _signed(f"({both}){_power(exponent)}" if exponent else both)
 
 
@@ -43,7 +44,7 @@ def _scaled(value: float, exponent: int, decimals: int) -> str:
 
 
 def _power(exponent: int) -> str:
-    return f" × 10{str(exponent).translate(_SUPERSCRIPT)}" if exponent else ""
+    return f"{_SPACE}×{_SPACE}10{str(exponent).translate(_SUPERSCRIPT)}" if exponent else ""
 
 
 def _signed(text: str) -> str:

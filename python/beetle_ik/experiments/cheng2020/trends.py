@@ -178,7 +178,7 @@ def _change(symbol: str, before: Measured, after: Measured) -> str:
         f"{symbol} from {before.value:g} to {after.value:g} on the five-link arm: "
         f"{number(before.steps.mean, 2)} to {number(after.steps.mean, 2)} steps to the band, "
         f"roughness {number(before.roughness.mean, 2)} to {number(after.roughness.mean, 2)} rad/s, "
-        f"{number(round(before.evaluations.mean, -3))} to {number(round(after.evaluations.mean, -3))} evaluations"
+        f"{number(round(before.evaluations.mean))} to {number(round(after.evaluations.mean))} evaluations"
     )
 
 
