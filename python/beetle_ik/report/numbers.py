@@ -36,7 +36,7 @@ def _magnitude(value: float, digits: int) -> int:
 def _exponent(value: float, digits: int) -> int:
     """The power of ten to set apart: 0 for numbers that read well without."""
     magnitude = _magnitude(value, digits)
-    return 0 if -3 <= magnitude < 5 else magnitude
+    return 0 if -3 <= magnitude < 7 else magnitude
 
 
 def _scaled(value: float, exponent: int, decimals: int) -> str:
