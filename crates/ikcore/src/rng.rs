@@ -62,6 +62,18 @@ impl LazyRng {
         lower + (upper - lower) * self.uniform()
     }
 
+    /// Entries uniform in [-1, 1).
+    pub fn symmetric(&mut self, b: &mut [f64]) {
+        self.draw(b, |v, uniform| *v = 2.0 * uniform - 1.0);
+    }
+
+    /// A Gaussian draw of mean zero and unit deviation (Box and Muller 1958).
+    pub fn gaussian(&mut self) -> f64 {
+        // 1 - uniform lies in (0, 1], which has a logarithm.
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        radius * (std::f64::consts::TAU * self.uniform()).cos()
+    }
+
     /// A vector of unit length: entries uniform in [-1, 1), then normalised.
     pub fn direction(&mut self, b: &mut [f64]) {
         let mut squared = 0.0;
@@ -108,6 +120,16 @@ mod tests {
         assert_eq!(draw(1, 2), draw(1, 2));
         assert_ne!(draw(1, 2), draw(1, 3));
         assert_ne!(draw(1, 2), draw(2, 2));
+    }
+
+    #[test]
+    fn gaussian_draws_have_zero_mean_and_unit_deviation() {
+        let mut rng = stream(1, 0);
+        let draws: Vec<f64> = (0..4000).map(|_| rng.gaussian()).collect();
+        let mean = draws.iter().sum::<f64>() / 4000.0;
+        let variance = draws.iter().map(|v| v * v).sum::<f64>() / 4000.0;
+        let beyond = draws.iter().filter(|v| v.abs() > 1.96).count();
+        assert!(mean.abs() < 0.06 && (variance - 1.0).abs() < 0.09 && (150..250).contains(&beyond), "{mean} {variance} {beyond}");
     }
 
     #[test]

@@ -7,10 +7,12 @@
 //! | file | algorithm | needs |
 //! |---|---|---|
 //! | [`bas`] | beetle antennae search (Cheng et al. 2020): star, chain, greedy | values |
+//! | [`broyden_bas`] | antenna differences as secants: quasi-Newton without a Jacobian | residual |
 //! | [`levenberg_marquardt`] | Levenberg-Marquardt on the box | residual and Jacobian |
 //! | [`multi_start`] | any of them, from many starts | what the wrapped solver needs |
 
 pub mod bas;
+pub mod broyden_bas;
 pub mod driver;
 pub mod evaluator;
 pub mod levenberg_marquardt;
@@ -18,6 +20,7 @@ pub mod multi_start;
 pub mod stop;
 
 pub use bas::{Bas, Variant};
+pub use broyden_bas::BroydenBas;
 pub use driver::{Outcome, Solver, run};
 pub use evaluator::{Best, Evaluator, Halt};
 pub use levenberg_marquardt::LevenbergMarquardt;
@@ -32,6 +35,8 @@ use crate::objective::LeastSquares;
 pub enum Algorithm {
     /// Beetle antennae search.
     Bas(Bas),
+    /// Antenna differences as secants.
+    BroydenBas(BroydenBas),
     /// Levenberg-Marquardt.
     LevenbergMarquardt(LevenbergMarquardt),
 }
@@ -59,6 +64,7 @@ impl Algorithm {
             Self::Bas(Bas::of(Variant::Star)),
             Self::Bas(Bas::of(Variant::Chain)),
             Self::Bas(Bas::of(Variant::Greedy)),
+            Self::BroydenBas(BroydenBas::default()),
             Self::LevenbergMarquardt(LevenbergMarquardt::default()),
         ]
     }
@@ -69,7 +75,7 @@ impl Algorithm {
     pub fn into_multi_start(self) -> MultiStart<Self> {
         let patience = match self {
             Self::Bas(_) => 20,
-            Self::LevenbergMarquardt(_) => 3,
+            Self::BroydenBas(_) | Self::LevenbergMarquardt(_) => 3,
         };
         MultiStart { solver: self, rule: RestartRule::with_patience(patience) }
     }
@@ -81,6 +87,7 @@ impl Algorithm {
     pub fn validate(&self) -> Result<()> {
         match self {
             Self::Bas(bas) => bas.validate(),
+            Self::BroydenBas(broyden) => broyden.validate(),
             Self::LevenbergMarquardt(lm) => lm.validate(),
         }
     }
@@ -109,9 +116,11 @@ impl AnySolver {
     pub fn run(&self, evaluator: &mut Evaluator<'_, dyn LeastSquares + '_>, x0: &[f64]) -> Outcome {
         match self {
             Self::Single(Algorithm::Bas(bas)) => run(bas, evaluator, x0),
+            Self::Single(Algorithm::BroydenBas(broyden)) => run(broyden, evaluator, x0),
             Self::Single(Algorithm::LevenbergMarquardt(lm)) => run(lm, evaluator, x0),
             Self::MultiStart(MultiStart { solver, rule }) => match solver {
                 Algorithm::Bas(bas) => run(&MultiStart { solver: bas, rule: *rule }, evaluator, x0),
+                Algorithm::BroydenBas(broyden) => run(&MultiStart { solver: broyden, rule: *rule }, evaluator, x0),
                 Algorithm::LevenbergMarquardt(lm) => run(&MultiStart { solver: lm, rule: *rule }, evaluator, x0),
             },
         }
