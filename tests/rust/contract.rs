@@ -9,7 +9,8 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use common::{bits, pose_at, robot};
-use ikcore::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
+use ikcore::math::box_step::ROWS;
+use ikcore::objective::{Bounds, LeastSquares, Linearization, Objective, Residual, Score};
 use ikcore::problem::Problem;
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
@@ -36,6 +37,15 @@ impl Objective for Valley {
 
     fn evaluate(&mut self, x: &[f64]) -> Score {
         self.linearize(x, &mut Linearization::default())
+    }
+}
+
+impl Residual for Valley {
+    fn residual(&mut self, x: &[f64], out: &mut [f64; ROWS]) -> Score {
+        let mut completed = Linearization::default();
+        let score = self.linearize(x, &mut completed);
+        *out = completed.residual;
+        score
     }
 }
 
@@ -93,6 +103,13 @@ impl Objective for Probe {
 
     fn propose_start(&mut self, attempt: usize, bounds: &Bounds, rng: &mut LazyRng, x: &mut [f64]) {
         self.inner.propose_start(attempt, bounds, rng, x);
+    }
+}
+
+impl Residual for Probe {
+    fn residual(&mut self, x: &[f64], out: &mut [f64; ROWS]) -> Score {
+        let score = self.inner.residual(x, out);
+        self.note(x, score)
     }
 }
 
@@ -160,7 +177,7 @@ fn solvers() -> Vec<AnySolver> {
 
 /// Whether the solver's path depends on its seed even without a restart.
 fn is_random(solver: &AnySolver) -> bool {
-    *solver != AnySolver::Single(Algorithm::LevenbergMarquardt(Default::default()))
+    !matches!(solver, AnySolver::Single(Algorithm::LevenbergMarquardt(_) | Algorithm::BroydenBas(_)))
 }
 
 struct Run {
