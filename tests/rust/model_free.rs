@@ -112,15 +112,16 @@ fn outliers_of_the_sensor_do_not_throw_it_off() {
 
 #[test]
 fn late() {
-    for (name, delay) in [("0", 0), ("1", 1), ("2", 2)] {
+    for (name, delay) in [("0", 0), ("1", 1), ("2", 2), ("20", 20)] {
         let arm = robot("iiwa14");
         let mut past = vec![ON_CIRCLE.to_vec(); delay];
         let mut plant = FunctionPlant(|q: &[f64]| { past.push(q.to_vec()); let q = past.remove(0); arm.tip_position(&q) });
-        let record = on_circle(&mut plant, &options(0));
+        let o = ModelFreeOptions { controller: Controller::BroydenBas(BroydenBas { sensor_delay: delay, ..Default::default() }), ..options(0) };
+        let record = on_circle(&mut plant, &o);
         println!("delay {name} {} ev {}", record.message(), record.track.evaluations());
         let mut past = vec![ON_CIRCLE.to_vec(); delay];
         let mut plant = FunctionPlant(|q: &[f64]| { past.push(q.to_vec()); let q = past.remove(0); arm.tip_position(&q) });
-        let z = ModelFreeOptions { controller: Controller::Znnbas(Znnbas::default()), tolerance: 0.02, ..ModelFreeOptions::default() };
+        let z = ModelFreeOptions { controller: Controller::Znnbas(Znnbas { sensor_delay: delay, ..Znnbas::default() }), tolerance: 0.02, ..ModelFreeOptions::default() };
         let fine = Path::new(Circle::new(Plane::xy([0.3, 0.3, 1.0]).unwrap(), 0.2, 30.0).unwrap()).sample(0.001).unwrap();
         let record = track_model_free(&mut plant, &fine, &ON_CIRCLE, &z, &mut Unattended).unwrap();
         println!("   znn {} ev {}", record.message(), record.track.evaluations());

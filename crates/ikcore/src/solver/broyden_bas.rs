@@ -19,11 +19,14 @@ pub struct BroydenBas {
     pub antenna_length: f64,
     /// Evaluations after which a step of a path ends; it goes on in the next.
     pub max_evaluations_per_step: usize,
+    /// Measurements by which the sensor of a plant is late: every command is sent so many times more, and the last answer
+    /// counts.
+    pub sensor_delay: usize,
 }
 
 impl Default for BroydenBas {
     fn default() -> Self {
-        Self { antenna_length: 0.01, max_evaluations_per_step: 20 }
+        Self { antenna_length: 0.01, max_evaluations_per_step: 20, sensor_delay: 0 }
     }
 }
 

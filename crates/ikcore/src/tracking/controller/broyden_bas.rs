@@ -37,6 +37,8 @@ pub(super) struct Memory {
     /// No step was accepted since antennae were out.
     fresh: bool,
     noise: Noise,
+    /// How often the last command is still to be sent, for a sensor that is late.
+    due: usize,
     /// Measurements in this tick.
     measurements: usize,
 }
@@ -77,6 +79,7 @@ impl Memory {
             slow: 0,
             fresh: false,
             noise: Noise::default(),
+            due: 0,
             measurements: 0,
         })
     }
@@ -94,6 +97,11 @@ impl Memory {
     }
 
     pub fn command(&mut self, tick: Tick<'_>) -> &[f64] {
+        if self.due > 0 {
+            tick.bounds.clip(&mut self.sent);
+            return &self.sent;
+        }
+        self.due = 1 + self.options.sensor_delay;
         self.return_to_box(tick);
         self.sent.copy_from_slice(&self.q);
         self.purpose = match self.next {
@@ -143,7 +151,19 @@ impl Memory {
 
     pub fn observe(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
         self.measurements += 1;
-        let believed = match self.purpose {
+        let spent = self.measurements >= self.options.max_evaluations_per_step;
+        self.due -= 1;
+        let verdict = if self.due == 0 { self.learn(tick, position) } else { Verdict::GoOn };
+        if spent || verdict == Verdict::TickOver {
+            self.measurements = 0;
+            return Verdict::TickOver;
+        }
+        Verdict::GoOn
+    }
+
+    /// The answer to the last command was `position`.
+    fn learn(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
+        let verdict = match self.purpose {
             Purpose::Stand => {
                 (self.position, self.next) = (position, Next::Antenna { joint: 0 });
                 Verdict::GoOn
@@ -155,14 +175,9 @@ impl Memory {
             Purpose::Step => self.believe(tick, position, None),
             Purpose::Again { first } => self.believe(tick, position, Some(first)),
         };
-        let error = distance(self.position, tick.target);
-        let spent = self.measurements >= self.options.max_evaluations_per_step;
-        let arrived = self.next == Next::Step && error <= self.tolerance.max(2.0 * self.noise.level());
-        if spent || arrived || believed == Verdict::TickOver {
-            self.measurements = 0;
-            return Verdict::TickOver;
-        }
-        Verdict::GoOn
+        let near_enough = self.tolerance.max(2.0 * self.noise.level());
+        let arrived = self.next == Next::Step && distance(self.position, tick.target) <= near_enough;
+        if arrived { Verdict::TickOver } else { verdict }
     }
 
     fn feel(&mut self, joint: usize, position: [f64; 3]) {

@@ -7,6 +7,9 @@
 //! 10 seconds do not converge.
 //!
 //! theta is the state of an integrator: the arm never stands there, but at theta', a random antenna away.
+//!
+//! The proof of Theorem 1 describes another algorithm, which keeps theta' where h fell and else goes back to theta and waits.
+//! It is here as [`Accept::Improving`]: the theorem holds for it, while the target stands still.
 
 use std::fmt;
 use std::str::FromStr;
@@ -42,8 +45,8 @@ pub enum Delay {
 pub enum Accept {
     /// In every tick: eq. (15).
     Always,
-    /// Only where the measurement beats the best so far, held against the target of now; else the arm goes back and waits:
-    /// the proof of Theorem 1.
+    /// To theta' where that is nearer to the target of now than theta is, else not at all: the proof of Theorem 1. Gain and
+    /// delay have no part in it.
     Improving,
 }
 
@@ -52,6 +55,8 @@ pub enum Accept {
 pub struct Znnbas {
     /// k of eq. (14) (1/s), positive to converge. A gain times dt above 0.3 overshoots.
     pub gain: f64,
+    /// Ticks by which the sensor is late: a measurement is held against the command and the target of so many ticks before.
+    pub sensor_delay: usize,
     /// lambda of eq. (10).
     pub antenna: Antenna,
     /// alpha of eq. (13), in ticks; gain times delay should stay below 1.
@@ -67,6 +72,7 @@ impl Default for Znnbas {
     fn default() -> Self {
         Self {
             gain: 100.0,
+            sensor_delay: 0,
             antenna: Antenna::Adaptive { c1: 0.3 },
             delay_steps: 1,
             delay: Delay::Sliding,
@@ -130,14 +136,24 @@ pub(super) struct Memory {
     accept: Accept,
     /// theta, the state of the integrator.
     theta: Point,
+    /// Where the tip was at the last theta that was measured (m).
+    standing: [f64; 3],
     /// theta', where the arm was sent.
     sent: Point,
+    /// What the last measurement said: where, of which command, and h.
     position: [f64; 3],
-    /// h there.
+    answered: Point,
     value: f64,
-    /// Where the best measurement so far was (m).
-    best: [f64; 3],
+    on_the_way: OnTheWay,
     past: Past,
+}
+
+/// Commands that a late sensor has not answered yet, with their targets; the slots in turn.
+#[derive(Debug)]
+struct OnTheWay {
+    sent: Vec<f64>,
+    targets: Vec<[f64; 3]>,
+    ticks: usize,
 }
 
 /// The measurements of the last so many ticks, the slots in turn.
@@ -148,32 +164,33 @@ struct Past {
     ticks: usize,
 }
 
-impl Past {
-    /// The slot of `delay` ticks before, which is that of now too.
-    fn slot(&self) -> usize {
-        self.ticks % self.values.len()
-    }
-}
-
 impl Memory {
     pub fn new(options: &Znnbas, start: &[f64], dt: f64) -> Self {
-        let delay = options.delay_steps;
+        let (n, delay) = (start.len(), options.delay_steps);
         Self {
             gain: options.gain * dt,
             antenna: options.antenna.clone(),
             delay: options.delay,
             accept: options.accept,
             theta: start.into(),
+            standing: [f64::NAN; 3],
             sent: start.into(),
             position: [f64::NAN; 3],
+            answered: start.into(),
             value: f64::INFINITY,
-            best: [f64::INFINITY; 3],
-            past: Past { sent: vec![0.0; delay * start.len()], values: vec![0.0; delay], ticks: 0 },
+            on_the_way: OnTheWay {
+                sent: start.repeat(options.sensor_delay),
+                targets: vec![[f64::NAN; 3]; options.sensor_delay],
+                ticks: 0,
+            },
+            past: Past { sent: vec![0.0; delay * n], values: vec![0.0; delay], ticks: 0 },
         }
     }
 
     pub fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {
-        (self.position, self.best, self.value) = (position, position, squared_distance(target, position));
+        (self.position, self.standing, self.value) = (position, position, squared_distance(target, position));
+        // Until the first answer comes, the arm stands at the start.
+        self.on_the_way.targets.fill(target);
     }
 
     pub fn accepted(&self) -> &[f64] {
@@ -181,15 +198,19 @@ impl Memory {
     }
 
     pub fn measured(&self) -> (&[f64], [f64; 3]) {
-        (&self.sent, self.position)
+        (&self.answered, self.position)
     }
 
     pub fn command(&mut self, tick: Tick<'_>, rng: &mut LazyRng) -> &[f64] {
         let Self { theta, sent, antenna, .. } = self;
         rng.symmetric(sent); // b, line 14
+        let error = match self.accept {
+            Accept::Always => self.value,
+            Accept::Improving => squared_distance(tick.target, self.standing),
+        };
         let lengths = match antenna {
             Antenna::Constant(lengths) => &lengths[..],
-            Antenna::Adaptive { c1 } => &[(*c1 * self.value.sqrt()).min(LONGEST)], // (16)
+            Antenna::Adaptive { c1 } => &[(*c1 * error.sqrt()).min(LONGEST)], // (16)
         };
         for (j, (sent, theta)) in sent.iter_mut().zip(theta).enumerate() {
             *sent = *theta + lengths[if lengths.len() == 1 { 0 } else { j }] * *sent; // (10)
@@ -200,39 +221,63 @@ impl Memory {
 
     pub fn observe(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
         self.position = position;
-        self.value = squared_distance(tick.target, position); // (12)
-        let improves = self.value < squared_distance(tick.target, self.best);
-        if improves {
-            self.best = position;
+        self.answered.copy_from_slice(&self.sent);
+        let target = self.on_the_way.swap(&mut self.answered, tick.target);
+        self.value = squared_distance(target, position); // (12)
+        match self.accept {
+            Accept::Always => self.move_theta(),
+            Accept::Improving if squared_distance(tick.target, position) < squared_distance(tick.target, self.standing) => {
+                self.theta.copy_from_slice(&self.answered);
+                self.standing = position;
+            }
+            Accept::Improving => {}
         }
-        if self.past.ticks >= self.past.values.len() && (improves || self.accept == Accept::Always) {
-            self.move_theta(tick);
-        }
-        self.remember();
+        // A limit may have closed in since the command.
+        tick.bounds.clip(&mut self.theta);
+        self.past.push(&self.answered, self.value);
         Verdict::TickOver
     }
 
     /// One Euler step of eq. (14).
-    fn move_theta(&mut self, tick: Tick<'_>) {
-        let Self { theta, sent, past, .. } = self;
+    fn move_theta(&mut self) {
+        let Self { theta, answered, past, .. } = self;
         let slot = match self.delay {
+            _ if past.ticks < past.values.len() => return,
             Delay::Sliding => past.slot(),
             Delay::Held => 0,
         };
         let step = self.gain * sign(self.value - past.values[slot]);
         let before = &past.sent[slot * theta.len()..][..theta.len()];
-        for ((theta, sent), before) in theta.iter_mut().zip(sent).zip(before) {
-            *theta -= step * (*sent - before);
+        for ((theta, now), before) in theta.iter_mut().zip(answered).zip(before) {
+            *theta -= step * (*now - before);
         }
-        tick.bounds.clip(theta);
+    }
+}
+
+impl OnTheWay {
+    /// Takes in the newest command with its target, and gives the one that is answered now.
+    fn swap(&mut self, command: &mut [f64], target: [f64; 3]) -> [f64; 3] {
+        if self.targets.is_empty() {
+            return target;
+        }
+        let slot = self.ticks % self.targets.len();
+        self.ticks += 1;
+        self.sent[slot * command.len()..][..command.len()].swap_with_slice(command);
+        std::mem::replace(&mut self.targets[slot], target)
+    }
+}
+
+impl Past {
+    /// The slot of `delay` ticks before, which is that of now too.
+    fn slot(&self) -> usize {
+        self.ticks % self.values.len()
     }
 
-    fn remember(&mut self) {
-        let Self { sent, past, value, .. } = self;
-        let slot = past.slot();
-        past.values[slot] = *value;
-        past.sent[slot * sent.len()..][..sent.len()].copy_from_slice(sent);
-        past.ticks += 1;
+    fn push(&mut self, command: &[f64], value: f64) {
+        let slot = self.slot();
+        self.values[slot] = value;
+        self.sent[slot * command.len()..][..command.len()].copy_from_slice(command);
+        self.ticks += 1;
     }
 }
 
