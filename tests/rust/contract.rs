@@ -14,7 +14,9 @@ use ikcore::objective::{Bounds, LeastSquares, Linearization, Objective, Residual
 use ikcore::problem::Problem;
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
-use ikcore::solver::{Algorithm, AnySolver, Best, Evaluator, Halt, Monitor, Outcome, Status, Stop, Unattended};
+use ikcore::solver::{
+    Algorithm, AnySolver, Best, Evaluator, Halt, LevenbergMarquardt, Monitor, Outcome, Status, Stop, Unattended,
+};
 use ikcore::task::{Target, Tolerance};
 
 /// Evaluations between two looks at monitor and clock, and the largest group handed in at once.

@@ -76,7 +76,11 @@ fn a_wrong_model_makes_no_difference_to_who_has_none() {
         let designed = robot("iiwa14").tip_position(&ON_CIRCLE);
         assert!(distance(wrong.tip_position(&ON_CIRCLE), designed) > 1e-3, "seed {seed} is hardly wrong");
         let record = on_circle(&mut KinematicPlant::new(wrong, 0.0, 0).unwrap(), &options(0));
-        assert!(record.track.position_error[1..].iter().all(|error| *error <= 1e-6), "seed {seed}: {}", record.message());
+        assert!(
+            record.track.position_error[1..].iter().all(|error| *error <= 1e-6),
+            "seed {seed}: {}",
+            record.message()
+        );
         assert_eq!(record.track.max_violation, 0.0, "seed {seed}");
     }
 }
@@ -86,7 +90,8 @@ fn noise_of_the_sensor_is_not_much_more_than_passed_on() {
     for seed in 0..SEEDS {
         let wrong = wrong_arm(seed);
         let record = on_circle(&mut KinematicPlant::new(wrong.clone(), 1e-4, seed).unwrap(), &options(seed));
-        let true_error = |i: usize| distance(wrong.tip_position(&record.track.q[7 * i..][..7]), record.track.reference[i]);
+        let true_error =
+            |i: usize| distance(wrong.tip_position(&record.track.q[7 * i..][..7]), record.track.reference[i]);
         let rms = rms(true_error);
         assert!(rms <= 3.0 * 1e-4 * 3_f64.sqrt(), "seed {seed}: {rms:.2e}");
         assert_eq!(record.track.max_violation, 0.0, "seed {seed}");
@@ -99,14 +104,21 @@ fn outliers_of_the_sensor_do_not_throw_it_off() {
         let (wrong, mut rng) = (wrong_arm(seed), rng::stream(seed, 2));
         let mut plant = FunctionPlant(|q: &[f64]| {
             let outlier = if rng.uniform() < 0.01 { 0.1 } else { 0.0 };
-            wrong.tip_position(q).map(|x| x + outlier * rng.gaussian())
+            wrong.tip_position(q).map(|x| x + outlier * rng.normal_pair()[0])
         });
         let record = on_circle(&mut plant, &options(0));
         let wrong = wrong_arm(seed);
-        let true_error = |i: usize| distance(wrong.tip_position(&record.track.q[7 * i..][..7]), record.track.reference[i]);
+        let true_error =
+            |i: usize| distance(wrong.tip_position(&record.track.q[7 * i..][..7]), record.track.reference[i]);
         let mut errors: Vec<f64> = (20..150).map(true_error).collect();
         errors.sort_by(f64::total_cmp);
-        println!("{seed} median {:.1e} p90 {:.1e} max {:.1e} ev {}", errors[65], errors[117], errors[129], record.track.evaluations());
+        println!(
+            "{seed} median {:.1e} p90 {:.1e} max {:.1e} ev {}",
+            errors[65],
+            errors[117],
+            errors[129],
+            record.track.evaluations()
+        );
     }
 }
 
@@ -115,19 +127,38 @@ fn late() {
     for (name, delay) in [("0", 0), ("1", 1), ("2", 2), ("20", 20)] {
         let arm = robot("iiwa14");
         let mut past = vec![ON_CIRCLE.to_vec(); delay];
-        let mut plant = FunctionPlant(|q: &[f64]| { past.push(q.to_vec()); let q = past.remove(0); arm.tip_position(&q) });
-        let o = ModelFreeOptions { controller: Controller::BroydenBas(BroydenBas { sensor_delay: delay, ..Default::default() }), ..options(0) };
+        let mut plant = FunctionPlant(|q: &[f64]| {
+            past.push(q.to_vec());
+            let q = past.remove(0);
+            arm.tip_position(&q)
+        });
+        let o = ModelFreeOptions {
+            controller: Controller::BroydenBas(BroydenBas { sensor_delay: delay, ..Default::default() }),
+            ..options(0)
+        };
         let record = on_circle(&mut plant, &o);
         println!("delay {name} {} ev {}", record.message(), record.track.evaluations());
         let mut past = vec![ON_CIRCLE.to_vec(); delay];
-        let mut plant = FunctionPlant(|q: &[f64]| { past.push(q.to_vec()); let q = past.remove(0); arm.tip_position(&q) });
-        let z = ModelFreeOptions { controller: Controller::Znnbas(Znnbas { sensor_delay: delay, ..Znnbas::default() }), tolerance: 0.02, ..ModelFreeOptions::default() };
-        let fine = Path::new(Circle::new(Plane::xy([0.3, 0.3, 1.0]).unwrap(), 0.2, 30.0).unwrap()).sample(0.001).unwrap();
+        let mut plant = FunctionPlant(|q: &[f64]| {
+            past.push(q.to_vec());
+            let q = past.remove(0);
+            arm.tip_position(&q)
+        });
+        let z = ModelFreeOptions {
+            controller: Controller::Znnbas(Znnbas { sensor_delay: delay, ..Znnbas::default() }),
+            tolerance: 0.02,
+            ..ModelFreeOptions::default()
+        };
+        let fine =
+            Path::new(Circle::new(Plane::xy([0.3, 0.3, 1.0]).unwrap(), 0.2, 30.0).unwrap()).sample(0.001).unwrap();
         let record = track_model_free(&mut plant, &fine, &ON_CIRCLE, &z, &mut Unattended).unwrap();
         println!("   znn {} ev {}", record.message(), record.track.evaluations());
     }
     for per in [1, 2, 3, 5] {
-        let o = ModelFreeOptions { controller: Controller::BroydenBas(BroydenBas { max_evaluations_per_step: per, ..Default::default() }), ..options(0) };
+        let o = ModelFreeOptions {
+            controller: Controller::BroydenBas(BroydenBas { max_evaluations_per_step: per, ..Default::default() }),
+            ..options(0)
+        };
         let record = on_circle(&mut exact_plant(), &o);
         println!("{per} a step: {} ev {}", record.message(), record.track.evaluations());
     }
@@ -136,10 +167,22 @@ fn late() {
     if let Ok(line) = line {
         let r = Path::new(line).sample(0.2).unwrap();
         let record = track_model_free(&mut exact_plant(), &r, &ON_CIRCLE, &options(0), &mut Unattended).unwrap();
-        println!("out of reach {} ev {} last error {:e}", record.message(), record.track.evaluations(), record.track.position_error.last().unwrap());
+        println!(
+            "out of reach {} ev {} last error {:e}",
+            record.message(),
+            record.track.evaluations(),
+            record.track.position_error.last().unwrap()
+        );
     }
     let record = track_model_free(&mut exact_plant(), &circle(), &[0.0; 7], &options(0), &mut Unattended).unwrap();
     println!("home {} ev {} {:?}", record.message(), record.track.evaluations(), &record.track.position_error[..10]);
-    let record = track_model_free(&mut exact_plant(), &circle(), &[0.0; 7], &ModelFreeOptions::default(), &mut Unattended).unwrap();
-    println!("home free {} ev {} {:?}", record.message(), record.track.evaluations(), &record.track.position_error[..10]);
+    let record =
+        track_model_free(&mut exact_plant(), &circle(), &[0.0; 7], &ModelFreeOptions::default(), &mut Unattended)
+            .unwrap();
+    println!(
+        "home free {} ev {} {:?}",
+        record.message(),
+        record.track.evaluations(),
+        &record.track.position_error[..10]
+    );
 }

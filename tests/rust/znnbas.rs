@@ -27,13 +27,21 @@ fn position_limits(robot: &Robot) -> Limits {
     Limits::of(robot).replace(Field::Velocity, vec![Profile::Constant(f64::INFINITY)]).unwrap()
 }
 
-struct Run { arm: Robot, record: ModelFreeRecord }
+struct Run {
+    arm: Robot,
+    record: ModelFreeRecord,
+}
 
 impl Run {
     fn new(znnbas: &Znnbas, limits: bool, seed: u64) -> Self {
         let arm = robot("iiwa14");
         let mut plant = KinematicPlant::new(arm.clone(), 0.0, 0).unwrap();
-        let options = ModelFreeOptions { controller: Controller::Znnbas(znnbas.clone()), limits: limits.then(|| position_limits(&arm)), tolerance: 0.03, seed };
+        let options = ModelFreeOptions {
+            controller: Controller::Znnbas(znnbas.clone()),
+            limits: limits.then(|| position_limits(&arm)),
+            tolerance: 0.03,
+            seed,
+        };
         let record = track_model_free(&mut plant, &letter(), &[0.0; 7], &options, &mut Unattended).unwrap();
         Self { arm, record }
     }
@@ -41,8 +49,12 @@ impl Run {
         let p = self.arm.tip_position(&self.record.track.q[7 * i..][..7]);
         (0..3).map(|k| (p[k] - self.record.track.reference[i][k]).powi(2)).sum()
     }
-    fn mean_h(&self) -> f64 { (40_000..=50_000).map(|i| self.h(i)).sum::<f64>() / 10_001.0 }
-    fn arrival(&self) -> f64 { (0..=50_000).find(|i| self.h(*i) < 1e-3).map_or(f64::INFINITY, |i| i as f64 * 1e-3) }
+    fn mean_h(&self) -> f64 {
+        (40_000..=50_000).map(|i| self.h(i)).sum::<f64>() / 10_001.0
+    }
+    fn arrival(&self) -> f64 {
+        (0..=50_000).find(|i| self.h(*i) < 1e-3).map_or(f64::INFINITY, |i| i as f64 * 1e-3)
+    }
 }
 
 #[test]
@@ -63,5 +75,7 @@ fn explore() {
     show("improving published 1", &Znnbas { accept: Accept::Improving, delay_steps: 1, ..Znnbas::published() }, false);
     show("improving k100", &Znnbas { accept: Accept::Improving, ..adaptive(100.0, 0.3) }, false);
     show("improving k300", &Znnbas { accept: Accept::Improving, ..adaptive(300.0, 0.3) }, false);
-    for n in [1, 10, 100, 200, 300, 500, 1000, 10000] { show(&format!("delay {n}"), &Znnbas { delay_steps: n, ..Znnbas::published() }, false); }
+    for n in [1, 10, 100, 200, 300, 500, 1000, 10000] {
+        show(&format!("delay {n}"), &Znnbas { delay_steps: n, ..Znnbas::published() }, false);
+    }
 }

@@ -62,8 +62,7 @@ pub fn track_model_free(
     let limits = options.limits.clone().unwrap_or_else(|| Limits::none(start.len()));
     limits.validate(reference.dt(), ticks)?;
     let ModelFreeOptions { controller, tolerance, seed, .. } = options;
-    let mut session =
-        controller::Session::new(controller, start, reference.dt(), limits.clone(), *tolerance, *seed)?;
+    let mut session = controller::Session::new(controller, start, reference.dt(), limits.clone(), *tolerance, *seed)?;
     let band = Tolerance { position: *tolerance, rotation: f64::INFINITY };
     let track = Record::new(start.len(), reference.len(), limits, band, reference.dt());
     let command = Vec::with_capacity(reference.len() * start.len());

@@ -1,7 +1,7 @@
 //! What is controlled: something that takes a joint command and answers with a position.
 
-use crate::error::{Result, require_finite};
 use crate::error::Error;
+use crate::error::{Result, require_finite};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 
@@ -68,7 +68,9 @@ impl Plant for KinematicPlant {
         if self.noise == 0.0 {
             return Ok(position);
         }
-        Ok(position.map(|x| x + self.noise * self.rng.gaussian()))
+        let ([x, y], [z, _]) = (self.rng.normal_pair(), self.rng.normal_pair());
+        let noise = [x, y, z].map(|draw| self.noise * draw);
+        Ok(std::array::from_fn(|k| position[k] + noise[k]))
     }
 }
 

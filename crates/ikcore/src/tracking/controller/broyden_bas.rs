@@ -47,10 +47,14 @@ pub(super) struct Memory {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
     Stand,
-    Antenna { joint: usize },
+    Antenna {
+        joint: usize,
+    },
     Step,
     /// A step sent again, because this position (m) surprised.
-    Again { first: [f64; 3] },
+    Again {
+        first: [f64; 3],
+    },
 }
 
 /// What to do next.
@@ -59,9 +63,13 @@ enum Next {
     /// Measure at the accepted configuration, then put out antennae.
     Stand,
     /// Put out the antenna of this joint, if there is one, then that of the next.
-    Antenna { joint: usize },
+    Antenna {
+        joint: usize,
+    },
     Step,
-    Again { first: [f64; 3] },
+    Again {
+        first: [f64; 3],
+    },
 }
 
 impl Memory {

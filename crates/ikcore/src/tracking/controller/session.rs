@@ -141,8 +141,7 @@ impl Session {
             Stage::Start => true,
             Stage::Ready => {
                 let ends = [self.time(), (self.ticks + 1) as f64 * self.dt];
-                self.inside_limits =
-                    self.limits.narrow(&self.q, ends, self.dt, LimitAt::Interval, &mut self.tick_box);
+                self.inside_limits = self.limits.narrow(&self.q, ends, self.dt, LimitAt::Interval, &mut self.tick_box);
                 false
             }
             Stage::Within => false,

@@ -226,7 +226,9 @@ impl Memory {
         self.value = squared_distance(target, position); // (12)
         match self.accept {
             Accept::Always => self.move_theta(),
-            Accept::Improving if squared_distance(tick.target, position) < squared_distance(tick.target, self.standing) => {
+            Accept::Improving
+                if squared_distance(tick.target, position) < squared_distance(tick.target, self.standing) =>
+            {
                 self.theta.copy_from_slice(&self.answered);
                 self.standing = position;
             }
