@@ -8,6 +8,7 @@ pub mod interval;
 pub mod knots;
 pub mod polynomial;
 pub mod pose;
+pub mod secant;
 pub mod sincos;
 pub mod so3;
 pub mod ticks;
