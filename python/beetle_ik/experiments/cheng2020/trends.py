@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 TITLE = "What n, c₁ and c₂ do"
 _SEEDS = 10
-_SEEDS_SHORT = 2
+_SEEDS_SHORT = 1
 _TASKS = (FIVE_LINK, IIWA)
 
 _TEXT = """
