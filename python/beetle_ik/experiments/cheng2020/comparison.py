@@ -39,10 +39,10 @@ class Compared:
         return Spread.of([steady_error(result) for result in self.results])
 
     @property
-    def axis_errors(self) -> list[Spread]:
-        """The same along x, y and z."""
-        means = np.array([np.abs(result.position - result.reference)[STEADY].mean(axis=0) for result in self.results])
-        return [Spread.of(axis.tolist()) for axis in means.T]
+    def axis_errors(self) -> list[float]:
+        """The same along x, y and z, over all runs."""
+        away = np.array([np.abs(result.position - result.reference)[STEADY] for result in self.results])
+        return [float(error) for error in away.mean(axis=(0, 1))]
 
     @property
     def roughness(self) -> Spread:

@@ -101,15 +101,15 @@ METHODS = (
         usual=bik.BAS(variant="chain", c1=1.0, explorations=10),
         with_budget=bik.BAS(variant="chain", explorations=10, max_passes=BUDGET // 30),  # three evaluations each
         printed_time=Spread(0.53, 0.04),
-        printed_level="level of 10⁻⁵",
+        printed_level="10⁻⁵ level",
     ),
     Method(
         name="GA",
         candidates=[bik.Genetic(population=size, mutation_decay=decay) for decay in (0.9, 0.97) for size in _SIZES],
-        usual=bik.Genetic(population=40, mutation_decay=0.9),
+        usual=bik.Genetic(population=20, mutation_decay=0.9),
         with_budget=bik.Genetic(population=40, mutation_decay=0.9, max_generations=BUDGET // 40),
         printed_time=Spread(25.0, 10.2),
-        printed_level="level of 10⁻³",
+        printed_level="10⁻³ level",
     ),
     Method(
         name="PSO",  # Trelea's (2003) two sets
@@ -121,7 +121,7 @@ METHODS = (
         usual=bik.PSO(form="inertia", inertia=0.6, c1=1.7, c2=1.7, population=10),
         with_budget=bik.PSO(form="inertia", inertia=0.6, c1=1.7, c2=1.7, population=20, max_generations=BUDGET // 20),
         printed_time=Spread(5.0, 0.7),
-        printed_level="level of 10⁻⁴",
+        printed_level="10⁻⁴ level",
     ),
     Method(
         name="FA",
@@ -139,7 +139,7 @@ METHODS = (
     Method(
         name="QPSO",
         candidates=[bik.QPSO(population=size, expansion=expansion) for expansion in (0.5, 0.75) for size in _SIZES],
-        usual=bik.QPSO(population=20, expansion=0.5),
+        usual=bik.QPSO(population=40, expansion=0.5),
         with_budget=bik.QPSO(population=20, expansion=0.5, max_generations=BUDGET // 20),
         printed_time=Spread(6.1, 0.4),
         printed_level=Printed.NOT_STATED,

@@ -40,7 +40,7 @@ swarm is drawn anew in that box in every step, as a plain port of a swarm does; 
 members. The arm starts on the circle.
 
 The paper names no options of any method. Here each is tuned alike, the beetle included: eight candidates, four sizes
-with two published sets of options each, on ten seeds that are used for nothing else. The cheapest that ends every
+with two sets of options each, on ten seeds that are used for nothing else. The cheapest that ends every
 step within a millimetre is compared.
 """
 _TEXT_PRECISION = """
@@ -119,7 +119,7 @@ def _tuning_table(tuned: dict[str, list[Tuned]]) -> Table:
             Column(name="evaluations a step"),
         ],
         rows=[
-            [name, f"`{one.solver!r}`", "outside 1 mm" if one.evaluations is None else one.evaluations]
+            [name, repr(one.solver), "outside 1 mm" if one.evaluations is None else one.evaluations]
             for name, tried in tuned.items()
             for one in tried
         ],
@@ -166,10 +166,10 @@ def _table_2(compared: list[Compared]) -> Table:
 def _table_1(compared: list[Compared]) -> Table:
     return Table(
         name="table_1",
-        title=f"Table 1: the same budget; errors of the second half over {len(compared[0].results)} tests",
+        title=f"Table 1: the same budget; mean errors of the second half over {len(compared[0].results)} tests",
         columns=[
             Column(name="method"),
-            *(Column(name=f"mean error along {axis}", unit="m", compared=True, digits=2) for axis in "xyz"),
+            *(Column(name=f"along {axis}", unit="m", compared=True, digits=2) for axis in "xyz"),
             Column(name="mean error", unit="m", compared=True, digits=2),
             Column(name="evaluations a step"),
         ],
