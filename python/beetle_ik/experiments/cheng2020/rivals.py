@@ -18,6 +18,7 @@ from ...report import (
     draw_error,
     draw_velocities,
     drawing,
+    number,
 )
 from ..experiment import Context
 from .comparison import Compared
@@ -171,18 +172,19 @@ def _table_1(compared: list[Compared]) -> Table:
             Column(name="method"),
             *(Column(name=f"along {axis}", unit="m", compared=True, digits=2) for axis in "xyz"),
             Column(name="mean error", unit="m", compared=True, digits=2),
-            Column(name="evaluations a step"),
         ],
         rows=[
             [
                 one.name,
                 *((Printed.NOT_IN_COPY, error) for error in one.axis_errors),
                 (one.method.printed_level, one.error),
-                one.evaluations,
             ]
             for one in compared
         ],
-        caption="The levels are those of section IV-A.4a; the cells of the table itself are missing in our copy.",
+        caption=(
+            "The levels are those of section IV-A.4a; the cells of the table itself are missing in our copy. "
+            f"Evaluations a step: {', '.join(f'{one.name} {number(round(one.evaluations.mean))}' for one in compared)}."
+        ),
     )
 
 

@@ -96,7 +96,7 @@ def search_box(context: Context, whole: list[Compared]) -> tuple[Section, list[C
             name="search_box",
             title="Evaluations a step until every step is within 1 mm",
             drawing=_draw_boxes(costs),
-            caption="On the left of a panel: cheaper. The beetle's lead is there in the whole box only.",
+            caption="Further left is cheaper. The smaller the box, the smaller the beetle's lead.",
         ),
         _table(costs),
         _TEXT_MODEL,
