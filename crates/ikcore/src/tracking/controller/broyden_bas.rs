@@ -18,6 +18,9 @@ const SURPRISING: f64 = 1.0;
 /// Steps are believed from this many noise levels on.
 const ABOVE_NOISE: f64 = 3.0;
 
+/// Steps in a row that came no nearer, before antennae are put out again: they shake the tool.
+const FAILED_STEPS: usize = 2;
+
 /// What the controller remembers.
 #[derive(Debug)]
 pub(super) struct Memory {
@@ -32,8 +35,9 @@ pub(super) struct Memory {
     purpose: Purpose,
     next: Next,
     damping: f64,
-    /// Steps in a row that left more than half of the error.
+    /// Steps in a row that left more than half of the error, and steps in a row that came no nearer at all.
     slow: usize,
+    failed: usize,
     /// No step was accepted since antennae were out.
     fresh: bool,
     noise: Noise,
@@ -85,6 +89,7 @@ impl Memory {
             next: Next::Antenna { joint: 0 },
             damping: LEAST_DAMPING,
             slow: 0,
+            failed: 0,
             fresh: false,
             noise: Noise::default(),
             due: 0,
@@ -147,7 +152,7 @@ impl Memory {
     }
 
     fn antennae_are_out(&mut self) {
-        (self.next, self.slow, self.fresh) = (Next::Step, 0, true);
+        (self.next, self.slow, self.failed, self.fresh) = (Next::Step, 0, 0, true);
     }
 
     fn step(&mut self, tick: Tick<'_>) -> Purpose {
@@ -231,7 +236,7 @@ impl Memory {
             self.q.copy_from_slice(&self.sent);
             self.position = position;
             self.damping = (self.damping * 0.1).max(LEAST_DAMPING);
-            self.fresh = false;
+            (self.fresh, self.failed) = (false, 0);
             self.slow = if after > 0.5 * before && !noisy { self.slow + 1 } else { 0 };
             if self.slow >= SLOW_STEPS {
                 self.next = Next::Stand;
@@ -241,8 +246,12 @@ impl Memory {
         if noisy {
             return Verdict::TickOver;
         }
+        self.failed += 1;
         if !self.fresh {
-            self.next = Next::Stand;
+            // The first failure has taught the Jacobian something, and may have been noise.
+            if self.failed >= FAILED_STEPS {
+                self.next = Next::Stand;
+            }
             return Verdict::GoOn;
         }
         self.damping = (self.damping * 10.0).max(FIRST_DAMPING);
