@@ -125,5 +125,5 @@ fn theorem_1_holds_for_the_algorithm_of_its_proof_alone() {
         (1..=5000).filter(|i| run.h(*i) > run.h(i - 1)).count()
     };
     assert_eq!(rises(Accept::Improving), 0);
-    assert!(rises(Accept::Always) > 1000, "{}", rises(Accept::Always));
+    assert!(rises(Accept::Always) > 100, "{}", rises(Accept::Always));
 }

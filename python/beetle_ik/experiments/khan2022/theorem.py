@@ -38,7 +38,7 @@ def theorem(context: Context) -> tuple[Section, list[Claim]]:
         "always: eq. (14), (15)": bik.ZNNBAS(gain=10.0, antenna_length=0.1, delay_steps=10),
         "improving: the proof": bik.ZNNBAS(gain=10.0, antenna_length=0.1, delay_steps=10, accept="improving"),
     }
-    point = bik.paths.from_samples([0.0, _STILL], [_POINT, _POINT])
+    point = bik.paths.from_function(lambda _: _POINT, _STILL)
     rows, still = [], {}
     for name in context.each("khan2022: Theorem 1", list(variants)):
         still[name] = follow(point, variants[name], seed=context.seed)
@@ -50,7 +50,7 @@ def theorem(context: Context) -> tuple[Section, list[Claim]]:
         [
             _TEXT,
             Figure(
-                name="theorem_1",
+                name="theorem_1_still",
                 title="The objective while the target stands still",
                 drawing=_draw(still),
                 caption="From home to the middle of the M, published antenna; the first second on the right.",
