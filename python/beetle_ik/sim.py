@@ -154,7 +154,7 @@ class MujocoPlant:
         if scene.ngeom >= scene.maxgeom:
             return
         sphere = self._mujoco.mjtGeom.mjGEOM_SPHERE
-        size, turn = np.full(3, 0.006), np.eye(3).ravel()
+        size, turn = np.full(3, 0.008), np.eye(3).ravel()
         self._mujoco.mjv_initGeom(scene.geoms[scene.ngeom], sphere, size, point, turn, np.array(colour, np.float32))
         scene.ngeom += 1
 
@@ -203,6 +203,7 @@ def _description(robot: Robot, stiffness: float, mass: float, gravity: float) ->
     SubElement(root, "option", timestep=str(_TIMESTEP), gravity=f"0 0 {-gravity}", integrator="implicitfast")
     visual = SubElement(root, "visual")
     SubElement(visual, "global", offwidth="1920", offheight="1080")
+    SubElement(visual, "map", znear="0.02", zfar="12")
     SubElement(visual, "headlight", ambient="0.45 0.45 0.45", diffuse="0.5 0.5 0.5")
     _add_scene(root)
     body = _add_world(root, anchors[0])

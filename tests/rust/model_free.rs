@@ -138,7 +138,7 @@ fn late_plant(late: usize) -> impl Plant {
 
 #[test]
 fn a_late_sensor_costs_measurements_and_no_accuracy() {
-    let broyden = BroydenBas { sensor_delay: 1, ..BroydenBas::default() };
+    let broyden = BroydenBas { sensor_delay: 1, max_evaluations_per_step: 40, ..BroydenBas::default() };
     let record =
         on_circle(&mut late_plant(1), &ModelFreeOptions { controller: Controller::BroydenBas(broyden), ..options(0) });
     assert_eq!(record.track.status, Status::Solved, "{}", record.message());

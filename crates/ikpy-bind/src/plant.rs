@@ -7,7 +7,7 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::PyException;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyList, PyListMethods, PyTuple};
 
 use crate::convert::{array, count, shape_text, summary, vector};
 use crate::error::{invalid, raise};
@@ -141,6 +141,11 @@ impl Plant for PythonPlant<'_> {
 fn position(answer: &Bound<'_, PyAny>) -> Result<[f64; 3], Fault> {
     if let Ok(tuple) = answer.cast_exact::<PyTuple>()
         && let Ok((x, y, z)) = tuple.extract()
+    {
+        return Ok([x, y, z]);
+    }
+    if let Ok(list) = answer.cast_exact::<PyList>()
+        && let Ok((x, y, z)) = list.to_tuple().extract()
     {
         return Ok([x, y, z]);
     }

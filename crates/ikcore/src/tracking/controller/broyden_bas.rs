@@ -3,7 +3,8 @@
 //! A sensor may be noisy, and now and then wrong altogether, so a step that came out quite otherwise than predicted is sent
 //! again before it is believed. If the second measurement agrees with the first, the Jacobian is to blame: it learns, and if
 //! that does not help antennae are put out again. If it agrees with the prediction, the first was an outlier. If it
-//! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there.
+//! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there. How
+//! noisy the sensor is to begin with, three measurements of the start tell.
 
 use super::{Tick, Verdict, distance};
 use crate::math::box_step::ROWS;
@@ -50,6 +51,10 @@ pub(super) struct Memory {
 /// What a command is for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
+    Repeat {
+        first: [f64; 3],
+        second: Option<[f64; 3]>,
+    },
     Stand,
     Antenna {
         joint: usize,
@@ -64,6 +69,11 @@ enum Purpose {
 /// What to do next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Next {
+    /// Measure at the start again, which was at `first` before, and then at `second` (m).
+    Repeat {
+        first: [f64; 3],
+        second: Option<[f64; 3]>,
+    },
     /// Measure at the accepted configuration, then put out antennae.
     Stand,
     /// Put out the antenna of this joint, if there is one, then that of the next.
@@ -99,6 +109,7 @@ impl Memory {
 
     pub fn begin(&mut self, position: [f64; 3]) {
         self.position = position;
+        self.next = Next::Repeat { first: position, second: None };
     }
 
     pub fn accepted(&self) -> &[f64] {
@@ -118,6 +129,7 @@ impl Memory {
         self.return_to_box(tick);
         self.sent.copy_from_slice(&self.q);
         self.purpose = match self.next {
+            Next::Repeat { first, second } => Purpose::Repeat { first, second },
             Next::Stand => Purpose::Stand,
             Next::Antenna { joint } => self.put_out_antenna(joint, tick),
             Next::Step => self.step(tick),
@@ -158,7 +170,10 @@ impl Memory {
     fn step(&mut self, tick: Tick<'_>) -> Purpose {
         let residual = rows(self.position, tick.target);
         let bounds = [tick.bounds.lower(), tick.bounds.upper()];
-        self.jacobian.step(&residual, self.damping, &self.q, bounds, &mut self.sent);
+        // What noise has left of a column in the dark must not be taken for a way to move.
+        let doubt = self.noise.level() / self.options.antenna_length;
+        let damping = self.damping + doubt * doubt / self.jacobian.size(self.q.len()).max(f64::MIN_POSITIVE);
+        self.jacobian.step(&residual, damping, &self.q, bounds, &mut self.sent);
         Purpose::Step
     }
 
@@ -177,6 +192,14 @@ impl Memory {
     /// The answer to the last command was `position`.
     fn learn(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
         let verdict = match self.purpose {
+            Purpose::Repeat { first, second: None } => {
+                self.next = Next::Repeat { first, second: Some(position) };
+                Verdict::GoOn
+            }
+            Purpose::Repeat { first, second: Some(second) } => {
+                self.know_start([first, second, position]);
+                Verdict::GoOn
+            }
             Purpose::Stand => {
                 (self.position, self.next) = (position, Next::Antenna { joint: 0 });
                 Verdict::GoOn
@@ -191,6 +214,15 @@ impl Memory {
         let near_enough = self.tolerance.max(2.0 * self.noise.level());
         let arrived = self.next == Next::Step && distance(self.position, tick.target) <= near_enough;
         if arrived { Verdict::TickOver } else { verdict }
+    }
+
+    /// Where the start is, and how noisy the sensor: one of the three measurements may be an outlier.
+    fn know_start(&mut self, [a, b, c]: [[f64; 3]; 3]) {
+        self.position = std::array::from_fn(|k| median(a[k], b[k], c[k]));
+        let nearest = distance(a, b).min(distance(b, c)).min(distance(a, c));
+        self.noise.note(nearest);
+        self.noise.note(nearest);
+        self.next = Next::Antenna { joint: 0 };
     }
 
     fn feel(&mut self, joint: usize, position: [f64; 3]) {
@@ -281,7 +313,7 @@ impl Noise {
     /// The noise of one measurement (m); zero until there is evidence.
     fn level(&self) -> f64 {
         let [a, b, c] = self.repeats;
-        a.max(b).min(a.min(b).max(c)) * std::f64::consts::FRAC_1_SQRT_2
+        median(a, b, c) * std::f64::consts::FRAC_1_SQRT_2
     }
 
     /// How much of a surprise to learn from a step that moves the tip by `motion` (m).
@@ -289,6 +321,10 @@ impl Noise {
         let noise = ABOVE_NOISE * self.level();
         if noise == 0.0 { 1.0 } else { motion * motion / (motion * motion + noise * noise) }
     }
+}
+
+fn median(a: f64, b: f64, c: f64) -> f64 {
+    a.max(b).min(a.min(b).max(c))
 }
 
 /// a - b in the rows of a task.
