@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 _TIMESTEP = 1e-3  # s, of the simulation
-_RADIUS = 0.045  # m, of the rods
+_RADIUS = 0.035  # m, of the rods
 _SHORTEST = 1e-3  # m: a rod is no shorter
 _SAME = 1e-9  # m and rad: how exactly the simulated arm must stand where the robot does
 _COLOURS = ("0.90 0.62 0.00 1", "0.75 0.75 0.78 1")
@@ -125,7 +125,8 @@ class MujocoPlant:
         *,
         width: int = 640,
         height: int = 480,
-        azimuth: float = 140.0,
+        azimuth: float = -40.0,
+        elevation: float = -35.0,
         trail: ArrayLike = (),
         target: ArrayLike = (),
     ) -> NDArray[np.uint8]:
@@ -134,14 +135,16 @@ class MujocoPlant:
         Args:
             width: pixels.
             height: pixels.
-            azimuth: from where to look (degrees about the vertical).
+            azimuth: direction to look in (degrees about the vertical).
+            elevation: of that direction (degrees); negative looks down.
             trail: points (k, 3) where the tip was, drawn in blue.
             target: points (k, 3) of the path it follows, drawn in red.
         """
         mujoco = self._mujoco
         camera = mujoco.MjvCamera()
-        camera.azimuth, camera.elevation, camera.distance = azimuth, -15.0, 2.4
-        camera.lookat[:] = (0.1, 0.1, 0.6)
+        camera.azimuth, camera.elevation = azimuth, elevation
+        reach = np.linalg.norm(self._model.body_pos, axis=1).sum() + np.linalg.norm(self._model.site_pos[0])
+        camera.distance, camera.lookat[:] = 1.5 * reach, self._data.xpos[1:].mean(axis=0)
         with mujoco.Renderer(self._model, height, width) as renderer:
             renderer.update_scene(self._data, camera)
             for points, colour in ((target, (0.84, 0.37, 0.0, 1.0)), (trail, (0.0, 0.45, 0.7, 1.0))):
@@ -227,7 +230,9 @@ def _description(robot: Robot, stiffness: float, mass: float, gravity: float) ->
     return tostring(root, encoding="unicode")
 
 
-def _joints(robot: Robot) -> tuple[list[str], list[NDArray[np.float64]], list[NDArray[np.float64]], NDArray[np.float64]]:
+def _joints(
+    robot: Robot,
+) -> tuple[list[str], list[NDArray[np.float64]], list[NDArray[np.float64]], NDArray[np.float64]]:
     """Kinds, axes and points on them, and the tip, at q = 0: from the Jacobian, which knows of no format of files."""
     zero = np.zeros(robot.dof)
     jacobian, tip = robot.jacobian(zero), robot.fk(zero)[:3, 3]

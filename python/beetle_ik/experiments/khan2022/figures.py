@@ -236,4 +236,5 @@ def _draw_stars() -> Drawing:
         for axes, (name, points) in zip(figure.subplots(1, 2), curves, strict=True):
             axes.plot(points[:, 1], points[:, 2], color=BLUE)
             axes.set(title=name, xlabel="y [m]", ylabel="z [m]", aspect="equal")
+            axes.locator_params(axis="x", nbins=3)
     return figure

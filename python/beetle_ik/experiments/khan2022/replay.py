@@ -37,7 +37,9 @@ with a noise of 0.05 mm on each axis: after a few ticks for its first antennae i
 
 def replay(context: Context) -> tuple[Section, list[Claim]]:
     """Angles resolved by BAS on the simulated arm; then an arm whose model is wrong, with a model and without."""
-    resolved = bik.track(IIWA, _CIRCLE, _ON_CIRCLE, dt=_DT, solver=bik.BAS(), position_tolerance=1.7e-5, seed=context.seed)
+    resolved = bik.track(
+        IIWA, _CIRCLE, _ON_CIRCLE, dt=_DT, solver=bik.BAS(), position_tolerance=1.7e-5, seed=context.seed
+    )
     source = "Cheng et al. 2020, section IV-B, Figure 9"
     statement = "The path read back from the arm is a circle as expected."
     try:

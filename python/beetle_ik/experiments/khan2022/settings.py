@@ -94,6 +94,4 @@ def follow(
 ) -> Run:
     """From home along `path` on the exact arm: it is its own plant, and the controller knows nothing of it."""
     plant = bik.KinematicPlant(IIWA)
-    return Run(
-        result=bik.track_model_free(plant, path, HOME, dt=dt, controller=controller, limits=limits, seed=seed)
-    )
+    return Run(result=bik.track_model_free(plant, path, HOME, dt=dt, controller=controller, limits=limits, seed=seed))
