@@ -100,7 +100,7 @@ def sensitivity(context: Context) -> tuple[Section, list[Claim]]:
             source="Remark 1",
             measured=f"rms error {number(min(factors), 2)} to {number(max(factors), 2)} times v/(k c1) in {len(points)} settings "
             f"(held against {number(_LOW / _SLACK, 2)} to {number(_HIGH * _SLACK, 2)})",
-            holds=_LOW / _SLACK <= min(factors) and max(factors) <= _HIGH * _SLACK,
+            holds=min(factors) >= _LOW / _SLACK and max(factors) <= _HIGH * _SLACK,
             section=TITLE,
         ),
     ]

@@ -59,7 +59,7 @@ class Run:
 
     @property
     def time(self) -> Array:
-        """s."""
+        """S."""
         return self.result.time
 
     @cached_property
