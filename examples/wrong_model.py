@@ -1,8 +1,9 @@
 """An arm that is not built as it was drawn: with the model of the drawing, and without any model.
 
-The simulated iiwa (MuJoCo: position servos, gravity, a sensor with 0.05 mm of noise on each axis) has a link that is 2 cm longer
-than in the drawing, and joints that are 2 degrees off. Angles computed from the drawing miss the circle by centimetres.
-`BroydenBAS` knows no drawing: it sends one command a tick, measures the tip, and stays within a millimetre.
+The simulated iiwa (MuJoCo: position servos, gravity, a sensor with 0.05 mm of noise on each axis) has a link that is 2
+cm longer than in the drawing, and joints that are 2 degrees off. Angles computed from the drawing miss the circle by
+centimetres. `BroydenBAS` knows no drawing: it sends one command a tick, measures the tip, and stays within a
+millimetre.
 
     pip install 'beetle-ik[plot,sim]'
     python examples/wrong_model.py OUT          # writes OUT/wrong_model.gif and OUT/wrong_model.png
@@ -43,6 +44,7 @@ class Filmed:
     """A plant that is filmed while it is moved."""
 
     def __init__(self, plant: MujocoPlant) -> None:
+        """At rest at the start."""
         plant.reset(START)
         self.plant = plant
         self.tips = [plant.tip]
@@ -65,6 +67,7 @@ class Filmed:
 
 
 def main() -> None:
+    """Follow the circle twice, and write what it looks like."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=Path)
     out: Path = parser.parse_args().out

@@ -1,18 +1,20 @@
 """A simulated arm to try controllers on: MuJoCo, position servos, gravity, and a sensor at the tip.
 
-It needs the extra `sim`. Only the kinematics is the robot's own: descriptions without masses or meshes will do, since
-every link is a rod of a stated mass.
+It needs the extra `sim`. Only the kinematics is the robot's own: descriptions without masses or meshes will
+do, since every link is a rod of a stated mass.
 
     from beetle_ik.sim import MujocoPlant
 
     plant = MujocoPlant.from_urdf("iiwa14.urdf", noise=1e-4)
-    result = bik.track_model_free(plant, path, start, dt=plant.dt, controller=bik.BroydenBAS(max_evaluations_per_step=1))
+    controller = bik.BroydenBAS(max_evaluations_per_step=1)
+    result = bik.track_model_free(plant, path, start, dt=plant.dt, controller=controller)
 """
 
 from __future__ import annotations
 
 import os
 import sys
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, tostring
 
@@ -35,8 +37,8 @@ _COLOURS = ("0.90 0.62 0.00 1", "0.75 0.75 0.78 1")
 class MujocoPlant:
     """An arm in MuJoCo that is moved by position servos, and a sensor that says where its tip is.
 
-    A servo gives way under gravity, so the arm does not come to rest where it is sent: that, besides errors of its model,
-    is what a controller without a model has to get along with.
+    A servo gives way under gravity, so the arm does not come to rest where it is sent: that, besides errors of its
+    model, is what a controller without a model has to get along with.
 
     Args:
         robot: the arm as it is, which need not be the arm as it was drawn.
@@ -63,6 +65,7 @@ class MujocoPlant:
         noise: float = 0.0,
         seed: int = 0,
     ) -> None:
+        """At rest at zero, or at the limit nearest to it."""
         for name, value in (("dt", dt), ("stiffness", stiffness), ("mass", mass)):
             if not (np.isfinite(value) and value > 0.0):
                 raise InvalidInputError(f"{name} must be positive and finite, got {value}")
@@ -179,7 +182,7 @@ class MujocoPlant:
             self._mujoco.mj_kinematics(self._model, self._data)
             if not np.allclose(self.tip, self.robot.fk(q)[:3, 3], rtol=0.0, atol=_SAME):
                 raise InvalidInputError(
-                    f"robot '{self.robot.name}' has joints that move several elements, which this plant does not simulate"
+                    f"robot '{self.robot.name}' has joints that move several elements, which is not simulated"
                 )
         self.reset(np.clip(np.zeros(self.robot.dof), self.robot.lower, self.robot.upper))
 
@@ -189,11 +192,9 @@ def _mujoco() -> ModuleType:
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         os.environ.setdefault("MUJOCO_GL", "egl")
     try:
-        import mujoco
+        return import_module("mujoco")
     except ImportError as error:
         raise BeetleIkError("simulation needs the extra 'sim': pip install 'beetle-ik[sim]'") from error
-    module: ModuleType = mujoco
-    return module
 
 
 def _description(robot: Robot, stiffness: float, mass: float, gravity: float) -> str:

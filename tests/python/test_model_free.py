@@ -189,13 +189,14 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
         (
             lambda: track(limits=bik.Limits(acceleration=1.0)),
             bik.UnsupportedLimit,
-            "track_model_free cannot honour acceleration limits: a controller keeps position and velocity limits; leave it out",
+            "track_model_free cannot honour acceleration limits: a controller keeps position and velocity limits; "
+            "leave it out",
         ),
         (
             lambda: bik.ZNNBAS().session(START, dt=0.1, limits=bik.Limits(velocity=lambda t: t)),
             bik.UnsupportedLimit,
-            "session cannot honour callable velocity limits: it has no end to be sampled to; give numbers or a Sinusoid, or "
-            "use track_model_free",
+            "session cannot honour callable velocity limits: it has no end to be sampled to; give numbers or a "
+            "Sinusoid, or use track_model_free",
         ),
         (lambda: track(dt=0.0), bik.InvalidInputError, "dt must be positive and finite, got 0"),
         (lambda: track(start=[]), bik.InvalidInputError, "start: expected 1 to 32 joints, got 0"),
@@ -205,9 +206,9 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
             "start of robot 'iiwa14': expected 7 joints, got 1",
         ),
         (
-            lambda: track(controller=bik.BAS()),
+            lambda: track(controller="znnbas"),
             bik.InvalidInputError,
-            "controller must be BroydenBAS or ZNNBAS, got BAS(variant='star', c1=3, c2=1, explorations=50, max_passe...",
+            "controller must be BroydenBAS or ZNNBAS, got 'znnbas'",
         ),
         (
             lambda: track(3),

@@ -1,7 +1,7 @@
 """The simulated arm. Skipped where MuJoCo is not installed."""
 
-import builtins
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -17,26 +17,21 @@ CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
 
 SLIDER = """
 <robot name="slider">
-  <link name="base"/><link name="rail"><visual><geometry><mesh filename="package://nowhere/rail.stl"/></geometry></visual></link>
+  <link name="base"/>
+  <link name="rail"><visual><geometry><mesh filename="package://nowhere/rail.stl"/></geometry></visual></link>
   <link name="tip"/>
-  <joint name="slide" type="prismatic"><parent link="base"/><child link="rail"/><origin xyz="0 0 0.5"/><axis xyz="1 0 0"/>
-    <limit lower="-1" upper="1" velocity="1" effort="1"/></joint>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="rail"/><origin xyz="0 0 0.5"/>
+    <axis xyz="1 0 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint>
   <joint name="swing" type="revolute"><parent link="rail"/><child link="tip"/><origin xyz="0 0 0.3" rpy="0 0.4 0"/>
     <axis xyz="0 1 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint>
-  <link name="end"/><joint name="flange" type="fixed"><parent link="tip"/><child link="end"/><origin xyz="0.2 0 0.1"/></joint>
+  <link name="end"/>
+  <joint name="flange" type="fixed"><parent link="tip"/><child link="end"/><origin xyz="0.2 0 0.1"/></joint>
 </robot>
 """
 
 
 def test_without_mujoco_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    real = builtins.__import__
-
-    def without(name: str, *rest: Any) -> Any:
-        if name == "mujoco":
-            raise ImportError(name)
-        return real(name, *rest)
-
-    monkeypatch.setattr(builtins, "__import__", without)
+    monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(bik.BeetleIkError) as raised:
         MujocoPlant(ARM)
     assert str(raised.value) == "simulation needs the extra 'sim': pip install 'beetle-ik[sim]'"

@@ -8,13 +8,13 @@ from .sensitivity import sensitivity
 from .theorem import theorem
 
 _SUMMARY = """
-ZNNBAS is what the paper says it is: a controller that sees one measured position a tick and no model, and it
-does bring the tool of an iiwa onto both of the paper's paths. But not on the paper's terms. The M passes points that this arm cannot
-reach, so its runs cannot have kept the arm's limits; the star as printed is no star; the published error of 10⁻⁵ is reached with
-the antenna of eq. (16) and not with the constant one of the listing; the gain of the listing has the wrong sign for the
-paper's own equation; Theorem 1 holds for another algorithm than the one that is given; and the antennae shake the
-tool by centimetres, because the measured error is that of a point where the arm never stands. `BroydenBAS`, which
-takes the same measurements as secants instead of signs, tracks to nanometres.
+ZNNBAS is what the paper says it is: a controller that sees one measured position a tick and no model, and it does
+bring the tool of an iiwa onto both of the paper's paths. But not on the paper's terms. The M passes points that this
+arm cannot reach, so its runs cannot have kept the arm's limits; the star as printed is no star; the published error
+of 10⁻⁵ is reached with the antenna of eq. (16) and not with the constant one of the listing; the gain of the listing
+has the wrong sign for the paper's own equation; Theorem 1 holds for another algorithm than the one that is given; and
+the antennae shake the tool by centimetres, because the measured error is that of a point where the arm never stands.
+`BroydenBAS`, which takes the same measurements as secants instead of signs, tracks to nanometres.
 """
 
 

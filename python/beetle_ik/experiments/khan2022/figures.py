@@ -51,19 +51,20 @@ _EVERY = 50  # rows of 1 ms between points that are drawn
 
 _TEXT = """
 All runs start in the home position, with the arm erect, and make exactly one measurement a millisecond: 50,000 in 50
-s. Two errors have to be told apart. The controller sends the arm to θ′ = θ + λb, a random antenna away from its state θ,
-and measures there; the arm never stands at θ. The paper's 10⁻⁵ can only be h(θ).
+s. Two errors have to be told apart. The controller sends the arm to θ′ = θ + λb, a random antenna away from its state
+θ, and measures there; the arm never stands at θ. The paper's 10⁻⁵ can only be h(θ).
 """
 _TEXT_LIMITS = """
-**The M cannot be drawn within the limits of the arm.** Its vertex (0.1, 0.2, 0.5) is {residual} m out of reach: with joints 4
-and 6 within 120 degrees the tool comes no nearer to the shoulder. Most of the first stroke, which takes the first 12.5
-s, lies beyond. So a run that reaches the path in under ten seconds, as the paper's does, cannot have kept the
-limits of eq. (7).
+**The M cannot be drawn within the limits of the arm.** Its vertex (0.1, 0.2, 0.5) is {residual} m out of reach: with
+joints 4 and 6 within 120 degrees the tool comes no nearer to the shoulder. Most of the first stroke, which takes the
+first 12.5 s, lies beyond. So a run that reaches the path in under ten seconds, as the paper's does, cannot have kept
+the limits of eq. (7).
 """
 _TEXT_STAR = """
-Nor is the star a star as printed. Eq. (20) multiplies its terms by a_y, b_y, a_z and b_z; with a = (0, 1, 0) and b = (0, 0, 1) two of
-the four vanish, and what is left is the Lissajous curve on the left. We take the hypotrochoid that must be meant. R, r
-and d are not stated: we use 0.10, 0.06 and 0.10 m without limits, and 0.04, 0.024 and 0.04 m within them.
+Nor is the star a star as printed. Eq. (20) multiplies its terms by a_y, b_y, a_z and b_z; with a = (0, 1, 0) and b =
+(0, 0, 1) two of the four vanish, and what is left is the Lissajous curve on the left. We take the hypotrochoid that
+must be meant. R, r and d are not stated: we use 0.10, 0.06 and 0.10 m without limits, and 0.04, 0.024 and 0.04 m
+within them.
 """
 
 
@@ -181,9 +182,10 @@ def _claims(late: dict[Any, list[float]], arrival: dict[Any, list[float]], rows:
         Claim.not_reproducible(
             "It optimises “without showing any spikes of noise or undesirable behavior of manipulator”.",
             source="Section 4",
-            measured=f"with the published constants the commanded tool is {number(100.0 * shaking, 2)} cm (rms) off its path",
-            reason="every command is a random antenna away from the state whose error is reported, and λ = 0.1 rad moves the "
-            "tool by centimetres a millisecond",
+            measured="with the published constants the commanded tool is "
+            f"{number(100.0 * shaking, 2)} cm (rms) off its path",
+            reason="every command is a random antenna away from the state whose error is reported, and λ = 0.1 rad "
+            "moves the tool by centimetres a millisecond",
             section=TITLE,
         ),
     ]

@@ -26,12 +26,13 @@ _CIRCULAR = 5e-3  # m: the most by which what counts as the circle may be off
 _BAND = 1e-3  # m
 
 _TEXT = """
-Cheng et al. sent the angles that BAS had resolved to a real iiwa, and read the tracked circle back from it. We send them to an iiwa in
-MuJoCo: rods of 20 kg in all, position servos that give way under gravity, 0.2 s a command.
+Cheng et al. sent the angles that BAS had resolved to a real iiwa, and read the tracked circle back from it. We send
+them to an iiwa in MuJoCo: rods of 20 kg in all, position servos that give way under gravity, 0.2 s a command.
 
-Then we build the arm wrong: its third link 2 cm longer than in the drawing, its joints off by 2 degrees in turn. Angles that were computed with the
-model of the drawing miss by centimetres. `BroydenBAS`, which has no model, sends one command a tick and measures its tip
-with a noise of 0.05 mm on each axis: after a few ticks for its first antennae it is below a millimetre.
+Then we build the arm wrong: its third link 2 cm longer than in the drawing, its joints off by 2 degrees in turn.
+Angles that were computed with the model of the drawing miss by centimetres. `BroydenBAS`, which has no model, sends
+one command a tick and measures its tip with a noise of 0.05 mm on each axis: after a few ticks for its first antennae
+it is below a millimetre.
 """
 
 
@@ -74,7 +75,7 @@ def replay(context: Context) -> tuple[Section, list[Claim]]:
         Claim.checked(
             statement,
             source=source,
-            measured=f"off by {number(1e3 * off, 2)} mm at most ({number(1e3 * _CIRCULAR, 2)} mm), from servos that give way and lag",
+            measured=f"off by {number(1e3 * off, 2)} mm at most ({number(1e3 * _CIRCULAR, 2)} mm); servos give way",
             holds=off <= _CIRCULAR,
             reading="a simulated iiwa in place of the real one",
             section=TITLE,
@@ -82,8 +83,8 @@ def replay(context: Context) -> tuple[Section, list[Claim]]:
         Claim.checked(
             "A controller without a model is immune to errors of the model.",
             source="Khan et al. 2022, abstract",
-            measured=f"{number(100.0 * missed, 2)} cm off with the wrong model (over 1 cm), {number(1e3 * kept, 2)} mm without one "
-            f"({number(1e3 * _BAND, 2)} mm)",
+            measured=f"{number(100.0 * missed, 2)} cm off with the wrong model (over 1 cm), "
+            f"{number(1e3 * kept, 2)} mm without one ({number(1e3 * _BAND, 2)} mm)",
             holds=missed > 1e-2 and kept <= _BAND,
             reading="by `BroydenBAS`; servos cannot follow the random antennae of ZNNBAS",
             section=TITLE,

@@ -27,15 +27,15 @@ _LOW, _HIGH = 3.2, 4.0  # of rms error over v / (k c1)
 _SLACK = 1.25
 
 _TEXT = """
-The paper calls α “the core hyper-parameter to determine the performance of the algorithm”. It hardly matters, as long as
-it stays below 1/k: over a longer delay the state itself has drifted, and the drift is taken for an antenna. Read as ten
-seconds, the published α = 10 does not converge at all: it must be ten ticks. Nor does the gain of the listing, −10,
-in eq. (14) as printed: it is that of a Simulink block that takes in the minus sign.
+The paper calls α “the core hyper-parameter to determine the performance of the algorithm”. It hardly matters, as long
+as it stays below 1/k: over a longer delay the state itself has drifted, and the drift is taken for an antenna. Read
+as ten seconds, the published α = 10 does not converge at all: it must be ten ticks. Nor does the gain of the listing,
+-10, in eq. (14) as printed: it is that of a Simulink block that takes in the minus sign.
 """
 _TEXT_LAW = """
-What does matter is the speed of the target. With the antenna of eq. (16) the error in the steady state is proportional to v/(k c1),
-over all settings that are stable (k times the time step at most 0.3, c1 at most 1): between {low} and {high} times that here. A target that stands still is
-reached to rounding.
+What does matter is the speed of the target. With the antenna of eq. (16) the error in the steady state is
+proportional to v/(k c1), over all settings that are stable (k times the time step at most 0.3, c1 at most 1): between
+{low} and {high} times that here. A target that stands still is reached to rounding.
 """
 
 
@@ -81,14 +81,14 @@ def sensitivity(context: Context) -> tuple[Section, list[Claim]]:
         Claim.checked(
             "The delay α determines the performance.",
             source="Section 4, on limitations",
-            measured=f"for delays up to 1/k, h is at most {number(harmless / standard, 2)} times that of the published delay "
-            f"(1.5); for 1000 ticks, 10/k, it is {number(by_delay[delays.index(1000)] / standard, 2)} times that",
+            measured=f"for delays up to 1/k, h is at most {number(harmless / standard, 2)} times that of the published "
+            f"delay (1.5); for 1000 ticks, 10/k, it is {number(by_delay[delays.index(1000)] / standard, 2)} times that",
             holds=harmless <= 1.5 * standard and by_delay[delays.index(1000)] > 3.0 * standard,
             reading="α is counted in ticks; below 1/k it hardly matters, above it ruins the run",
             section=TITLE,
         ),
         Claim.checked(
-            "The gain is k = −10.",
+            "The gain is k = -10.",
             source="Algorithm 1, line 5",
             measured=f"in eq. (14) as printed it diverges: h = {number(float(diverged), 2)} m² after 50 s (over 1 m²)",
             holds=bool(diverged > 1.0),
@@ -98,8 +98,8 @@ def sensitivity(context: Context) -> tuple[Section, list[Claim]]:
         Claim.checked(
             "A larger antenna where the error is large, eq. (16), is an improvement.",
             source="Remark 1",
-            measured=f"rms error {number(min(factors), 2)} to {number(max(factors), 2)} times v/(k c1) in {len(points)} settings "
-            f"(held against {number(_LOW / _SLACK, 2)} to {number(_HIGH * _SLACK, 2)})",
+            measured=f"rms error {number(min(factors), 2)} to {number(max(factors), 2)} times v/(k c1) in "
+            f"{len(points)} settings (held against {number(_LOW / _SLACK, 2)} to {number(_HIGH * _SLACK, 2)})",
             holds=min(factors) >= _LOW / _SLACK and max(factors) <= _HIGH * _SLACK,
             section=TITLE,
         ),

@@ -1,7 +1,7 @@
 """What the paper sets, and what we had to choose because it does not.
 
-The paper states the paths, 50 s, lambda = 0.1, k = -10, alpha = 10 and the home position as the start. It does not state the time step,
-the times of the strokes of the M, the radii of the star, or c1.
+The paper states the paths, 50 s, lambda = 0.1, k = -10, alpha = 10 and the home position as the start. It does not
+state the time step, the times of the strokes of the M, the radii of the star, or c1.
 """
 
 from dataclasses import dataclass
