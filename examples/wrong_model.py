@@ -23,8 +23,8 @@ DT = 0.2  # s
 START = np.array([0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.617944106, 0.0])
 CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
 SETTLED = 20  # ticks: what the first antennae and the way to the circle take
-EVERY = 3  # ticks a frame
-SIZE = {"width": 400, "height": 360}
+EVERY = 5  # ticks a frame
+VIEW = {"width": 400, "height": 360, "azimuth": -60.0, "elevation": -50.0, "distance": 1.3, "look_at": (0.2, 0.2, 0.8)}
 
 Array = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ class Filmed:
         """At rest at the start."""
         plant.reset(START)
         self.plant = plant
-        self.tips = [plant.tip]
+        self.tips: list[Array] = []
         self.frames: list[NDArray[np.uint8]] = []
 
     def move(self, q: Array) -> Array:
@@ -56,7 +56,7 @@ class Filmed:
         self.tips.append(self.plant.tip)
         if len(self.tips) % EVERY == 0:
             path = CIRCLE.position(np.linspace(0.0, CIRCLE.duration, 90))
-            self.frames.append(self.plant.picture(trail=self.tips, target=path, **SIZE))
+            self.frames.append(self.plant.picture(trail=self.tips, target=path, **VIEW))
         return measured
 
     @property
@@ -75,7 +75,7 @@ def main() -> None:
     built = iiwa(third_link=0.44, offset=np.radians(2.0))
 
     by_model = Filmed(MujocoPlant(built, dt=DT, noise=5e-5))
-    for q in bik.track(iiwa(), CIRCLE, START, dt=DT).q[1:]:
+    for q in bik.track(iiwa(), CIRCLE, START, dt=DT).q:
         by_model.move(q)
     print(f"with the model of the drawing: {1e3 * by_model.error.max():.1f} mm off at most")
 
@@ -88,7 +88,7 @@ def main() -> None:
     frames = [
         Image.fromarray(np.concatenate(pair, axis=1)) for pair in zip(by_model.frames, without.frames, strict=False)
     ]
-    frames[0].save(out / "wrong_model.gif", save_all=True, append_images=frames[1:], duration=60, loop=0)
+    frames[0].save(out / "wrong_model.gif", save_all=True, append_images=frames[1:], duration=100, loop=0)
     frames[-1].save(out / "wrong_model.png")
     print(f"left with the model, right without: {out / 'wrong_model.gif'}")
 

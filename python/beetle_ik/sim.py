@@ -130,6 +130,8 @@ class MujocoPlant:
         height: int = 480,
         azimuth: float = -40.0,
         elevation: float = -35.0,
+        distance: float | None = None,
+        look_at: ArrayLike | None = None,
         trail: ArrayLike = (),
         target: ArrayLike = (),
     ) -> NDArray[np.uint8]:
@@ -140,6 +142,8 @@ class MujocoPlant:
             height: pixels.
             azimuth: direction to look in (degrees about the vertical).
             elevation: of that direction (degrees); negative looks down.
+            distance: from where to look (m); None: far enough to see all of the arm.
+            look_at: the point in the middle (3,) (m); None: that of the arm.
             trail: points (k, 3) where the tip was, drawn in blue.
             target: points (k, 3) of the path it follows, drawn in red.
         """
@@ -147,7 +151,8 @@ class MujocoPlant:
         camera = mujoco.MjvCamera()
         camera.azimuth, camera.elevation = azimuth, elevation
         reach = np.linalg.norm(self._model.body_pos, axis=1).sum() + np.linalg.norm(self._model.site_pos[0])
-        camera.distance, camera.lookat[:] = 1.5 * reach, self._data.xpos[1:].mean(axis=0)
+        camera.distance = 1.5 * reach if distance is None else distance
+        camera.lookat[:] = self._data.xpos[1:].mean(axis=0) if look_at is None else np.asarray(look_at, dtype=float)
         with mujoco.Renderer(self._model, height, width) as renderer:
             renderer.update_scene(self._data, camera)
             for points, colour in ((target, (0.84, 0.37, 0.0, 1.0)), (trail, (0.0, 0.45, 0.7, 1.0))):
@@ -264,7 +269,7 @@ def _add_scene(root: Element) -> None:
 
 def _add_world(root: Element, first: NDArray[np.float64]) -> Element:
     world = SubElement(root, "worldbody")
-    SubElement(world, "light", pos="1 1 3", dir="-0.3 -0.3 -1", directional="true")
+    SubElement(world, "light", pos="1 1 3", dir="-0.3 -0.3 -1", directional="true", castshadow="false")
     SubElement(world, "geom", type="plane", size="2 2 0.1", material="floor", contype="0", conaffinity="0")
     if np.linalg.norm(first) > _SHORTEST:
         _add_rod(world, first, 1.0, _COLOURS[1])
