@@ -64,12 +64,14 @@ def test_the_classes_of_errors() -> None:
         (
             lambda: solve(solver="BAS"),
             Invalid,
-            "solver must be BAS, BroydenBAS, LevenbergMarquardt or MultiStart, got 'BAS'",
+            "solver must be BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO, "
+            "BroydenBAS, LevenbergMarquardt or MultiStart of one of them, got 'BAS'",
         ),
         (
             lambda: solve(solver=bik.BAS),
             Invalid,
-            "solver must be BAS, BroydenBAS, LevenbergMarquardt or MultiStart, got <class 'beetle_ik.BAS'>",
+            "solver must be BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO, "
+            "BroydenBAS, LevenbergMarquardt or MultiStart of one of them, got <class 'beetle_ik.BAS'>",
         ),
         (lambda: solve(position_tolerance=0.0), Invalid, "position_tolerance must be positive, got 0"),
         (lambda: solve(rotation_tolerance=np.nan), Invalid, "rotation_tolerance must be positive, got NaN"),
@@ -108,7 +110,12 @@ def test_solving(call: Callable[[], object], error: type[Exception], message: st
             Invalid,
             "MultiStart takes a single solver, not another MultiStart",
         ),
-        (lambda: bik.MultiStart(3), Invalid, "solver must be BAS, BroydenBAS, LevenbergMarquardt or MultiStart, got 3"),
+        (
+            lambda: bik.MultiStart(3),
+            Invalid,
+            "solver must be BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO, "
+            "BroydenBAS, LevenbergMarquardt or MultiStart of one of them, got 3",
+        ),
         (lambda: bik.MultiStart(bik.BAS(), max_starts=0), Invalid, "max_starts must be at least 1, got 0"),
         (lambda: bik.Stop(max_evaluations=0), Invalid, "max_evaluations must be at least 1, got 0"),
         (lambda: bik.Stop(max_evaluations=-1), Invalid, "max_evaluations must be zero or more, got -1"),
@@ -137,7 +144,8 @@ def test_solvers_and_budgets(call: Callable[[], object], error: type[Exception],
         (
             lambda: track(solver="bas"),
             Invalid,
-            "solver must be BAS, BroydenBAS, LevenbergMarquardt or MultiStart, got 'bas'",
+            "solver must be BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO, "
+            "BroydenBAS, LevenbergMarquardt or MultiStart of one of them, got 'bas'",
         ),
         (lambda: track(position_tolerance=-1.0), Invalid, "position_tolerance must be positive, got -1"),
         (lambda: track(limit_at="end"), Invalid, "limit_at must be one of 'interval', 'start', got 'end'"),

@@ -15,8 +15,7 @@ use ikcore::problem::Problem;
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
 use ikcore::solver::{
-    Algorithm, AnySolver, Best, DerivativeFree, Evaluator, Halt, LevenbergMarquardt, Monitor, Outcome, Status, Stop,
-    Unattended,
+    Algorithm, AnySolver, Best, DerivativeFree, Evaluator, Halt, Monitor, Outcome, Status, Stop, Unattended,
 };
 use ikcore::task::{Target, Tolerance};
 

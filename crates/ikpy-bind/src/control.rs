@@ -70,12 +70,7 @@ impl PyControlSession {
 
     fn __repr__(&self) -> String {
         let session = self.session();
-        format!(
-            "<ControlSession of {} joints at t = {} s, dt = {} s>",
-            session.q().len(),
-            session.time(),
-            session.dt()
-        )
+        format!("<ControlSession of {} joints at t = {} s, dt = {} s>", session.q().len(), session.time(), session.dt())
     }
 }
 

@@ -255,8 +255,7 @@ fn run(
 ) -> PyResult<(ModelFreeRecord, Option<PyErr>)> {
     if let Ok(plant) = plant.cast::<PyKinematicPlant>() {
         let mut fresh = plant.get().fresh(start)?;
-        let record =
-            plant.py().detach(|| tracking::track_model_free(&mut fresh, reference, start, options, watcher));
+        let record = plant.py().detach(|| tracking::track_model_free(&mut fresh, reference, start, options, watcher));
         return Ok((record.map_err(raise)?, None));
     }
     let mut plant = PythonPlant::new(plant)?;

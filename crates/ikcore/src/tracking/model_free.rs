@@ -111,8 +111,9 @@ fn tick(
 ) -> Result<Result<Step, Fault>> {
     loop {
         let measured = plant.measure(session.command(target)?).and_then(check);
-        let (excess, joint, sent) = session.excess();
-        track.note_excess(excess, joint, sent, session.time() + session.dt());
+        if let Some((excess, joint, sent)) = session.excess() {
+            track.note_excess(excess, joint, sent, session.time() + session.dt());
+        }
         match measured {
             Err(fault) => return Ok(Err(fault)),
             Ok(position) => {

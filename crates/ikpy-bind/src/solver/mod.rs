@@ -25,12 +25,12 @@ use crate::error::invalid;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyBas>()?;
+    module.add_class::<PyBroydenBas>()?;
     module.add_class::<PyBeeColony>()?;
     module.add_class::<PyBeetleSwarm>()?;
     module.add_class::<PyDifferentialEvolution>()?;
     module.add_class::<PyFirefly>()?;
     module.add_class::<PyGenetic>()?;
-    module.add_class::<PyBroydenBas>()?;
     module.add_class::<PyLevenbergMarquardt>()?;
     module.add_class::<PyMultiStart>()?;
     module.add_class::<PyPso>()?;
@@ -42,7 +42,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 /// The names of those that need values alone, for messages.
 const DERIVATIVE_FREE: &str = "BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO";
 /// The names of those that need more.
-const WITH_DERIVATIVES: &str = "BroydenBAS, LevenbergMarquardt";
+const WITH_RESIDUALS: &str = "BroydenBAS, LevenbergMarquardt";
 
 /// Returns from the function with the solver if it is of one of these classes.
 macro_rules! return_if_one_of {
@@ -61,9 +61,7 @@ pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
         return Ok(AnySolver::MultiStart(multi_start.get().0.clone()));
     }
     let got = summary(solver);
-    Err(invalid(format!(
-        "solver must be {DERIVATIVE_FREE}, {WITH_DERIVATIVES} or MultiStart of one of them, got {got}"
-    )))
+    Err(invalid(format!("solver must be {DERIVATIVE_FREE}, {WITH_RESIDUALS} or MultiStart of one of them, got {got}")))
 }
 
 /// A solver argument of a method that knows values alone.

@@ -75,7 +75,7 @@ enum Verdict {
 #[derive(Debug)]
 enum Running {
     BroydenBas(Box<broyden_bas::Memory>),
-    Znnbas(znnbas::Memory),
+    Znnbas(Box<znnbas::Memory>),
 }
 
 impl Running {
