@@ -4,7 +4,8 @@
 use std::time::Duration;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
-use ikcore::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
+use ikcore::math::box_step::ROWS;
+use ikcore::objective::{Bounds, LeastSquares, Linearization, Objective, Residual, Score};
 use ikcore::problem::Problem;
 use ikcore::rng;
 use ikcore::robot::Robot;
@@ -45,6 +46,18 @@ impl Objective for Unsolved<'_> {
     fn evaluate_all(&mut self, xs: &[f64], out: &mut [Score]) {
         self.0.evaluate_all(xs, out);
         out.iter_mut().for_each(|score| score.solved = false);
+    }
+}
+
+impl Residual for Sphere {
+    fn residual(&mut self, x: &[f64], _: &mut [f64; ROWS]) -> Score {
+        self.evaluate(x)
+    }
+}
+
+impl Residual for Unsolved<'_> {
+    fn residual(&mut self, x: &[f64], out: &mut [f64; ROWS]) -> Score {
+        Score { solved: false, ..self.0.residual(x, out) }
     }
 }
 

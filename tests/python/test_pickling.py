@@ -17,6 +17,8 @@ SINUSOIDS = [
 SOLVERS = [
     bik.BAS(),
     bik.BAS(variant="chain", c1=0.3, c2=0.5, explorations=7, max_passes=9),
+    bik.BroydenBAS(),
+    bik.BroydenBAS(antenna_length=0.02, max_evaluations_per_step=3, sensor_delay=1),
     bik.LevenbergMarquardt(),
     bik.LevenbergMarquardt(initial_damping=0.125),
     bik.PSO(),

@@ -9,6 +9,7 @@ pub mod knots;
 pub mod logarithm;
 pub mod polynomial;
 pub mod pose;
+pub mod secant;
 pub mod sincos;
 pub mod singular;
 pub mod so3;

@@ -52,7 +52,7 @@ impl Robot {
         Self::assembled(description, Pose::identity(), Pose::identity())
     }
 
-    fn assembled(description: ChainBuilder, base: Pose, tool: Pose) -> Result<Self> {
+    pub(super) fn assembled(description: ChainBuilder, base: Pose, tool: Pose) -> Result<Self> {
         description.validate()?;
         let chain = Chain::new(&description.elements, &base, &tool);
         Ok(Self { description, base, tool, chain, seed_index: Arc::default() })
@@ -205,6 +205,10 @@ impl Robot {
             qs.extend(ranges.iter().map(|(lower, upper)| rng.uniform_in(*lower, *upper)));
         }
         Ok(qs)
+    }
+
+    pub(super) fn description(&self) -> &ChainBuilder {
+        &self.description
     }
 
     pub(super) fn chain(&self) -> &Chain {

@@ -74,11 +74,13 @@ pub enum Status {
     Invalid = 8,
     /// The target is farther from the base than the arm is long.
     OutOfReach = 9,
+    /// A plant that raised an error, or returned what is no position: the run ended with what was recorded.
+    PlantFailed = 10,
 }
 
 impl Status {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Solved,
         Self::Improved,
         Self::Capped,
@@ -89,6 +91,7 @@ impl Status {
         Self::Lost,
         Self::Invalid,
         Self::OutOfReach,
+        Self::PlantFailed,
     ];
 
     /// The name as Python shows it.
@@ -104,6 +107,7 @@ impl Status {
             Self::Lost => "LOST",
             Self::Invalid => "INVALID",
             Self::OutOfReach => "OUT_OF_REACH",
+            Self::PlantFailed => "PLANT_FAILED",
         }
     }
 
@@ -121,6 +125,7 @@ impl Status {
             }
             Self::OutOfReach => "move the target nearer to the base, or the base nearer to the target",
             Self::Invalid => "on_invalid=\"raise\" says what is wrong",
+            Self::PlantFailed => "mend the plant and run again",
         }
     }
 }

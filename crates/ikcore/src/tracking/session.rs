@@ -1,6 +1,7 @@
 //! One control loop: the accepted configuration, the clock, the box of the tick and the rule that moves within it.
 
 use super::TrackOptions;
+use super::record::Accepted;
 use super::rule::{Found, Running, Tick, TickRule};
 use crate::error::{Result, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
@@ -144,6 +145,11 @@ impl Session {
     fn read(&self, wanted: &Target) -> Result<Target> {
         wanted.validate()?;
         self.task.map_or(Ok(*wanted), |task| task.target(wanted))
+    }
+
+    /// What the last tick has accepted.
+    pub(super) fn accepted(&self) -> Accepted<'_> {
+        Accepted { time: self.time(), q: &self.q, qd: &self.qd, velocity_limit: self.velocity_limit() }
     }
 
     /// The robot that is moved.

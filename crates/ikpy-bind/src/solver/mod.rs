@@ -1,6 +1,7 @@
 //! Solvers, one family a file, budgets and statuses.
 
 mod bas;
+mod broyden_bas;
 mod levenberg_marquardt;
 mod multi_start;
 mod options;
@@ -12,6 +13,7 @@ use ikcore::solver::{Algorithm, AnySolver, DerivativeFree};
 use pyo3::prelude::*;
 
 use bas::PyBas;
+pub use broyden_bas::PyBroydenBas;
 use levenberg_marquardt::PyLevenbergMarquardt;
 use multi_start::PyMultiStart;
 use pso::PyPso;
@@ -23,6 +25,7 @@ use crate::error::invalid;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyBas>()?;
+    module.add_class::<PyBroydenBas>()?;
     module.add_class::<PyBeeColony>()?;
     module.add_class::<PyBeetleSwarm>()?;
     module.add_class::<PyDifferentialEvolution>()?;
@@ -39,7 +42,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 /// The names of those that need values alone, for messages.
 const DERIVATIVE_FREE: &str = "BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO";
 /// The names of those that need more.
-const WITH_DERIVATIVES: &str = "LevenbergMarquardt";
+const WITH_RESIDUALS: &str = "BroydenBAS, LevenbergMarquardt";
 
 /// Returns from the function with the solver if it is of one of these classes.
 macro_rules! return_if_one_of {
@@ -53,14 +56,12 @@ macro_rules! return_if_one_of {
 /// A solver argument.
 pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
     return_if_one_of!(solver; PyBas, PyBeeColony, PyBeetleSwarm, PyDifferentialEvolution, PyFirefly, PyGenetic);
-    return_if_one_of!(solver; PyPso, PyQpso, PyLevenbergMarquardt);
+    return_if_one_of!(solver; PyPso, PyQpso, PyBroydenBas, PyLevenbergMarquardt);
     if let Ok(multi_start) = solver.cast::<PyMultiStart>() {
         return Ok(AnySolver::MultiStart(multi_start.get().0.clone()));
     }
     let got = summary(solver);
-    Err(invalid(format!(
-        "solver must be {DERIVATIVE_FREE}, {WITH_DERIVATIVES} or MultiStart of one of them, got {got}"
-    )))
+    Err(invalid(format!("solver must be {DERIVATIVE_FREE}, {WITH_RESIDUALS} or MultiStart of one of them, got {got}")))
 }
 
 /// A solver argument of a method that knows values alone.
@@ -88,6 +89,7 @@ fn to_python<'py>(py: Python<'py>, algorithm: &Algorithm) -> PyResult<Bound<'py,
             DerivativeFree::Pso(solver) => Bound::new(py, PyPso(*solver))?.into_any(),
             DerivativeFree::Qpso(solver) => Bound::new(py, PyQpso(*solver))?.into_any(),
         },
+        Algorithm::BroydenBas(solver) => Bound::new(py, PyBroydenBas(*solver))?.into_any(),
         Algorithm::LevenbergMarquardt(solver) => Bound::new(py, PyLevenbergMarquardt(*solver))?.into_any(),
     })
 }
