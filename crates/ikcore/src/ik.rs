@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::MAX_DOF;
-use crate::objective::{Bounds, LeastSquares, Objective, Point};
+use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng;
 use crate::robot::Robot;
@@ -59,6 +59,10 @@ impl Solution {
             Status::Solved => format!("solved to {errors}"),
             Status::Stalled => format!("no further progress {errors} away: {}", self.status.advice()),
             Status::BudgetSpent => format!("budget spent {errors} away: {}", self.status.advice()),
+            Status::BelowThreshold => format!("error_threshold met {errors} away: {}", self.status.advice()),
+            Status::OutsideLimits => {
+                format!("reached outside the limits only, inside them {errors} away: {}", self.status.advice())
+            }
             Status::TimeUp => format!("time limit over {errors} away: {}", self.status.advice()),
             _ => format!("stopped {errors} away: {}", self.status.advice()),
         }
@@ -116,14 +120,14 @@ impl<'a> Prepared<'a> {
     ) -> Solution {
         let stopwatch = Stopwatch::start();
         let mut rng = rng::stream(self.options.seed, stream);
-        let mut problem = Problem::new(self.robot, target, self.options.tolerance);
+        let mut problem = Problem::new(self.robot, target, self.options.tolerance).disregarding_turns();
         let mut buffer = [0.0; MAX_DOF];
         let x0 = &mut buffer[..self.robot.dof()];
         match start {
             Some(q) => x0.copy_from_slice(q),
             None => problem.propose_start(0, &self.bounds, &mut rng, x0),
         }
-        let objective: &mut dyn LeastSquares = &mut problem;
+        let objective: &mut dyn Differentiable = &mut problem;
         let mut evaluator = Evaluator::new(objective, &self.bounds, self.options.stop, &mut rng, monitor);
         let outcome = self.options.solver.run(&mut evaluator, x0);
         let (evaluations, restarts) = (evaluator.evaluations(), evaluator.attempts() - 1);

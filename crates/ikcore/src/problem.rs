@@ -1,9 +1,12 @@
 //! A robot and a target as something to minimise.
 
-use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
+use crate::math::MAX_DOF;
+use crate::math::box_step::ROWS;
+use crate::math::eigenvalue::largest_eigenvalue;
+use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Score, Slope};
 use crate::rng::LazyRng;
 use crate::robot::{Robot, Seeds};
-use crate::task::{SquaredError, Target, TipError, Tolerance};
+use crate::task::{SquaredError, Target, TipError, Tolerance, entrywise};
 
 /// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
 #[derive(Debug, Clone, Copy)]
@@ -13,12 +16,27 @@ pub struct Problem<'a> {
     tolerance: Tolerance,
     /// Found when the first start is asked for.
     seeds: Option<Seeds<'a>>,
+    turns: Turns,
+}
+
+/// Whether it matters how often a joint has turned round.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Turns {
+    /// On the way from one tick to the next it does.
+    Count,
+    /// For a configuration that stands alone it does not.
+    Repeat,
 }
 
 impl<'a> Problem<'a> {
     /// The problem of bringing the tip of `robot` to `target`.
     pub fn new(robot: &'a Robot, target: &'a Target, tolerance: Tolerance) -> Self {
-        Self { robot, target, tolerance, seeds: None }
+        Self { robot, target, tolerance, seeds: None, turns: Turns::Count }
+    }
+
+    /// The same problem where a joint may be brought back by whole turns: the robot is free to get there in any way.
+    pub fn disregarding_turns(self) -> Self {
+        Self { turns: Turns::Repeat, ..self }
     }
 
     /// The errors at `q`, by forward kinematics.
@@ -51,6 +69,11 @@ impl Objective for Problem<'_> {
         });
     }
 
+    fn period(&self, joint: usize) -> Option<f64> {
+        let repeats = self.turns == Turns::Repeat && self.robot.repeats(joint);
+        repeats.then_some(std::f64::consts::TAU)
+    }
+
     /// The nearest of the robot's indexed configurations, then uniform in the box, where a side without a limit is drawn
     /// from the joint's sampling range. Whoever brings a start of their own gets the nearest as their second.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
@@ -65,6 +88,23 @@ impl Objective for Problem<'_> {
             let (lower, upper) = joint.sampling_range_within(bounds.lower()[i], bounds.upper()[i]);
             q[i] = rng.uniform_in(lower, upper);
         }
+    }
+}
+
+impl Gradient for Problem<'_> {
+    #[inline]
+    fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> Slope {
+        let target = self.target;
+        let tip = self.robot.tip_and_torques(q, &|tip| entrywise::pull(target, tip), gradient);
+        gradient.iter_mut().for_each(|slope| *slope = -*slope);
+        Slope { error: entrywise::error(target, &tip), score: self.score(target.error_of(&tip)) }
+    }
+
+    fn curvature(&mut self, q: &[f64]) -> f64 {
+        let mut columns = [[0.0; ROWS]; MAX_DOF];
+        self.robot.tip_and_jacobian(q, &mut columns);
+        entrywise::stiffen(self.target, &mut columns, q.len());
+        largest_eigenvalue(&columns[..q.len()])
     }
 }
 

@@ -10,7 +10,7 @@ use super::builder::{ChainBuilder, Element};
 use super::chain::Chain;
 use super::joint::Joint;
 use super::seed_index::SeedIndex;
-use super::{Columns, MAX_DOF};
+use super::{Columns, MAX_DOF, Wrench};
 use crate::error::{Error, Result, require_finite};
 use crate::math::{Frame, Pose, pose};
 use crate::rng::LazyRng;
@@ -182,6 +182,21 @@ impl Robot {
     #[inline]
     pub fn tip_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
         self.chain.jacobian(q, columns)
+    }
+
+    /// Tip and joint torques (N m, N for sliding joints) in one pass and without a Jacobian: what the joints feel of the
+    /// wrench that `pull` says of the tip. `q` and `torques` have one entry per joint.
+    #[inline]
+    pub fn tip_and_torques(&self, q: &[f64], pull: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
+        self.chain.torques(q, pull, torques)
+    }
+
+    /// Whether a whole turn of joint number `joint` brings the arm to where it was: not if something slides with it, or
+    /// follows it by a factor that is not whole.
+    pub fn repeats(&self, joint: usize) -> bool {
+        let mut driven = self.chain.motions.iter().filter(|motion| motion.joint == joint);
+        self.joints()[joint].kind.turns()
+            && driven.all(|motion| motion.slide_scale == 0.0 && motion.turn_scale.fract() == 0.0)
     }
 
     /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).

@@ -1,8 +1,12 @@
 //! Between solver and objective: counts, clips, checks, and keeps the best.
 
-use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Point, Score};
+use smallvec::SmallVec;
+
+use crate::math::MAX_DOF;
+use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Point, Score, Slope};
 use crate::rng::LazyRng;
 
+use super::conduct::{Conduct, Domain, Goal};
 use super::stop::{Monitor, Stop, Stopwatch};
 
 /// Why a solver cannot go on; passed up with `?`.
@@ -12,6 +16,10 @@ pub enum Halt {
     Solved,
     /// The best value fell below [`Stop::value_below`].
     BelowValue,
+    /// The solver's own threshold was met.
+    BelowThreshold,
+    /// The search arrived at a solution outside the box that whole periods do not bring inside.
+    OutsideBox,
     /// The solver's own rule: nothing more to gain from here.
     Stalled,
     /// The evaluation or iteration budget is spent.
@@ -62,6 +70,11 @@ pub struct Evaluator<'a, O: ?Sized> {
     attempt_value: f64,
     attempts: usize,
     dimension: usize,
+    conduct: Conduct,
+    /// After how much each entry repeats itself; empty where everything is clipped.
+    periods: SmallVec<[Option<f64>; MAX_DOF]>,
+    /// Whether the last point was solved, but outside the box.
+    strayed: bool,
 }
 
 impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
@@ -86,6 +99,20 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             best: Best { x: Point::new(), value: f64::INFINITY, solved: false },
             attempt_value: f64::INFINITY,
             attempts: 1,
+            conduct: Conduct::default(),
+            periods: SmallVec::new(),
+            strayed: false,
+        }
+    }
+
+    /// Takes over what the solver declares of itself.
+    pub(super) fn adopt(&mut self, conduct: Conduct) {
+        self.conduct = conduct;
+        if conduct.domain == Domain::Wrapped {
+            // A locked entry has no room to turn in.
+            let locked = |i: usize| self.bounds.lower()[i] == self.bounds.upper()[i];
+            let period = |i| if locked(i) { None } else { self.objective.period(i) };
+            self.periods = (0..self.dimension).map(period).collect();
         }
     }
 
@@ -131,6 +158,15 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         self.attempt_value = f64::INFINITY;
     }
 
+    /// Clips `x` to the box, or wraps it there, as the solver declared.
+    #[inline]
+    fn admit(&self, x: &mut [f64]) {
+        match self.conduct.domain {
+            Domain::Clipped => self.bounds.clip(x),
+            Domain::Wrapped => self.bounds.wrap(x, &self.periods),
+        }
+    }
+
     /// Clips `x` to the box and returns its value, infinite where it is not finite.
     ///
     /// # Errors
@@ -138,7 +174,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     #[inline]
     pub fn evaluate(&mut self, x: &mut [f64]) -> Result<f64, Halt> {
         self.spend(1)?;
-        self.bounds.clip(x);
+        self.admit(x);
         let score = self.objective.evaluate(x);
         Ok(self.record(x, score))
     }
@@ -162,7 +198,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     fn evaluate_chunk(&mut self, xs: &mut [f64], values: &mut [f64]) {
         let mut scores = [Score { value: f64::INFINITY, solved: false }; CHUNK];
         let scores = &mut scores[..values.len()];
-        xs.chunks_mut(self.dimension).for_each(|x| self.bounds.clip(x));
+        xs.chunks_mut(self.dimension).for_each(|x| self.admit(x));
         self.objective.evaluate_all(xs, scores);
         for (i, (score, value)) in scores.iter().zip(values).enumerate() {
             *value = self.record(&xs[i * self.dimension..(i + 1) * self.dimension], *score);
@@ -174,7 +210,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     /// # Errors
     /// [`Halt::Solved`].
     pub fn before_steps(&self) -> Result<(), Halt> {
-        if self.stop.min_iterations == 0 { self.check_solved() } else { Ok(()) }
+        if self.stop.min_iterations == 0 { self.check_goal() } else { Ok(()) }
     }
 
     /// What the driver asks after every step: is it time to stop?
@@ -185,7 +221,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         if iterations < self.stop.min_iterations {
             return Ok(());
         }
-        self.check_solved()?;
+        self.check_goal()?;
         match self.stop.value_below {
             Some(value) if self.best.value < value => Err(Halt::BelowValue),
             _ if iterations >= self.stop.max_iterations => Err(Halt::Budget),
@@ -199,6 +235,22 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     /// [`Halt::Solved`].
     pub fn check_solved(&self) -> Result<(), Halt> {
         if self.best.solved { Err(Halt::Solved) } else { Ok(()) }
+    }
+
+    /// Err(OutsideBox) if the last point evaluated was solved, but outside the box.
+    ///
+    /// # Errors
+    /// [`Halt::OutsideBox`].
+    pub fn check_strayed(&self) -> Result<(), Halt> {
+        if self.strayed { Err(Halt::OutsideBox) } else { Ok(()) }
+    }
+
+    /// A solver with a threshold of its own goes on where others are done.
+    fn check_goal(&self) -> Result<(), Halt> {
+        match self.conduct.goal {
+            Goal::Solved => self.check_solved(),
+            Goal::Threshold => Ok(()),
+        }
     }
 
     #[inline]
@@ -231,6 +283,13 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         let value = if score.value.is_finite() { score.value } else { f64::INFINITY };
         self.attempt_value = self.attempt_value.min(value);
         let solved = score.solved && value.is_finite();
+        if self.conduct.domain == Domain::Wrapped {
+            let outside = !self.bounds.contains(x);
+            self.strayed = solved && outside;
+            if outside {
+                return value;
+            }
+        }
         let better = (solved && !self.best.solved) || (solved == self.best.solved && value < self.best.value);
         if better || self.best.x.is_empty() {
             self.best.replace(x, value, solved);
@@ -247,8 +306,34 @@ impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
     #[inline]
     pub fn linearize(&mut self, x: &mut [f64], out: &mut Linearization) -> Result<f64, Halt> {
         self.spend(1)?;
-        self.bounds.clip(x);
+        self.admit(x);
         let score = self.objective.linearize(x, out);
         Ok(self.record(x, score))
+    }
+}
+
+impl<O: Gradient + ?Sized> Evaluator<'_, O> {
+    /// Brings `x` into the domain; error and gradient there, counted as one evaluation. The error is infinite where the
+    /// value is not finite.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    #[inline]
+    pub fn differentiate(&mut self, x: &mut [f64], gradient: &mut [f64]) -> Result<f64, Halt> {
+        self.spend(1)?;
+        self.admit(x);
+        let Slope { error, score } = self.objective.differentiate(x, gradient);
+        let value = self.record(x, score);
+        Ok(if value.is_finite() { error } else { f64::INFINITY })
+    }
+
+    /// The curvature at `x`, which was evaluated before, counted as one more evaluation.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    #[inline]
+    pub fn curvature(&mut self, x: &[f64]) -> Result<f64, Halt> {
+        self.spend(1)?;
+        Ok(self.objective.curvature(x))
     }
 }

@@ -6,26 +6,37 @@
 //!
 //! | file | algorithm | needs |
 //! |---|---|---|
+//! | [`apps`] | APPS (Yuan et al. 2016): descent by steps cut off joint by joint | gradient |
 //! | [`bas`] | beetle antennae search (Cheng et al. 2020): star, chain, greedy | values |
+//! | [`jacobian_transpose`] | steepest descent | residual and Jacobian |
 //! | [`levenberg_marquardt`] | Levenberg-Marquardt on the box | residual and Jacobian |
+//! | [`newton_raphson`] | Newton-Raphson by the pseudo-inverse | residual and Jacobian |
 //! | [`multi_start`] | any of them, from many starts | what the wrapped solver needs |
 
+pub mod apps;
 pub mod bas;
+pub mod conduct;
 pub mod driver;
 pub mod evaluator;
+pub mod jacobian_transpose;
 pub mod levenberg_marquardt;
 pub mod multi_start;
+pub mod newton_raphson;
 pub mod stop;
 
+pub use apps::{Apps, LearningRate};
 pub use bas::{Bas, Variant};
+pub use conduct::{Conduct, Domain, Goal};
 pub use driver::{Outcome, Solver, run};
 pub use evaluator::{Best, Evaluator, Halt};
+pub use jacobian_transpose::{JacobianTranspose, StepSize};
 pub use levenberg_marquardt::LevenbergMarquardt;
 pub use multi_start::{MultiStart, RestartRule};
+pub use newton_raphson::NewtonRaphson;
 pub use stop::{Monitor, Status, Stop, Unattended};
 
 use crate::error::Result;
-use crate::objective::LeastSquares;
+use crate::objective::Differentiable;
 
 /// The one list of algorithms: the binding and the contract test read it.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,7 +117,7 @@ impl AnySolver {
     }
 
     /// Runs from `x0` until solved, stopped or given up.
-    pub fn run(&self, evaluator: &mut Evaluator<'_, dyn LeastSquares + '_>, x0: &[f64]) -> Outcome {
+    pub fn run(&self, evaluator: &mut Evaluator<'_, dyn Differentiable + '_>, x0: &[f64]) -> Outcome {
         match self {
             Self::Single(Algorithm::Bas(bas)) => run(bas, evaluator, x0),
             Self::Single(Algorithm::LevenbergMarquardt(lm)) => run(lm, evaluator, x0),

@@ -69,11 +69,15 @@ pub enum Status {
     Lost = 7,
     /// An item of a batch whose target or start is wrong: nothing was solved.
     Invalid = 8,
+    /// The solver's own threshold was met before the tolerances were.
+    BelowThreshold = 9,
+    /// The search arrived outside the limits, and whole turns do not bring it inside; the best inside is kept.
+    OutsideLimits = 10,
 }
 
 impl Status {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Solved,
         Self::Improved,
         Self::Capped,
@@ -83,6 +87,8 @@ impl Status {
         Self::Interrupted,
         Self::Lost,
         Self::Invalid,
+        Self::BelowThreshold,
+        Self::OutsideLimits,
     ];
 
     /// The name as Python shows it.
@@ -97,6 +103,8 @@ impl Status {
             Self::Interrupted => "INTERRUPTED",
             Self::Lost => "LOST",
             Self::Invalid => "INVALID",
+            Self::BelowThreshold => "BELOW_THRESHOLD",
+            Self::OutsideLimits => "OUTSIDE_LIMITS",
         }
     }
 
@@ -113,6 +121,10 @@ impl Status {
                 "slow the path down, raise the velocity limits, start elsewhere (another start or seed), or move the path into reach"
             }
             Self::Invalid => "on_invalid=\"raise\" says what is wrong",
+            Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
+            Self::OutsideLimits => {
+                "try another start or seed, MultiStart, or a solver that searches inside the limits, such as LevenbergMarquardt"
+            }
         }
     }
 }

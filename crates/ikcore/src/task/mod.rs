@@ -1,5 +1,6 @@
 //! What the tip is to reach: residuals of a frame task and their derivatives.
 
+pub mod entrywise;
 mod error;
 mod pose;
 mod position;

@@ -1,14 +1,14 @@
 //! Any solver as a tick rule: begun anew from the accepted configuration, in the box of the tick.
 
 use super::{Found, Tick};
-use crate::objective::LeastSquares;
+use crate::objective::Differentiable;
 use crate::problem::Problem;
 use crate::solver::{AnySolver, Evaluator, Halt, Stop};
 
 pub fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> Found {
     let Tick { robot, target, tolerance, tick_box, last_value, rng, monitor } = tick;
     let mut problem = Problem::new(robot, target, tolerance);
-    let objective: &mut dyn LeastSquares = &mut problem;
+    let objective: &mut dyn Differentiable = &mut problem;
     let mut evaluator = Evaluator::new(objective, tick_box, stop(solver, last_value), rng, monitor);
     let outcome = solver.run(&mut evaluator, q);
     let best = evaluator.best().x.clone();
