@@ -14,14 +14,17 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
 
 from . import paths, plot
 from ._core import (
+    APPS,
     BAS,
     BatchSolution,
     BeetleIkError,
     InvalidInputError,
+    JacobianTranspose,
     LevenbergMarquardt,
     LimitError,
     Limits,
     MultiStart,
+    NewtonRaphson,
     Path,
     Robot,
     Sinusoid,
@@ -43,14 +46,17 @@ from ._core import (
 )
 
 __all__ = [
+    "APPS",
     "BAS",
     "BatchSolution",
     "BeetleIkError",
     "InvalidInputError",
+    "JacobianTranspose",
     "LevenbergMarquardt",
     "LimitError",
     "Limits",
     "MultiStart",
+    "NewtonRaphson",
     "Path",
     "Robot",
     "Sinusoid",

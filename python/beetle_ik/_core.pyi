@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 _Array: TypeAlias = NDArray[np.float64]
-_Solver: TypeAlias = BAS | LevenbergMarquardt | MultiStart
+_SingleSolver: TypeAlias = APPS | BAS | JacobianTranspose | LevenbergMarquardt | NewtonRaphson
+_Solver: TypeAlias = _SingleSolver | MultiStart
 _LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
 _LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] | None
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
@@ -154,6 +155,27 @@ class Status(IntEnum):
     INTERRUPTED = 6
     LOST = 7
     INVALID = 8
+    BELOW_THRESHOLD = 9
+    OUTSIDE_LIMITS = 10
+
+@final
+class APPS:
+    def __new__(
+        cls,
+        *,
+        learning_rate: float | Literal["auto"] = "auto",
+        step_limit: float = 0.2,  # rad or m
+        error_threshold: float | None = None,
+    ) -> APPS: ...
+    @staticmethod
+    def paper() -> APPS: ...
+    @property
+    def learning_rate(self) -> float | Literal["auto"]: ...
+    @property
+    def step_limit(self) -> float: ...
+    @property
+    def error_threshold(self) -> float | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class BAS:
@@ -179,6 +201,13 @@ class BAS:
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
+class JacobianTranspose:
+    def __new__(cls, *, step_size: float | Literal["auto"] = "auto") -> JacobianTranspose: ...
+    @property
+    def step_size(self) -> float | Literal["auto"]: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class LevenbergMarquardt:
     def __new__(cls, *, initial_damping: float = ...) -> LevenbergMarquardt: ...
     @property
@@ -187,11 +216,18 @@ class LevenbergMarquardt:
 
 @final
 class MultiStart:
-    def __new__(cls, solver: BAS | LevenbergMarquardt, *, max_starts: int | None = None) -> MultiStart: ...
+    def __new__(cls, solver: _SingleSolver, *, max_starts: int | None = None) -> MultiStart: ...
     @property
-    def solver(self) -> BAS | LevenbergMarquardt: ...
+    def solver(self) -> _SingleSolver: ...
     @property
     def max_starts(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class NewtonRaphson:
+    def __new__(cls, *, step_fraction: float = ...) -> NewtonRaphson: ...
+    @property
+    def step_fraction(self) -> float: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final

@@ -84,10 +84,6 @@ impl Linearization {
 pub trait Gradient: Objective {
     /// E and the score at `x` in one pass; dE/dx into `gradient`, which has one entry per entry of x.
     fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> Slope;
-
-    /// The largest eigenvalue of J'J at `x`, or a close upper bound, where E is half the sum of squares of what has the
-    /// derivative J: at a minimum, the curvature that bounds the rate of a descent.
-    fn curvature(&mut self, x: &[f64]) -> f64;
 }
 
 /// What [`Gradient`] says of a point beside the gradient.

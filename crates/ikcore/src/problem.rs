@@ -1,8 +1,5 @@
 //! A robot and a target as something to minimise.
 
-use crate::math::MAX_DOF;
-use crate::math::box_step::ROWS;
-use crate::math::eigenvalue::largest_eigenvalue;
 use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Score, Slope};
 use crate::rng::LazyRng;
 use crate::robot::{Robot, Seeds};
@@ -98,13 +95,6 @@ impl Gradient for Problem<'_> {
         let tip = self.robot.tip_and_torques(q, &|tip| entrywise::pull(target, tip), gradient);
         gradient.iter_mut().for_each(|slope| *slope = -*slope);
         Slope { error: entrywise::error(target, &tip), score: self.score(target.error_of(&tip)) }
-    }
-
-    fn curvature(&mut self, q: &[f64]) -> f64 {
-        let mut columns = [[0.0; ROWS]; MAX_DOF];
-        self.robot.tip_and_jacobian(q, &mut columns);
-        entrywise::stiffen(self.target, &mut columns, q.len());
-        largest_eigenvalue(&columns[..q.len()])
     }
 }
 

@@ -3,7 +3,6 @@
 
 pub mod arithmetic;
 pub mod box_step;
-pub mod eigenvalue;
 pub mod frame;
 pub mod interval;
 pub mod knots;

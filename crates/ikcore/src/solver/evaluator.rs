@@ -1,9 +1,11 @@
 //! Between solver and objective: counts, clips, checks, and keeps the best.
 
+use std::mem;
+
 use smallvec::SmallVec;
 
 use crate::math::MAX_DOF;
-use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Point, Score, Slope};
+use crate::objective::{Bounds, Differentiable, Gradient, LeastSquares, Linearization, Objective, Point, Score, Slope};
 use crate::rng::LazyRng;
 
 use super::conduct::{Conduct, Domain, Goal};
@@ -39,6 +41,13 @@ pub struct Best {
     pub value: f64,
     /// Whether it passes the problem's own test.
     pub solved: bool,
+}
+
+impl Default for Best {
+    /// Nothing met yet.
+    fn default() -> Self {
+        Self { x: Point::new(), value: f64::INFINITY, solved: false }
+    }
 }
 
 impl Best {
@@ -96,7 +105,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             stopwatch: stop.max_time.map(|_| Stopwatch::start()),
             evaluations: 0,
             next_poll: POLL_EVERY,
-            best: Best { x: Point::new(), value: f64::INFINITY, solved: false },
+            best: Best::default(),
             attempt_value: f64::INFINITY,
             attempts: 1,
             conduct: Conduct::default(),
@@ -298,6 +307,38 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     }
 }
 
+impl Evaluator<'_, dyn Differentiable + '_> {
+    /// Lends the run to a solver that asks for values alone, so that there is one compiled copy of such a solver whatever
+    /// the objective offers beyond.
+    pub fn with_values_only<R>(&mut self, work: impl FnOnce(&mut Evaluator<'_, dyn Objective + '_>) -> R) -> R {
+        let mut narrowed = Evaluator {
+            objective: &mut *self.objective as &mut dyn Objective,
+            bounds: self.bounds,
+            stop: self.stop,
+            rng: &mut *self.rng,
+            monitor: &mut *self.monitor,
+            stopwatch: self.stopwatch,
+            evaluations: self.evaluations,
+            next_poll: self.next_poll,
+            best: mem::take(&mut self.best),
+            attempt_value: self.attempt_value,
+            attempts: self.attempts,
+            dimension: self.dimension,
+            conduct: self.conduct,
+            periods: SmallVec::new(),
+            strayed: false,
+        };
+        let result = work(&mut narrowed);
+        let Evaluator { evaluations, next_poll, best, attempt_value, attempts, .. } = narrowed;
+        self.evaluations = evaluations;
+        self.next_poll = next_poll;
+        self.best = best;
+        self.attempt_value = attempt_value;
+        self.attempts = attempts;
+        result
+    }
+}
+
 impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
     /// Clips `x` to the box; value, residual and Jacobian there, counted as one evaluation.
     ///
@@ -325,15 +366,5 @@ impl<O: Gradient + ?Sized> Evaluator<'_, O> {
         let Slope { error, score } = self.objective.differentiate(x, gradient);
         let value = self.record(x, score);
         Ok(if value.is_finite() { error } else { f64::INFINITY })
-    }
-
-    /// The curvature at `x`, which was evaluated before, counted as one more evaluation.
-    ///
-    /// # Errors
-    /// As [`evaluate`](Self::evaluate).
-    #[inline]
-    pub fn curvature(&mut self, x: &[f64]) -> Result<f64, Halt> {
-        self.spend(1)?;
-        Ok(self.objective.curvature(x))
     }
 }

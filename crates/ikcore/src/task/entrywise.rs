@@ -7,7 +7,7 @@
 use super::{Target, position};
 use crate::math::Frame;
 use crate::math::so3::cross;
-use crate::robot::{Columns, Wrench};
+use crate::robot::Wrench;
 
 /// E.
 #[inline]
@@ -36,16 +36,4 @@ pub fn pull(target: &Target, tip: &Frame) -> Wrench {
         (0..3).for_each(|k| moment[k] += share[k]);
     }
     [fx, fy, fz, moment[0], moment[1], moment[2]]
-}
-
-/// Turns a geometric Jacobian, whose columns are given, into one with the same J'J as the derivative of the entries: a
-/// turn w moves the three axes by w x r_c, whose squares add up to 2 w . w.
-pub fn stiffen(target: &Target, columns: &mut Columns, dof: usize) {
-    let stiffness = match target {
-        Target::Position(_) => 0.0,
-        Target::Pose(_) => std::f64::consts::SQRT_2,
-    };
-    for column in &mut columns[..dof] {
-        column[3..].iter_mut().for_each(|entry| *entry *= stiffness);
-    }
 }

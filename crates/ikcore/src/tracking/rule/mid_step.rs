@@ -8,7 +8,7 @@
 
 use super::{Found, Tick};
 use crate::math::{Frame, MAX_DOF, box_step::box_step};
-use crate::objective::{LeastSquares, Linearization, Point};
+use crate::objective::{Differentiable, Linearization, Point};
 use crate::problem::Problem;
 use crate::robot::{Columns, Robot};
 use crate::solver::{Evaluator, Halt, LevenbergMarquardt, Stop, run};
@@ -110,7 +110,7 @@ impl Memory {
     fn levenberg_marquardt(&mut self, found: &mut Found, tick: Tick<'_>) {
         let Tick { robot, target, tolerance, tick_box, rng, monitor, .. } = tick;
         let mut problem = Problem::new(robot, target, tolerance);
-        let objective: &mut dyn LeastSquares = &mut problem;
+        let objective: &mut dyn Differentiable = &mut problem;
         let mut evaluator = Evaluator::new(objective, tick_box, Stop::default(), rng, monitor);
         let outcome = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
         found.q.copy_from_slice(&evaluator.best().x);
