@@ -59,6 +59,7 @@ pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
 fn to_python<'py>(py: Python<'py>, algorithm: &Algorithm) -> PyResult<Bound<'py, PyAny>> {
     match algorithm {
         Algorithm::DerivativeFree(DerivativeFree::Bas(bas)) => Ok(Bound::new(py, PyBas(*bas))?.into_any()),
+        Algorithm::DerivativeFree(_) => Err(invalid("this solver has no Python class yet".into())),
         Algorithm::Apps(solver) => Ok(Bound::new(py, PyApps(*solver))?.into_any()),
         Algorithm::JacobianTranspose(solver) => Ok(Bound::new(py, PyJacobianTranspose(*solver))?.into_any()),
         Algorithm::NewtonRaphson(solver) => Ok(Bound::new(py, PyNewtonRaphson(*solver))?.into_any()),
