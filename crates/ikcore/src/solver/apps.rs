@@ -13,8 +13,8 @@ use crate::objective::{Gradient, Point};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LearningRate {
     /// From the curvature of E along the last step, which the gradients at both of its ends tell (Barzilai and Borwein
-    /// 1988, Two-point step size gradient methods). Of 2000 random targets of the paper's robot it reaches 83 % in 1000
-    /// iterations, the best fixed rate 48 %.
+    /// 1988, Two-point step size gradient methods). From random starts to 2000 random targets of the paper's robot it
+    /// converges on 85 % in 1000 iterations and on 86 % in 20 000, the best of five fixed rates on 51 and 79 %.
     Auto,
     /// The same everywhere.
     Fixed(f64),
@@ -33,7 +33,7 @@ pub struct Apps {
 }
 
 impl Default for Apps {
-    /// A longer step than the paper's, whose one degree saves a rate that is too high: half as many iterations.
+    /// A longer step than the paper's one degree: a third of the iterations to random targets, at this rate.
     fn default() -> Self {
         Self { learning_rate: LearningRate::Auto, step_limit: 0.2, error_threshold: None }
     }

@@ -59,7 +59,10 @@ def replay() -> list[Motion]:
 def motions(runs: list[Motion]) -> tuple[Section, list[Claim]]:
     """Angles, positions and errors of the seven motions."""
     angles = np.array([np.degrees(run.solution.q) for run in runs])
-    first, second = (_positions([run.solution.q for run in runs]), _positions([np.radians(run.rounded) for run in runs]))
+    first, second = (
+        _positions([run.solution.q for run in runs]),
+        _positions([np.radians(run.rounded) for run in runs]),
+    )
     measured = np.array([run.rounded for run in runs])
     errors = _mean_errors(first, second)
     section = Section(
@@ -202,24 +205,21 @@ def _draw_path(runs: list[Motion]) -> Drawing:
         _draw_robot(axes, start, color=BLUE, linewidth=4.0)
         axes.plot(*points.T, color=VERMILION, marker="o", markersize=4, linewidth=1.5)
         for name, point in zip(["I", *"123456"], points, strict=False):
-            axes.text(*(point + [0.06, 0.0, 0.04]), f"$P_{name}$", color=VERMILION)
+            beside = [-0.02, 0.0, -0.16] if name == "I" else [0.07, 0.0, 0.03]
+            axes.text(*(point + beside), f"$P_{name}$", color=VERMILION)
         axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
         axes.set_zlim(0.0, None)
         spans = [np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())]
-        axes.set_box_aspect(spans, zoom=1.1)  # one scale along all axes
+        axes.set_box_aspect(spans, zoom=0.95)  # one scale along all axes
         axes.locator_params(nbins=5)
-        axes.view_init(elev=22, azim=-58)
+        axes.view_init(elev=40, azim=-58)
     return figure
 
 
 def _draw_robot(axes: Any, q: Array, **style: Any) -> None:
     """The arm as a line through the places where it bends."""
-    poses = ROBOT.link_poses(q)
-    # A frame of Table 1 lies where its axis meets the next one's normal: between the frames the arm runs along these.
-    corners = [np.zeros(3)]
-    for pose in poses[1:]:
-        corners.append(pose[:3, 3])
-    axes.plot(*np.array(corners).T, marker="o", markersize=style["linewidth"] + 1.0, **style)
+    corners = ROBOT.link_poses(q)[:, :3, 3]
+    axes.plot(*corners.T, marker="o", markersize=style["linewidth"] + 1.0, **style)
 
 
 def _draw_errors(errors: Array) -> Drawing:
@@ -228,7 +228,9 @@ def _draw_errors(errors: Array) -> Drawing:
         axes = figure.subplots()
         place = np.arange(len(MOTIONS))
         for i, name in enumerate(names):
-            axes.bar(place + 0.26 * (i - 1), errors[:, i], width=0.24, color=line(i)["color"], label=f"{name}, measured")
+            axes.bar(
+                place + 0.26 * (i - 1), errors[:, i], width=0.24, color=line(i)["color"], label=f"{name}, measured"
+            )
             label = "printed" if i == 2 else None
             axes.plot(place + 0.26 * (i - 1), ERRORS[:, i], "k_", markersize=11, markeredgewidth=1.6, label=label)
         axes.set_xticks(place, MOTIONS)

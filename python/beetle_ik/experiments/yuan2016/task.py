@@ -58,7 +58,8 @@ class Motion:
     @property
     def rounded(self) -> Array:
         """R_2: the angles to 0.01 degrees, as sent to the robot."""
-        return np.round(np.degrees(self.solution.q), 2)
+        rounded: Array = np.degrees(self.solution.q).round(2)
+        return rounded
 
 
 def run_all(solver: bik.APPS) -> list[Motion]:

@@ -74,8 +74,8 @@ def _rows(runs: list[Motion]) -> list[list[str]]:
         ],
         [
             "Table 3, I-1, θ₁ and θ₆ of R₁",
-            "−20.0995°, −147.3760°",
-            "−20.0955°, −147.3756°",
+            "-20.0995°, -147.3760°",
+            "-20.0955°, -147.3756°",
             f"Table 3's own R₂, and Table 4's y of 0.63421 m: the printed angles give {misprinted[0]:.5f} m, the "
             f"corrected ones {misprinted[1]:.5f} m.",
         ],
@@ -94,7 +94,7 @@ def _rows(runs: list[Motion]) -> list[list[str]]:
             "in I-1 and 5-6",
             "Table 6 itself, and the next sentence of the text, which gives errors for 3-4 and 6-I.",
         ],
-        ["Text, change of θ₆ in 3-4", "−86.6430°", f"{sixth:.4f}°", "R₁ of 3-4 less R₂ of 2-3.".replace("-", "‑")],
+        ["Text, change of θ₆ in 3-4", "-86.6430°", f"{sixth:.4f}°", "R₁ of 3-4 less R₂ of 2-3."],
         [
             "Text, change of θ₄ in 6-I",
             "142.4315°",
