@@ -12,7 +12,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
     result.trajectory.to_csv("trajectory.csv")
 """
 
-from . import paths, plot
+from . import goals, paths, plot, tasks
 from ._core import (
     APPS,
     BAS,
@@ -29,6 +29,7 @@ from ._core import (
     Robot,
     Sinusoid,
     Solution,
+    SolutionSet,
     Status,
     Step,
     Stop,
@@ -38,9 +39,11 @@ from ._core import (
     UnknownNameError,
     UnsupportedLimit,
     UrdfError,
+    VelocityEllipsoid,
     __version__,
     pose,
     solve,
+    solve_all,
     solve_batch,
     track,
 )
@@ -61,6 +64,7 @@ __all__ = [
     "Robot",
     "Sinusoid",
     "Solution",
+    "SolutionSet",
     "Status",
     "Step",
     "Stop",
@@ -70,11 +74,15 @@ __all__ = [
     "UnknownNameError",
     "UnsupportedLimit",
     "UrdfError",
+    "VelocityEllipsoid",
     "__version__",
+    "goals",
     "paths",
     "plot",
     "pose",
     "solve",
+    "solve_all",
     "solve_batch",
+    "tasks",
     "track",
 ]

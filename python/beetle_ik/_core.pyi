@@ -4,7 +4,7 @@
 # SI units and radians throughout; results are read-only.
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from enum import IntEnum
 from typing import Any, Literal, TypeAlias, final
 
@@ -19,6 +19,8 @@ _SingleSolver: TypeAlias = APPS | BAS | JacobianTranspose | LevenbergMarquardt |
 _Solver: TypeAlias = _SingleSolver | MultiStart
 _LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
 _LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] | None
+_Motion: TypeAlias = Literal["pose", "position", "rotation"]
+_Goals: TypeAlias = Goal | Iterable[Goal] | None
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
 # --- errors -------------------------------------------------------------------------------------
@@ -88,10 +90,27 @@ class Robot:
         self, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None, velocity: ArrayLike | None = None
     ) -> Robot: ...
     def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
+    def clip(self, q: ArrayLike) -> _Array: ...  # (n,) or (m, n)
     def link_poses(self, q: ArrayLike) -> _Array: ...  # (links, 4, 4), in the order of link_names
     def jacobian(self, q: ArrayLike) -> _Array: ...  # (n,) -> (6, n); (m, n) -> (m, 6, n)
     def random_configurations(self, m: int, seed: int = 0) -> _Array: ...  # (m, n)
-    def manipulability(self, q: ArrayLike) -> Any: ...  # (n,) -> float; (m, n) -> (m,)
+    def manipulability(self, q: ArrayLike, *, motion: _Motion = "pose") -> Any: ...  # (n,) -> float; (m, n) -> (m,)
+    def manipulability_gradient(self, q: ArrayLike, *, motion: _Motion = "pose") -> _Array: ...  # (n,)
+    def link_manipulability(self, q: ArrayLike, *, motion: _Motion = "position") -> _Array: ...  # (links,)
+    def velocity_ellipsoid(self, q: ArrayLike, *, motion: _Motion = "position") -> VelocityEllipsoid: ...
+
+@final
+class VelocityEllipsoid:
+    @property
+    def lengths(self) -> _Array: ...  # (directions,), longest first
+    @property
+    def axes(self) -> _Array: ...  # (directions, 6): linear, then angular part
+    @property
+    def index(self) -> float: ...
+    @property
+    def condition(self) -> float: ...
+    @property
+    def isotropy(self) -> float: ...
 
 def pose(
     position: ArrayLike,
@@ -155,8 +174,9 @@ class Status(IntEnum):
     INTERRUPTED = 6
     LOST = 7
     INVALID = 8
-    BELOW_THRESHOLD = 9
-    OUTSIDE_LIMITS = 10
+    OUT_OF_REACH = 9
+    BELOW_THRESHOLD = 10
+    OUTSIDE_LIMITS = 11
 
 @final
 class APPS:
@@ -243,16 +263,73 @@ class Stop:
     def max_time(self) -> float | None: ...  # s
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
+# --- tasks and goals ----------------------------------------------------------------------------
+
+class Task:
+    @property
+    def weights(self) -> _Array | None: ...
+    @property
+    def tolerance(self) -> _Array | None: ...  # m, rad
+    @property
+    def tool(self) -> _Array | None: ...  # (4, 4)
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+class Pose(Task):
+    def __new__(
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+    ) -> Pose: ...
+
+class Position(Task):
+    def __new__(
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+    ) -> Position: ...
+
+class Orientation(Task):
+    def __new__(
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+    ) -> Orientation: ...
+
+class Pointing(Task):
+    def __new__(
+        cls,
+        *,
+        axis: ArrayLike | None = None,  # None: (0, 0, 1)
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: ArrayLike | None = None,
+    ) -> Pointing: ...
+    @property
+    def axis(self) -> _Array: ...  # (3,)
+
+class Goal:
+    @property
+    def weight(self) -> float: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+class Posture(Goal):
+    def __new__(cls, posture: ArrayLike, *, weight: float = 1.0) -> Posture: ...
+    @property
+    def posture(self) -> _Array: ...  # (n,)
+
+class Centring(Goal):
+    def __new__(cls, *, weight: float = 1.0) -> Centring: ...
+
+class Manipulability(Goal):
+    def __new__(cls, *, motion: _Motion = "pose", weight: float = 1.0) -> Manipulability: ...
+
 # --- inverse kinematics -------------------------------------------------------------------------
 
 def solve(
     robot: Robot,
     target: ArrayLike,  # (4, 4) pose or (3,) position
     *,
+    task: Task | None = None,
     start: ArrayLike | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
+    goals: _Goals = None,
+    prefer: Literal["any", "nearest"] = "any",
     limits: Limits | None = None,
     stop: Stop | None = None,
     seed: int = 0,
@@ -283,6 +360,43 @@ class Solution:
     @property
     def limits(self) -> Limits: ...  # those in force
 
+def solve_all(
+    robot: Robot,
+    target: ArrayLike,  # (4, 4) pose or (3,) position
+    *,
+    start: ArrayLike | None = None,
+    limit: int = 16,
+    separation: float = 0.1,  # rad, m
+    task: Task | None = None,
+    solver: _Solver | None = None,
+    position_tolerance: float = 1e-6,
+    rotation_tolerance: float = 1e-6,
+    limits: Limits | None = None,
+    stop: Stop | None = None,  # budgets of the whole search
+    seed: int = 0,
+) -> SolutionSet: ...
+
+@final
+class SolutionSet:
+    @property
+    def q(self) -> _Array: ...  # (k, n)
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def miss(self) -> Solution | None: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int) -> Solution: ...
+
 def solve_batch(
     robot: Robot,
     targets: ArrayLike,  # (m, 4, 4) poses or (m, 3) positions
@@ -291,9 +405,12 @@ def solve_batch(
     threads: int | None = None,  # None: one per core
     on_invalid: Literal["raise", "skip"] = "raise",
     progress: _Progress = None,
+    task: Task | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
+    goals: _Goals = None,
+    prefer: Literal["any", "nearest"] = "any",
     limits: Limits | None = None,
     stop: Stop | None = None,  # budgets of each target
     seed: int = 0,
@@ -384,8 +501,10 @@ def track(
     start: ArrayLike | None = None,  # None solves for the path's first point
     *,
     dt: float,
+    task: Task | None = None,
     solver: _Solver | None = None,
     limits: Limits | None = None,
+    goals: _Goals = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
     seed: int = 0,
@@ -451,8 +570,10 @@ class Tracker:
         start: ArrayLike,
         *,
         dt: float,
+        task: Task | None = None,
         solver: _Solver | None = None,
         limits: Limits | None = None,
+        goals: _Goals = None,
         position_tolerance: float = 1e-6,
         rotation_tolerance: float = 1e-6,
         seed: int = 0,

@@ -38,7 +38,8 @@ def link_derivative(k: int, theta: float) -> Array:
 
 def tip(theta: Array) -> Array:
     """Eq. (2)."""
-    return np.linalg.multi_dot([link(k, angle) for k, angle in enumerate(theta)])
+    product: Array = np.linalg.multi_dot([link(k, angle) for k, angle in enumerate(theta)])
+    return product
 
 
 def error_and_gradient(theta: Array, goal: Array) -> tuple[float, Array]:
@@ -147,7 +148,10 @@ def test_along_a_path_it_keeps_to_the_limits_of_the_tick() -> None:
     [
         (lambda: bik.APPS(learning_rate=0.0), "learning_rate must be positive and finite, got 0"),
         (lambda: bik.APPS(learning_rate=float("nan")), "learning_rate must be positive and finite, got NaN"),
-        (lambda: bik.APPS(learning_rate="fast"), "learning_rate must be a number or 'auto', got 'fast'"),
+        (
+            lambda: bik.APPS(learning_rate="fast"),  # type: ignore[arg-type]
+            "learning_rate must be a number or 'auto', got 'fast'",
+        ),
         (lambda: bik.APPS(step_limit=-0.1), "step_limit must be positive and finite, got -0.1"),
         (lambda: bik.APPS(error_threshold=0), "error_threshold must be positive and finite, got 0"),
         (lambda: bik.JacobianTranspose(step_size=-1), "step_size must be positive and finite, got -1"),

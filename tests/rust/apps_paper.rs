@@ -16,7 +16,7 @@ use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Algorithm, AnySolver, Apps, JacobianTranspose, LearningRate, LevenbergMarquardt, NewtonRaphson};
 use ikcore::solver::{Status, Stop, Unattended};
-use ikcore::task::{Target, Tolerance};
+use ikcore::task::{Components, Criterion, Target, Tolerance};
 
 /// Joint angles before the first motion (degrees), Table 3.
 const START: [f64; 6] = [0.01, -78.33, 183.51, 0.16, -44.87, -179.93];
@@ -244,8 +244,8 @@ fn gradients_match_central_differences() {
         let drawn = robot.random_configurations(40, &mut rng::stream(3, 0)).unwrap();
         for pair in drawn.chunks_exact(2 * n) {
             let (q, goal) = pair.split_at(n);
-            for target in [Target::Pose(robot.tip(goal)), Target::Position(robot.tip_position(goal))] {
-                let mut problem = Problem::new(&robot, &target, TOLERANCE);
+            for (target, criterion) in kinds_of_target(robot.tip(goal)) {
+                let mut problem = Problem::new(&robot, &target, criterion);
                 let mut gradient = vec![0.0; n];
                 let slope = problem.differentiate(q, &mut gradient);
                 let score = problem.evaluate(q);
@@ -266,6 +266,20 @@ fn gradients_match_central_differences() {
             }
         }
     }
+}
+
+/// Every kind of target at `frame`, one of them with weights.
+fn kinds_of_target(frame: Frame) -> [(Target, Criterion); 5] {
+    let components = Components { weights: [1.0, 0.0, 2.0, 0.5, 0.0, 1.0], tolerance: None };
+    let weighted = Criterion { components: Some(components), ..Criterion::default() };
+    let axis = [0.6, 0.0, 0.8];
+    [
+        (Target::Pose(frame), Criterion::default()),
+        (Target::Position(frame.origin), Criterion::default()),
+        (Target::Orientation(frame), Criterion::default()),
+        (Target::Pointing { frame, axis }, Criterion::default()),
+        (Target::Pose(frame), weighted),
+    ]
 }
 
 #[test]

@@ -1,16 +1,20 @@
 //! The native module `beetle_ik._core`: registration only. Each file converts for one module of the core.
 
+mod all;
 mod batch;
 mod convert;
 mod error;
+mod goal;
 mod ik;
 mod limits;
+mod manipulability;
 mod monitor;
 mod path;
 mod pose;
 mod robot;
 mod sinusoid;
 mod solver;
+mod task;
 mod tracker;
 mod tracking;
 mod trajectory;
@@ -24,11 +28,16 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     error::register(module)?;
     solver::register(module)?;
     module.add_class::<robot::PyRobot>()?;
+    module.add_class::<manipulability::PyVelocityEllipsoid>()?;
     module.add_function(wrap_pyfunction!(pose::pose, module)?)?;
     module.add_class::<sinusoid::PySinusoid>()?;
     module.add_class::<limits::PyLimits>()?;
     module.add_class::<ik::PySolution>()?;
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;
+    module.add_class::<all::PySolutionSet>()?;
+    module.add_function(wrap_pyfunction!(all::solve_all, module)?)?;
+    task::register(module)?;
+    goal::register(module)?;
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
     path::register(module)?;

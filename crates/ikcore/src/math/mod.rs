@@ -1,5 +1,5 @@
-//! Rotations, rigid transforms, fast sines, polynomials, knots in time and the one bounded step. Plain arrays where it
-//! is hot, nalgebra elsewhere.
+//! Rotations, rigid transforms, fast sines, singular values, polynomials, knots in time and the one bounded step. Plain
+//! arrays where it is hot, nalgebra elsewhere.
 
 pub mod arithmetic;
 pub mod box_step;
@@ -9,6 +9,7 @@ pub mod knots;
 pub mod polynomial;
 pub mod pose;
 pub mod sincos;
+pub mod singular;
 pub mod so3;
 pub mod ticks;
 

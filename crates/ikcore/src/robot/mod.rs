@@ -11,6 +11,8 @@ mod lane_search;
 mod many;
 mod model;
 mod planar;
+mod reach;
+mod screws;
 mod seed_index;
 mod seeds;
 mod urdf;
@@ -20,6 +22,8 @@ pub use dh::{Dh, DhTable};
 pub use joint::{Joint, JointKind};
 pub use kinematics::{Columns, Wrench};
 pub use model::Robot;
+pub use reach::Reach;
+pub use screws::{Screw, Screws};
 pub use seeds::Seeds;
 
 use crate::math::MAX_DOF;

@@ -120,6 +120,13 @@ impl Robot {
         Self::assembled(description, self.base, self.tool)
     }
 
+    /// Whether a whole turn of joint `joint` brings all that it moves back to where it was.
+    pub fn repeats_every_turn(&self, joint: usize) -> bool {
+        let driven = self.chain.motions.iter().filter(|motion| motion.joint == joint);
+        let scales = driven.map(|motion| (motion.turn_scale, motion.slide_scale));
+        self.joints()[joint].kind.turns() && scales.into_iter().all(|(turn, slide)| turn.fract() == 0.0 && slide == 0.0)
+    }
+
     /// Err unless `q` has one finite entry per joint; `what` names it in the message.
     pub fn check(&self, what: &str, q: &[f64]) -> Result<()> {
         if q.len() != self.dof() {
@@ -189,14 +196,6 @@ impl Robot {
     #[inline]
     pub fn tip_and_torques(&self, q: &[f64], pull: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
         self.chain.torques(q, pull, torques)
-    }
-
-    /// Whether a whole turn of joint number `joint` brings the arm to where it was: not if something slides with it, or
-    /// follows it by a factor that is not whole.
-    pub fn repeats(&self, joint: usize) -> bool {
-        let mut driven = self.chain.motions.iter().filter(|motion| motion.joint == joint);
-        self.joints()[joint].kind.turns()
-            && driven.all(|motion| motion.slide_scale == 0.0 && motion.turn_scale.fract() == 0.0)
     }
 
     /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).

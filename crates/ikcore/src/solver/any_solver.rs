@@ -67,6 +67,14 @@ impl AnySolver {
         matches!(self, Self::Single(Algorithm::DerivativeFree(_) | Algorithm::LevenbergMarquardt(_)))
     }
 
+    /// The descent that is begun again and again, where this is one.
+    pub fn restarted_descent(&self) -> Option<&LevenbergMarquardt> {
+        match self {
+            Self::MultiStart(MultiStart { solver: Algorithm::LevenbergMarquardt(descent), .. }) => Some(descent),
+            _ => None,
+        }
+    }
+
     /// Runs from `x0` until solved, stopped or given up.
     pub fn run(&self, evaluator: &mut Evaluator<'_, dyn Differentiable + '_>, x0: &[f64]) -> Outcome {
         self.algorithm().run(self.restarts(), evaluator, x0)

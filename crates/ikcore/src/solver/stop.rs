@@ -69,15 +69,17 @@ pub enum Status {
     Lost = 7,
     /// An item of a batch whose target or start is wrong: nothing was solved.
     Invalid = 8,
+    /// The target is farther from the base than the arm is long.
+    OutOfReach = 9,
     /// The solver's own threshold was met before the tolerances were.
-    BelowThreshold = 9,
+    BelowThreshold = 10,
     /// The search arrived outside the limits, and whole turns do not bring it inside; the best inside is kept.
-    OutsideLimits = 10,
+    OutsideLimits = 11,
 }
 
 impl Status {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Solved,
         Self::Improved,
         Self::Capped,
@@ -87,6 +89,7 @@ impl Status {
         Self::Interrupted,
         Self::Lost,
         Self::Invalid,
+        Self::OutOfReach,
         Self::BelowThreshold,
         Self::OutsideLimits,
     ];
@@ -103,6 +106,7 @@ impl Status {
             Self::Interrupted => "INTERRUPTED",
             Self::Lost => "LOST",
             Self::Invalid => "INVALID",
+            Self::OutOfReach => "OUT_OF_REACH",
             Self::BelowThreshold => "BELOW_THRESHOLD",
             Self::OutsideLimits => "OUTSIDE_LIMITS",
         }
@@ -120,6 +124,7 @@ impl Status {
             Self::Lost => {
                 "slow the path down, raise the velocity limits, start elsewhere (another start or seed), or move the path into reach"
             }
+            Self::OutOfReach => "move the target nearer to the base, or the base nearer to the target",
             Self::Invalid => "on_invalid=\"raise\" says what is wrong",
             Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
             Self::OutsideLimits => {

@@ -6,34 +6,36 @@
 
 use super::{Target, position};
 use crate::math::Frame;
+use crate::math::arithmetic::Separate;
 use crate::math::so3::cross;
 use crate::robot::Wrench;
 
-/// E.
+/// E: of a pose over three axes and the position, of other targets over what they ask for.
 #[inline]
 pub fn error(target: &Target, tip: &Frame) -> f64 {
-    match target {
-        Target::Position(target) => 0.5 * position::error(target, &tip.origin).sum(),
-        Target::Pose(target) => {
-            let entries = target.axes.as_flattened().iter().zip(tip.axes.as_flattened());
-            let turned: f64 = entries.map(|(d, r)| (d - r) * (d - r)).sum();
-            0.5 * (turned + position::error(&target.origin, &tip.origin).sum())
-        }
-    }
+    let away = target.position().map_or(0.0, |wanted| position::error(&wanted, &tip.origin));
+    0.5 * (axes(target, tip).map(|(r, d)| position::error(&d, &r)).sum::<f64>() + away)
 }
 
 /// The wrench (f, m), minus the derivative of E.
 #[inline]
 pub fn pull(target: &Target, tip: &Frame) -> Wrench {
-    let (wanted, axes) = match target {
-        Target::Position(target) => (target, None),
-        Target::Pose(target) => (&target.origin, Some(&target.axes)),
-    };
-    let [fx, fy, fz] = position::residual(&tip.origin, wanted);
+    let [fx, fy, fz] = target.position().map_or([0.0; 3], |wanted| position::residual(&tip.origin, &wanted));
     let mut moment = [0.0; 3];
-    for (d, r) in axes.into_iter().flatten().zip(&tip.axes) {
-        let share = cross(r, d);
+    for (r, d) in axes(target, tip) {
+        let share = cross(&r, &d);
         (0..3).for_each(|k| moment[k] += share[k]);
     }
     [fx, fy, fz, moment[0], moment[1], moment[2]]
+}
+
+/// The axes of the tip that have a direction to take, and that direction.
+#[inline]
+fn axes(target: &Target, tip: &Frame) -> impl Iterator<Item = ([f64; 3], [f64; 3])> {
+    let (pairs, count) = match target {
+        Target::Position(_) => ([([0.0; 3], [0.0; 3]); 3], 0),
+        Target::Pose(frame) | Target::Orientation(frame) => (std::array::from_fn(|c| (tip.axes[c], frame.axes[c])), 3),
+        Target::Pointing { frame, axis } => ([(tip.turn::<Separate>(axis), frame.turn::<Separate>(axis)); 3], 1),
+    };
+    pairs.into_iter().take(count)
 }
