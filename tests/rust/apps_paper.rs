@@ -13,7 +13,7 @@ use ikcore::math::Frame;
 use ikcore::objective::{Gradient, Objective};
 use ikcore::problem::Problem;
 use ikcore::rng;
-use ikcore::robot::Robot;
+use ikcore::robot::{Joint, Robot};
 use ikcore::solver::{Algorithm, AnySolver, Apps, JacobianTranspose, LearningRate, LevenbergMarquardt, NewtonRaphson};
 use ikcore::solver::{Status, Stop, Unattended};
 use ikcore::task::{Components, Criterion, Target, Tolerance};
@@ -136,7 +136,9 @@ fn no_other_rate_gives_these_counts() {
 
 #[test]
 fn others_need_fewer_iterations() {
-    let robot = kuka();
+    // Held inside the limits all the way, only APPS makes the last motion, on which the fourth joint passes one.
+    let no_limits = |_: usize, joint: &mut Joint| (joint.lower, joint.upper) = (f64::NEG_INFINITY, f64::INFINITY);
+    let free = kuka().with_limits(no_limits).unwrap();
     let exactly = Tolerance { position: 1e-9, rotation: 1e-9 };
     let solvers: [(Algorithm, usize); 3] = [
         (Apps::default().into(), 140),
@@ -144,9 +146,9 @@ fn others_need_fewer_iterations() {
         (NewtonRaphson::default().into(), 15),
     ];
     for (solver, most) in solvers {
-        for (target, start) in tasks(&robot) {
+        for (target, start) in tasks(&kuka()) {
             let options = SolveOptions { tolerance: exactly, ..paper_options(solver.clone(), start) };
-            let solution = found(&robot, &target, &options);
+            let solution = found(&free, &target, &options);
             assert_eq!(solution.status, Status::Solved, "{solver:?}: {}", solution.message());
             assert!(solution.iterations <= most, "{solver:?}: {}", solution.iterations);
         }
