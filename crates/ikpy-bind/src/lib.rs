@@ -8,6 +8,7 @@ mod goal;
 mod ik;
 mod limits;
 mod manipulability;
+mod minimize;
 mod monitor;
 mod path;
 mod pose;
@@ -40,6 +41,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     goal::register(module)?;
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
+    module.add_class::<minimize::PyMinimum>()?;
+    module.add_function(wrap_pyfunction!(minimize::minimize_function, module)?)?;
     path::register(module)?;
     module.add_class::<tracking::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;

@@ -36,6 +36,7 @@ impl Solution {
         }
         let ended = match status {
             Status::Solved => return format!("solved to {error}"),
+            Status::Improved => return format!("below the value asked for, {error} away"),
             Status::OutOfReach => "as near as it gets",
             Status::BelowThreshold => "error_threshold met",
             Status::OutsideLimits => "reached outside the limits only, inside them",
