@@ -201,6 +201,7 @@ def _draw(context: Context, runs: list[Motion]) -> Drawing:
                 axes.loglog([0.7, *budgets], values, label=name, **line(i))
             axes.axhline(5e-10, color="black", linestyle=":", linewidth=0.9)
             axes.set(title=run.name, ylim=(1e-20, 30.0), xlim=(0.7, 1000))
+            axes.minorticks_off()
         for axes in (*panels[4:7], panels[3]):
             axes.set_xlabel("iterations")
             axes.tick_params(labelbottom=True)
