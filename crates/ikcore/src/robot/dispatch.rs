@@ -56,6 +56,9 @@ macro_rules! fused {
     };
 }
 
+/// What the joints feel of the wrench that is said of the tip.
+type Torques = fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Frame;
+
 /// The kernels compiled for one padded number of stages and one instruction set; a chain chooses when it is built.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kernels {
@@ -64,7 +67,7 @@ pub(super) struct Kernels {
     pub tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
     pub tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
     pub jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
-    pub torques: fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Frame,
+    pub torques: Torques,
     pub stage_frames: fn(&Chain, &[f64], &mut StageFrames),
 }
 

@@ -11,9 +11,9 @@ _SUMMARY = """
 The seven motions come out **to the last iteration**: 438, 256, 316, 618, 278, 233 and 281, with the printed angles and
 positions, once one hidden factor is put right: the learning rate and the threshold that the paper prints go with an
 error 20 times as large as its eq. (11). The rest of its Table 6 does not hold: a correct Newton-Raphson does not fail
-on these motions, it solves each in a handful of iterations. APPS is a plain gradient descent; it needs no good start
-and no inverse, but its best fixed learning rate leaves half of all random targets unsolved after 1000 iterations. With
-a rate taken from the gradients themselves it reaches most of them.
+on these motions, it solves each in a handful of iterations. APPS is a plain gradient descent: it needs no inverse, but
+from a random start the best fixed learning rate leaves half of all random targets out of reach after 1000 iterations.
+With a rate taken from the gradients themselves it gets to most of them.
 """
 
 

@@ -84,7 +84,7 @@ def motions(runs: list[Motion]) -> tuple[Section, list[Claim]]:
                 name="figure_7",
                 title="Figure 7: mean absolute errors of the tip's position",
                 drawing=_draw_errors(errors),
-                caption="Rounding the angles to 0.01° costs ten times what APPS leaves over.",
+                caption="Rounding the angles to 0.01° costs up to ten times what APPS leaves over.",
             ),
         ],
     )
