@@ -6,11 +6,13 @@
 
 mod common;
 
+use std::f64::consts::TAU;
+
 use common::robot;
 use ikcore::Error;
 use ikcore::ik::{Solution, SolveOptions, solve};
 use ikcore::math::Frame;
-use ikcore::objective::{Gradient, Objective};
+use ikcore::objective::{Bounds, Gradient, Objective};
 use ikcore::problem::Problem;
 use ikcore::rng;
 use ikcore::robot::{Joint, Robot};
@@ -190,6 +192,17 @@ fn joints_are_brought_back_by_whole_turns() {
     let (target, start) = tasks(&robot).pop().unwrap();
     let solution = found(&robot, &target, &paper_options(Apps::paper(), start));
     assert!((solution.q[3].to_degrees() - 0.1615).abs() < 1e-4);
+}
+
+#[test]
+fn wrapping_takes_the_fewest_turns_and_clips_what_does_not_repeat() {
+    let bounds = Bounds::new(&[-1.0, -1.0, -9.0, 2.0, -1.0], &[1.0, 1.0, 9.0, 3.0, 1.0]).unwrap();
+    let periods = [Some(TAU), Some(TAU), Some(TAU), Some(TAU), None];
+    let mut x = [3.0 * TAU + 0.5, -2.0 * TAU - 0.5, 9.5, 4.0, 1.5];
+    bounds.wrap(&mut x, &periods);
+    // The third takes one turn though two would do; no turn brings the fourth inside; the last slides.
+    let expected = [0.5, -0.5, 9.5 - TAU, 4.0, 1.0];
+    assert!(x.iter().zip(expected).all(|(x, expected)| (x - expected).abs() < 1e-14), "{x:?}");
 }
 
 #[test]
