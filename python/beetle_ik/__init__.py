@@ -14,6 +14,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
 
 from . import goals, paths, plot, tasks
 from ._core import (
+    APPS,
     BAS,
     PSO,
     QPSO,
@@ -29,12 +30,14 @@ from ._core import (
     Genetic,
     InvalidInputError,
     KinematicPlant,
+    JacobianTranspose,
     LevenbergMarquardt,
     LimitError,
     Limits,
     Minimum,
     ModelFreeResult,
     MultiStart,
+    NewtonRaphson,
     Path,
     Robot,
     Sinusoid,
@@ -61,6 +64,7 @@ from ._core import (
 )
 
 __all__ = [
+    "APPS",
     "BAS",
     "PSO",
     "QPSO",
@@ -76,12 +80,14 @@ __all__ = [
     "Genetic",
     "InvalidInputError",
     "KinematicPlant",
+    "JacobianTranspose",
     "LevenbergMarquardt",
     "LimitError",
     "Limits",
     "Minimum",
     "ModelFreeResult",
     "MultiStart",
+    "NewtonRaphson",
     "Path",
     "Robot",
     "Sinusoid",

@@ -16,7 +16,7 @@ __version__: str
 
 _Array: TypeAlias = NDArray[np.float64]
 _DerivativeFree: TypeAlias = BAS | BeeColony | BeetleSwarm | DifferentialEvolution | Firefly | Genetic | PSO | QPSO
-_Single: TypeAlias = _DerivativeFree | BroydenBAS | LevenbergMarquardt
+_Single: TypeAlias = _DerivativeFree | APPS | BroydenBAS | JacobianTranspose | LevenbergMarquardt | NewtonRaphson
 _Solver: TypeAlias = _Single | MultiStart
 _LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
 _LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] | None
@@ -181,7 +181,29 @@ class Status(IntEnum):
     INTERRUPTED = 6
     LOST = 7
     INVALID = 8
-    PLANT_FAILED = 9
+    OUT_OF_REACH = 9
+    PLANT_FAILED = 10
+    BELOW_THRESHOLD = 11
+    OUTSIDE_LIMITS = 12
+
+@final
+class APPS:
+    def __new__(
+        cls,
+        *,
+        learning_rate: float | Literal["auto"] = "auto",
+        step_limit: float = 0.2,  # rad or m
+        error_threshold: float | None = None,
+    ) -> APPS: ...
+    @staticmethod
+    def paper() -> APPS: ...
+    @property
+    def learning_rate(self) -> float | Literal["auto"]: ...
+    @property
+    def step_limit(self) -> float: ...
+    @property
+    def error_threshold(self) -> float | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class BAS:
@@ -226,6 +248,10 @@ class BroydenBAS:
         position_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession: ...
+class JacobianTranspose:
+    def __new__(cls, *, step_size: float | Literal["auto"] = "auto") -> JacobianTranspose: ...
+    @property
+    def step_size(self) -> float | Literal["auto"]: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -445,6 +471,13 @@ class MultiStart:
     def solver(self) -> _Single: ...
     @property
     def max_starts(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class NewtonRaphson:
+    def __new__(cls, *, step_fraction: float = ...) -> NewtonRaphson: ...
+    @property
+    def step_fraction(self) -> float: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final

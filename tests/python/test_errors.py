@@ -10,8 +10,8 @@ from mistakes import Invalid, Limit, Unknown, Urdf, assert_told, told, with_entr
 import beetle_ik as bik
 
 SOLVERS = (
-    "solver must be BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO, "
-    "BroydenBAS, LevenbergMarquardt or MultiStart of one of them"
+    "solver must be BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO, APPS, "
+    "BroydenBAS, JacobianTranspose, LevenbergMarquardt, NewtonRaphson or MultiStart of one of them"
 )
 IIWA = bik.Robot.named("iiwa14")
 START = np.array([0.6449, 0.2037, 0.1969, -0.7714, 0.2028, 0.7179, 0.1])

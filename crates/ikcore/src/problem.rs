@@ -1,10 +1,10 @@
 //! A robot and a target as something to minimise.
 
 use crate::math::box_step::ROWS;
-use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Residual, Score};
+use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, Slope};
 use crate::rng::LazyRng;
 use crate::robot::{Robot, Seeds};
-use crate::task::{Assessment, Criterion, Target};
+use crate::task::{Assessment, Criterion, Target, entrywise};
 
 /// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
 #[derive(Debug, Clone, Copy)]
@@ -14,12 +14,27 @@ pub struct Problem<'a> {
     criterion: Criterion,
     /// Found when the first start is asked for.
     seeds: Option<Seeds<'a>>,
+    turns: Turns,
+}
+
+/// Whether it matters how often a joint has turned round.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Turns {
+    /// On the way from one tick to the next it does.
+    Count,
+    /// For a configuration that stands alone it does not.
+    Repeat,
 }
 
 impl<'a> Problem<'a> {
     /// The problem of bringing the tip of `robot` to `target`.
     pub fn new(robot: &'a Robot, target: &'a Target, criterion: impl Into<Criterion>) -> Self {
-        Self { robot, target, criterion: criterion.into(), seeds: None }
+        Self { robot, target, criterion: criterion.into(), seeds: None, turns: Turns::Count }
+    }
+
+    /// The same problem where a joint may be brought back by whole turns: the robot is free to get there in any way.
+    pub fn disregarding_turns(self) -> Self {
+        Self { turns: Turns::Repeat, ..self }
     }
 
     /// Where the tip is to be.
@@ -52,6 +67,11 @@ impl Objective for Problem<'_> {
         });
     }
 
+    fn period(&self, joint: usize) -> Option<f64> {
+        let repeats = self.turns == Turns::Repeat && self.robot.repeats_every_turn(joint);
+        repeats.then_some(std::f64::consts::TAU)
+    }
+
     /// The nearest of the robot's indexed configurations, then uniform in the box, where a side without a limit is drawn
     /// from the joint's sampling range. Whoever brings a start of their own gets the nearest as their second.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
@@ -79,6 +99,23 @@ impl Residual for Problem<'_> {
         let assessment = self.target.complete(&self.robot.tip(q), 0, &self.criterion, &mut completed);
         *out = completed.residual;
         assessment.score
+    }
+}
+
+impl Gradient for Problem<'_> {
+    /// E of eq. (11) of Yuan et al. 2016; where components have weights, half the weighted sum of squares.
+    #[inline]
+    fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> Slope {
+        if self.criterion.components.is_some() {
+            let mut linearization = Linearization::default();
+            let score = self.linearize(q, &mut linearization);
+            linearization.gradient(gradient);
+            return Slope { error: 0.5 * score.value, score };
+        }
+        let target = self.target;
+        let tip = self.robot.tip_and_torques(q, &|tip| entrywise::pull(target, tip), gradient);
+        gradient.iter_mut().for_each(|slope| *slope = -*slope);
+        Slope { error: entrywise::error(target, &tip), score: target.assess_tip(&tip, &self.criterion).score }
     }
 }
 

@@ -9,7 +9,7 @@ use super::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::MAX_DOF;
-use crate::objective::{Bounds, LeastSquares, Objective, Point};
+use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
@@ -71,7 +71,7 @@ impl<'a> Prepared<'a> {
     }
 
     pub(super) fn problem<'p>(&'p self, target: &'p Target) -> Problem<'p> {
-        Problem::new(&self.robot, target, self.criterion)
+        Problem::new(&self.robot, target, self.criterion).disregarding_turns()
     }
 
     /// What of `wanted` the task asks for, checked.
@@ -215,7 +215,7 @@ impl Run {
         monitor: &mut dyn Monitor,
     ) -> (Status, Point) {
         let stop = self.rest(reserve);
-        let objective: &mut dyn LeastSquares = problem;
+        let objective: &mut dyn Differentiable = problem;
         let mut evaluator = Evaluator::new(objective, &prepared.bounds, stop, rng, monitor);
         let outcome = prepared.options.solver.run(&mut evaluator, x0);
         self.evaluations += evaluator.evaluations();
@@ -237,7 +237,7 @@ impl Run {
         if self.is_spent() {
             return (false, q);
         }
-        let objective: &mut dyn LeastSquares = problem;
+        let objective: &mut dyn Differentiable = problem;
         let mut evaluator = Evaluator::new(objective, &prepared.bounds, self.rest(0), rng, monitor);
         let outcome = run(descent, &mut evaluator, &q);
         self.evaluations += evaluator.evaluations();

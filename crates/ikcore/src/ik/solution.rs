@@ -38,6 +38,8 @@ impl Solution {
             Status::Solved => return format!("solved to {error}"),
             Status::Improved => return format!("below the value asked for, {error} away"),
             Status::OutOfReach => "as near as it gets",
+            Status::BelowThreshold => "error_threshold met",
+            Status::OutsideLimits => "reached outside the limits only, inside them",
             Status::Stalled => "no further progress",
             Status::BudgetSpent => "budget spent",
             Status::TimeUp => "time limit over",

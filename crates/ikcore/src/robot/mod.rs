@@ -21,7 +21,7 @@ mod urdf;
 pub use builder::{ChainBuilder, Drive};
 pub use dh::{Dh, DhTable};
 pub use joint::{Joint, JointKind};
-pub use kinematics::Columns;
+pub use kinematics::{Columns, Wrench};
 pub use model::Robot;
 pub use reach::Reach;
 pub use screws::{Screw, Screws};

@@ -10,7 +10,7 @@ use super::builder::{ChainBuilder, Element};
 use super::chain::Chain;
 use super::joint::Joint;
 use super::seed_index::SeedIndex;
-use super::{Columns, MAX_DOF};
+use super::{Columns, MAX_DOF, Wrench};
 use crate::error::{Error, Result, require_finite};
 use crate::math::{Frame, Pose, pose};
 use crate::rng::LazyRng;
@@ -189,6 +189,13 @@ impl Robot {
     #[inline]
     pub fn tip_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
         self.chain.jacobian(q, columns)
+    }
+
+    /// Tip and joint torques (N m, N for sliding joints) in one pass and without a Jacobian: what the joints feel of the
+    /// wrench that `pull` says of the tip. `q` and `torques` have one entry per joint.
+    #[inline]
+    pub fn tip_and_torques(&self, q: &[f64], pull: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
+        self.chain.torques(q, pull, torques)
     }
 
     /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).

@@ -76,11 +76,15 @@ pub enum Status {
     OutOfReach = 9,
     /// A plant that raised an error, or returned what is no position: the run ended with what was recorded.
     PlantFailed = 10,
+    /// The solver's own threshold was met before the tolerances were.
+    BelowThreshold = 11,
+    /// The search arrived outside the limits, and whole turns do not bring it inside; the best inside is kept.
+    OutsideLimits = 12,
 }
 
 impl Status {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Solved,
         Self::Improved,
         Self::Capped,
@@ -92,6 +96,8 @@ impl Status {
         Self::Invalid,
         Self::OutOfReach,
         Self::PlantFailed,
+        Self::BelowThreshold,
+        Self::OutsideLimits,
     ];
 
     /// The name as Python shows it.
@@ -108,6 +114,8 @@ impl Status {
             Self::Invalid => "INVALID",
             Self::OutOfReach => "OUT_OF_REACH",
             Self::PlantFailed => "PLANT_FAILED",
+            Self::BelowThreshold => "BELOW_THRESHOLD",
+            Self::OutsideLimits => "OUTSIDE_LIMITS",
         }
     }
 
@@ -126,6 +134,10 @@ impl Status {
             Self::OutOfReach => "move the target nearer to the base, or the base nearer to the target",
             Self::Invalid => "on_invalid=\"raise\" says what is wrong",
             Self::PlantFailed => "mend the plant and run again",
+            Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
+            Self::OutsideLimits => {
+                "try another start or seed, MultiStart, or a solver that searches inside the limits, such as LevenbergMarquardt"
+            }
         }
     }
 }

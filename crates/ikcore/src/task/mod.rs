@@ -1,6 +1,7 @@
 //! What the tip is to reach: residuals of a frame task and their derivatives, and goals beside it.
 
 mod criterion;
+pub mod entrywise;
 mod error;
 mod goal;
 mod kind;

@@ -11,7 +11,7 @@ use crate::math::{
     Frame, MAX_DOF,
     box_step::{box_step, box_step_near, least_damping},
 };
-use crate::objective::{LeastSquares, Linearization, Point};
+use crate::objective::{Differentiable, Linearization, Point};
 use crate::problem::Problem;
 use crate::robot::{Columns, Robot};
 use crate::solver::{Evaluator, Halt, LevenbergMarquardt, Stop, run};
@@ -154,7 +154,7 @@ impl Memory {
     /// What the model's steps could not do, as far as it can be done.
     fn levenberg_marquardt(&mut self, found: &mut Found, tick: Tick<'_>) {
         let mut problem = Problem::new(tick.robot, tick.target, *tick.criterion);
-        let objective: &mut dyn LeastSquares = &mut problem;
+        let objective: &mut dyn Differentiable = &mut problem;
         let mut evaluator = Evaluator::new(objective, tick.tick_box, Stop::default(), tick.rng, tick.monitor);
         let outcome = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
         let evaluations = evaluator.evaluations();
