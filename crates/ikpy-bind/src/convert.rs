@@ -6,6 +6,7 @@ use numpy::{
     Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
     PyUntypedArrayMethods,
 };
+use pyo3::exceptions::PyException;
 use pyo3::intern;
 use pyo3::prelude::*;
 
@@ -32,7 +33,9 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyA
         numpy.call_method(intern!(py, "asarray"), (value,), Some(&pyo3::types::IntoPyDict::into_py_dict(options, py)?));
     match converted {
         Ok(array) => Ok(array.cast_into::<PyArrayDyn<f64>>()?.readonly()),
-        Err(_) => Err(no_numbers()),
+        // A Ctrl-C that falls into the conversion is not the value's fault.
+        Err(error) if error.is_instance_of::<PyException>(py) => Err(no_numbers()),
+        Err(interrupt) => Err(interrupt),
     }
 }
 
