@@ -368,6 +368,7 @@ class PSO:
         c1: float | None = None,
         c2: float | None = None,
         velocity_limit: float = ...,
+        accept: Literal["always", "improving"] = "always",
         max_generations: int | None = ...,
         stall_generations: int | None = ...,
     ) -> PSO: ...
@@ -383,6 +384,8 @@ class PSO:
     def c2(self) -> float: ...
     @property
     def velocity_limit(self) -> float: ...
+    @property
+    def accept(self) -> str: ...
     @property
     def max_generations(self) -> int | None: ...
     @property
