@@ -6,6 +6,7 @@
 //! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there. How
 //! noisy the sensor is to begin with, three measurements of the start tell.
 
+use super::noise::{ABOVE_NOISE, Noise, median};
 use super::{Tick, Verdict, distance};
 use crate::math::box_step::ROWS;
 use crate::math::secant::{LEAST_DAMPING, Secant, antenna};
@@ -15,9 +16,6 @@ use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
 
 /// A measurement that misses the prediction by more than this share of the predicted motion is sent for again.
 const SURPRISING: f64 = 1.0;
-
-/// Steps are believed from this many noise levels on.
-const ABOVE_NOISE: f64 = 3.0;
 
 /// Steps in a row that came no nearer, before antennae are put out again: they shake the tool.
 const FAILED_STEPS: usize = 2;
@@ -294,37 +292,6 @@ impl Memory {
         self.damping = FIRST_DAMPING;
         Verdict::TickOver
     }
-}
-
-/// How far apart two measurements of the same command lie (m): the median of the last three that could tell, so that an
-/// outlier counts for nothing.
-#[derive(Debug, Default)]
-struct Noise {
-    repeats: [f64; 3],
-    noted: usize,
-}
-
-impl Noise {
-    fn note(&mut self, repeat: f64) {
-        self.repeats[self.noted % 3] = repeat;
-        self.noted += 1;
-    }
-
-    /// The noise of one measurement (m); zero until there is evidence.
-    fn level(&self) -> f64 {
-        let [a, b, c] = self.repeats;
-        median(a, b, c) * std::f64::consts::FRAC_1_SQRT_2
-    }
-
-    /// How much of a surprise to learn from a step that moves the tip by `motion` (m).
-    fn share(&self, motion: f64) -> f64 {
-        let noise = ABOVE_NOISE * self.level();
-        if noise == 0.0 { 1.0 } else { motion * motion / (motion * motion + noise * noise) }
-    }
-}
-
-fn median(a: f64, b: f64, c: f64) -> f64 {
-    a.max(b).min(a.min(b).max(c))
 }
 
 /// a - b in the rows of a task.
