@@ -17,6 +17,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("trajectory", &[]),
     ("objective", &[]),
     ("limits", &["robot", "objective"]),
+    ("obstacle", &["robot", "objective"]),
     ("manipulability", &["robot"]),
     ("task", &["robot", "manipulability", "objective"]),
     ("solver", &["objective"]),

@@ -161,6 +161,36 @@ pub enum Error {
         /// By how much it fails.
         problem: String,
     },
+    /// An obstacle that cannot be one, or not for this robot.
+    #[error("{problem}")]
+    InvalidObstacle {
+        /// What is wrong and what would be right.
+        problem: String,
+    },
+    /// Nothing is known of the room that a robot takes up.
+    #[error(
+        "robot '{robot}' {problem}: give it capsules with with_capsules(radius=...) along its links or \
+         with_capsules([(link, a, b, radius), ...]), or load a URDF whose links have <collision> shapes of spheres, \
+         cylinders, capsules and boxes"
+    )]
+    NoCapsules {
+        /// The robot's name.
+        robot: String,
+        /// What is missing.
+        problem: String,
+    },
+    /// A start or end that touches something.
+    #[error("{what}: link '{link}' is {depth} m inside {other}")]
+    InCollision {
+        /// What was passed, such as "start".
+        what: String,
+        /// The link.
+        link: String,
+        /// What it is in, such as "obstacle 0 (Box)".
+        other: String,
+        /// How deep (m).
+        depth: String,
+    },
     /// A path without points, or one that cannot be followed in time.
     #[error("path: {problem}")]
     InvalidPath {
