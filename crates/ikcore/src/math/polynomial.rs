@@ -49,6 +49,14 @@ pub fn largest_magnitude(coefficients: &[f64], lower: f64, upper: f64) -> f64 {
     candidates.map(|x| evaluate(coefficients, x)[0].abs()).fold(0.0, f64::max)
 }
 
+/// The smallest and the largest value on `[lower, upper]`.
+pub fn range(coefficients: &[f64], lower: f64, upper: f64) -> (f64, f64) {
+    let candidates = stationary_points(coefficients, lower, upper).into_iter().chain([lower, upper]);
+    candidates
+        .map(|x| evaluate(coefficients, x)[0])
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+}
+
 /// Where the derivative vanishes strictly inside `(lower, upper)`.
 fn stationary_points(coefficients: &[f64], lower: f64, upper: f64) -> Short {
     if coefficients.len() < 2 {

@@ -3,7 +3,7 @@
 use super::hermite;
 use crate::error::{Error, Result, require_finite};
 use crate::math::Knots;
-use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude};
+use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range};
 use crate::math::ticks::ticks;
 
 /// A polynomial up to degree 5 in the time s (s) since the segment began: q = c\[0\] + c\[1\] s + ... + c\[5\] s^5, in
@@ -143,6 +143,18 @@ impl Trajectory {
     /// knots, which would need an infinite one, are not in it.
     pub fn max_acceleration(&self) -> Vec<f64> {
         self.largest(|position| derivative(&derivative(position)))
+    }
+
+    /// The exact lowest and highest position of each joint (rad or m).
+    pub fn position_range(&self) -> Vec<(f64, f64)> {
+        let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); self.joints.len()];
+        for segment in 0..self.knots.segments() {
+            for ((lowest, highest), position) in ranges.iter_mut().zip(self.segment(segment)) {
+                let (low, high) = range(position, 0.0, self.knots.span(segment));
+                (*lowest, *highest) = (lowest.min(low), highest.max(high));
+            }
+        }
+        ranges
     }
 
     /// The times i `dt` (s) from 0 on, and the duration as the last one.
