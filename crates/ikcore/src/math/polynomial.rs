@@ -2,8 +2,8 @@
 
 use smallvec::SmallVec;
 
-/// Coefficients or roots of a polynomial up to degree 5, on the stack.
-pub type Short = SmallVec<[f64; 6]>;
+/// Coefficients or roots of a polynomial up to degree 6, on the stack.
+pub type Short = SmallVec<[f64; 7]>;
 
 /// Value, first and second derivative at `x`, in one Horner pass.
 pub fn evaluate(coefficients: &[f64], x: f64) -> [f64; 3] {
