@@ -131,6 +131,14 @@ pub enum Error {
         /// Its upper limit (rad or m).
         upper: f64,
     },
+    /// An end of a motion that the robot does not reach.
+    #[error("{what} cannot be reached: {problem}")]
+    Unreachable {
+        /// Which end, such as "start".
+        what: String,
+        /// By how much it is missed, and what would be right.
+        problem: String,
+    },
     /// A limit that is negative, at least for some time.
     #[error("{field} limit of joint '{joint}' is {value} at t = {time} s: a limit cannot be negative")]
     NegativeLimit {

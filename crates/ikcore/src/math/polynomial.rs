@@ -2,8 +2,8 @@
 
 use smallvec::SmallVec;
 
-/// Coefficients or roots of a polynomial up to degree 5, on the stack.
-pub type Short = SmallVec<[f64; 6]>;
+/// Coefficients or roots of a polynomial up to degree 6, on the stack.
+pub type Short = SmallVec<[f64; 7]>;
 
 /// Value, first and second derivative at `x`, in one Horner pass.
 pub fn evaluate(coefficients: &[f64], x: f64) -> [f64; 3] {
@@ -47,6 +47,14 @@ pub fn roots(coefficients: &[f64], lower: f64, upper: f64) -> Short {
 pub fn largest_magnitude(coefficients: &[f64], lower: f64, upper: f64) -> f64 {
     let candidates = stationary_points(coefficients, lower, upper).into_iter().chain([lower, upper]);
     candidates.map(|x| evaluate(coefficients, x)[0].abs()).fold(0.0, f64::max)
+}
+
+/// The smallest and the largest value on `[lower, upper]`.
+pub fn range(coefficients: &[f64], lower: f64, upper: f64) -> (f64, f64) {
+    let candidates = stationary_points(coefficients, lower, upper).into_iter().chain([lower, upper]);
+    candidates
+        .map(|x| evaluate(coefficients, x)[0])
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 /// Where the derivative vanishes strictly inside `(lower, upper)`.

@@ -1,0 +1,25 @@
+//! Planning: from one place to another, or along a given path, within the limits of the joints.
+//!
+//! | file | what |
+//! |---|---|
+//! | [`plan`] | [`Plan`]: the trajectory found, what it costs, what it breaks |
+//! | [`cost`] | what a plan minimises: time, joint travel, tip travel |
+//! | [`end`] | where a motion starts or ends: a target of the tip, or a configuration |
+//! | [`motion_limits`] | constant limits of each joint, and what of them a trajectory breaks |
+//! | [`point_to_point`] | the planner from end to end, whatever its method |
+//! | [`along_path`] | the planner along a path, whatever its method |
+
+pub mod along_path;
+pub mod cost;
+pub mod end;
+pub mod motion_limits;
+pub mod plan;
+pub mod point_to_point;
+mod tpbso;
+
+pub use along_path::{AlongPathMethod, AlongPathOptions, plan_along_path};
+pub use cost::Cost;
+pub use end::End;
+pub use motion_limits::MotionLimits;
+pub use plan::{Improvement, Plan, Violation};
+pub use point_to_point::{PointToPointMethod, PointToPointOptions, plan_point_to_point};

@@ -1,0 +1,119 @@
+//! Constant limits of each joint, as planners keep them.
+
+use super::plan::Violation;
+use crate::error::{Error, Result};
+use crate::limits::{Field, Limits, Profile};
+use crate::robot::{JointKind, Robot};
+use crate::trajectory::Trajectory;
+
+/// Constant limits of each joint (n,); infinite where there is none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionLimits {
+    /// Lower position limits (rad, m).
+    pub lower: Vec<f64>,
+    /// Upper position limits (rad, m).
+    pub upper: Vec<f64>,
+    /// Velocity limits (rad/s, m/s).
+    pub velocity: Vec<f64>,
+    /// Acceleration limits (rad/s^2, m/s^2).
+    pub acceleration: Vec<f64>,
+    joints: Vec<(String, JointKind)>,
+}
+
+/// A limit counts as kept up to this share of it: the rounding of a polynomial's coefficients.
+const ROUNDING: f64 = 1e-9;
+
+impl MotionLimits {
+    /// The limits for `robot`, its own where None; `method` names the planner in errors.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`] for jerk limits and such that vary in time, [`Error::OutOfRange`] for a velocity or
+    /// acceleration limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`], [`Error::WrongLength`].
+    pub fn new(robot: &Robot, limits: Option<&Limits>, method: &str) -> Result<Self> {
+        let limits = limits.cloned().unwrap_or_else(|| Limits::of(robot));
+        limits.require_for(robot)?;
+        limits.require_none(&[Field::Jerk], method, "retime the plan with a jerk limit afterwards")?;
+        limits.validate(0.0, 0)?;
+        let constants = |field: Field| -> Result<Vec<f64>> {
+            let profiles = limits.field(field).unwrap_or_default();
+            profiles.iter().map(|profile| constant(profile, field, method)).collect()
+        };
+        let joints = robot.joints().iter().map(|joint| (joint.name.clone(), joint.kind)).collect();
+        let mut acceleration = constants(Field::Acceleration)?;
+        acceleration.resize(robot.dof(), f64::INFINITY);
+        let limits = Self {
+            lower: constants(Field::Lower)?,
+            upper: constants(Field::Upper)?,
+            velocity: constants(Field::Velocity)?,
+            acceleration,
+            joints,
+        };
+        limits.require_motion()?;
+        Ok(limits)
+    }
+
+    /// Number of joints.
+    pub fn dof(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Name of a joint.
+    pub fn joint_name(&self, joint: usize) -> &str {
+        &self.joints[joint].0
+    }
+
+    /// Names of all joints.
+    pub fn joint_names(&self) -> Vec<String> {
+        self.joints.iter().map(|(name, _)| name.clone()).collect()
+    }
+
+    /// What `trajectory` breaks, by the exact extremes of its polynomials.
+    pub fn violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
+        let (velocity, acceleration) = (trajectory.max_velocity(), trajectory.max_acceleration());
+        let mut found = vec![];
+        for (j, (lowest, highest)) in trajectory.position_range().into_iter().enumerate() {
+            let units = if self.joints[j].1.turns() { ["rad", "rad/s", "rad/s^2"] } else { ["m", "m/s", "m/s^2"] };
+            let checks = [
+                ("lowest position", lowest, self.lower[j], self.lower[j] - lowest, units[0]),
+                ("highest position", highest, self.upper[j], highest - self.upper[j], units[0]),
+                ("velocity", velocity[j], self.velocity[j], velocity[j] - self.velocity[j], units[1]),
+                (
+                    "acceleration",
+                    acceleration[j],
+                    self.acceleration[j],
+                    acceleration[j] - self.acceleration[j],
+                    units[2],
+                ),
+            ];
+            for (quantity, value, bound, excess, unit) in checks {
+                if excess > ROUNDING * bound.abs().max(1.0) {
+                    let what = format!("{quantity} of joint '{}'", self.joint_name(j));
+                    found.push(Violation { what, value, bound, unit });
+                }
+            }
+        }
+        found
+    }
+
+    /// Err for a joint that may not move at all.
+    fn require_motion(&self) -> Result<()> {
+        for (name, values) in [("velocity", &self.velocity), ("acceleration", &self.acceleration)] {
+            if let Some(j) = values.iter().position(|value| *value <= 0.0) {
+                let what = format!("{name} limit of joint '{}'", self.joint_name(j));
+                return Err(Error::out_of_range(what, "positive", values[j]));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn constant(profile: &Profile, field: Field, method: &str) -> Result<f64> {
+    match profile {
+        Profile::Constant(value) => Ok(*value),
+        _ => Err(Error::UnsupportedLimit {
+            field: format!("time-varying {field}"),
+            method: method.into(),
+            remedy: "give numbers".into(),
+        }),
+    }
+}
