@@ -188,7 +188,7 @@ pub enum Error {
         problem: String,
     },
     /// A start or end that touches something.
-    #[error("{what}: link '{link}' is {depth} m inside {other}")]
+    #[error("{what}: link '{link}' is {depth} {other}")]
     InCollision {
         /// What was passed, such as "start".
         what: String,
@@ -196,8 +196,17 @@ pub enum Error {
         link: String,
         /// What it is in, such as "obstacle 0 (Box)".
         other: String,
-        /// How deep (m).
+        /// How deep, such as "0.02 m inside".
         depth: String,
+    },
+    /// A joint that no limit slows down.
+    #[error(
+        "joint '{joint}' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
+         limits=Limits(velocity=...)"
+    )]
+    NoPace {
+        /// The joint's name.
+        joint: String,
     },
     /// A path without points, or one that cannot be followed in time.
     #[error("path: {problem}")]

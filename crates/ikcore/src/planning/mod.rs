@@ -6,12 +6,14 @@
 //! | [`cost`] | what a plan minimises: time, joint travel, tip travel |
 //! | [`end`] | where a motion starts or ends: a target of the tip, or a configuration |
 //! | [`motion_limits`] | constant limits of each joint, and what of them a trajectory breaks |
+//! | `minmax` | from end to end by the nearest configurations, and around obstacles |
 //! | [`point_to_point`] | the planner from end to end, whatever its method |
 //! | [`along_path`] | the planner along a path, whatever its method |
 
 pub mod along_path;
 pub mod cost;
 pub mod end;
+mod minmax;
 pub mod motion_limits;
 pub mod plan;
 pub mod point_to_point;

@@ -5,9 +5,10 @@ use std::str::FromStr;
 use super::cost::Cost;
 use super::end::End;
 use super::plan::Plan;
-use super::tpbso;
+use super::{minmax, tpbso};
 use crate::error::{Error, Result};
 use crate::limits::Limits;
+use crate::obstacle::Obstacle;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Monitor, Stop};
 
@@ -40,6 +41,10 @@ pub struct PointToPointOptions {
     pub method: PointToPointMethod,
     /// What to minimise.
     pub objective: Cost,
+    /// What the robot may not touch; it may never touch itself if it has capsules.
+    pub obstacles: Vec<Obstacle>,
+    /// Distance to keep from obstacles and between links (m); None: 1 mm.
+    pub margin: Option<f64>,
     /// Limits to keep; None keeps the robot's.
     pub limits: Option<Limits>,
     /// What searches; None: the method's own.
@@ -65,7 +70,7 @@ pub fn plan_point_to_point(
     start.check("start", robot)?;
     end.check("end", robot)?;
     match options.method {
-        PointToPointMethod::MinMax => Err(Error::unknown_option("method", "minmax", &["tpbso"])),
+        PointToPointMethod::MinMax => minmax::point_to_point(robot, start, end, options, monitor),
         PointToPointMethod::Tpbso => tpbso::point_to_point(robot, start, end, options, monitor),
     }
 }
