@@ -12,7 +12,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
     result.trajectory.to_csv("trajectory.csv")
 """
 
-from . import paths, plot
+from . import obstacles, paths, plot
 from ._core import (
     BAS,
     BatchSolution,
@@ -71,6 +71,7 @@ __all__ = [
     "UrdfError",
     "Violation",
     "__version__",
+    "obstacles",
     "paths",
     "plan_along_path",
     "plan_point_to_point",

@@ -5,12 +5,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._core import Capsule
 from ._text import counted
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from ._core import Plan, Robot, TrackResult, Trajectory
+    from ._core import Obstacle, Plan, Robot, TrackResult, Trajectory
 
 # Okabe and Ito's palette, which colour-blind readers can tell apart too; its yellow is too faint for lines on white.
 _BLUE, _VERMILION, _GREEN, _PURPLE, _ORANGE, _SKY, _BLACK = (
@@ -39,15 +40,18 @@ _LEGEND_ROWS = 10
 _TRAJECTORY_SAMPLES = 2001
 
 
-def robot(robot: Robot, q: ArrayLike) -> Figure:
-    """The robot as a stick figure at the configuration `q` (n,)."""
+def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] = ()) -> Figure:
+    """The robot as a stick figure at the configuration `q` (n,), with its capsules, among `obstacles`."""
+    obstacles = list(obstacles)
     origins = robot.link_poses(q)[:, :3, 3]
     with _style():
         figure = _new_figure(6.0, 6.0)
         axes = figure.add_subplot(projection="3d")
         axes.plot(*origins.T, color=_BLUE, linewidth=3, marker="o", markersize=6, label="links")
         axes.plot(*origins[-1:].T, color=_VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
-        _equal_axes(axes, origins)
+        corners = draw_obstacles(axes, obstacles)
+        _draw_capsules(axes, robot, q)
+        _equal_axes(axes, np.vstack((origins, corners)))
         axes.set_title(f"{robot.name}, {counted(robot.dof, 'joint')}")
         axes.legend(loc="upper left")
     return figure
@@ -97,6 +101,46 @@ def trajectory(trajectory: Trajectory) -> Figure:
         columns = _legend_columns(trajectory.joint_names)
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper", ncols=columns)
     return figure
+
+
+def draw_obstacles(axes: Any, obstacles: Iterable[Obstacle]) -> NDArray[np.float64]:
+    """Shades the surfaces of `obstacles` into 3-D axes, or their outlines into flat ones; returns their corners (k, 3)."""
+    corners = [np.empty((0, 3))]
+    for obstacle in obstacles:
+        triangles = obstacle.triangles
+        corners.append(triangles.reshape(-1, 3))
+        if axes.name == "3d":
+            from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+            surface = Poly3DCollection(triangles, facecolor=_ORANGE, alpha=0.35, linewidth=0, zsort="average")
+            axes.add_collection3d(surface)
+        else:
+            axes.fill(*_outline(triangles[:, :, :2].reshape(-1, 2)).T, color=_ORANGE, alpha=0.5, linewidth=0)
+    return np.vstack(corners)
+
+
+def _outline(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The points on the rim of a convex shape about their middle, in order; inner ones are left out."""
+    from matplotlib.path import Path
+
+    around = points - points.mean(axis=0)
+    rim = points[np.hypot(*around.T) > 1e-9]
+    order = np.argsort(np.arctan2(*(rim - points.mean(axis=0)).T[::-1]))
+    outline = rim[order]
+    return outline if len(outline) < 4 else np.asarray(Path(outline).vertices)
+
+
+def _draw_capsules(axes: Any, robot: Robot, q: ArrayLike) -> None:
+    """The robot's capsules as translucent surfaces, at `q`."""
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    poses = dict(zip(robot.link_names, robot.link_poses(q), strict=True))
+    for link, a, b, radius in robot.capsules:
+        if radius > 0.0:
+            pose = poses[link]
+            ends = [pose[:3, :3] @ end + pose[:3, 3] for end in (a, b)]
+            surface = Poly3DCollection(Capsule(*ends, radius).triangles, facecolor=_SKY, alpha=0.12, linewidth=0)
+            axes.add_collection3d(surface)
 
 
 def _draw_space(axes: Any, result: TrackResult) -> None:

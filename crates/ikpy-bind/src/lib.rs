@@ -6,6 +6,7 @@ mod error;
 mod ik;
 mod limits;
 mod monitor;
+mod obstacle;
 mod path;
 mod planning;
 mod pose;
@@ -33,6 +34,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
     path::register(module)?;
+    obstacle::register(module)?;
     planning::register(module)?;
     module.add_class::<tracking::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;
