@@ -104,30 +104,19 @@ def trajectory(trajectory: Trajectory) -> Figure:
 
 
 def draw_obstacles(axes: Any, obstacles: Iterable[Obstacle]) -> NDArray[np.float64]:
-    """Shades the surfaces of `obstacles` into 3-D axes, or their outlines into flat ones; returns their corners (k, 3)."""
+    """Shades the surfaces of `obstacles` into 3-D axes, or seen from above into flat ones; returns corners (k, 3)."""
+    from matplotlib.collections import PolyCollection
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
     corners = [np.empty((0, 3))]
     for obstacle in obstacles:
         triangles = obstacle.triangles
         corners.append(triangles.reshape(-1, 3))
         if axes.name == "3d":
-            from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-
-            surface = Poly3DCollection(triangles, facecolor=_ORANGE, alpha=0.35, linewidth=0, zsort="average")
-            axes.add_collection3d(surface)
+            axes.add_collection3d(Poly3DCollection(triangles, facecolor=_ORANGE, alpha=0.35, linewidth=0))
         else:
-            axes.fill(*_outline(triangles[:, :, :2].reshape(-1, 2)).T, color=_ORANGE, alpha=0.5, linewidth=0)
+            axes.add_collection(PolyCollection(triangles[:, :, :2], facecolor="#F3D58C", linewidth=0, zorder=0))
     return np.vstack(corners)
-
-
-def _outline(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The points on the rim of a convex shape about their middle, in order; inner ones are left out."""
-    from matplotlib.path import Path
-
-    around = points - points.mean(axis=0)
-    rim = points[np.hypot(*around.T) > 1e-9]
-    order = np.argsort(np.arctan2(*(rim - points.mean(axis=0)).T[::-1]))
-    outline = rim[order]
-    return outline if len(outline) < 4 else np.asarray(Path(outline).vertices)
 
 
 def _draw_capsules(axes: Any, robot: Robot, q: ArrayLike) -> None:
