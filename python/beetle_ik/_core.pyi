@@ -4,7 +4,7 @@
 # SI units and radians throughout; results are read-only.
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import IntEnum
 from typing import Any, Literal, TypeAlias, final
 
@@ -468,6 +468,7 @@ def plan_point_to_point(
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
+    elbows: Sequence[int] = [1, 1],  # noqa: B006
     solver: _Solver | None = None,
     stop: Stop | None = None,
     seed: int = 0,

@@ -2,7 +2,7 @@
 
 use ikcore::math::Frame;
 use ikcore::path::Reference;
-use ikcore::planning::{self, AlongPathOptions, End, Plan, PointToPointOptions, Violation};
+use ikcore::planning::{self, AlongPathOptions, Elbow, End, Plan, PointToPointOptions, Violation};
 use ikcore::solver::Status;
 use ikcore::task::Target;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
@@ -14,7 +14,7 @@ use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::{Progress, Watcher};
 use crate::path::PyPath;
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, any_solver, status};
+use crate::solver::{PyStop, derivative_free, status};
 use crate::trajectory::PyTrajectory;
 use crate::upward;
 
@@ -195,6 +195,7 @@ impl PyPlan {
 ///     method: "minmax": the ends' configurations that are nearest in time, joined at the limits' pace; "tpbso":
 ///         polynomials through a via point, searched by a beetle swarm (Wang et al. 2019).
 ///     objective: what to minimise: "time", "joint_travel" or "tip_travel".
+///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1.
 ///     solver: what searches; None: the method's own.
 ///     stop: budgets; None: the method's own.
 ///     seed: of the random draws: the same seed, the same bits.
@@ -209,7 +210,7 @@ impl PyPlan {
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
 #[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method="minmax",
-                    objective="time", solver=None, stop=None, seed=0, progress=None))]
+                    objective="time", elbows=[1, 1], solver=None, stop=None, seed=0, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point(
     py: Python<'_>,
@@ -221,6 +222,7 @@ pub fn plan_point_to_point(
     limits: Option<&PyLimits>,
     method: &str,
     objective: &str,
+    elbows: [i128; 2],
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
     seed: i128,
@@ -232,8 +234,9 @@ pub fn plan_point_to_point(
     let options = PointToPointOptions {
         method: method.parse().map_err(raise)?,
         objective: objective.parse().map_err(raise)?,
+        elbows: read_elbows(elbows)?,
         limits: resolved,
-        solver: solver.map(any_solver).transpose()?,
+        solver: solver.map(derivative_free).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
@@ -295,7 +298,7 @@ pub fn plan_along_path(
         start: start_q.map(|q| vector("start_q", q)).transpose()?,
         limits: resolved,
         accuracy,
-        solver: solver.map(any_solver).transpose()?,
+        solver: solver.map(derivative_free).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
@@ -305,6 +308,17 @@ pub fn plan_along_path(
     progress.close(py)?;
     watcher.finish()?;
     PyPlan::new(plan.map_err(raise)?, Some(&reference), robot, in_force)
+}
+
+/// Which way a planar arm bends at start and end: 1 or -1 each.
+fn read_elbows(given: [i128; 2]) -> PyResult<[Elbow; 2]> {
+    let read = |(name, sign)| match sign {
+        1 => Ok(Elbow::Positive),
+        -1 => Ok(Elbow::Negative),
+        _ => Err(invalid(format!("elbows: {name} must be 1 or -1, the sign of the second joint's angle, got {sign}"))),
+    };
+    let [start, end] = given;
+    Ok([read(("start", start))?, read(("end", end))?])
 }
 
 /// An end given as a target or as joint angles.

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::limits::Limits;
 use crate::path::Reference;
 use crate::robot::Robot;
-use crate::solver::{AnySolver, Monitor, Stop};
+use crate::solver::{AnySolver, DerivativeFree, Monitor, Stop};
 
 /// How to plan along a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -47,7 +47,7 @@ pub struct AlongPathOptions {
     /// How far the tip may be from the path's points (m); None: the method's own.
     pub accuracy: Option<f64>,
     /// What searches; None: the method's own.
-    pub solver: Option<AnySolver>,
+    pub solver: Option<AnySolver<DerivativeFree>>,
     /// Budgets; None: the method's own.
     pub stop: Option<Stop>,
     /// Seed of the random draws: the same seed, the same bits.

@@ -3,7 +3,12 @@
 use std::fmt;
 use std::str::FromStr;
 
+use nalgebra::Vector3;
+
+use super::motion_limits::MotionLimits;
 use crate::error::{Error, Result};
+use crate::robot::Robot;
+use crate::trajectory::Trajectory;
 
 /// What a plan minimises (Wang et al. 2019, eq. 8-10).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -38,6 +43,28 @@ impl Cost {
         }
     }
 
+    /// Its value on `trajectory`: exact, but for the tip's travel, which is taken from many chords.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] for a trajectory of another robot.
+    pub fn of(self, robot: &Robot, trajectory: &Trajectory) -> Result<f64> {
+        match self {
+            Self::Time => Ok(trajectory.duration()),
+            Self::JointTravel => Ok(trajectory.travel().iter().sum()),
+            Self::TipTravel => tip_travel(robot, trajectory),
+        }
+    }
+
+    /// What is a lot of it for `robot` under `limits`: the measure of penalties.
+    pub(super) fn scale(self, robot: &Robot, limits: &MotionLimits) -> f64 {
+        let ranges = (0..limits.dof()).map(|j| limits.finite_range(j));
+        match self {
+            Self::Time => limits.whole_range_time(),
+            Self::JointTravel => ranges.map(|(lower, upper)| upper - lower).sum(),
+            Self::TipTravel => chain_length(robot),
+        }
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Time => "time",
@@ -60,4 +87,29 @@ impl FromStr for Cost {
         let found = Self::ALL.into_iter().find(|cost| cost.name() == name);
         found.ok_or_else(|| Error::unknown_option("objective", name, &Self::ALL.map(Self::name)))
     }
+}
+
+/// Chords by which the tip's travel is measured.
+const CHORDS: usize = 2000;
+
+fn tip_travel(robot: &Robot, trajectory: &Trajectory) -> Result<f64> {
+    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; robot.dof()]);
+    let mut tip = |i: usize| {
+        trajectory.at(trajectory.duration() * i as f64 / CHORDS as f64, &mut q, &mut qd, &mut qdd)?;
+        Ok(Vector3::from(robot.tip_position(&q)))
+    };
+    let mut last = tip(0)?;
+    let mut travel = 0.0;
+    for i in 1..=CHORDS {
+        let next = tip(i)?;
+        travel += (next - last).norm();
+        last = next;
+    }
+    Ok(travel)
+}
+
+/// Length of the chain from link to link (m).
+fn chain_length(robot: &Robot) -> f64 {
+    let poses = robot.link_poses(&vec![0.0; robot.dof()]).unwrap_or_default();
+    poses.windows(2).map(|ends| (ends[1].translation.vector - ends[0].translation.vector).norm()).sum()
 }

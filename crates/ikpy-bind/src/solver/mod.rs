@@ -5,7 +5,7 @@ mod levenberg_marquardt;
 mod multi_start;
 mod stop;
 
-use ikcore::solver::{Algorithm, AnySolver, DerivativeFree};
+use ikcore::solver::{Algorithm, AnySolver, DerivativeFree, MultiStart};
 use pyo3::prelude::*;
 
 use bas::PyBas;
@@ -40,6 +40,17 @@ pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
         return Ok(AnySolver::MultiStart(multi_start.get().0.clone()));
     }
     Err(invalid(format!("solver must be BAS, LevenbergMarquardt or MultiStart, got {}", summary(solver))))
+}
+
+/// A solver argument for something of which only values are known.
+pub fn derivative_free(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver<DerivativeFree>> {
+    match any_solver(solver)? {
+        AnySolver::Single(Algorithm::DerivativeFree(algorithm)) => Ok(AnySolver::Single(algorithm)),
+        AnySolver::MultiStart(MultiStart { solver: Algorithm::DerivativeFree(algorithm), rule }) => {
+            Ok(AnySolver::MultiStart(MultiStart { solver: algorithm, rule }))
+        }
+        _ => Err(invalid(format!("solver must be one that needs values alone, such as BAS, got {}", summary(solver)))),
+    }
 }
 
 /// The Python value of an algorithm.
