@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use crate::math::polynomial::quadratic_roots;
 use crate::trajectory::{Coefficients, polynomial};
 
 /// A motion that is at rest at one end, with its position there and the time s (s) since then, or until then:
@@ -109,16 +110,7 @@ impl RestSegment {
 
     /// Roots of a + b s + c s^2 inside the segment, ascending.
     fn inner_roots(&self, a: f64, b: f64, c: f64) -> SmallVec<[f64; 2]> {
-        let inside = |s: &f64| 0.0 < *s && *s < self.duration;
-        let discriminant = b * b - 4.0 * a * c;
-        if discriminant < 0.0 {
-            return SmallVec::new();
-        }
-        // Both roots from the half-sum that does not cancel; c = 0 leaves -a/b alone, the other is infinite.
-        let half_sum = -0.5 * (b + discriminant.sqrt().copysign(b));
-        let mut roots: SmallVec<[f64; 2]> = [half_sum / c, a / half_sum].into_iter().filter(inside).collect();
-        roots.sort_by(f64::total_cmp);
-        roots
+        quadratic_roots(a, b, c, 0.0, self.duration)
     }
 }
 
