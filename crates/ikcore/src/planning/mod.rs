@@ -7,6 +7,7 @@
 //! | [`end`] | where a motion starts or ends: a target of the tip, or a configuration |
 //! | [`motion_limits`] | constant limits of each joint, and what of them a trajectory breaks |
 //! | [`planar_arm`] | arms in a plane: inverse kinematics in closed form, the redundancy left open |
+//! | `minmax` | from end to end by the nearest configurations, and around obstacles |
 //! | [`point_to_point`] | the planner from end to end, whatever its method |
 //! | [`along_path`] | the planner along a path, whatever its method |
 //! | `tpbso` | both as published by Wang et al. (2019) |
@@ -14,6 +15,7 @@
 pub mod along_path;
 pub mod cost;
 pub mod end;
+mod minmax;
 pub mod motion_limits;
 pub mod plan;
 pub mod planar_arm;

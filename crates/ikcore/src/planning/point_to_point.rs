@@ -6,9 +6,10 @@ use super::cost::Cost;
 use super::end::End;
 use super::plan::Plan;
 use super::planar_arm::Elbow;
-use super::tpbso;
+use super::{minmax, tpbso};
 use crate::error::{Error, Result};
 use crate::limits::Limits;
+use crate::obstacle::Obstacle;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, DerivativeFree, Monitor, Stop};
 
@@ -41,6 +42,10 @@ pub struct PointToPointOptions {
     pub method: PointToPointMethod,
     /// What to minimise.
     pub objective: Cost,
+    /// What the robot may not touch; it may never touch itself if it has capsules.
+    pub obstacles: Vec<Obstacle>,
+    /// Distance to keep from obstacles and between links (m); None: 1 mm.
+    pub margin: Option<f64>,
     /// Limits to keep; None keeps the robot's.
     pub limits: Option<Limits>,
     /// Which way a planar arm bends at its ends, where [`Tpbso`](PointToPointMethod::Tpbso) chooses its configuration.
@@ -68,7 +73,7 @@ pub fn plan_point_to_point(
     start.check("start", robot)?;
     end.check("end", robot)?;
     match options.method {
-        PointToPointMethod::MinMax => Err(Error::unknown_option("method", "minmax", &["tpbso"])),
+        PointToPointMethod::MinMax => minmax::point_to_point(robot, start, end, options, monitor),
         PointToPointMethod::Tpbso => tpbso::point_to_point(robot, start, end, options, monitor),
     }
 }
