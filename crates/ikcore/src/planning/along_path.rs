@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use super::cost::Cost;
 use super::plan::Plan;
+use super::planar_arm::Elbow;
 use super::tpbso;
 use crate::error::{Error, Result};
 use crate::limits::Limits;
@@ -44,6 +45,8 @@ pub struct AlongPathOptions {
     pub start: Option<Vec<f64>>,
     /// Limits to keep; None keeps the robot's.
     pub limits: Option<Limits>,
+    /// Which way a planar arm bends, unless `start` says it.
+    pub elbow: Elbow,
     /// How far the tip may be from the path's points (m); None: the method's own.
     pub accuracy: Option<f64>,
     /// What searches; None: the method's own.

@@ -3,12 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use nalgebra::Vector3;
-
 use super::motion_limits::MotionLimits;
 use crate::error::{Error, Result};
 use crate::robot::Robot;
-use crate::trajectory::Trajectory;
 
 /// What a plan minimises (Wang et al. 2019, eq. 8-10).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -40,18 +37,6 @@ impl Cost {
             Self::Time => "s",
             Self::JointTravel => "rad",
             Self::TipTravel => "m",
-        }
-    }
-
-    /// Its value on `trajectory`: exact, but for the tip's travel, which is taken from many chords.
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`] for a trajectory of another robot.
-    pub fn of(self, robot: &Robot, trajectory: &Trajectory) -> Result<f64> {
-        match self {
-            Self::Time => Ok(trajectory.duration()),
-            Self::JointTravel => Ok(trajectory.travel().iter().sum()),
-            Self::TipTravel => tip_travel(robot, trajectory),
         }
     }
 
@@ -87,25 +72,6 @@ impl FromStr for Cost {
         let found = Self::ALL.into_iter().find(|cost| cost.name() == name);
         found.ok_or_else(|| Error::unknown_option("objective", name, &Self::ALL.map(Self::name)))
     }
-}
-
-/// Chords by which the tip's travel is measured.
-const CHORDS: usize = 2000;
-
-fn tip_travel(robot: &Robot, trajectory: &Trajectory) -> Result<f64> {
-    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; robot.dof()]);
-    let mut tip = |i: usize| {
-        trajectory.at(trajectory.duration() * i as f64 / CHORDS as f64, &mut q, &mut qd, &mut qdd)?;
-        Ok(Vector3::from(robot.tip_position(&q)))
-    };
-    let mut last = tip(0)?;
-    let mut travel = 0.0;
-    for i in 1..=CHORDS {
-        let next = tip(i)?;
-        travel += (next - last).norm();
-        last = next;
-    }
-    Ok(travel)
 }
 
 /// Length of the chain from link to link (m).

@@ -3,10 +3,12 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
+use smallvec::SmallVec;
 
 use crate::math::Frame;
 use crate::robot::{JointKind, Robot};
 use crate::task::Target;
+use crate::wording::number;
 
 /// An arm of revolute joints about the z axis: in the plane of x and y its links are the sides of a polygon.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +46,8 @@ impl Elbow {
 
 /// Links further along than these two are the redundancy.
 pub const ELBOW_LINKS: usize = 2;
+
+const HOLE: &str = "inside the hole that the arm leaves about its base";
 
 /// What a robot may differ from a polygon of links (m).
 const AGREEMENT: f64 = 1e-9;
@@ -124,6 +128,17 @@ impl PlanarArm {
         in_plane.then_some(Place { position: [position[0], position[1]], orientation })
     }
 
+    /// Why a place cannot be reached, in words; None where it can.
+    pub fn problem(&self, place: &Place) -> Option<String> {
+        let (free, held) = match &place.orientation {
+            None => (self.dof(), [].as_slice()),
+            Some(orientation) => (self.dof() - 1, std::slice::from_ref(orientation)),
+        };
+        let gap = self.gap(self.wrist(place.position, free, held), free)?;
+        let (distance, side) = (number(gap.abs()), if gap > 0.0 { "beyond the arm's reach" } else { HOLE });
+        Some(format!("it is {distance} m {side}"))
+    }
+
     /// How far beyond (positive) or inside of (negative) what the first `links` links reach a point is from the base (m);
     /// None where they reach it.
     pub fn gap(&self, [x, y]: [f64; 2], links: usize) -> Option<f64> {
@@ -138,14 +153,33 @@ impl PlanarArm {
         }
     }
 
+    /// Where link `link` (from 0) starts when it ends in `end` at this absolute `orientation` (rad).
+    pub fn start_of(&self, link: usize, [x, y]: [f64; 2], orientation: f64) -> [f64; 2] {
+        let (sine, cosine) = orientation.sin_cos();
+        [x - self.lengths[link] * cosine, y - self.lengths[link] * sine]
+    }
+
+    /// Absolute orientation of every link at `q` (rad).
+    pub fn orientations(&self, q: &[f64]) -> Vec<f64> {
+        let turned = self.offsets.iter().zip(q).map(|(offset, angle)| offset + angle);
+        turned
+            .scan(0.0, |sum, angle| {
+                *sum += angle;
+                Some(*sum)
+            })
+            .collect()
+    }
+
+    /// Which way the arm bends at `q`.
+    pub fn elbow(&self, q: &[f64]) -> Elbow {
+        if wrapped(q[1] + self.offsets[1]) < 0.0 { Elbow::Negative } else { Elbow::Positive }
+    }
+
     /// Where link `links` (from 0) has to start so that the links from it on, at `orientations` (rad, absolute), end in
     /// `position`.
-    pub fn wrist(&self, [x, y]: [f64; 2], links: usize, orientations: &[f64]) -> [f64; 2] {
-        let sides = self.lengths[links..].iter().zip(orientations);
-        sides.fold([x, y], |[x, y], (length, orientation)| {
-            let (sine, cosine) = orientation.sin_cos();
-            [x - length * cosine, y - length * sine]
-        })
+    pub fn wrist(&self, position: [f64; 2], links: usize, orientations: &[f64]) -> [f64; 2] {
+        let held = (links..self.dof()).zip(orientations);
+        held.fold(position, |end, (link, orientation)| self.start_of(link, end, *orientation))
     }
 
     /// The joint angles (rad, wrapped to (-pi, pi]) that put the tip at `position` (m) with the links from the third on
@@ -207,6 +241,20 @@ pub struct Place {
     /// Absolute orientation of the last link (rad), where it is given.
     pub orientation: Option<f64>,
 }
+
+/// An orientation and the range that it was chosen from (rad).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Orientation {
+    /// Its value.
+    pub value: f64,
+    /// The lowest possible.
+    pub lowest: f64,
+    /// The highest possible.
+    pub highest: f64,
+}
+
+/// Orientations of several links, from the tip down.
+pub type Orientations = SmallVec<[Orientation; 4]>;
 
 /// The angle (rad) in (-pi, pi] that differs by whole turns.
 pub fn wrapped(angle: f64) -> f64 {

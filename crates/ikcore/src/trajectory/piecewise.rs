@@ -3,7 +3,7 @@
 use super::hermite;
 use crate::error::{Error, Result, require_finite};
 use crate::math::Knots;
-use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range, roots};
+use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range};
 use crate::math::ticks::ticks;
 
 /// Powers of time that a segment may use: up to the sixth, which a cubic in a path parameter takes where that parameter is
@@ -171,24 +171,6 @@ impl Trajectory {
             }
         }
         ranges
-    }
-
-    /// How far each joint travels, back and forth, exactly (rad or m).
-    pub fn travel(&self) -> Vec<f64> {
-        let mut travel = vec![0.0; self.joints.len()];
-        for segment in 0..self.knots.segments() {
-            let span = self.knots.span(segment);
-            for (travel, position) in travel.iter_mut().zip(self.segment(segment)) {
-                let turning_points = roots(&derivative(position), 0.0, span);
-                let mut from = position[0];
-                for s in turning_points.into_iter().chain([span]) {
-                    let to = evaluate(position, s)[0];
-                    *travel += (to - from).abs();
-                    from = to;
-                }
-            }
-        }
-        travel
     }
 
     /// The times i `dt` (s) from 0 on, and the duration as the last one.

@@ -164,7 +164,19 @@ fn finish(
     let evaluations = search.evaluations;
     let history = vec![Improvement { evaluations, cost }];
     let objective = options.objective;
-    Ok(Plan { trajectory, objective, cost, history, clearance, violations, status, evaluations, elapsed: NO_TIME })
+    Ok(Plan {
+        trajectory,
+        objective,
+        cost,
+        history,
+        clearance,
+        accuracy: None,
+        redundancy: vec![],
+        violations,
+        status,
+        evaluations,
+        elapsed: NO_TIME,
+    })
 }
 
 fn too_near(contact: &Contact, margin: f64) -> Violation {

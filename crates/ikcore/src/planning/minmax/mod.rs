@@ -75,6 +75,8 @@ fn freely(search: &mut Search, objective: Cost, monitor: &mut dyn Monitor) -> Re
         cost,
         history,
         clearance: None,
+        accuracy: None,
+        redundancy: vec![],
         violations,
         status,
         evaluations,

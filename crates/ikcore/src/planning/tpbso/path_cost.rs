@@ -1,12 +1,13 @@
 //! Along a path in uniform time: the decision vector and cost of Wang et al. (2019), eq. (7) and (19)-(25).
 
-use super::redundancy::{NODES, Orientations, Redundancy, nearest_turn};
+use super::redundancy::{NODES, Redundancy, nearest_turn};
 use super::weights::{BROKEN_LIMIT, NO_CONFIGURATION};
 use crate::error::Result;
 use crate::math::natural_spline::{NaturalSpline, Piece};
 use crate::objective::{Bounds, Objective, Score};
 use crate::planning::cost::Cost;
 use crate::planning::motion_limits::MotionLimits;
+use crate::planning::planar_arm::Orientations;
 use crate::robot::Robot;
 use crate::trajectory::{Trajectory, polynomial};
 
@@ -132,7 +133,11 @@ impl<'a> PathCost<'a> {
                 Ok(_) => {
                     for j in 0..n {
                         let place = j * knots + knot;
-                        let before = if knot == 0 { self.start.map_or(q[j], |start| start[j]) } else { self.motion.values[place - 1] };
+                        let before = if knot == 0 {
+                            self.start.map_or(q[j], |start| start[j])
+                        } else {
+                            self.motion.values[place - 1]
+                        };
                         self.motion.values[place] = nearest_turn(q[j], before);
                     }
                 }

@@ -58,7 +58,9 @@ impl Placement {
             End::Target(target) => target,
         };
         if let Some((arm, place)) = planar(robot, target) {
-            require_reach(what, &arm, &place)?;
+            if let Some(problem) = arm.problem(&place) {
+                return Err(Error::Unreachable { what: what.into(), problem });
+            }
             return Ok(Self::Planar { arm, place, elbow });
         }
         solutions(what, target, &limits.applied_to(robot)?, seed, monitor).map(Self::OneOf)
@@ -111,19 +113,6 @@ fn planar(robot: &Robot, target: &Target) -> Option<(PlanarArm, Place)> {
     let arm = PlanarArm::of(robot)?;
     let place = arm.place(target)?;
     (arm.dof() >= ELBOW_LINKS + usize::from(place.orientation.is_some())).then_some((arm, place))
-}
-
-fn require_reach(what: &str, arm: &PlanarArm, place: &Place) -> Result<()> {
-    let (free, held) = match &place.orientation {
-        None => (arm.dof(), [].as_slice()),
-        Some(orientation) => (arm.dof() - 1, std::slice::from_ref(orientation)),
-    };
-    let problem = match arm.gap(arm.wrist(place.position, free, held), free) {
-        None => return Ok(()),
-        Some(beyond) if beyond > 0.0 => format!("it is {beyond:.4} m beyond the arm's reach"),
-        Some(inside) => format!("it is {:.4} m inside the hole that the arm leaves about its base", -inside),
-    };
-    Err(Error::Unreachable { what: what.into(), problem })
 }
 
 /// Distinct solutions for `target`, each followed by the nearest of those not yet listed.

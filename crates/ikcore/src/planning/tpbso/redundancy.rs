@@ -1,14 +1,15 @@
 //! The free orientations of a planar arm's links along a path: section III-A of Wang et al. (2019), eq. (7).
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use smallvec::SmallVec;
 
 use crate::error::{Error, Result};
 use crate::math::natural_spline::NaturalSpline;
 use crate::path::Reference;
-use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Place, PlanarArm};
+use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Orientation, Orientations, Place, PlanarArm, wrapped};
 use crate::task::Target;
+use crate::wording::number;
 
 /// Numbers in \[0, 1\] by which the course of each free orientation is given: the paper's x_phi.
 pub const NODES: usize = 5;
@@ -22,20 +23,6 @@ pub struct Redundancy {
     nodes: NaturalSpline,
 }
 
-/// An orientation and the range that it was chosen from (rad).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Orientation {
-    /// Its value.
-    pub value: f64,
-    /// The lowest possible.
-    pub lowest: f64,
-    /// The highest possible.
-    pub highest: f64,
-}
-
-/// The orientations of the links from the third on, from the tip down.
-pub type Orientations = SmallVec<[Orientation; 8]>;
-
 impl Redundancy {
     /// The choices of `arm` along `path`.
     ///
@@ -48,10 +35,6 @@ impl Redundancy {
         Ok(Self { arm, elbow, places, nodes })
     }
 
-    /// The arm.
-    pub fn arm(&self) -> &PlanarArm {
-        &self.arm
-    }
 
     /// Where the tip is to be at point `i` of the path.
     pub fn place(&self, i: usize) -> &Place {
@@ -99,6 +82,39 @@ impl Redundancy {
         Ok(free)
     }
 
+    /// The share x_phi of each free link, from the tip down, at the path's first point in configuration `q`.
+    ///
+    /// # Errors
+    /// [`Error::InvalidPath`] where the tip is elsewhere at `q`.
+    pub fn shares_of(&self, q: &[f64]) -> Result<Vec<f64>> {
+        let Place { mut position, orientation } = self.places[0];
+        let tip = self.arm.corners(q).last().unwrap_or(position);
+        let absolute = self.arm.orientations(q);
+        let mut link = self.arm.dof() - 1;
+        let turned = orientation.map_or(0.0, |wanted| wrapped(absolute[link] - wanted).abs());
+        let missed = (tip[0] - position[0]).hypot(tip[1] - position[1]);
+        if missed > START_TOLERANCE || turned > START_TOLERANCE {
+            let problem = format!(
+                "start_q puts the tip {} m and {} rad from the first point; it must be there",
+                number(missed),
+                number(turned)
+            );
+            return Err(Error::InvalidPath { problem });
+        }
+        if let Some(given) = orientation {
+            position = self.arm.start_of(link, position, given);
+            link -= 1;
+        }
+        let mut shares = vec![];
+        for _ in 0..self.links() {
+            let (middle, half) = self.arm.orientation_range(position, link).unwrap_or((absolute[link], PI));
+            shares.push((0.5 + wrapped(absolute[link] - middle) / (2.0 * half.max(f64::MIN_POSITIVE))).clamp(0.0, 1.0));
+            position = self.arm.start_of(link, position, absolute[link]);
+            link -= 1;
+        }
+        Ok(shares)
+    }
+
     /// Writes the second derivatives of the splines through the nodes `x`.
     pub fn bends(&self, x: &[f64], bends: &mut [f64]) {
         for (values, bends) in x.chunks_exact(NODES).zip(bends.chunks_exact_mut(NODES)) {
@@ -106,6 +122,9 @@ impl Redundancy {
         }
     }
 }
+
+/// How far a given start may be from the path (m, rad).
+const START_TOLERANCE: f64 = 1e-6;
 
 /// Stands for a cosine where not even its triangle exists.
 const OUT_OF_REACH: f64 = 2.0;

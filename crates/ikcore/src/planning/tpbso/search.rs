@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::objective::{Bounds, Objective, Point, Score};
 use crate::planning::plan::Improvement;
 use crate::rng;
-use crate::solver::{AnySolver, Bas, DerivativeFree, Evaluator, Monitor, Outcome, Status, Stop, Variant};
+use crate::solver::{AnySolver, BeetleSwarm, DerivativeFree, Evaluator, Monitor, Outcome, Status, Stop};
 
 /// What searches, and for how long.
 pub struct Search<'a> {
@@ -49,7 +49,7 @@ impl Search<'_> {
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for wrong options of the solver or a budget of zero.
     pub fn run(&self, cost: &mut dyn Objective, bounds: &Bounds, monitor: &mut dyn Monitor) -> Result<Found> {
-        let standard = AnySolver::Single(DerivativeFree::from(Bas::of(Variant::Star)));
+        let standard = AnySolver::Single(DerivativeFree::from(BeetleSwarm::default()));
         let solver = self.solver.unwrap_or(&standard);
         let stop = self.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() });
         solver.validate()?;

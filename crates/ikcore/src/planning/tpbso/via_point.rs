@@ -2,6 +2,7 @@
 
 use super::placement::Placement;
 use super::rest_segment::{Extremes, RestSegment, ViaPoint, quartic, quintic};
+use super::weights::{BROKEN_LIMIT, NO_CONFIGURATION};
 use crate::error::Result;
 use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Objective, Score};
@@ -12,12 +13,6 @@ use crate::trajectory::{Trajectory, polynomial};
 
 /// Moments in each segment at which the tip is looked at.
 const SAMPLES: usize = 50;
-
-/// lambda_1 of eq. (15), in the scale of the cost.
-const BROKEN_LIMIT: f64 = 10.0;
-
-/// lambda_2 of eq. (15), in the scale of the cost.
-const NO_CONFIGURATION: f64 = 1e3;
 
 /// The segments may last from this share of the slowest joint's way through its range ...
 const SHORTEST: f64 = 0.05;
