@@ -15,7 +15,7 @@ use crate::trajectory::Trajectory;
 use crate::wording::number;
 
 /// Distance that is kept where none is asked for (m).
-const DEFAULT_MARGIN: f64 = 1e-3;
+pub(in crate::planning) const DEFAULT_MARGIN: f64 = 1e-3;
 /// So much more is kept on straight lines, that rounding does not matter once they are timed (m).
 const EXTRA: f64 = 1e-5;
 /// Configurations that all trees together may look at: about half a second.
@@ -185,13 +185,14 @@ fn finish(
     })
 }
 
-fn too_near(contact: &Contact, margin: f64) -> Violation {
+/// A distance below the margin, by name.
+pub(in crate::planning) fn too_near(contact: &Contact, margin: f64) -> Violation {
     let what = format!("distance of link '{}' from {}", contact.link, contact.other);
     Violation { what, value: contact.distance, bound: margin, unit: "m" }
 }
 
 /// Err for a configuration nearer to something than the margin.
-fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64) -> Result<()> {
+pub(in crate::planning) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64) -> Result<()> {
     match scene.nearest(q)? {
         Some(Contact { link, other, distance }) if distance < margin + EXTRA => {
             let (what, other) = (what.into(), other.to_string());
