@@ -231,9 +231,11 @@ fn mistakes_are_named() {
     let ball = Obstacle::sphere([1.0, 0.0, 0.0], 0.25).unwrap();
     let advice = "give it capsules with with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), \
                   ...]), or load a URDF whose links have <collision> shapes of spheres, cylinders, capsules and boxes";
+    let bare = Robot::named("panda").unwrap();
+    let rest = End::Configuration(vec![0.0, 0.0, 0.0, -1.5, 0.0, 1.5, 0.0]);
     assert_eq!(
-        refused(&arm, &here, &there, with(vec![ball.clone()], &arm)),
-        format!("robot 'planar2' has no capsules, so that nothing is known of the room it takes up: {advice}")
+        refused(&bare, &rest, &rest, with(vec![ball.clone()], &bare)),
+        format!("robot 'panda' has no capsules, so that nothing is known of the room it takes up: {advice}")
     );
     assert_eq!(
         refused(&thin, &here, &there, with(vec![ball.clone()], &thin)),
@@ -267,7 +269,6 @@ fn mistakes_are_named() {
     );
     let panda = Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap();
     let oval = Obstacle::ellipse([0.5, 0.0], [0.1, 0.2], 0.0).unwrap();
-    let rest = End::Configuration(vec![0.0, 0.0, 0.0, -1.5, 0.0, 1.5, 0.0]);
     assert_eq!(
         refused(&panda, &rest, &rest, with(vec![oval], &panda)),
         "obstacle 0 is an Ellipse, which lies in the plane z = 0, and robot 'panda' leaves that plane: use an Ellipsoid"

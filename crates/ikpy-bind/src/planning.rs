@@ -2,7 +2,7 @@
 
 use ikcore::math::Frame;
 use ikcore::path::Reference;
-use ikcore::planning::{self, AlongPathOptions, End, Plan, PointToPointOptions, Violation};
+use ikcore::planning::{self, AlongPathOptions, Elbow, End, Plan, PointToPointOptions, Violation};
 use ikcore::solver::Status;
 use ikcore::task::Target;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
@@ -15,7 +15,7 @@ use crate::monitor::{Progress, Watcher};
 use crate::obstacle::read_obstacles;
 use crate::path::PyPath;
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, any_solver, status};
+use crate::solver::{PyStop, derivative_free, status};
 use crate::trajectory::PyTrajectory;
 use crate::upward;
 
@@ -72,6 +72,7 @@ pub struct PyPlan {
     core: Plan,
     trajectory: Py<PyTrajectory>,
     history: Py<PyArrayDyn<f64>>,
+    redundancy: Py<PyArrayDyn<f64>>,
     /// Positions (k, 3) (m) that the tip was to follow; None for a plan from end to end.
     #[pyo3(get)]
     reference: Option<Py<PyArrayDyn<f64>>>,
@@ -114,6 +115,19 @@ impl PyPlan {
     #[getter]
     fn clearance(&self) -> f64 {
         self.core.clearance.unwrap_or(f64::NAN)
+    }
+
+    /// Largest distance of the tip from the points of the path (m); NaN for a plan from end to end.
+    #[getter]
+    fn accuracy(&self) -> f64 {
+        self.core.accuracy.unwrap_or(f64::NAN)
+    }
+
+    /// The absolute orientations that a planar arm was free to choose along the path (points, links, 3): value, lowest
+    /// and highest possible (rad), from the tip's link down; without such a choice (0, 0, 3).
+    #[getter]
+    fn redundancy<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        self.redundancy.bind(py).clone()
     }
 
     /// What the trajectory breaks, a list of `Violation`; empty for a plan that succeeded.
@@ -171,6 +185,9 @@ impl PyPlan {
     ) -> PyResult<Self> {
         let py = robot.py();
         let history: Vec<f64> = core.history.iter().flat_map(|step| [step.evaluations as f64, step.cost]).collect();
+        let free = &core.redundancy;
+        let orientations = free.iter().flatten().flat_map(|free| [free.value, free.lowest, free.highest]).collect();
+        let shape = [free.len(), free.first().map_or(0, |links| links.len()), 3];
         let reference = reference.map(|rows| {
             let positions = (0..rows.len()).flat_map(|i| rows.position(i)).collect();
             table(py, positions, &[rows.len(), 3]).map(Bound::unbind)
@@ -178,6 +195,7 @@ impl PyPlan {
         Ok(Self {
             trajectory: Py::new(py, PyTrajectory::from(core.trajectory.clone()))?,
             history: table(py, history, &[core.history.len(), 2])?.unbind(),
+            redundancy: table(py, orientations, &shape)?.unbind(),
             reference: reference.transpose()?,
             robot: robot.clone().unbind(),
             limits,
@@ -198,6 +216,7 @@ impl PyPlan {
 ///     method: "minmax": the ends' configurations that are nearest in time, joined at the limits' pace; "tpbso":
 ///         polynomials through a via point, searched by a beetle swarm (Wang et al. 2019).
 ///     objective: what to minimise: "time", "joint_travel" or "tip_travel".
+///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1.
 ///     solver: what searches; None: the method's own.
 ///     stop: budgets; None: the method's own.
 ///     seed: of the random draws: the same seed, the same bits.
@@ -212,7 +231,8 @@ impl PyPlan {
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
 #[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method="minmax",
-                    objective="time", obstacles=None, margin=None, solver=None, stop=None, seed=0, progress=None))]
+                    objective="time", obstacles=None, margin=None, elbows=[1, 1], solver=None, stop=None, seed=0,
+                    progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point(
     py: Python<'_>,
@@ -226,6 +246,7 @@ pub fn plan_point_to_point(
     objective: &str,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
+    elbows: [i128; 2],
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
     seed: i128,
@@ -239,8 +260,9 @@ pub fn plan_point_to_point(
         objective: objective.parse().map_err(raise)?,
         obstacles: read_obstacles(obstacles)?,
         margin,
+        elbows: [read_elbow("elbows[0]", elbows[0])?, read_elbow("elbows[1]", elbows[1])?],
         limits: resolved,
-        solver: solver.map(any_solver).transpose()?,
+        solver: solver.map(derivative_free).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
@@ -262,6 +284,7 @@ pub fn plan_point_to_point(
 ///     method: "timed": redundancy and the fastest timing found together; "tpbso": redundancy by a beetle swarm, uniform
 ///         time, splines through every second point (Wang et al. 2019).
 ///     objective: what to minimise: "time" or "joint_travel".
+///     elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it.
 ///     accuracy: how far the tip may be from the points (m); None: what suits the method.
 ///     solver: what searches; None: the method's own.
 ///     stop: budgets; None: the method's own.
@@ -276,7 +299,7 @@ pub fn plan_point_to_point(
 ///     LimitError: limits that contradict themselves.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
-#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", accuracy=None,
+#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", elbow=1, accuracy=None,
                     solver=None, stop=None, seed=0, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_along_path(
@@ -287,6 +310,7 @@ pub fn plan_along_path(
     limits: Option<&PyLimits>,
     method: &str,
     objective: &str,
+    elbow: i128,
     accuracy: Option<f64>,
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
@@ -301,8 +325,9 @@ pub fn plan_along_path(
         objective: objective.parse().map_err(raise)?,
         start: start_q.map(|q| vector("start_q", q)).transpose()?,
         limits: resolved,
+        elbow: read_elbow("elbow", elbow)?,
         accuracy,
-        solver: solver.map(any_solver).transpose()?,
+        solver: solver.map(derivative_free).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
@@ -312,6 +337,15 @@ pub fn plan_along_path(
     progress.close(py)?;
     watcher.finish()?;
     PyPlan::new(plan.map_err(raise)?, Some(&reference), robot, in_force)
+}
+
+/// Which way a planar arm bends.
+fn read_elbow(name: &str, sign: i128) -> PyResult<Elbow> {
+    match sign {
+        1 => Ok(Elbow::Positive),
+        -1 => Ok(Elbow::Negative),
+        _ => Err(invalid(format!("{name} must be 1 or -1, the sign of the second joint's angle, got {sign}"))),
+    }
 }
 
 /// An end given as a target or as joint angles.

@@ -4,12 +4,13 @@ use std::str::FromStr;
 
 use super::cost::Cost;
 use super::plan::Plan;
+use super::planar_arm::Elbow;
 use super::tpbso;
 use crate::error::{Error, Result};
 use crate::limits::Limits;
 use crate::path::Reference;
 use crate::robot::Robot;
-use crate::solver::{AnySolver, Monitor, Stop};
+use crate::solver::{AnySolver, DerivativeFree, Monitor, Stop};
 
 /// How to plan along a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -44,10 +45,12 @@ pub struct AlongPathOptions {
     pub start: Option<Vec<f64>>,
     /// Limits to keep; None keeps the robot's.
     pub limits: Option<Limits>,
+    /// Which way a planar arm bends, unless `start` says it.
+    pub elbow: Elbow,
     /// How far the tip may be from the path's points (m); None: the method's own.
     pub accuracy: Option<f64>,
     /// What searches; None: the method's own.
-    pub solver: Option<AnySolver>,
+    pub solver: Option<AnySolver<DerivativeFree>>,
     /// Budgets; None: the method's own.
     pub stop: Option<Stop>,
     /// Seed of the random draws: the same seed, the same bits.

@@ -3,7 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
+use super::motion_limits::MotionLimits;
 use crate::error::{Error, Result};
+use crate::robot::Robot;
 
 /// What a plan minimises (Wang et al. 2019, eq. 8-10).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -38,6 +40,16 @@ impl Cost {
         }
     }
 
+    /// What is a lot of it for `robot` under `limits`: the measure of penalties.
+    pub(super) fn scale(self, robot: &Robot, limits: &MotionLimits) -> f64 {
+        let ranges = (0..limits.dof()).map(|j| limits.finite_range(j));
+        match self {
+            Self::Time => limits.whole_range_time(),
+            Self::JointTravel => ranges.map(|(lower, upper)| upper - lower).sum(),
+            Self::TipTravel => chain_length(robot),
+        }
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Time => "time",
@@ -60,4 +72,10 @@ impl FromStr for Cost {
         let found = Self::ALL.into_iter().find(|cost| cost.name() == name);
         found.ok_or_else(|| Error::unknown_option("objective", name, &Self::ALL.map(Self::name)))
     }
+}
+
+/// Length of the chain from link to link (m).
+fn chain_length(robot: &Robot) -> f64 {
+    let poses = robot.link_poses(&vec![0.0; robot.dof()]).unwrap_or_default();
+    poses.windows(2).map(|ends| (ends[1].translation.vector - ends[0].translation.vector).norm()).sum()
 }

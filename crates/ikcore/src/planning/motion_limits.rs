@@ -1,8 +1,11 @@
 //! Constant limits of each joint, as planners keep them.
 
+use std::f64::consts::PI;
+
 use super::plan::Violation;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits, Profile};
+use crate::math::interval;
 use crate::robot::{JointKind, Robot};
 use crate::trajectory::Trajectory;
 
@@ -65,6 +68,61 @@ impl MotionLimits {
     /// Names of all joints.
     pub fn joint_names(&self) -> Vec<String> {
         self.joints.iter().map(|(name, _)| name.clone()).collect()
+    }
+
+    /// Positions of a joint that a search may use (rad, m): its limits, half a turn to either side where there are none.
+    pub fn finite_range(&self, joint: usize) -> (f64, f64) {
+        interval::finite(self.lower[joint], self.upper[joint], PI)
+    }
+
+    /// Time (s) that the slowest joint takes through its range, at full speed or from rest to rest at full acceleration.
+    pub fn whole_range_time(&self) -> f64 {
+        let time = |j: usize| {
+            let (lower, upper) = self.finite_range(j);
+            let range = upper - lower;
+            (range / self.velocity[j]).max(2.0 * (range / self.acceleration[j]).sqrt())
+        };
+        (0..self.dof()).map(time).fold(0.0, f64::max)
+    }
+
+    /// `robot` with these position limits.
+    ///
+    /// # Errors
+    /// None in practice: the limits were checked.
+    pub fn applied_to(&self, robot: &Robot) -> Result<Robot> {
+        robot.with_limits(|j, joint| (joint.lower, joint.upper) = (self.lower[j], self.upper[j]))
+    }
+
+    /// Err unless `q` lies within the position limits; `what` names it.
+    ///
+    /// # Errors
+    /// [`Error::OutsideLimits`].
+    pub fn require_inside(&self, what: &str, q: &[f64]) -> Result<()> {
+        match (0..self.dof()).find(|j| !(self.lower[*j] <= q[*j] && q[*j] <= self.upper[*j])) {
+            None => Ok(()),
+            Some(j) => Err(Error::OutsideLimits {
+                what: what.into(),
+                joint: self.joint_name(j).into(),
+                value: q[j],
+                lower: self.lower[j],
+                upper: self.upper[j],
+            }),
+        }
+    }
+
+    /// Err for a joint without a velocity limit, which `method` needs.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`].
+    pub fn require_velocities(&self, method: &str) -> Result<()> {
+        match self.velocity.iter().position(|limit| limit.is_infinite()) {
+            None => Ok(()),
+            Some(j) => {
+                let what = format!("velocity limit of joint '{}'", self.joint_name(j));
+                let requirement = format!("finite for {method}: give limits=Limits(velocity=...)");
+                Err(Error::out_of_range(what, &requirement, self.velocity[j]))
+            }
+        }
     }
 
     /// What `trajectory` breaks, by the exact extremes of its polynomials.

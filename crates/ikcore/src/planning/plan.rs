@@ -4,6 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use super::cost::Cost;
+use super::planar_arm::Orientations;
 use crate::solver::Status;
 use crate::trajectory::Trajectory;
 use crate::wording::number;
@@ -21,6 +22,11 @@ pub struct Plan {
     pub history: Vec<Improvement>,
     /// Smallest distance (m) between robot and obstacles on the trajectory; None where there are no obstacles.
     pub clearance: Option<f64>,
+    /// Largest distance (m) of the tip from the points of the path that it was to follow; None from end to end.
+    pub accuracy: Option<f64>,
+    /// The orientations that a planar arm was free to choose, at every point of the path, from the tip's link down; empty
+    /// where there is no such choice.
+    pub redundancy: Vec<Orientations>,
     /// What the trajectory breaks; nothing for a plan that succeeded.
     pub violations: Vec<Violation>,
     /// [`Status::Solved`] for a trajectory that breaks nothing; else why the search ended.

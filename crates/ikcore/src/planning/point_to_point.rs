@@ -5,12 +5,13 @@ use std::str::FromStr;
 use super::cost::Cost;
 use super::end::End;
 use super::plan::Plan;
+use super::planar_arm::Elbow;
 use super::{minmax, tpbso};
 use crate::error::{Error, Result};
 use crate::limits::Limits;
 use crate::obstacle::Obstacle;
 use crate::robot::Robot;
-use crate::solver::{AnySolver, Monitor, Stop};
+use crate::solver::{AnySolver, DerivativeFree, Monitor, Stop};
 
 /// How to plan from end to end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -47,8 +48,10 @@ pub struct PointToPointOptions {
     pub margin: Option<f64>,
     /// Limits to keep; None keeps the robot's.
     pub limits: Option<Limits>,
+    /// Which way a planar arm bends at its ends, where [`Tpbso`](PointToPointMethod::Tpbso) chooses its configuration.
+    pub elbows: [Elbow; 2],
     /// What searches; None: the method's own.
-    pub solver: Option<AnySolver>,
+    pub solver: Option<AnySolver<DerivativeFree>>,
     /// Budgets; None: the method's own.
     pub stop: Option<Stop>,
     /// Seed of the random draws: the same seed, the same bits.

@@ -1,10 +1,18 @@
 //! The one list of algorithms: the binding and the contract test read it.
 
 use super::bas::{Bas, Variant};
+use super::bee_colony::BeeColony;
+use super::beetle_swarm::BeetleSwarm;
+use super::broyden_bas::BroydenBas;
+use super::differential_evolution::DifferentialEvolution;
 use super::driver::{Outcome, Solver, run};
 use super::evaluator::Evaluator;
+use super::firefly::Firefly;
+use super::genetic::Genetic;
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::multi_start::{MultiStart, RestartRule};
+use super::pso::{Form, Pso};
+use super::qpso::Qpso;
 use crate::error::Result;
 use crate::objective::{LeastSquares, Objective};
 
@@ -13,6 +21,20 @@ use crate::objective::{LeastSquares, Objective};
 pub enum DerivativeFree {
     /// Beetle antennae search.
     Bas(Bas),
+    /// Artificial bee colony.
+    BeeColony(BeeColony),
+    /// Beetle swarm.
+    BeetleSwarm(BeetleSwarm),
+    /// Differential evolution.
+    DifferentialEvolution(DifferentialEvolution),
+    /// Firefly algorithm.
+    Firefly(Firefly),
+    /// Genetic algorithm.
+    Genetic(Genetic),
+    /// Particle swarm.
+    Pso(Pso),
+    /// Quantum-behaved particle swarm.
+    Qpso(Qpso),
 }
 
 /// Every algorithm.
@@ -20,6 +42,8 @@ pub enum DerivativeFree {
 pub enum Algorithm {
     /// One that needs values alone.
     DerivativeFree(DerivativeFree),
+    /// Antenna differences as secants, which need residuals.
+    BroydenBas(BroydenBas),
     /// Levenberg-Marquardt.
     LevenbergMarquardt(LevenbergMarquardt),
 }
@@ -29,6 +53,13 @@ macro_rules! whichever {
     ($algorithm:expr, $solver:ident => $body:expr) => {
         match $algorithm {
             DerivativeFree::Bas($solver) => $body,
+            DerivativeFree::BeeColony($solver) => $body,
+            DerivativeFree::BeetleSwarm($solver) => $body,
+            DerivativeFree::DifferentialEvolution($solver) => $body,
+            DerivativeFree::Firefly($solver) => $body,
+            DerivativeFree::Genetic($solver) => $body,
+            DerivativeFree::Pso($solver) => $body,
+            DerivativeFree::Qpso($solver) => $body,
         }
     };
 }
@@ -49,7 +80,13 @@ macro_rules! listed {
         }
     )*};
 }
-listed!(Bas);
+listed!(Bas, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, Qpso);
+
+impl From<BroydenBas> for Algorithm {
+    fn from(solver: BroydenBas) -> Self {
+        Self::BroydenBas(solver)
+    }
+}
 
 impl From<LevenbergMarquardt> for Algorithm {
     fn from(solver: LevenbergMarquardt) -> Self {
@@ -60,7 +97,19 @@ impl From<LevenbergMarquardt> for Algorithm {
 impl DerivativeFree {
     /// Every one with its default options.
     pub fn all() -> Vec<Self> {
-        vec![Bas::of(Variant::Star).into(), Bas::of(Variant::Chain).into(), Bas::of(Variant::Greedy).into()]
+        vec![
+            Bas::of(Variant::Star).into(),
+            Bas::of(Variant::Chain).into(),
+            Bas::of(Variant::Greedy).into(),
+            BeeColony::default().into(),
+            BeetleSwarm::default().into(),
+            DifferentialEvolution::default().into(),
+            Firefly::default().into(),
+            Genetic::default().into(),
+            Pso::of(Form::Constriction).into(),
+            Pso::of(Form::Inertia(0.729)).into(),
+            Qpso::default().into(),
+        ]
     }
 
     /// Checks the options.
@@ -77,6 +126,14 @@ impl DerivativeFree {
     fn patience(&self) -> usize {
         match self {
             Self::Bas(_) => 20,
+            // A turn of every firefly is a generation.
+            Self::Firefly(firefly) => firefly.schedule.stall_generations.saturating_mul(firefly.schedule.population),
+            Self::BeeColony(BeeColony { schedule, .. })
+            | Self::BeetleSwarm(BeetleSwarm { schedule, .. })
+            | Self::DifferentialEvolution(DifferentialEvolution { schedule, .. })
+            | Self::Genetic(Genetic { schedule, .. })
+            | Self::Pso(Pso { schedule, .. })
+            | Self::Qpso(Qpso { schedule, .. }) => schedule.stall_generations,
         }
     }
 
@@ -95,6 +152,7 @@ impl Algorithm {
     /// Every algorithm with its default options.
     pub fn all() -> Vec<Self> {
         let mut all: Vec<_> = DerivativeFree::all().into_iter().map(Self::DerivativeFree).collect();
+        all.push(BroydenBas::default().into());
         all.push(LevenbergMarquardt::default().into());
         all
     }
@@ -104,7 +162,7 @@ impl Algorithm {
     pub fn into_multi_start(self) -> MultiStart<Self> {
         let patience = match &self {
             Self::DerivativeFree(solver) => solver.patience(),
-            Self::LevenbergMarquardt(_) => 3,
+            Self::BroydenBas(_) | Self::LevenbergMarquardt(_) => 3,
         };
         MultiStart { solver: self, rule: RestartRule::with_patience(patience) }
     }
@@ -116,6 +174,7 @@ impl Algorithm {
     pub fn validate(&self) -> Result<()> {
         match self {
             Self::DerivativeFree(solver) => solver.validate(),
+            Self::BroydenBas(broyden) => broyden.validate(),
             Self::LevenbergMarquardt(lm) => lm.validate(),
         }
     }
@@ -129,6 +188,7 @@ impl Algorithm {
     ) -> Outcome {
         match self {
             Self::DerivativeFree(solver) => evaluator.with_values_only(|evaluator| solver.run(restarts, evaluator, x0)),
+            Self::BroydenBas(broyden) => run_or_restart(broyden, restarts, evaluator, x0),
             Self::LevenbergMarquardt(lm) => run_or_restart(lm, restarts, evaluator, x0),
         }
     }

@@ -19,6 +19,8 @@ mod nearer;
 mod pace;
 mod travel;
 
+pub(super) use self::around::{DEFAULT_MARGIN, refuse_collision, too_near};
+pub(super) use self::clear::InTime;
 use self::ends::{Pair, Search};
 use self::pace::Polyline;
 use super::{Cost, End, Improvement, MotionLimits, Plan, PointToPointOptions};
@@ -76,6 +78,8 @@ fn freely(search: &mut Search, objective: Cost, monitor: &mut dyn Monitor) -> Re
         cost,
         history,
         clearance: None,
+        accuracy: None,
+        redundancy: vec![],
         violations,
         status,
         evaluations,

@@ -10,7 +10,7 @@ const CHORDS: usize = 256;
 
 impl Cost {
     /// Its value on `trajectory` (s, rad or m).
-    pub(super) fn of(self, robot: &Robot, trajectory: &Trajectory) -> f64 {
+    pub(in crate::planning) fn of(self, robot: &Robot, trajectory: &Trajectory) -> f64 {
         match self {
             Self::Time => trajectory.duration(),
             Self::JointTravel => joint_travel(trajectory),
