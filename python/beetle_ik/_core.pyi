@@ -11,6 +11,7 @@ from typing import Any, Literal, Protocol, TypeAlias, final, type_check_only
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
 
 __version__: str
 
@@ -492,10 +493,11 @@ class Step:
 
 # --- obstacles ----------------------------------------------------------------------------------
 
+@disjoint_base
 class Obstacle:
     @property
     def triangles(self) -> _Array: ...  # (t, 3, 3) m, for drawing
-    def __eq__(self, other: object) -> bool: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Sphere(Obstacle):
@@ -624,6 +626,8 @@ class Plan:
     def limits(self) -> Limits: ...  # those in force
     @property
     def robot(self) -> Robot: ...
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]: ...
     def plot(self) -> Figure: ...
 
 @final

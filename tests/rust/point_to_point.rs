@@ -243,7 +243,7 @@ fn mistakes_are_named() {
     );
     assert_eq!(
         refused(&arm, &here, &position(3.0, 0.0), with(vec![], &arm)),
-        "end cannot be reached: the nearest configuration found stays 1.000e0 m away"
+        "end cannot be reached: the nearest configuration found stays 1.000 m away"
     );
     assert_eq!(
         refused(&arm, &here, &there, PointToPointOptions::default()),
