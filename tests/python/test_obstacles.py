@@ -27,6 +27,7 @@ def test_a_larger_margin_is_kept_too() -> None:
     plan = bik.plan_point_to_point(PANDA, start_q=CENTRE, end=BEHIND, obstacles=[CRATE], margin=0.03, limits=LIMITS)
     assert plan.success
     assert plan.clearance >= 0.03
+    assert plan.obstacles == (CRATE,)
 
 
 def test_an_end_inside_an_obstacle_is_told_by_name() -> None:

@@ -1,5 +1,7 @@
 //! Point to point: against the bound of the plane's arms, and around a box.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::{Obstacle, Scene};
 use ikcore::planning::{End, Plan, PointToPointOptions, plan_point_to_point};
