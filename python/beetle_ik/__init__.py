@@ -17,6 +17,7 @@ from ._core import (
     BAS,
     BatchSolution,
     BeetleIkError,
+    InfeasibleError,
     InvalidInputError,
     LevenbergMarquardt,
     LimitError,
@@ -39,6 +40,7 @@ from ._core import (
     pose,
     solve,
     solve_batch,
+    time_optimal,
     track,
 )
 
@@ -46,6 +48,7 @@ __all__ = [
     "BAS",
     "BatchSolution",
     "BeetleIkError",
+    "InfeasibleError",
     "InvalidInputError",
     "LevenbergMarquardt",
     "LimitError",
@@ -70,5 +73,6 @@ __all__ = [
     "pose",
     "solve",
     "solve_batch",
+    "time_optimal",
     "track",
 ]

@@ -24,6 +24,10 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("ik", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem"]),
     ("batch", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"]),
     (
+        "planning",
+        &["robot", "path", "trajectory", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"],
+    ),
+    (
         "tracking",
         &["robot", "path", "trajectory", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"],
     ),

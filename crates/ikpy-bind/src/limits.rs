@@ -230,11 +230,18 @@ impl PyLimits {
 
     /// The same for the core, functions of time sampled.
     pub fn resolve(&self, py: Python<'_>, robot: &Robot, sampling: &Sampling) -> PyResult<Limits> {
-        let mut limits = Limits::of(robot);
+        self.applied_to(py, Limits::of(robot), robot.dof(), sampling)
+    }
+
+    /// The same for joints that belong to no robot: none where no limit is given.
+    pub fn for_joints(&self, py: Python<'_>, joints: &[String]) -> PyResult<Limits> {
+        self.applied_to(py, Limits::none(joints.to_vec()), joints.len(), &Sampling::once())
+    }
+
+    fn applied_to(&self, py: Python<'_>, mut limits: Limits, n: usize, sampling: &Sampling) -> PyResult<Limits> {
         for (given, field) in self.given.iter().zip(FIELDS) {
             if let Some(given) = given {
-                let profiles = given.profiles(py, field, sampling, robot.dof())?;
-                limits = limits.replace(field, profiles).map_err(raise)?;
+                limits = limits.replace(field, given.profiles(py, field, sampling, n)?).map_err(raise)?;
             }
         }
         Ok(limits)

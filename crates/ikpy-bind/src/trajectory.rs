@@ -25,7 +25,8 @@ impl From<Trajectory> for PyTrajectory {
     }
 }
 
-fn names(given: Option<Vec<String>>, n: usize) -> Vec<String> {
+/// The joints' names, or "q1", "q2", ... where none were given.
+pub fn names(given: Option<Vec<String>>, n: usize) -> Vec<String> {
     given.unwrap_or_else(|| (1..=n).map(|i| format!("q{i}")).collect())
 }
 

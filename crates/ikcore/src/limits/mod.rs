@@ -64,6 +64,13 @@ impl Limits {
         }
     }
 
+    /// No limits for joints of these names.
+    pub fn none(joints: Vec<String>) -> Self {
+        let all = |value: f64| vec![Profile::Constant(value); joints.len()];
+        let (lower, upper, velocity) = (all(f64::NEG_INFINITY), all(f64::INFINITY), all(f64::INFINITY));
+        Self { joints, lower, upper, velocity, acceleration: None, jerk: None }
+    }
+
     /// Replaces one field for all joints; one profile per joint, or a single one for all of them.
     ///
     /// # Errors
