@@ -140,6 +140,12 @@ impl PyTrajectory {
         row(py, self.0.max_acceleration())
     }
 
+    /// The largest jerk of each joint (n,) (rad/s^3, m/s^3), exact inside the pieces; jumps of the acceleration at knots
+    /// are not in it.
+    fn max_jerk<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.0.max_jerk())
+    }
+
     /// (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside are clamped.
     fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
         let (times, single) = times(t)?;

@@ -34,7 +34,10 @@ pub(super) fn ceilings(path: &JointPath, limits: &TimingLimits, segments: &[Segm
 fn at_grid_points(path: &JointPath, limits: &TimingLimits, segments: &[Segment], shape: &mut Shape) -> Vec<f64> {
     let mut ceilings = vec![UNLIMITED; segments.len() + 1];
     let bound = |slope: &[f64]| {
-        let ratios = slope.iter().zip(&limits.velocity).map(|(slope, limit)| if *slope == 0.0 { UNLIMITED } else { limit / slope });
+        let ratios = slope
+            .iter()
+            .zip(&limits.velocity)
+            .map(|(slope, limit)| if *slope == 0.0 { UNLIMITED } else { limit / slope });
         ratios.map(|ratio| ratio * ratio).fold(UNLIMITED, f64::min)
     };
     for (i, segment) in segments.iter().enumerate() {

@@ -19,7 +19,8 @@ pub(super) fn compose(path: &JointPath, profile: &SpeedProfile) -> Result<Trajec
         let [x0, x1] = [profile.squared_speeds[i], profile.squared_speeds[i + 1]];
         let motion = [x0.sqrt(), 0.25 * (x1 - x0) / segment.length];
         let powers = path.powers(segment.piece);
-        coefficients.extend((0..joints.len()).map(|j| cubic_of_parabola(powers.map(|power| power[j]), segment.from, motion)));
+        coefficients
+            .extend((0..joints.len()).map(|j| cubic_of_parabola(powers.map(|power| power[j]), segment.from, motion)));
     }
     Trajectory::new(joints.to_vec(), times, coefficients)
 }

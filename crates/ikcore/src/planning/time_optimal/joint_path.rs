@@ -6,8 +6,8 @@ use crate::math::polynomial::{derivative, roots};
 /// Powers of a cubic.
 const POWERS: usize = 4;
 
-/// How far the direction may change at a break before it counts as a corner (relative to the slopes there).
-const CORNER_TOLERANCE: f64 = 1e-9;
+/// How far a derivative may differ on both sides of a break before it counts as a jump (relative to its size there).
+const JUMP_TOLERANCE: f64 = 1e-9;
 
 /// Slope, relative to the path's largest, below which the path counts as having no direction: rounding leaves that much.
 const VANISHING: f64 = 1e-12;
@@ -69,11 +69,16 @@ impl JointPath {
 
     /// Writes the position of all joints (rad or m) at the path parameter `s`, clamped to the path.
     pub fn position(&self, s: f64, q: &mut [f64]) {
-        let piece = self.breaks.partition_point(|start| *start <= s).saturating_sub(1).min(self.pieces() - 1);
-        let from = s.clamp(self.breaks[0], self.breaks[self.pieces()]) - self.breaks[piece];
+        let (piece, from) = self.locate(s);
         for (joint, q) in q.iter_mut().enumerate() {
             *q = self.joint_at(piece, from, joint)[0];
         }
+    }
+
+    /// The piece of the path parameter `s`, clamped to the path, and how far it lies in it.
+    pub(super) fn locate(&self, s: f64) -> (usize, f64) {
+        let piece = self.breaks.partition_point(|start| *start <= s).saturating_sub(1).min(self.pieces() - 1);
+        (piece, s.clamp(self.breaks[0], self.breaks[self.pieces()]) - self.breaks[piece])
     }
 
     /// Euclidean length of dq/ds where a piece begins, or where it ends.
@@ -86,9 +91,7 @@ impl JointPath {
     pub(super) fn has_no_direction(&self, at_end: bool) -> bool {
         let piece = if at_end { self.pieces() - 1 } else { 0 };
         let chord = (0..self.joints.len())
-            .map(|joint| {
-                self.joint_at(piece, self.length(piece), joint)[0] - self.joint_at(piece, 0.0, joint)[0]
-            })
+            .map(|joint| self.joint_at(piece, self.length(piece), joint)[0] - self.joint_at(piece, 0.0, joint)[0])
             .fold(0.0, |sum: f64, d| sum + d * d)
             .sqrt();
         self.slope(piece, at_end) <= VANISHING * chord / self.length(piece)
@@ -96,13 +99,24 @@ impl JointPath {
 
     /// Whether the direction jumps between this piece and the next: only standing still passes there.
     pub(super) fn has_corner_after(&self, piece: usize) -> bool {
+        self.jumps_after(piece, 1)
+    }
+
+    /// Whether the second derivative jumps there: the jerk would be infinite.
+    pub(super) fn has_curvature_jump_after(&self, piece: usize) -> bool {
+        self.has_corner_after(piece) || self.jumps_after(piece, 2)
+    }
+
+    fn jumps_after(&self, piece: usize, order: usize) -> bool {
         let (end, mut jump, mut size) = (self.length(piece), 0.0_f64, 0.0_f64);
         for joint in 0..self.joints.len() {
-            let [before, after] = [self.joint_at(piece, end, joint)[1], self.joint_at(piece + 1, 0.0, joint)[1]];
-            jump = jump.max((after - before).abs());
-            size = size.max(before.abs()).max(after.abs());
+            let [before, after] = [self.joint_at(piece, end, joint), self.joint_at(piece + 1, 0.0, joint)];
+            jump = jump.max((after[order] - before[order]).abs());
+            // What rounding leaves of the second derivative is in proportion to the first.
+            let scale = |at: &[f64; 3]| at[1].abs() / end.powi(order as i32 - 1) + at[order].abs();
+            size = size.max(scale(&before)).max(scale(&after));
         }
-        jump > CORNER_TOLERANCE * size
+        jump > JUMP_TOLERANCE * size
     }
 
     /// The exact smallest and largest position of a joint (rad or m).

@@ -67,7 +67,8 @@ impl TimingLimits {
                 (highest, highest > self.upper[j], self.upper[j], "upper"),
             ] {
                 if outside {
-                    let problem = format!("the path takes joint '{joint}' to {place}, beyond its {limit} limit {bound}");
+                    let problem =
+                        format!("the path takes joint '{joint}' to {place}, beyond its {limit} limit {bound}");
                     return Err(Error::Infeasible { problem });
                 }
             }

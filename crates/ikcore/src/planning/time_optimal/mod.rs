@@ -10,16 +10,19 @@
 //! | `ceiling` | the velocity limits |
 //! | `strips` | the acceleration limits |
 //! | `reachability` | the fastest speed profile on a grid |
+//! | `refine` | a grid that is fine where it matters |
 //! | `compose` | speed profile to trajectory |
 //! | `jerk` | the same, smoothed to keep jerk limits |
 
 mod ceiling;
 mod compose;
 mod grid;
+mod jerk;
 mod joint_path;
 mod limits;
 mod polyline;
 mod reachability;
+mod refine;
 mod shape;
 mod spline;
 mod strips;
@@ -31,8 +34,10 @@ pub use spline::SplineEnds;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
 use compose::compose;
-use grid::{MAX_GRIDPOINTS, check_gridpoints, cut};
+use grid::{check_gridpoints, cut};
+use jerk::smooth;
 use reachability::{Range, SpeedProfile};
+use refine::refine;
 
 /// How to time a path. The default is rest to rest on a grid chosen by refinement.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -47,11 +52,10 @@ pub struct TimingOptions {
 }
 
 /// Segments to begin refining with.
-const FIRST_SEGMENTS: usize = 128;
+const FIRST_SEGMENTS: usize = 100;
 
-/// Refined until twice as many segments save no more than this share of the duration. The error falls with the length of
-/// the segments, so that about as much remains.
-const CONVERGED: f64 = 4e-4;
+/// Segments where the result is smoothed: that takes more from the speed than a coarse grid.
+const SEGMENTS_TO_SMOOTH: usize = 300;
 
 /// The fastest motion along `path` within `limits`.
 ///
@@ -61,30 +65,23 @@ const CONVERGED: f64 = 4e-4;
 pub fn time_optimal(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
     limits.require_for(path)?;
     let ends = [end_range(path, options.start_speed, false)?, end_range(path, options.end_speed, true)?];
-    let on_grid = |segments: usize| SpeedProfile::fastest(path, limits, cut(path, segments), ends);
+    let fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends);
     let profile = match options.gridpoints {
         Some(gridpoints) => {
             check_gridpoints(gridpoints)?;
-            on_grid(gridpoints - 1)?
+            fastest(cut(path, gridpoints - 1))?
         }
-        None => refined(on_grid)?,
+        None if limits.jerk.is_some() => fastest(cut(path, SEGMENTS_TO_SMOOTH))?,
+        None => refine(cut(path, FIRST_SEGMENTS), fastest)?,
     };
-    compose(path, &profile)
-}
-
-fn refined(on_grid: impl Fn(usize) -> Result<SpeedProfile>) -> Result<SpeedProfile> {
-    let mut profile = on_grid(FIRST_SEGMENTS)?;
-    loop {
-        let segments = 2 * profile.segments.len();
-        if segments >= MAX_GRIDPOINTS {
-            return Ok(profile);
+    match &limits.jerk {
+        None => compose(path, &profile),
+        Some(_) if options.start_speed != 0.0 || options.end_speed != 0.0 => {
+            let problem =
+                "with jerk limits a motion begins and ends at rest: leave out start_speed and end_speed".into();
+            Err(Error::Infeasible { problem })
         }
-        let finer = on_grid(segments)?;
-        let saved = 1.0 - finer.duration() / profile.duration();
-        profile = finer;
-        if saved <= CONVERGED {
-            return Ok(profile);
-        }
+        Some(jerk) => smooth(path, &profile, limits, jerk),
     }
 }
 
@@ -104,6 +101,7 @@ fn end_range(path: &JointPath, speed: f64, at_end: bool) -> Result<Range> {
         return Ok([0.0, f64::INFINITY]);
     }
     let place = if at_end { "end" } else { "start" };
-    let problem = format!("{name} is {speed}, but the path has no direction at its {place}: give the spline other ends");
+    let problem =
+        format!("{name} is {speed}, but the path has no direction at its {place}: give the spline other ends");
     Err(Error::Infeasible { problem })
 }

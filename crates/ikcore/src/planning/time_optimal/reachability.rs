@@ -81,10 +81,13 @@ impl Pass<'_> {
         }
         for i in (0..last).rev() {
             let segment = self.enter(i);
+            let [slowest, ceiling] = sets[i + 1];
+            let launch = LAUNCH_SHARE * (2.0 * segment.length * self.strips.launch).min(ceiling);
+            sets[i + 1][0] = slowest.max(launch);
             let next = Coupling::new(sets[i + 1], segment.length);
             let ceiling = sets[i][1].min(self.strips.ceiling);
-            // Standing still is an option wherever the next point may be stood on.
-            let floor = if next.set[0] == 0.0 { Some(0.0) } else { self.boundary(0.0, &next) };
+            // Whoever stands here can launch.
+            let floor = if next.set[0] <= launch { Some(0.0) } else { self.boundary(0.0, &next) };
             sets[i] = match (floor, self.boundary(ceiling, &next)) {
                 (Some(floor), Some(ceiling)) if floor <= ceiling => [floor, ceiling],
                 _ => return Err(too_fast("end")),
@@ -130,6 +133,10 @@ impl Pass<'_> {
         }
     }
 }
+
+/// Two grid points at rest in a row would never be left. So each is passed with at least this share of the x that a
+/// launch from the one before would give; on a fine grid that is as good as nothing.
+const LAUNCH_SHARE: f64 = 0.1;
 
 /// Lines that meet to so many digits do meet.
 const ROUNDING: f64 = 1e-9;

@@ -27,6 +27,8 @@ pub(super) struct Strips {
     slopes: Vec<f64>,
     /// The bound on x of strips that say nothing of u.
     pub ceiling: f64,
+    /// The largest u from a standing start.
+    pub launch: f64,
 }
 
 /// A coefficient of u below this is none: its reciprocal would overflow.
@@ -34,7 +36,12 @@ const NO_COEFFICIENT: f64 = 1e-150;
 
 impl Strips {
     pub fn new(joints: usize) -> Self {
-        Self { offsets: vec![0.0; 3 * joints], slopes: vec![0.0; 3 * joints], ceiling: f64::INFINITY }
+        Self {
+            offsets: vec![0.0; 3 * joints],
+            slopes: vec![0.0; 3 * joints],
+            ceiling: f64::INFINITY,
+            launch: f64::INFINITY,
+        }
     }
 
     /// The strips of a segment of this `shape` and `length`.
@@ -49,8 +56,11 @@ impl Strips {
         let (offsets, slopes) = (&mut self.offsets[..3 * n], &mut self.slopes[..3 * n]);
         for j in 0..n {
             let c = limits.acceleration[j];
-            let coefficients =
-                [(d0[j], e0[j]), (d1[j] + length * e0[j], 0.5 * (e0[j] + e1[j])), (d2[j] + 2.0 * length * e1[j], e1[j])];
+            let coefficients = [
+                (d0[j], e0[j]),
+                (d1[j] + length * e0[j], 0.5 * (e0[j] + e1[j])),
+                (d2[j] + 2.0 * length * e1[j], e1[j]),
+            ];
             for (k, (a, b)) in coefficients.into_iter().enumerate() {
                 let reciprocal = 1.0 / a;
                 let says_nothing = a.abs() < NO_COEFFICIENT;
@@ -62,6 +72,7 @@ impl Strips {
             }
         }
         self.ceiling = ceiling;
+        self.launch = offsets.iter().copied().fold(f64::INFINITY, f64::min);
     }
 
     /// The lowest upper line at `x`.
