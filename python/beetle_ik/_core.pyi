@@ -4,7 +4,7 @@
 # SI units and radians throughout; results are read-only.
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import IntEnum
 from typing import Any, Literal, TypeAlias, final
 
@@ -455,6 +455,82 @@ class Step:
     def evaluations(self) -> int: ...
     @property
     def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
+
+# --- planning -----------------------------------------------------------------------------------
+
+def plan_point_to_point(
+    robot: Robot,
+    start: ArrayLike | None = None,  # (4, 4) pose or (3,) position
+    end: ArrayLike | None = None,
+    *,
+    start_q: ArrayLike | None = None,  # (n,), instead of start
+    end_q: ArrayLike | None = None,
+    limits: Limits | None = None,
+    method: Literal["minmax", "tpbso"] = "minmax",
+    objective: Literal["time", "joint_travel", "tip_travel"] = "time",
+    elbows: Sequence[int] = [1, 1],  # noqa: B006
+    solver: _Solver | None = None,
+    stop: Stop | None = None,
+    seed: int = 0,
+    progress: _Progress = None,
+) -> Plan: ...
+def plan_along_path(
+    robot: Robot,
+    path: Path | ArrayLike,  # or (k, 3) points or (k, 4, 4) poses
+    *,
+    start_q: ArrayLike | None = None,  # (n,)
+    limits: Limits | None = None,
+    method: Literal["timed", "tpbso"] = "timed",
+    objective: Literal["time", "joint_travel"] = "time",
+    accuracy: float | None = None,  # m
+    solver: _Solver | None = None,
+    stop: Stop | None = None,
+    seed: int = 0,
+    progress: _Progress = None,
+) -> Plan: ...
+
+@final
+class Plan:
+    @property
+    def trajectory(self) -> Trajectory: ...
+    @property
+    def objective(self) -> str: ...
+    @property
+    def cost(self) -> float: ...  # of the objective on the trajectory: s, rad or m
+    @property
+    def history(self) -> _Array: ...  # (h, 2): evaluations, lowest cost from then on
+    @property
+    def clearance(self) -> float: ...  # m; NaN without obstacles
+    @property
+    def violations(self) -> list[Violation]: ...
+    @property
+    def reference(self) -> _Array | None: ...  # (k, 3): the path asked for
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+    @property
+    def robot(self) -> Robot: ...
+    def plot(self) -> Figure: ...
+
+@final
+class Violation:
+    @property
+    def what(self) -> str: ...
+    @property
+    def value(self) -> float: ...
+    @property
+    def bound(self) -> float: ...
+    @property
+    def unit(self) -> str: ...
 
 # --- trajectories -------------------------------------------------------------------------------
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from ._core import Robot, TrackResult, Trajectory
+    from ._core import Plan, Robot, TrackResult, Trajectory
 
 # Okabe and Ito's palette, which colour-blind readers can tell apart too; its yellow is too faint for lines on white.
 _BLUE, _VERMILION, _GREEN, _PURPLE, _ORANGE, _SKY, _BLACK = (
@@ -75,6 +75,11 @@ def track(result: TrackResult) -> Figure:
         above.align_ylabels()
         _draw_velocities(below, result, velocity_rows)
     return figure
+
+
+def plan(plan: Plan) -> Figure:
+    """A planned motion: position, velocity and acceleration of each joint over time."""
+    return trajectory(plan.trajectory)
 
 
 def trajectory(trajectory: Trajectory) -> Figure:

@@ -17,6 +17,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("trajectory", &[]),
     ("objective", &[]),
     ("limits", &["robot", "objective"]),
+    ("obstacle", &["robot", "objective"]),
     ("manipulability", &["robot"]),
     ("task", &["robot", "manipulability", "objective"]),
     ("solver", &["objective"]),
@@ -25,7 +26,19 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("batch", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"]),
     (
         "planning",
-        &["robot", "path", "trajectory", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"],
+        &[
+            "robot",
+            "path",
+            "trajectory",
+            "objective",
+            "limits",
+            "obstacle",
+            "manipulability",
+            "task",
+            "solver",
+            "problem",
+            "ik",
+        ],
     ),
     (
         "tracking",

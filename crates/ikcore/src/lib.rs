@@ -47,7 +47,7 @@
 //! |---|---|
 //! | 0 | [`error`], [`rng`], [`math`], `wording` |
 //! | 1 | [`robot`], [`path`], [`trajectory`], [`objective`] |
-//! | 2 | [`limits`], [`manipulability`] |
+//! | 2 | [`limits`], [`obstacle`], [`manipulability`] |
 //! | 3 | [`task`], [`solver`] |
 //! | 4 | [`problem`] |
 //! | 5 | [`ik`] |
@@ -60,6 +60,7 @@ pub mod limits;
 pub mod manipulability;
 pub mod math;
 pub mod objective;
+pub mod obstacle;
 pub mod path;
 pub mod planning;
 pub mod problem;

@@ -7,6 +7,7 @@ mod ik;
 mod limits;
 mod monitor;
 mod path;
+mod planning;
 mod pose;
 mod robot;
 mod sinusoid;
@@ -33,6 +34,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
     path::register(module)?;
+    planning::register(module)?;
     module.add_class::<tracking::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;
     module.add_class::<tracker::PyStep>()?;

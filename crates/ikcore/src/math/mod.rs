@@ -1,4 +1,4 @@
-//! Rotations, rigid transforms, fast sines, polynomials, knots in time and the one bounded step. Plain arrays where it
+//! Rotations, rigid transforms, fast sines, polynomials, splines, knots in time and the one bounded step. Plain arrays where it
 //! is hot, nalgebra elsewhere.
 
 pub mod arithmetic;
@@ -6,6 +6,7 @@ pub mod box_step;
 pub mod frame;
 pub mod interval;
 pub mod knots;
+pub mod natural_spline;
 pub mod polynomial;
 pub mod pose;
 pub mod sincos;

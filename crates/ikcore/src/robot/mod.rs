@@ -3,6 +3,7 @@
 mod builder;
 mod catalog;
 mod chain;
+mod collision;
 mod dh;
 mod dispatch;
 mod joint;
@@ -16,6 +17,7 @@ mod seeds;
 mod urdf;
 
 pub use builder::{ChainBuilder, Drive};
+pub use collision::LinkCapsule;
 pub use dh::{Dh, DhTable};
 pub use joint::{Joint, JointKind};
 pub use kinematics::Columns;

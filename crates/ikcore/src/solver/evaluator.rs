@@ -1,6 +1,10 @@
 //! Between solver and objective: counts, clips, checks, and keeps the best.
 
-use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Point, Score};
+use std::mem;
+
+use smallvec::SmallVec;
+
+use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Pace, Point, Score};
 use crate::rng::LazyRng;
 
 use super::stop::{Monitor, Stop, Stopwatch};
@@ -33,6 +37,13 @@ pub struct Best {
     pub solved: bool,
 }
 
+impl Default for Best {
+    /// Nothing met yet.
+    fn default() -> Self {
+        Self { x: Point::new(), value: f64::INFINITY, solved: false }
+    }
+}
+
 impl Best {
     #[cold]
     fn replace(&mut self, x: &[f64], value: f64, solved: bool) {
@@ -42,10 +53,7 @@ impl Best {
     }
 }
 
-/// Evaluations between two looks at the monitor and the clock: some ten microseconds of forward kinematics.
-const POLL_EVERY: usize = 256;
-
-/// Points handed to the objective at once.
+/// Points whose scores are kept on the stack.
 const CHUNK: usize = 8;
 
 /// A budgeted view of an objective in a box.
@@ -62,6 +70,7 @@ pub struct Evaluator<'a, O: ?Sized> {
     attempt_value: f64,
     attempts: usize,
     dimension: usize,
+    pace: Pace,
 }
 
 impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
@@ -73,6 +82,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         rng: &'a mut LazyRng,
         monitor: &'a mut dyn Monitor,
     ) -> Self {
+        let pace = objective.pace();
         Self {
             dimension: objective.dimension(),
             objective,
@@ -82,10 +92,11 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             monitor,
             stopwatch: stop.max_time.map(|_| Stopwatch::start()),
             evaluations: 0,
-            next_poll: POLL_EVERY,
-            best: Best { x: Point::new(), value: f64::INFINITY, solved: false },
+            next_poll: pace.between_looks,
+            best: Best::default(),
             attempt_value: f64::INFINITY,
             attempts: 1,
+            pace,
         }
     }
 
@@ -148,24 +159,27 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     /// # Errors
     /// As for one point; with a budget for some of them only, the first ones are evaluated before the halt.
     pub fn evaluate_all(&mut self, mut xs: &mut [f64], values: &mut [f64]) -> Result<(), Halt> {
-        let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
-        self.spend(affordable)?;
-        for values in values[..affordable].chunks_mut(CHUNK) {
-            let (chunk, rest) = xs.split_at_mut(values.len() * self.dimension);
-            self.evaluate_chunk(chunk, values);
+        for values in values.chunks_mut(self.pace.at_once) {
+            let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
+            self.spend(affordable)?;
+            let (chunk, rest) = xs.split_at_mut(affordable * self.dimension);
+            self.evaluate_chunk(chunk, &mut values[..affordable]);
+            if affordable < values.len() {
+                return Err(Halt::Budget);
+            }
             xs = rest;
         }
-        if affordable < values.len() { Err(Halt::Budget) } else { Ok(()) }
+        Ok(())
     }
 
     #[inline]
     fn evaluate_chunk(&mut self, xs: &mut [f64], values: &mut [f64]) {
-        let mut scores = [Score { value: f64::INFINITY, solved: false }; CHUNK];
-        let scores = &mut scores[..values.len()];
-        xs.chunks_mut(self.dimension).for_each(|x| self.bounds.clip(x));
-        self.objective.evaluate_all(xs, scores);
-        for (i, (score, value)) in scores.iter().zip(values).enumerate() {
-            *value = self.record(&xs[i * self.dimension..(i + 1) * self.dimension], *score);
+        let unknown = Score { value: f64::INFINITY, solved: false };
+        let mut scores: SmallVec<[Score; CHUNK]> = SmallVec::from_elem(unknown, values.len());
+        xs.chunks_exact_mut(self.dimension).for_each(|x| self.bounds.clip(x));
+        self.objective.evaluate_all(xs, &mut scores);
+        for ((x, score), value) in xs.chunks_exact(self.dimension).zip(&scores).zip(values) {
+            *value = self.record(x, *score);
         }
     }
 
@@ -215,7 +229,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
 
     #[cold]
     fn poll(&mut self) -> Result<(), Halt> {
-        self.next_poll = self.evaluations + POLL_EVERY;
+        self.next_poll = self.evaluations + self.pace.between_looks;
         if !self.monitor.keep_going() {
             return Err(Halt::Interrupted);
         }
@@ -236,6 +250,36 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             self.best.replace(x, value, solved);
         }
         value
+    }
+}
+
+impl Evaluator<'_, dyn LeastSquares + '_> {
+    /// Lends the run to a solver that asks for values alone, so that there is one compiled copy of such a solver whatever
+    /// the objective offers beyond.
+    pub fn with_values_only<R>(&mut self, work: impl FnOnce(&mut Evaluator<'_, dyn Objective + '_>) -> R) -> R {
+        let mut narrowed = Evaluator {
+            objective: &mut *self.objective as &mut dyn Objective,
+            bounds: self.bounds,
+            stop: self.stop,
+            rng: &mut *self.rng,
+            monitor: &mut *self.monitor,
+            stopwatch: self.stopwatch,
+            evaluations: self.evaluations,
+            next_poll: self.next_poll,
+            best: mem::take(&mut self.best),
+            attempt_value: self.attempt_value,
+            attempts: self.attempts,
+            dimension: self.dimension,
+            pace: self.pace,
+        };
+        let result = work(&mut narrowed);
+        let Evaluator { evaluations, next_poll, best, attempt_value, attempts, .. } = narrowed;
+        self.evaluations = evaluations;
+        self.next_poll = next_poll;
+        self.best = best;
+        self.attempt_value = attempt_value;
+        self.attempts = attempts;
+        result
     }
 }
 

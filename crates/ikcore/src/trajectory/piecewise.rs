@@ -3,7 +3,7 @@
 use super::hermite;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Knots;
-use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude};
+use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range};
 use crate::math::ticks::ticks;
 
 /// Powers of time that a segment may use: up to the sixth, which a cubic in a path parameter takes where that parameter is
@@ -183,6 +183,18 @@ impl Trajectory {
             slowed
         };
         Self::new(self.joints.clone(), knots, self.coefficients.iter().map(slow).collect())
+    }
+
+    /// The exact lowest and highest position of each joint (rad or m).
+    pub fn position_range(&self) -> Vec<(f64, f64)> {
+        let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); self.joints.len()];
+        for segment in 0..self.knots.segments() {
+            for ((lowest, highest), position) in ranges.iter_mut().zip(self.segment(segment)) {
+                let (low, high) = range(position, 0.0, self.knots.span(segment));
+                (*lowest, *highest) = (lowest.min(low), highest.max(high));
+            }
+        }
+        ranges
     }
 
     /// The times i `dt` (s) from 0 on, and the duration as the last one.

@@ -1,0 +1,201 @@
+//! Plans among obstacles: clear configurations for both ends, a clear way between them, and a timing whose whole motion
+//! is certified again.
+
+use super::clear::InTime;
+use super::connect::{Room, Way};
+use super::ends::{Pair, Search};
+use super::pace::Polyline;
+use super::{NO_TIME, PAIRS, no_pair, straight};
+use crate::error::{Error, Result};
+use crate::obstacle::{Contact, Scene};
+use crate::planning::{Improvement, MotionLimits, Plan, PointToPointOptions, Violation};
+use crate::rng;
+use crate::solver::{Monitor, Status};
+use crate::trajectory::Trajectory;
+use crate::wording::number;
+
+/// Distance that is kept where none is asked for (m).
+const DEFAULT_MARGIN: f64 = 1e-3;
+/// So much more is kept on straight lines, that rounding does not matter once they are timed (m).
+const EXTRA: f64 = 1e-5;
+/// Configurations that all trees together may look at: about half a second.
+const BUDGET: usize = 200_000;
+/// Ways that are searched, of which the quickest is taken.
+const WAYS: u64 = 4;
+/// Times that blends are narrowed before the motion stops at every corner instead.
+const NARROWINGS: usize = 12;
+
+/// Plans for ends and options that are in order.
+pub(super) fn plan(search: &mut Search, options: &PointToPointOptions, monitor: &mut dyn Monitor) -> Result<Plan> {
+    let margin = options.margin.unwrap_or(DEFAULT_MARGIN);
+    if !(margin.is_finite() && margin >= 0.0) {
+        return Err(Error::out_of_range("margin", "zero or more and finite", margin));
+    }
+    let robot = search.robot;
+    let scene = Scene::new(robot, &options.obstacles)?;
+    let pairs = search.pairs(PAIRS, monitor)?;
+    let first = pairs.first().ok_or_else(no_pair)?;
+    let is_clear = |q: &[f64]| scene.is_clear(q, margin + EXTRA);
+    let starts_clear: Vec<&Pair> = pairs.iter().filter(|pair| is_clear(&pair.start)).collect();
+    if starts_clear.is_empty() {
+        refuse_collision("start", &scene, &first.start, margin)?;
+    }
+    let open: Vec<Pair> = starts_clear.into_iter().filter(|pair| is_clear(&pair.end)).cloned().collect();
+    let limits = search.limits;
+    let found = if open.is_empty() {
+        Found::Nothing(Status::Stalled)
+    } else {
+        best_way(&scene, limits, &open, options, margin, monitor)?
+    };
+    let (trajectory, ended) = match found {
+        Found::Clear(trajectory) => (trajectory, Status::Solved),
+        // The least violating one: straight through.
+        Found::Nothing(status) => (straight(open.first().unwrap_or(first), limits)?, status),
+    };
+    finish(search, &scene, trajectory, ended, options, margin)
+}
+
+/// What the search for a way came to.
+enum Found {
+    Clear(Trajectory),
+    Nothing(Status),
+}
+
+/// The quickest of the straight motions between open pairs that keep clear, or of some ways around.
+fn best_way(
+    scene: &Scene,
+    limits: &MotionLimits,
+    open: &[Pair],
+    options: &PointToPointOptions,
+    margin: f64,
+    monitor: &mut dyn Monitor,
+) -> Result<Found> {
+    let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
+    let mut room = Room::new(scene, limits, margin + EXTRA, budget);
+    for pair in open {
+        if room.is_clear(&pair.start, &pair.end) {
+            let trajectory = straight(pair, limits)?;
+            if keeps_clear(&mut room, &trajectory, margin) {
+                return Ok(Found::Clear(trajectory));
+            }
+        }
+    }
+    // The ends of all pairs that share the start of the quickest: any of them will do.
+    let start = &open[0].start;
+    let ends: Vec<Vec<f64>> = open.iter().filter(|pair| pair.start == *start).map(|pair| pair.end.to_vec()).collect();
+    let mut best: Option<Trajectory> = None;
+    for attempt in 1..=WAYS {
+        let mut rng = rng::stream(options.seed, attempt);
+        let way = match room.connect(start, &ends, &mut rng, monitor) {
+            Way::Found(way) => room.shorten(way, &mut rng, monitor),
+            Way::NotFound => break,
+            Way::Interrupted => return Ok(best.map_or(Found::Nothing(Status::Interrupted), Found::Clear)),
+        };
+        let trajectory = timed(&mut room, &way, limits, margin)?;
+        if best.as_ref().is_none_or(|best| trajectory.duration() < best.duration()) {
+            best = Some(trajectory);
+        }
+    }
+    Ok(best.map_or(Found::Nothing(Status::BudgetSpent), Found::Clear))
+}
+
+/// A smooth timing of a clear way: through its corners as quickly as certified, or with a stop in each.
+fn timed(room: &mut Room, way: &Polyline, limits: &MotionLimits, margin: f64) -> Result<Trajectory> {
+    let stopping = way.with_stops(limits)?;
+    let mut shares = vec![1.0; way.0.len()];
+    for _ in 0..NARROWINGS {
+        let Some(blended) = way.with_blends(limits, &shares).transpose()? else { break };
+        if blended.duration() >= stopping.duration() {
+            break;
+        }
+        match room.sweep.check(&InTime(&blended), [0.0, blended.duration()], margin) {
+            Ok(()) => return Ok(blended),
+            Err(near) => {
+                let corner = nearest_corner(way, &blended, near.at)?;
+                shares[corner] *= 0.5;
+            }
+        }
+    }
+    Ok(stopping)
+}
+
+/// The inner point of the way that the motion is nearest to at time `t` (s).
+fn nearest_corner(way: &Polyline, motion: &Trajectory, t: f64) -> Result<usize> {
+    let n = motion.joints().len();
+    let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    motion.at(t, &mut q, &mut qd, &mut qdd)?;
+    let squared = |point: &[f64]| -> f64 { point.iter().zip(&q).map(|(a, b)| (a - b).powi(2)).sum() };
+    let inner = 1..way.0.len() - 1;
+    let nearest = inner.min_by(|i, k| squared(&way.0[*i]).total_cmp(&squared(&way.0[*k])));
+    Ok(nearest.unwrap_or(0))
+}
+
+fn keeps_clear(room: &mut Room, trajectory: &Trajectory, margin: f64) -> bool {
+    room.sweep.check(&InTime(trajectory), [0.0, trajectory.duration()], margin).is_ok()
+}
+
+/// The plan with what its trajectory breaks, by the exact limits and the smallest certified distance.
+fn finish(
+    search: &Search,
+    scene: &Scene,
+    trajectory: Trajectory,
+    ended: Status,
+    options: &PointToPointOptions,
+    margin: f64,
+) -> Result<Plan> {
+    let smallest = crate::obstacle::Sweep::new(scene).smallest(&InTime(&trajectory), [0.0, trajectory.duration()]);
+    let mut violations = search.limits.violations(&trajectory);
+    let clearance = smallest.map(|near| {
+        let distance = near.contact.distance;
+        if ended == Status::Solved {
+            // Certified above; the search for the smallest may stop just short of it.
+            return distance.max(margin);
+        }
+        if distance < margin {
+            violations.push(too_near(&near.contact, margin));
+        }
+        distance
+    });
+    let status = match ended {
+        Status::Solved if !violations.is_empty() => Status::Stalled,
+        status => status,
+    };
+    let cost = options.objective.of(search.robot, &trajectory);
+    let evaluations = search.evaluations;
+    let history = vec![Improvement { evaluations, cost }];
+    let objective = options.objective;
+    Ok(Plan {
+        trajectory,
+        objective,
+        cost,
+        history,
+        clearance,
+        accuracy: None,
+        redundancy: vec![],
+        violations,
+        status,
+        evaluations,
+        elapsed: NO_TIME,
+    })
+}
+
+fn too_near(contact: &Contact, margin: f64) -> Violation {
+    let what = format!("distance of link '{}' from {}", contact.link, contact.other);
+    Violation { what, value: contact.distance, bound: margin, unit: "m" }
+}
+
+/// Err for a configuration nearer to something than the margin.
+fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64) -> Result<()> {
+    match scene.nearest(q)? {
+        Some(Contact { link, other, distance }) if distance < margin + EXTRA => {
+            let (what, other) = (what.into(), other.to_string());
+            let depth = if distance < 0.0 {
+                format!("{} m inside", number(-distance))
+            } else {
+                format!("only {} m (of a margin of {} m) from", number(distance), number(margin))
+            };
+            Err(Error::InCollision { what, link, other, depth })
+        }
+        _ => Ok(()),
+    }
+}
