@@ -482,6 +482,7 @@ def plan_along_path(
     limits: Limits | None = None,
     method: Literal["timed", "tpbso"] = "timed",
     objective: Literal["time", "joint_travel"] = "time",
+    elbow: int = 1,
     accuracy: float | None = None,  # m
     solver: _Solver | None = None,
     stop: Stop | None = None,
@@ -503,6 +504,10 @@ class Plan:
     def clearance(self) -> float: ...  # m; NaN without obstacles
     @property
     def violations(self) -> list[Violation]: ...
+    @property
+    def accuracy(self) -> float: ...  # m, from the points of the path; NaN from end to end
+    @property
+    def redundancy(self) -> _Array: ...  # (points, links, 3): orientation chosen, lowest, highest (rad)
     @property
     def reference(self) -> _Array | None: ...  # (k, 3): the path asked for
     @property

@@ -71,6 +71,7 @@ pub struct PyPlan {
     core: Plan,
     trajectory: Py<PyTrajectory>,
     history: Py<PyArrayDyn<f64>>,
+    redundancy: Py<PyArrayDyn<f64>>,
     /// Positions (k, 3) (m) that the tip was to follow; None for a plan from end to end.
     #[pyo3(get)]
     reference: Option<Py<PyArrayDyn<f64>>>,
@@ -113,6 +114,19 @@ impl PyPlan {
     #[getter]
     fn clearance(&self) -> f64 {
         self.core.clearance.unwrap_or(f64::NAN)
+    }
+
+    /// Largest distance of the tip from the points of the path (m); NaN for a plan from end to end.
+    #[getter]
+    fn accuracy(&self) -> f64 {
+        self.core.accuracy.unwrap_or(f64::NAN)
+    }
+
+    /// The absolute orientations that a planar arm was free to choose along the path (points, links, 3): value, lowest
+    /// and highest possible (rad), from the tip's link down; without such a choice (0, 0, 3).
+    #[getter]
+    fn redundancy<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        self.redundancy.bind(py).clone()
     }
 
     /// What the trajectory breaks, a list of `Violation`; empty for a plan that succeeded.
@@ -170,6 +184,9 @@ impl PyPlan {
     ) -> PyResult<Self> {
         let py = robot.py();
         let history: Vec<f64> = core.history.iter().flat_map(|step| [step.evaluations as f64, step.cost]).collect();
+        let free = &core.redundancy;
+        let orientations = free.iter().flatten().flat_map(|free| [free.value, free.lowest, free.highest]).collect();
+        let shape = [free.len(), free.first().map_or(0, |links| links.len()), 3];
         let reference = reference.map(|rows| {
             let positions = (0..rows.len()).flat_map(|i| rows.position(i)).collect();
             table(py, positions, &[rows.len(), 3]).map(Bound::unbind)
@@ -177,6 +194,7 @@ impl PyPlan {
         Ok(Self {
             trajectory: Py::new(py, PyTrajectory::from(core.trajectory.clone()))?,
             history: table(py, history, &[core.history.len(), 2])?.unbind(),
+            redundancy: table(py, orientations, &shape)?.unbind(),
             reference: reference.transpose()?,
             robot: robot.clone().unbind(),
             limits,
@@ -234,7 +252,9 @@ pub fn plan_point_to_point(
     let options = PointToPointOptions {
         method: method.parse().map_err(raise)?,
         objective: objective.parse().map_err(raise)?,
-        elbows: read_elbows(elbows)?,
+        obstacles: vec![],
+        margin: None,
+        elbows: [read_elbow("elbows[0]", elbows[0])?, read_elbow("elbows[1]", elbows[1])?],
         limits: resolved,
         solver: solver.map(derivative_free).transpose()?,
         stop: stop.map(PyStop::core),
@@ -258,6 +278,7 @@ pub fn plan_point_to_point(
 ///     method: "timed": redundancy and the fastest timing found together; "tpbso": redundancy by a beetle swarm, uniform
 ///         time, splines through every second point (Wang et al. 2019).
 ///     objective: what to minimise: "time" or "joint_travel".
+///     elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it.
 ///     accuracy: how far the tip may be from the points (m); None: what suits the method.
 ///     solver: what searches; None: the method's own.
 ///     stop: budgets; None: the method's own.
@@ -272,7 +293,7 @@ pub fn plan_point_to_point(
 ///     LimitError: limits that contradict themselves.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
-#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", accuracy=None,
+#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", elbow=1, accuracy=None,
                     solver=None, stop=None, seed=0, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_along_path(
@@ -283,6 +304,7 @@ pub fn plan_along_path(
     limits: Option<&PyLimits>,
     method: &str,
     objective: &str,
+    elbow: i128,
     accuracy: Option<f64>,
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
@@ -297,6 +319,7 @@ pub fn plan_along_path(
         objective: objective.parse().map_err(raise)?,
         start: start_q.map(|q| vector("start_q", q)).transpose()?,
         limits: resolved,
+        elbow: read_elbow("elbow", elbow)?,
         accuracy,
         solver: solver.map(derivative_free).transpose()?,
         stop: stop.map(PyStop::core),
@@ -310,15 +333,13 @@ pub fn plan_along_path(
     PyPlan::new(plan.map_err(raise)?, Some(&reference), robot, in_force)
 }
 
-/// Which way a planar arm bends at start and end: 1 or -1 each.
-fn read_elbows(given: [i128; 2]) -> PyResult<[Elbow; 2]> {
-    let read = |(name, sign)| match sign {
+/// Which way a planar arm bends.
+fn read_elbow(name: &str, sign: i128) -> PyResult<Elbow> {
+    match sign {
         1 => Ok(Elbow::Positive),
         -1 => Ok(Elbow::Negative),
-        _ => Err(invalid(format!("elbows: {name} must be 1 or -1, the sign of the second joint's angle, got {sign}"))),
-    };
-    let [start, end] = given;
-    Ok([read(("start", start))?, read(("end", end))?])
+        _ => Err(invalid(format!("{name} must be 1 or -1, the sign of the second joint's angle, got {sign}"))),
+    }
 }
 
 /// An end given as a target or as joint angles.

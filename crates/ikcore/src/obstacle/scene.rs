@@ -112,6 +112,12 @@ impl<'a> Scene<'a> {
         Ok(scene)
     }
 
+    /// The same scene for links that pass over each other, as those of an arm drawn in a plane.
+    pub fn without_self_collision(mut self) -> Self {
+        self.pairs.retain(|pair| matches!(pair, Pair::Obstacle { .. }));
+        self
+    }
+
     /// The robot.
     pub fn robot(&self) -> &'a Robot {
         self.robot

@@ -8,18 +8,21 @@ use super::pace::Polyline;
 use super::{NO_TIME, PAIRS, no_pair, straight};
 use crate::error::{Error, Result};
 use crate::obstacle::{Contact, Scene};
-use crate::planning::{Improvement, MotionLimits, Plan, PointToPointOptions, Violation};
+use crate::planning::{End, Improvement, MotionLimits, Plan, PointToPointOptions, Violation};
 use crate::rng;
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
 /// Distance that is kept where none is asked for (m).
-const DEFAULT_MARGIN: f64 = 1e-3;
+pub(in crate::planning) const DEFAULT_MARGIN: f64 = 1e-3;
 /// So much more is kept on straight lines, that rounding does not matter once they are timed (m).
 const EXTRA: f64 = 1e-5;
 /// Configurations that all trees together may look at: about half a second.
 const BUDGET: usize = 200_000;
+/// Fewer open pairs make more be sought, so many from so many random starts.
+const FEW_PAIRS: usize = 3;
+const TRIES: usize = 400;
 /// Ways that are searched, of which the quickest is taken.
 const WAYS: u64 = 4;
 /// Times that blends are narrowed before the motion stops at every corner instead.
@@ -36,17 +39,22 @@ pub(super) fn plan(search: &mut Search, options: &PointToPointOptions, monitor: 
     let pairs = search.pairs(PAIRS, monitor)?;
     let first = pairs.first().ok_or_else(no_pair)?;
     let is_clear = |q: &[f64]| scene.is_clear(q, margin + EXTRA);
-    let starts_clear: Vec<&Pair> = pairs.iter().filter(|pair| is_clear(&pair.start)).collect();
-    if starts_clear.is_empty() {
-        refuse_collision("start", &scene, &first.start, margin)?;
+    if let End::Configuration(q) = search.ends[0] {
+        refuse_collision("start", &scene, q, margin)?;
     }
-    let open: Vec<Pair> = starts_clear.into_iter().filter(|pair| is_clear(&pair.end)).cloned().collect();
+    let is_open = |pair: &Pair| is_clear(&pair.start) && is_clear(&pair.end);
+    let mut open: Vec<Pair> = pairs.iter().filter(|pair| is_open(pair)).cloned().collect();
+    let given = search.ends.iter().all(|end| matches!(end, End::Configuration(_)));
+    if open.len() < FEW_PAIRS && !given {
+        open.extend(search.random_pairs(PAIRS, TRIES, is_open, monitor)?);
+    }
     let limits = search.limits;
-    let found = if open.is_empty() {
-        Found::Nothing(Status::Stalled)
-    } else {
-        best_way(&scene, limits, &open, options, margin, monitor)?
+    let mut room = Room::new(&scene, limits, margin + EXTRA, options.stop.map_or(BUDGET, |stop| stop.max_evaluations));
+    let found = match open.is_empty() {
+        true => Found::Nothing(Status::Stalled),
+        false => best_way(&mut room, limits, &open, options.seed, margin, monitor)?,
     };
+    search.evaluations += room.sweep.looks();
     let (trajectory, ended) = match found {
         Found::Clear(trajectory) => (trajectory, Status::Solved),
         // The least violating one: straight through.
@@ -63,19 +71,17 @@ enum Found {
 
 /// The quickest of the straight motions between open pairs that keep clear, or of some ways around.
 fn best_way(
-    scene: &Scene,
+    room: &mut Room,
     limits: &MotionLimits,
     open: &[Pair],
-    options: &PointToPointOptions,
+    seed: u64,
     margin: f64,
     monitor: &mut dyn Monitor,
 ) -> Result<Found> {
-    let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
-    let mut room = Room::new(scene, limits, margin + EXTRA, budget);
     for pair in open {
         if room.is_clear(&pair.start, &pair.end) {
             let trajectory = straight(pair, limits)?;
-            if keeps_clear(&mut room, &trajectory, margin) {
+            if keeps_clear(room, &trajectory, margin) {
                 return Ok(Found::Clear(trajectory));
             }
         }
@@ -85,13 +91,13 @@ fn best_way(
     let ends: Vec<Vec<f64>> = open.iter().filter(|pair| pair.start == *start).map(|pair| pair.end.to_vec()).collect();
     let mut best: Option<Trajectory> = None;
     for attempt in 1..=WAYS {
-        let mut rng = rng::stream(options.seed, attempt);
+        let mut rng = rng::stream(seed, attempt);
         let way = match room.connect(start, &ends, &mut rng, monitor) {
             Way::Found(way) => room.shorten(way, &mut rng, monitor),
             Way::NotFound => break,
             Way::Interrupted => return Ok(best.map_or(Found::Nothing(Status::Interrupted), Found::Clear)),
         };
-        let trajectory = timed(&mut room, &way, limits, margin)?;
+        let trajectory = timed(room, &way, limits, margin)?;
         if best.as_ref().is_none_or(|best| trajectory.duration() < best.duration()) {
             best = Some(trajectory);
         }
@@ -179,13 +185,14 @@ fn finish(
     })
 }
 
-fn too_near(contact: &Contact, margin: f64) -> Violation {
+/// A distance below the margin, by name.
+pub(in crate::planning) fn too_near(contact: &Contact, margin: f64) -> Violation {
     let what = format!("distance of link '{}' from {}", contact.link, contact.other);
     Violation { what, value: contact.distance, bound: margin, unit: "m" }
 }
 
 /// Err for a configuration nearer to something than the margin.
-fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64) -> Result<()> {
+pub(in crate::planning) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64) -> Result<()> {
     match scene.nearest(q)? {
         Some(Contact { link, other, distance }) if distance < margin + EXTRA => {
             let (what, other) = (what.into(), other.to_string());

@@ -5,7 +5,7 @@ use crate::obstacle::Motion;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
 
 /// A trajectory; its parameter is time (s).
-pub(super) struct InTime<'a>(pub &'a Trajectory);
+pub(in crate::planning) struct InTime<'a>(pub &'a Trajectory);
 
 impl Motion for InTime<'_> {
     fn around(&self, from: f64, to: f64, middle: &mut [f64], reach: &mut [f64]) {

@@ -62,11 +62,40 @@ impl<'a> Search<'a> {
                 break;
             }
             let Some(first) = self.configuration(0, None, attempt, monitor)? else { continue };
-            // The second end is sought from the first: most often that is near already.
-            let near = (attempt == 0).then_some(&first[..]);
+            // The second end is sought from the first: most often that is near already. From a first end that is given
+            // it would always be the same.
+            let another = attempt == 0 || matches!(self.ends[0], End::Target(_));
+            let near = another.then_some(&first[..]);
             let Some(second) = self.configuration(1, near, attempt, monitor)? else { continue };
             let pair = self.improved(self.pair(first, second), monitor);
             if pairs.iter().all(|known| !known.is_same(&pair)) {
+                pairs.push(pair);
+            }
+        }
+        pairs.sort_by(|one, other| one.duration.total_cmp(&other.duration));
+        Ok(pairs)
+    }
+
+    /// Up to `count` pairs that `accept` likes, not improved, from up to `tries` random starts; the quickest first.
+    ///
+    /// # Errors
+    /// None once [`pairs`](Self::pairs) has found some.
+    pub(super) fn random_pairs(
+        &mut self,
+        count: usize,
+        tries: usize,
+        accept: impl Fn(&Pair) -> bool,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Vec<Pair>> {
+        let mut pairs: Vec<Pair> = vec![];
+        for attempt in 1..=tries {
+            if pairs.len() == count || !monitor.keep_going() {
+                break;
+            }
+            let Some(first) = self.configuration(0, None, attempt, monitor)? else { continue };
+            let Some(second) = self.configuration(1, None, attempt, monitor)? else { continue };
+            let pair = self.pair(first, second);
+            if accept(&pair) && pairs.iter().all(|known| !known.is_same(&pair)) {
                 pairs.push(pair);
             }
         }

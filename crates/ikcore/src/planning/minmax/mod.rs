@@ -19,6 +19,8 @@ mod nearer;
 mod pace;
 mod travel;
 
+pub(super) use self::around::{DEFAULT_MARGIN, refuse_collision, too_near};
+pub(super) use self::clear::InTime;
 use self::ends::{Pair, Search};
 use self::pace::Polyline;
 use super::{Cost, End, Improvement, MotionLimits, Plan, PointToPointOptions};
@@ -29,7 +31,7 @@ use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
 /// Pairs of configurations that are tried.
-const PAIRS: usize = 24;
+const PAIRS: usize = 12;
 
 /// Plans from `start` to `end`; see [`plan_point_to_point`](super::plan_point_to_point).
 pub(super) fn point_to_point(
@@ -43,7 +45,8 @@ pub(super) fn point_to_point(
     let limits = MotionLimits::new(robot, options.limits.as_ref(), "plan_point_to_point with method='minmax'")?;
     require_pace(robot, &limits)?;
     let mut search = Search::new(robot, &limits, [start, end], options.seed)?;
-    let mut plan = if options.obstacles.is_empty() && robot.capsules().is_empty() {
+    let shape_known = !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
+    let mut plan = if options.obstacles.is_empty() && !shape_known {
         freely(&mut search, options.objective, monitor)?
     } else {
         around::plan(&mut search, options, monitor)?

@@ -6,6 +6,7 @@
 //! | [`rest_segment`] | the segments of eq. (3)-(6), their extremes in closed form |
 //! | [`placement`] | the redundancy at the ends; any robot by inverse kinematics |
 //! | [`via_point`] | the decision vector and cost from end to end, eq. (8)-(18) |
+//! | [`surroundings`] | obstacles, eq. (14) and (18) |
 //! | [`redundancy`] | the free orientations along a path, eq. (7) |
 //! | [`path_cost`] | the decision vector and cost along a path, eq. (19)-(25) |
 //! | [`search`] | any solver on such a cost |
@@ -15,10 +16,11 @@ mod placement;
 mod redundancy;
 mod rest_segment;
 mod search;
+mod surroundings;
 mod via_point;
 mod weights;
 
-use super::planar_arm::PlanarArm;
+use super::planar_arm::{Elbow, PlanarArm};
 use super::{AlongPathOptions, Cost, End, MotionLimits, Plan, PointToPointOptions, Violation};
 use crate::error::{Error, Result, require_positive};
 use crate::path::Reference;
@@ -29,6 +31,7 @@ use path_cost::PathCost;
 use placement::Placement;
 use redundancy::Redundancy;
 use search::Search;
+use surroundings::Surroundings;
 use via_point::ViaPointCost;
 
 /// Plans from end to end.
@@ -42,15 +45,28 @@ pub(super) fn point_to_point(
     let stopwatch = Stopwatch::start();
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     limits.require_velocities(METHOD)?;
+    let body = surroundings::body(robot, &options.obstacles)?;
+    let lines = robot.capsules().is_empty();
+    let surroundings = body.as_ref().map(|body| Surroundings::new(body, options, lines)).transpose()?;
+    let mut place = |what: &str, end: &End, elbow: Elbow| {
+        if let (End::Configuration(q), Some(surroundings)) = (end, &surroundings) {
+            surroundings.refuse_collision(what, q)?;
+        }
+        Placement::new(what, end, robot, &limits, elbow, options.seed, monitor)
+    };
     let [start_elbow, end_elbow] = options.elbows;
-    let start = Placement::new("start", start, robot, &limits, start_elbow, options.seed, monitor)?;
-    let end = Placement::new("end", end, robot, &limits, end_elbow, options.seed, monitor)?;
-    let mut cost = ViaPointCost::new(robot, &limits, start, end, options.objective);
+    let (start, end) = (place("start", start, start_elbow)?, place("end", end, end_elbow)?);
+    let mut cost = ViaPointCost::new(robot, &limits, [start, end], options.objective, surroundings.as_ref());
     let search = Search { solver: options.solver.as_ref(), stop: options.stop, seed: options.seed };
     let bounds = cost.bounds();
     let found = search.run(&mut cost, &bounds, monitor)?;
     let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration()))?;
-    let violations = limits.violations(&trajectory);
+    let mut violations = limits.violations(&trajectory);
+    let nearest = surroundings.and_then(|surroundings| surroundings.clearance(&trajectory));
+    let clearance = nearest.map(|(distance, violation)| {
+        violations.extend(violation);
+        distance
+    });
     let status = found.status(violations.is_empty());
     Ok(Plan {
         objective: options.objective,
@@ -58,7 +74,7 @@ pub(super) fn point_to_point(
         accuracy: None,
         redundancy: vec![],
         history: found.history,
-        clearance: None,
+        clearance,
         status,
         violations,
         evaluations: found.evaluations,

@@ -35,7 +35,6 @@ impl Redundancy {
         Ok(Self { arm, elbow, places, nodes })
     }
 
-
     /// Where the tip is to be at point `i` of the path.
     pub fn place(&self, i: usize) -> &Place {
         &self.places[i]

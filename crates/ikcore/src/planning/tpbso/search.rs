@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::objective::{Bounds, Objective, Point, Score};
 use crate::planning::plan::Improvement;
 use crate::rng;
-use crate::solver::{AnySolver, BeetleSwarm, DerivativeFree, Evaluator, Monitor, Outcome, Status, Stop};
+use crate::solver::{AnySolver, BeetleSwarm, DerivativeFree, Evaluator, Monitor, Outcome, Schedule, Status, Stop};
 
 /// What searches, and for how long.
 pub struct Search<'a> {
@@ -16,6 +16,12 @@ pub struct Search<'a> {
     pub stop: Option<Stop>,
     /// Of the random draws.
     pub seed: u64,
+}
+
+/// The beetle swarm, for as long as its budget lasts: the published one does not look whether it still gains.
+fn published_swarm() -> BeetleSwarm {
+    let swarm = BeetleSwarm::default();
+    BeetleSwarm { schedule: Schedule { stall_generations: usize::MAX, ..swarm.schedule }, ..swarm }
 }
 
 /// 50 beetles that look at two antennae and at where they go, 200 times, and at where they start.
@@ -49,7 +55,7 @@ impl Search<'_> {
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for wrong options of the solver or a budget of zero.
     pub fn run(&self, cost: &mut dyn Objective, bounds: &Bounds, monitor: &mut dyn Monitor) -> Result<Found> {
-        let standard = AnySolver::Single(DerivativeFree::from(BeetleSwarm::default()));
+        let standard = AnySolver::Single(DerivativeFree::from(published_swarm()));
         let solver = self.solver.unwrap_or(&standard);
         let stop = self.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() });
         solver.validate()?;

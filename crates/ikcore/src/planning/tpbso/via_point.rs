@@ -2,6 +2,7 @@
 
 use super::placement::Placement;
 use super::rest_segment::{Extremes, RestSegment, ViaPoint, quartic, quintic};
+use super::surroundings::Surroundings;
 use super::weights::{BROKEN_LIMIT, NO_CONFIGURATION};
 use crate::error::Result;
 use crate::math::MAX_DOF;
@@ -29,6 +30,7 @@ pub struct ViaPointCost<'a> {
     end: Placement,
     cost: Cost,
     scale: f64,
+    surroundings: Option<&'a Surroundings<'a>>,
 }
 
 /// A decision vector, taken apart.
@@ -46,8 +48,14 @@ type Ends = [[f64; MAX_DOF]; 2];
 
 impl<'a> ViaPointCost<'a> {
     /// The cost of motions of `robot` between these ends within `limits`, whose velocities are finite.
-    pub fn new(robot: &'a Robot, limits: &'a MotionLimits, start: Placement, end: Placement, cost: Cost) -> Self {
-        Self { scale: cost.scale(robot, limits), robot, limits, start, end, cost }
+    pub fn new(
+        robot: &'a Robot,
+        limits: &'a MotionLimits,
+        [start, end]: [Placement; 2],
+        cost: Cost,
+        surroundings: Option<&'a Surroundings<'a>>,
+    ) -> Self {
+        Self { scale: cost.scale(robot, limits), robot, limits, start, end, cost, surroundings }
     }
 
     /// What the decision vector may be.
@@ -126,6 +134,9 @@ impl<'a> ViaPointCost<'a> {
             Cost::JointTravel => travel,
             Cost::TipTravel => self.tip_travel(&segments, &decision),
         };
+        if let Some(surroundings) = self.surroundings {
+            self.samples(&segments, &decision, |q| broken += surroundings.touching(q));
+        }
         cost + BROKEN_LIMIT * self.scale * broken
     }
 
@@ -144,22 +155,29 @@ impl<'a> ViaPointCost<'a> {
 
     /// F_d of eq. (10): chords between samples.
     fn tip_travel(&self, segments: &[[RestSegment; MAX_DOF]; 2], decision: &Decision<'_>) -> f64 {
-        let n = self.robot.dof();
-        let mut q = [0.0; MAX_DOF];
         let mut last: Option<[f64; 3]> = None;
         let mut travel = 0.0;
+        self.samples(segments, decision, |q| {
+            let tip = self.robot.tip_position(q);
+            let chord = |last: [f64; 3]| (0..3).map(|k| (tip[k] - last[k]) * (tip[k] - last[k])).sum::<f64>().sqrt();
+            travel += last.map_or(0.0, chord);
+            last = Some(tip);
+        });
+        travel
+    }
+
+    /// Hands the configurations at [`SAMPLES`] moments of each segment to `visit`, in order.
+    fn samples(&self, segments: &[[RestSegment; MAX_DOF]; 2], decision: &Decision<'_>, mut visit: impl FnMut(&[f64])) {
+        let n = self.robot.dof();
+        let mut q = [0.0; MAX_DOF];
         for i in 0..=2 * SAMPLES {
             let (segment, s) = match i.checked_sub(SAMPLES) {
                 None => (0, decision.t1 * i as f64 / SAMPLES as f64),
                 Some(i) => (1, decision.t2 * (SAMPLES - i) as f64 / SAMPLES as f64),
             };
             (0..n).for_each(|j| q[j] = segments[segment][j].position(s));
-            let tip = self.robot.tip_position(&q[..n]);
-            travel +=
-                last.map_or(0.0, |last| (0..3).map(|k| (tip[k] - last[k]) * (tip[k] - last[k])).sum::<f64>().sqrt());
-            last = Some(tip);
+            visit(&q[..n]);
         }
-        travel
     }
 }
 
