@@ -19,6 +19,7 @@ from ._core import (
     BeetleIkError,
     BroydenBAS,
     ControlSession,
+    InfeasibleError,
     InvalidInputError,
     KinematicPlant,
     LevenbergMarquardt,
@@ -48,6 +49,7 @@ from ._core import (
     pose,
     solve,
     solve_batch,
+    time_optimal,
     track,
     track_model_free,
 )
@@ -58,6 +60,7 @@ __all__ = [
     "BeetleIkError",
     "BroydenBAS",
     "ControlSession",
+    "InfeasibleError",
     "InvalidInputError",
     "KinematicPlant",
     "LevenbergMarquardt",
@@ -89,6 +92,7 @@ __all__ = [
     "pose",
     "solve",
     "solve_batch",
+    "time_optimal",
     "track",
     "track_model_free",
 ]

@@ -15,6 +15,7 @@ mod pose;
 mod robot;
 mod sinusoid;
 mod solver;
+mod time_optimal;
 mod tracker;
 mod tracking;
 mod trajectory;
@@ -48,6 +49,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<model_free::PyModelFreeResult>()?;
     module.add_function(wrap_pyfunction!(model_free::track_model_free, module)?)?;
     module.add_class::<trajectory::PyTrajectory>()?;
+    module.add_function(wrap_pyfunction!(time_optimal::time_optimal, module)?)?;
     // The package names what is public; a second list here would only go stale.
     module.dict().del_item("__all__")
 }
