@@ -6,6 +6,7 @@ mod convert;
 mod error;
 mod ik;
 mod limits;
+mod minimize;
 mod model_free;
 mod monitor;
 mod path;
@@ -37,6 +38,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
+    module.add_class::<minimize::PyMinimum>()?;
+    module.add_function(wrap_pyfunction!(minimize::minimize_function, module)?)?;
     path::register(module)?;
     planning::register(module)?;
     module.add_class::<tracking::PyTrackResult>()?;
