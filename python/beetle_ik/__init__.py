@@ -12,11 +12,12 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
     result.trajectory.to_csv("trajectory.csv")
 """
 
-from . import paths, plot
+from . import obstacles, paths, plot
 from ._core import (
     BAS,
     PSO,
     QPSO,
+    ZNNBAS,
     BatchSolution,
     BeeColony,
     BeetleIkError,
@@ -50,7 +51,6 @@ from ._core import (
     UnsupportedLimit,
     UrdfError,
     Violation,
-    ZNNBAS,
     __version__,
     plan_along_path,
     plan_point_to_point,
@@ -67,6 +67,7 @@ __all__ = [
     "BAS",
     "PSO",
     "QPSO",
+    "ZNNBAS",
     "BatchSolution",
     "BeeColony",
     "BeetleIkError",
@@ -100,9 +101,9 @@ __all__ = [
     "UnsupportedLimit",
     "UrdfError",
     "Violation",
-    "ZNNBAS",
     "__version__",
     "minimize",
+    "obstacles",
     "paths",
     "plan_along_path",
     "plan_point_to_point",

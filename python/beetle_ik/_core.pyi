@@ -4,7 +4,7 @@
 # SI units and radians throughout; results are read-only.
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
 from typing import Any, Literal, Protocol, TypeAlias, final, type_check_only
 
@@ -92,6 +92,11 @@ class Robot:
     def with_base(self, base: ArrayLike) -> Robot: ...
     def with_limits(
         self, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None, velocity: ArrayLike | None = None
+    ) -> Robot: ...
+    @property
+    def capsules(self) -> list[tuple[str, _Array, _Array, float]]: ...  # link, a (3,), b (3,), radius in m
+    def with_capsules(
+        self, capsules: list[tuple[str, ArrayLike, ArrayLike, float]] | None = None, *, radius: float | None = None
     ) -> Robot: ...
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot: ...  # up to, m and rad
     def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
@@ -731,6 +736,70 @@ class Step:
     @property
     def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
 
+# --- obstacles ----------------------------------------------------------------------------------
+
+class Obstacle:
+    @property
+    def triangles(self) -> _Array: ...  # (t, 3, 3) m, for drawing
+    def __eq__(self, other: object) -> bool: ...
+
+@final
+class Sphere(Obstacle):
+    def __new__(cls, center: ArrayLike, radius: float) -> Sphere: ...
+    @property
+    def center(self) -> _Array: ...
+    @property
+    def radius(self) -> float: ...
+
+@final
+class Box(Obstacle):
+    def __new__(cls, center: ArrayLike, size: ArrayLike, rotation: ArrayLike | None = None) -> Box: ...
+    @property
+    def center(self) -> _Array: ...
+    @property
+    def size(self) -> _Array: ...
+    @property
+    def rotation(self) -> _Array: ...  # (3, 3)
+
+@final
+class Capsule(Obstacle):
+    def __new__(cls, a: ArrayLike, b: ArrayLike, radius: float) -> Capsule: ...
+    @property
+    def a(self) -> _Array: ...
+    @property
+    def b(self) -> _Array: ...
+    @property
+    def radius(self) -> float: ...
+
+@final
+class Ellipsoid(Obstacle):
+    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, rotation: ArrayLike | None = None) -> Ellipsoid: ...
+    @property
+    def center(self) -> _Array: ...
+    @property
+    def semi_axes(self) -> _Array: ...
+    @property
+    def rotation(self) -> _Array: ...  # (3, 3)
+
+@final
+class Ellipse(Obstacle):
+    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, angle: float = 0.0) -> Ellipse: ...
+    @property
+    def center(self) -> _Array: ...  # (2,)
+    @property
+    def semi_axes(self) -> _Array: ...  # (2,)
+    @property
+    def angle(self) -> float: ...
+
+@final
+class ConvexMesh(Obstacle):
+    def __new__(cls, points: ArrayLike) -> ConvexMesh: ...  # (k, 3)
+    @property
+    def points(self) -> _Array: ...
+
+# A number for q (n,), (m,) for q (m, n).
+def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any: ...
+
 # --- planning -----------------------------------------------------------------------------------
 
 def plan_point_to_point(
@@ -743,7 +812,9 @@ def plan_point_to_point(
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
-    elbows: Sequence[int] = [1, 1],  # noqa: B006
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,  # m
+    elbows: Sequence[int] = [1, 1],
     solver: _Solver | None = None,
     stop: Stop | None = None,
     seed: int = 0,

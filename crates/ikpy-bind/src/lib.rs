@@ -9,6 +9,7 @@ mod limits;
 mod minimize;
 mod model_free;
 mod monitor;
+mod obstacle;
 mod path;
 mod planning;
 mod plant;
@@ -41,6 +42,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<minimize::PyMinimum>()?;
     module.add_function(wrap_pyfunction!(minimize::minimize_function, module)?)?;
     path::register(module)?;
+    obstacle::register(module)?;
     planning::register(module)?;
     module.add_class::<tracking::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;
