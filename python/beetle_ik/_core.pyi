@@ -6,7 +6,7 @@
 import os
 from collections.abc import Callable, Sequence
 from enum import IntEnum
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Literal, Protocol, TypeAlias, final, type_check_only
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,10 +15,15 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 _Array: TypeAlias = NDArray[np.float64]
-_Solver: TypeAlias = BAS | LevenbergMarquardt | MultiStart
+_Solver: TypeAlias = BAS | BroydenBAS | LevenbergMarquardt | MultiStart
 _LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
 _LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] | None
+_Plant: TypeAlias = KinematicPlant | Callable[[_Array], ArrayLike] | _Mover
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
+
+@type_check_only
+class _Mover(Protocol):
+    def move(self, q: _Array, /) -> ArrayLike: ...  # (n,) -> (3,)
 
 # --- errors -------------------------------------------------------------------------------------
 
@@ -86,6 +91,7 @@ class Robot:
     def with_limits(
         self, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None, velocity: ArrayLike | None = None
     ) -> Robot: ...
+    def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot: ...  # up to, m and rad
     def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
     def link_poses(self, q: ArrayLike) -> _Array: ...  # (links, 4, 4), in the order of link_names
     def jacobian(self, q: ArrayLike) -> _Array: ...  # (n,) -> (6, n); (m, n) -> (m, 6, n)
@@ -154,6 +160,7 @@ class Status(IntEnum):
     INTERRUPTED = 6
     LOST = 7
     INVALID = 8
+    PLANT_FAILED = 9
 
 @final
 class BAS:
@@ -179,6 +186,28 @@ class BAS:
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
+class BroydenBAS:
+    def __new__(
+        cls, *, antenna_length: float = ..., max_evaluations_per_step: int = 20, sensor_delay: int = 0
+    ) -> BroydenBAS: ...
+    @property
+    def antenna_length(self) -> float: ...  # rad, m
+    @property
+    def max_evaluations_per_step(self) -> int: ...
+    @property
+    def sensor_delay(self) -> int: ...  # in measurements
+    def session(
+        self,
+        start: ArrayLike,
+        *,
+        dt: float,
+        limits: Limits | None = None,
+        position_tolerance: float = 1e-9,
+        seed: int = 0,
+    ) -> ControlSession: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class LevenbergMarquardt:
     def __new__(cls, *, initial_damping: float = ...) -> LevenbergMarquardt: ...
     @property
@@ -187,9 +216,9 @@ class LevenbergMarquardt:
 
 @final
 class MultiStart:
-    def __new__(cls, solver: BAS | LevenbergMarquardt, *, max_starts: int | None = None) -> MultiStart: ...
+    def __new__(cls, solver: BAS | BroydenBAS | LevenbergMarquardt, *, max_starts: int | None = None) -> MultiStart: ...
     @property
-    def solver(self) -> BAS | LevenbergMarquardt: ...
+    def solver(self) -> BAS | BroydenBAS | LevenbergMarquardt: ...
     @property
     def max_starts(self) -> int | None: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
@@ -536,6 +565,127 @@ class Violation:
     def bound(self) -> float: ...
     @property
     def unit(self) -> str: ...
+
+# --- tracking without a model -------------------------------------------------------------------
+
+def track_model_free(
+    plant: _Plant,
+    path: Path,
+    start: ArrayLike,  # (n,)
+    *,
+    dt: float,
+    controller: BroydenBAS | ZNNBAS | None = None,  # None: BroydenBAS()
+    limits: Limits | None = None,  # None: none
+    position_tolerance: float = 1e-9,
+    seed: int = 0,
+    progress: _Progress = None,
+) -> ModelFreeResult: ...
+
+@final
+class ModelFreeResult:
+    @property
+    def time(self) -> _Array: ...  # (k,)
+    @property
+    def q(self) -> _Array: ...  # (k, n), accepted
+    @property
+    def qd(self) -> _Array: ...  # (k, n), row 0 zero
+    @property
+    def command(self) -> _Array: ...  # (k, n), where each position was measured
+    @property
+    def position(self) -> _Array: ...  # (k, 3), as measured
+    @property
+    def reference(self) -> _Array: ...  # (k, 3)
+    @property
+    def position_error(self) -> _Array: ...  # (k,), m
+    @property
+    def position_tolerance(self) -> float: ...  # m, as asked
+    @property
+    def step_status(self) -> NDArray[np.uint8]: ...  # (k,), values of Status
+    @property
+    def step_evaluations(self) -> NDArray[np.int64]: ...  # (k,), measurements
+    @property
+    def max_violation(self) -> float: ...  # rad or m, of all commands; 0 within rounding
+    @property
+    def settled_error(self) -> float: ...  # m, root mean square over the second half
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def exception(self) -> BaseException | None: ...  # what the plant raised
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+    def plot(self) -> Figure: ...
+    def __len__(self) -> int: ...
+
+@final
+class ZNNBAS:
+    def __new__(
+        cls,
+        *,
+        gain: float = 100.0,
+        antenna_length: ArrayLike | None = None,  # constant; or c1; None for both: c1 = 0.3
+        c1: float | None = None,
+        delay_steps: int = 1,
+        delay: Literal["sliding", "held"] = "sliding",
+        accept: Literal["always", "improving"] = "always",
+        sensor_delay: int = 0,
+    ) -> ZNNBAS: ...
+    @property
+    def gain(self) -> float: ...  # 1/s
+    @property
+    def antenna_length(self) -> Any: ...  # what was given: None, a float or (n,)
+    @property
+    def c1(self) -> float | None: ...  # rad per m; None where the antenna is constant
+    @property
+    def delay_steps(self) -> int: ...
+    @property
+    def delay(self) -> str: ...
+    @property
+    def accept(self) -> str: ...
+    @property
+    def sensor_delay(self) -> int: ...  # in ticks
+    def session(
+        self,
+        start: ArrayLike,
+        *,
+        dt: float,
+        limits: Limits | None = None,
+        position_tolerance: float = 1e-9,
+        seed: int = 0,
+    ) -> ControlSession: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class ControlSession:
+    def command(self, target: ArrayLike) -> _Array: ...  # (3,) -> (n,)
+    def observe(self, position: ArrayLike) -> Step | None: ...  # None while the tick goes on
+    @property
+    def q(self) -> _Array: ...  # (n,), accepted
+    @property
+    def time(self) -> float: ...  # s
+    @property
+    def dt(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+
+@final
+class KinematicPlant:
+    def __new__(cls, robot: Robot, *, noise: float = 0.0, seed: int = 0) -> KinematicPlant: ...
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def noise(self) -> float: ...  # m, standard deviation on each axis
+    @property
+    def seed(self) -> int: ...
+    def move(self, q: ArrayLike) -> _Array: ...  # (n,) -> (3,)
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- trajectories -------------------------------------------------------------------------------
 

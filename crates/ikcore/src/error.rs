@@ -254,6 +254,20 @@ pub enum Error {
         /// The operating system's reason.
         problem: String,
     },
+    /// A call that comes before the one it needs.
+    #[error("{call}: {remedy}")]
+    OutOfTurn {
+        /// What was called.
+        call: String,
+        /// What to call first.
+        remedy: String,
+    },
+    /// A plant that does not answer with a position, right at the start.
+    #[error("the plant {problem}")]
+    PlantFailed {
+        /// What it did, such as "raised ValueError: no".
+        problem: String,
+    },
     /// Stored bytes that are not what they should be.
     #[error("cannot restore {what}: {problem}")]
     Corrupt {

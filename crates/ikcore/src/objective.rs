@@ -77,8 +77,14 @@ impl Default for Linearization {
     }
 }
 
-/// An objective that is a sum of at most six squares and knows its derivative.
-pub trait LeastSquares: Objective {
+/// An objective that is a sum of at most six squares.
+pub trait Residual: Objective {
+    /// The weighted residual at `x`, current minus wanted, and the score; rows that a task does not use are zero.
+    fn residual(&mut self, x: &[f64], out: &mut [f64; ROWS]) -> Score;
+}
+
+/// One that knows its derivative too.
+pub trait LeastSquares: Residual {
     /// Residual and Jacobian at `x` in one pass, and the score.
     fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score;
 }

@@ -1,6 +1,7 @@
 //! A robot and a target as something to minimise.
 
-use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
+use crate::math::box_step::ROWS;
+use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Residual, Score};
 use crate::rng::LazyRng;
 use crate::robot::{Robot, Seeds};
 use crate::task::{SquaredError, Target, TipError, Tolerance};
@@ -65,6 +66,16 @@ impl Objective for Problem<'_> {
             let (lower, upper) = joint.sampling_range_within(bounds.lower()[i], bounds.upper()[i]);
             q[i] = rng.uniform_in(lower, upper);
         }
+    }
+}
+
+impl Residual for Problem<'_> {
+    fn residual(&mut self, q: &[f64], out: &mut [f64; ROWS]) -> Score {
+        // No columns are completed: the residual needs the tip alone.
+        let mut completed = Linearization::default();
+        let error = self.target.complete(&self.robot.tip(q), 0, &mut completed);
+        *out = completed.residual;
+        self.score(error)
     }
 }
 

@@ -62,6 +62,11 @@ impl LazyRng {
         lower + (upper - lower) * self.uniform()
     }
 
+    /// Entries uniform in [-1, 1).
+    pub fn symmetric(&mut self, b: &mut [f64]) {
+        self.draw(b, |v, uniform| *v = 2.0 * uniform - 1.0);
+    }
+
     /// Two independent uniforms in [0, 1) from one draw: 26 bits for the first, 27 for the second. Enough for weights, at
     /// half the cost.
     #[inline]

@@ -1,13 +1,16 @@
 //! The native module `beetle_ik._core`: registration only. Each file converts for one module of the core.
 
 mod batch;
+mod control;
 mod convert;
 mod error;
 mod ik;
 mod limits;
+mod model_free;
 mod monitor;
 mod path;
 mod planning;
+mod plant;
 mod pose;
 mod robot;
 mod sinusoid;
@@ -17,6 +20,7 @@ mod tracker;
 mod tracking;
 mod trajectory;
 mod upward;
+mod znnbas;
 
 use pyo3::prelude::*;
 
@@ -39,6 +43,11 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;
     module.add_class::<tracker::PyStep>()?;
     module.add_class::<tracker::PyTracker>()?;
+    module.add_class::<znnbas::PyZnnbas>()?;
+    module.add_class::<control::PyControlSession>()?;
+    module.add_class::<plant::PyKinematicPlant>()?;
+    module.add_class::<model_free::PyModelFreeResult>()?;
+    module.add_function(wrap_pyfunction!(model_free::track_model_free, module)?)?;
     module.add_class::<trajectory::PyTrajectory>()?;
     module.add_function(wrap_pyfunction!(time_optimal::time_optimal, module)?)?;
     // The package names what is public; a second list here would only go stale.

@@ -204,9 +204,20 @@ impl PyLimits {
         }
     }
 
+    /// No limits, for `n` joints.
+    fn none(n: usize) -> Self {
+        let free = |limit: f64| Some(Given::Numbers(Numbers { values: vec![limit; n], single: false }));
+        Self { given: [free(f64::NEG_INFINITY), free(f64::INFINITY), free(f64::INFINITY), None, None] }
+    }
+
     /// The limits in force for `robot`: these where given, else the robot's.
     pub fn in_force(&self, py: Python<'_>, robot: &Robot) -> Self {
-        let mut given = Self::of(robot).given;
+        self.else_of(py, Self::of(robot))
+    }
+
+    /// These where given, else those of `other`.
+    fn else_of(&self, py: Python<'_>, other: Self) -> Self {
+        let mut given = other.given;
         for (slot, replacement) in given.iter_mut().zip(&self.given) {
             if let Some(replacement) = replacement {
                 *slot = Some(replacement.clone_ref(py));
@@ -216,14 +227,14 @@ impl PyLimits {
     }
 
     /// Err if a field is a callable of t, for motions without a known end.
-    pub fn require_no_functions(&self) -> PyResult<()> {
+    pub fn require_no_functions(&self, method: &str, instead: &str) -> PyResult<()> {
         let is_function = |given: &Option<Given>| matches!(given, Some(Given::Function(_)));
         match self.given.iter().position(is_function) {
             None => Ok(()),
             Some(i) => Err(raise(Error::UnsupportedLimit {
                 field: format!("callable {}", FIELDS[i]),
-                method: "Tracker".into(),
-                remedy: "it has no end to be sampled to; give numbers or a Sinusoid, or use track".into(),
+                method: method.into(),
+                remedy: format!("it has no end to be sampled to; give numbers or a Sinusoid, or use {instead}"),
             })),
         }
     }
@@ -264,6 +275,23 @@ pub fn limits_of_call(
         Some(limits) => {
             let in_force = Py::new(py, limits.in_force(py, &robot.core))?;
             Ok((in_force, Some(limits.resolve(py, &robot.core, sampling)?)))
+        }
+    }
+}
+
+/// The limits of a call that knows no robot, for `n` joints: for the result and for the core.
+pub fn limits_without_robot(
+    py: Python<'_>,
+    limits: Option<&PyLimits>,
+    n: usize,
+    sampling: &Sampling,
+) -> PyResult<(Py<PyLimits>, Limits)> {
+    let none = PyLimits::none(n);
+    match limits {
+        None => Ok((Py::new(py, none)?, Limits::none_for(n))),
+        Some(limits) => {
+            let resolved = limits.applied_to(py, Limits::none_for(n), n, sampling)?;
+            Ok((Py::new(py, limits.else_of(py, none))?, resolved))
         }
     }
 }

@@ -246,6 +246,15 @@ impl PyRobot {
         self.core.with_limits(change).map(Self::from).map_err(raise)
     }
 
+    /// The same robot with errors of manufacture, drawn at random: every constant offset between two joints is longer or
+    /// shorter by up to `length` (m), every turning joint's zero is off by up to `angle` (rad). As a `KinematicPlant` it
+    /// is an arm whose model is wrong.
+    #[pyo3(signature = (*, length=0.0, angle=0.0, seed=0))]
+    fn with_errors(&self, length: f64, angle: f64, seed: i128) -> PyResult<Self> {
+        let mut rng = rng::stream(count("seed", seed)?, 0);
+        self.core.with_errors(length, angle, &mut rng).map(Self::from).map_err(raise)
+    }
+
     /// Forward kinematics: the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n).
     fn fk<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         match rows("joint angles", self.core.name(), self.core.dof(), q)? {

@@ -50,7 +50,7 @@ impl Numbers {
         Ok(row(py, self.values.clone()).into_any())
     }
 
-    fn repr(&self) -> String {
+    pub fn repr(&self) -> String {
         if self.single { format!("{:?}", self.values[0]) } else { format!("{:?}", self.values) }
     }
 }

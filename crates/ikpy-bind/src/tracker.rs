@@ -17,7 +17,7 @@ use crate::robot::PyRobot;
 use crate::solver::status;
 use crate::tracking::tick_rule;
 
-/// What became of one step of a `Tracker`.
+/// What became of one step of a `Tracker` or a `ControlSession`.
 #[pyclass(name = "Step", module = "beetle_ik", frozen)]
 pub struct PyStep {
     core: tracking::Step,
@@ -27,6 +27,12 @@ pub struct PyStep {
     /// The velocity that leads there (n,) (rad/s, m/s).
     #[pyo3(get)]
     qd: Py<PyArray1<f64>>,
+}
+
+impl PyStep {
+    pub fn new(py: Python<'_>, core: tracking::Step, q: &[f64], qd: &[f64]) -> Self {
+        Self { core, q: row(py, q.to_vec()).unbind(), qd: row(py, qd.to_vec()).unbind() }
+    }
 }
 
 #[pymethods]
@@ -119,7 +125,7 @@ impl PyTracker {
         limit_at: &str,
     ) -> PyResult<Self> {
         let (py, arm) = (robot.py(), &robot.get().core);
-        limits.map_or(Ok(()), PyLimits::require_no_functions)?;
+        limits.map_or(Ok(()), |limits| limits.require_no_functions("Tracker", "track"))?;
         let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
         let options = TrackOptions {
             rule: tick_rule(solver)?,
@@ -137,7 +143,7 @@ impl PyTracker {
         let target = read_target(target)?;
         let mut session = self.session();
         let core = session.step(&target, &mut Unattended).map_err(raise)?;
-        Ok(PyStep { core, q: row(py, session.q().to_vec()).unbind(), qd: row(py, session.qd().to_vec()).unbind() })
+        Ok(PyStep::new(py, core, session.q(), session.qd()))
     }
 
     /// The configuration reached (n,) (rad, m).

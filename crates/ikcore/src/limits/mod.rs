@@ -64,6 +64,11 @@ impl Limits {
         }
     }
 
+    /// No limits, for `n` joints that are known by their numbers (from 0) alone.
+    pub fn none_for(n: usize) -> Self {
+        Self::none((0..n).map(|j| j.to_string()).collect())
+    }
+
     /// No limits for joints of these names.
     pub fn none(joints: Vec<String>) -> Self {
         let all = |value: f64| vec![Profile::Constant(value); joints.len()];

@@ -9,6 +9,7 @@ pub mod knots;
 pub mod natural_spline;
 pub mod polynomial;
 pub mod pose;
+pub mod secant;
 pub mod sincos;
 pub mod so3;
 pub mod ticks;

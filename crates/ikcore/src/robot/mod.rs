@@ -1,5 +1,6 @@
 //! Robots: the serial chain from a base link to a tip link, its joints, limits and kinematics.
 
+mod as_built;
 mod builder;
 mod catalog;
 mod chain;

@@ -55,7 +55,12 @@ impl Robot {
         Self::assembled(description, Pose::identity(), Pose::identity(), CollisionModel::default())
     }
 
-    fn assembled(description: ChainBuilder, base: Pose, tool: Pose, collision: CollisionModel) -> Result<Self> {
+    pub(super) fn assembled(
+        description: ChainBuilder,
+        base: Pose,
+        tool: Pose,
+        collision: CollisionModel,
+    ) -> Result<Self> {
         description.validate()?;
         let chain = Chain::new(&description.elements, &base, &tool);
         Ok(Self { description, base, tool, chain, collision, seed_index: Arc::default() })
@@ -210,6 +215,10 @@ impl Robot {
 
     pub(super) fn collision(&self) -> &CollisionModel {
         &self.collision
+    }
+
+    pub(super) fn description(&self) -> &ChainBuilder {
+        &self.description
     }
 
     pub(super) fn chain(&self) -> &Chain {

@@ -3,6 +3,7 @@
 use super::bas::{Bas, Variant};
 use super::bee_colony::BeeColony;
 use super::beetle_swarm::BeetleSwarm;
+use super::broyden_bas::BroydenBas;
 use super::differential_evolution::DifferentialEvolution;
 use super::driver::{Outcome, Solver, run};
 use super::evaluator::Evaluator;
@@ -41,6 +42,8 @@ pub enum DerivativeFree {
 pub enum Algorithm {
     /// One that needs values alone.
     DerivativeFree(DerivativeFree),
+    /// Antenna differences as secants, which need residuals.
+    BroydenBas(BroydenBas),
     /// Levenberg-Marquardt.
     LevenbergMarquardt(LevenbergMarquardt),
 }
@@ -78,6 +81,12 @@ macro_rules! listed {
     )*};
 }
 listed!(Bas, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, Qpso);
+
+impl From<BroydenBas> for Algorithm {
+    fn from(solver: BroydenBas) -> Self {
+        Self::BroydenBas(solver)
+    }
+}
 
 impl From<LevenbergMarquardt> for Algorithm {
     fn from(solver: LevenbergMarquardt) -> Self {
@@ -143,6 +152,7 @@ impl Algorithm {
     /// Every algorithm with its default options.
     pub fn all() -> Vec<Self> {
         let mut all: Vec<_> = DerivativeFree::all().into_iter().map(Self::DerivativeFree).collect();
+        all.push(BroydenBas::default().into());
         all.push(LevenbergMarquardt::default().into());
         all
     }
@@ -152,7 +162,7 @@ impl Algorithm {
     pub fn into_multi_start(self) -> MultiStart<Self> {
         let patience = match &self {
             Self::DerivativeFree(solver) => solver.patience(),
-            Self::LevenbergMarquardt(_) => 3,
+            Self::BroydenBas(_) | Self::LevenbergMarquardt(_) => 3,
         };
         MultiStart { solver: self, rule: RestartRule::with_patience(patience) }
     }
@@ -164,6 +174,7 @@ impl Algorithm {
     pub fn validate(&self) -> Result<()> {
         match self {
             Self::DerivativeFree(solver) => solver.validate(),
+            Self::BroydenBas(broyden) => broyden.validate(),
             Self::LevenbergMarquardt(lm) => lm.validate(),
         }
     }
@@ -177,6 +188,7 @@ impl Algorithm {
     ) -> Outcome {
         match self {
             Self::DerivativeFree(solver) => evaluator.with_values_only(|evaluator| solver.run(restarts, evaluator, x0)),
+            Self::BroydenBas(broyden) => run_or_restart(broyden, restarts, evaluator, x0),
             Self::LevenbergMarquardt(lm) => run_or_restart(lm, restarts, evaluator, x0),
         }
     }

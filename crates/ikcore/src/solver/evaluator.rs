@@ -4,7 +4,8 @@ use std::mem;
 
 use smallvec::SmallVec;
 
-use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Pace, Point, Score};
+use crate::math::box_step::ROWS;
+use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Pace, Point, Residual, Score};
 use crate::rng::LazyRng;
 
 use super::stop::{Monitor, Stop, Stopwatch};
@@ -250,6 +251,20 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             self.best.replace(x, value, solved);
         }
         value
+    }
+}
+
+impl<O: Residual + ?Sized> Evaluator<'_, O> {
+    /// Clips `x` to the box; value and residual there.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    #[inline]
+    pub fn residual(&mut self, x: &mut [f64], out: &mut [f64; ROWS]) -> Result<f64, Halt> {
+        self.spend(1)?;
+        self.bounds.clip(x);
+        let score = self.objective.residual(x, out);
+        Ok(self.record(x, score))
     }
 }
 

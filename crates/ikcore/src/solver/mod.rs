@@ -8,6 +8,7 @@
 //! | file | algorithm | needs |
 //! |---|---|---|
 //! | [`bas`] | beetle antennae search (Cheng et al. 2020): star, chain, greedy | values |
+//! | [`broyden_bas`] | antenna differences as secants: quasi-Newton without a Jacobian | residual |
 //! | [`beetle_swarm`] | beetle swarm (Wang et al. 2019): particles with antennae | values |
 //! | [`pso`], [`qpso`] | particle swarms, with velocities and quantum-behaved | values |
 //! | [`firefly`], [`bee_colony`] | firefly algorithm, artificial bee colony | values |
@@ -20,6 +21,7 @@ pub mod any_solver;
 pub mod bas;
 pub mod bee_colony;
 pub mod beetle_swarm;
+pub mod broyden_bas;
 pub mod differential_evolution;
 pub mod driver;
 pub mod evaluator;
@@ -37,6 +39,7 @@ pub use any_solver::AnySolver;
 pub use bas::{Bas, Variant};
 pub use bee_colony::BeeColony;
 pub use beetle_swarm::BeetleSwarm;
+pub use broyden_bas::BroydenBas;
 pub use differential_evolution::DifferentialEvolution;
 pub use driver::{Outcome, Solver, run};
 pub use evaluator::{Best, Evaluator, Halt};

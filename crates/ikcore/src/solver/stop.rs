@@ -69,11 +69,13 @@ pub enum Status {
     Lost = 7,
     /// An item of a batch whose target or start is wrong: nothing was solved.
     Invalid = 8,
+    /// A plant that raised an error, or returned what is no position: the run ended with what was recorded.
+    PlantFailed = 9,
 }
 
 impl Status {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Solved,
         Self::Improved,
         Self::Capped,
@@ -83,6 +85,7 @@ impl Status {
         Self::Interrupted,
         Self::Lost,
         Self::Invalid,
+        Self::PlantFailed,
     ];
 
     /// The name as Python shows it.
@@ -97,6 +100,7 @@ impl Status {
             Self::Interrupted => "INTERRUPTED",
             Self::Lost => "LOST",
             Self::Invalid => "INVALID",
+            Self::PlantFailed => "PLANT_FAILED",
         }
     }
 
@@ -113,6 +117,7 @@ impl Status {
                 "slow the path down, raise the velocity limits, start elsewhere (another start or seed), or move the path into reach"
             }
             Self::Invalid => "on_invalid=\"raise\" says what is wrong",
+            Self::PlantFailed => "mend the plant and run again",
         }
     }
 }

@@ -6,10 +6,16 @@
 //! the tick's rule works until the error is in its band or, for random searches, below that of the tick before; time
 //! always advances, and the best configuration found is always kept.
 
+pub mod controller;
+mod model_free;
+mod plant;
 mod record;
 mod rule;
 mod session;
 
+pub use controller::Controller;
+pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
+pub use plant::{Fault, FunctionPlant, KinematicPlant, Plant};
 pub use record::Record;
 pub use rule::TickRule;
 pub use session::{Session, Step};
@@ -65,9 +71,10 @@ pub fn track(
         None => first_configuration(robot, reference, &limits, options, monitor)?,
     };
     let mut session = Session::new(robot, &start, reference.dt(), options)?;
-    let mut record = Record::new(&session, reference.len());
+    let mut record =
+        Record::new(start.len(), reference.len(), session.limits().clone(), session.tolerance(), reference.dt());
     let beginning = session.begin(&target(reference, 0));
-    record.push(&session, reference.position(0), &beginning);
+    record.push(&session.accepted(), reference.position(0), &beginning);
     let finished = follow(reference, &mut session, &mut record, monitor)?;
     record.finish(!finished, stopwatch.elapsed());
     Ok(record)
@@ -90,7 +97,7 @@ fn follow(
         if step.interrupted {
             return Ok(false);
         }
-        record.push(session, reference.position(i), &step);
+        record.push(&session.accepted(), reference.position(i), &step);
         monitor.progress(i, last);
     }
     Ok(true)

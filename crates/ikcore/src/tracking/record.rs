@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::session::{Session, Step};
+use super::session::Step;
 use crate::limits::Limits;
 use crate::solver::Status;
 use crate::task::{TipError, Tolerance};
@@ -57,10 +57,20 @@ pub struct Record {
     dt: f64,
 }
 
+/// What a tick has accepted.
+pub(super) struct Accepted<'a> {
+    /// When it ended (s).
+    pub time: f64,
+    /// Configuration and velocity (n,).
+    pub q: &'a [f64],
+    pub qd: &'a [f64],
+    /// The velocity limit that this one was held against (n,).
+    pub velocity_limit: &'a [f64],
+}
+
 impl Record {
-    /// An empty record with room for `rows`.
-    pub(super) fn new(session: &Session, rows: usize) -> Self {
-        let dof = session.q().len();
+    /// An empty record of `dof` joints with room for `rows`.
+    pub(super) fn new(dof: usize, rows: usize, limits: Limits, tolerance: Tolerance, dt: f64) -> Self {
         Self {
             dof,
             time: Vec::with_capacity(rows),
@@ -77,19 +87,24 @@ impl Record {
             max_violation: 0.0,
             worst_violation: None,
             limit_margin: f64::INFINITY,
-            limits: session.limits().clone(),
-            tolerance: session.tolerance(),
+            limits,
+            tolerance,
             status: Status::Lost,
             elapsed: Duration::ZERO,
-            dt: session.dt(),
+            dt,
         }
     }
 
-    /// Appends what `session` has just accepted.
-    pub(super) fn push(&mut self, session: &Session, reference: [f64; 3], step: &Step) {
-        self.push_velocities(session);
-        self.time.push(session.time());
-        self.q.extend_from_slice(session.q());
+    /// The time step (s).
+    pub(super) fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// Appends what a tick has accepted.
+    pub(super) fn push(&mut self, accepted: &Accepted<'_>, reference: [f64; 3], step: &Step) {
+        self.push_velocities(accepted);
+        self.time.push(accepted.time);
+        self.q.extend_from_slice(accepted.q);
         self.position.push(step.position);
         self.reference.push(reference);
         self.position_error.push(step.error.position);
@@ -100,25 +115,31 @@ impl Record {
     }
 
     /// Velocities of the tick that has just ended, what they were held against, and the violations.
-    fn push_velocities(&mut self, session: &Session) {
-        self.qd.extend_from_slice(session.qd());
-        let (Some(from), to) = (self.time.last().copied(), session.time()) else {
+    fn push_velocities(&mut self, accepted: &Accepted<'_>) {
+        let Accepted { time: to, q, qd, velocity_limit } = *accepted;
+        self.qd.extend_from_slice(qd);
+        let Some(from) = self.time.last().copied() else {
             self.velocity_limit.resize(self.dof, f64::NAN);
             return;
         };
-        self.velocity_limit.extend_from_slice(session.velocity_limit());
-        for (j, q) in session.q().iter().enumerate() {
+        self.velocity_limit.extend_from_slice(velocity_limit);
+        for (j, q) in q.iter().enumerate() {
             let before = self.q[self.q.len() - self.dof + j];
             let [lower, upper] = self.limits.position_range(j, from, to);
-            let too_fast = (q - before).abs() - session.velocity_limit()[j] * self.dt;
+            let too_fast = (q - before).abs() - velocity_limit[j] * self.dt;
             // From displacements, which keep the limit to the last bit; velocities round once more.
             self.limit_margin = self.limit_margin.min(0.0 - too_fast / self.dt);
             let excess = too_fast.max(lower - q).max(q - upper);
-            let rounding = ALLOWED_ULPS * f64::EPSILON * q.abs().max(1.0);
-            if excess > rounding && excess > self.max_violation {
-                self.max_violation = excess;
-                self.worst_violation = Some((j, to));
-            }
+            self.note_excess(excess, j, *q, to);
+        }
+    }
+
+    /// Remembers the worst `excess` (rad, m) over a limit of joint `j`, at `q` and `when` (s), unless it is rounding.
+    pub(super) fn note_excess(&mut self, excess: f64, j: usize, q: f64, when: f64) {
+        let rounding = ALLOWED_ULPS * f64::EPSILON * q.abs().max(1.0);
+        if excess > rounding && excess > self.max_violation {
+            self.max_violation = excess;
+            self.worst_violation = Some((j, when));
         }
     }
 

@@ -1,6 +1,7 @@
 //! One control loop: the accepted configuration, the clock, the box of the tick and the rule that moves within it.
 
 use super::TrackOptions;
+use super::record::Accepted;
 use super::rule::{Found, Running, Tick, TickRule};
 use crate::error::{Result, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
@@ -129,6 +130,11 @@ impl Session {
 
     pub(super) fn tolerance(&self) -> Tolerance {
         self.tolerance
+    }
+
+    /// What the last tick has accepted.
+    pub(super) fn accepted(&self) -> Accepted<'_> {
+        Accepted { time: self.time(), q: &self.q, qd: &self.qd, velocity_limit: self.velocity_limit() }
     }
 
     /// The robot that is moved.

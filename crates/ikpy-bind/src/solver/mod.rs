@@ -1,6 +1,7 @@
 //! Solvers, one family a file, budgets and statuses.
 
 mod bas;
+mod broyden_bas;
 mod levenberg_marquardt;
 mod multi_start;
 mod stop;
@@ -9,6 +10,7 @@ use ikcore::solver::{Algorithm, AnySolver, DerivativeFree, MultiStart};
 use pyo3::prelude::*;
 
 use bas::PyBas;
+pub use broyden_bas::PyBroydenBas;
 use levenberg_marquardt::PyLevenbergMarquardt;
 use multi_start::PyMultiStart;
 pub use stop::{PyStop, status};
@@ -18,6 +20,7 @@ use crate::error::invalid;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyBas>()?;
+    module.add_class::<PyBroydenBas>()?;
     module.add_class::<PyLevenbergMarquardt>()?;
     module.add_class::<PyMultiStart>()?;
     module.add_class::<PyStop>()?;
@@ -35,11 +38,11 @@ macro_rules! first_of {
 
 /// A solver argument.
 pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
-    first_of!(solver; PyBas, PyLevenbergMarquardt);
+    first_of!(solver; PyBas, PyBroydenBas, PyLevenbergMarquardt);
     if let Ok(multi_start) = solver.cast::<PyMultiStart>() {
         return Ok(AnySolver::MultiStart(multi_start.get().0.clone()));
     }
-    Err(invalid(format!("solver must be BAS, LevenbergMarquardt or MultiStart, got {}", summary(solver))))
+    Err(invalid(format!("solver must be BAS, BroydenBAS, LevenbergMarquardt or MultiStart, got {}", summary(solver))))
 }
 
 /// A solver argument for something of which only values are known.
@@ -57,6 +60,8 @@ pub fn derivative_free(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver<Derivati
 fn to_python<'py>(py: Python<'py>, algorithm: &Algorithm) -> PyResult<Bound<'py, PyAny>> {
     match algorithm {
         Algorithm::DerivativeFree(DerivativeFree::Bas(bas)) => Ok(Bound::new(py, PyBas(*bas))?.into_any()),
+        Algorithm::DerivativeFree(_) => Err(invalid("this solver has no Python class yet".into())),
+        Algorithm::BroydenBas(solver) => Ok(Bound::new(py, PyBroydenBas(*solver))?.into_any()),
         Algorithm::LevenbergMarquardt(solver) => Ok(Bound::new(py, PyLevenbergMarquardt(*solver))?.into_any()),
     }
 }

@@ -134,3 +134,77 @@ pub fn quintic(via: ViaPoint, acceleration: f64, end: f64, t2: f64) -> [f64; 6] 
         (12.0 * way - 6.0 * velocity * t2 - coasting) / (2.0 * t2.powi(5)),
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::math::polynomial::evaluate;
+
+    /// Value, rate and second derivative of the two segments where they begin and end.
+    fn boundary(start: f64, via: ViaPoint, end: f64, t1: f64, t2: f64) -> [[f64; 3]; 4] {
+        let first = quartic(start, via, t1);
+        let acceleration = RestSegment::leaving(start, via, t1).final_acceleration();
+        let second = quintic(via, acceleration, end, t2);
+        [evaluate(&first, 0.0), evaluate(&first, t1), evaluate(&second, 0.0), evaluate(&second, t2)]
+    }
+
+    #[test]
+    fn meets_all_eleven_conditions() {
+        let via = ViaPoint { position: 0.7, velocity: -1.3 };
+        let [begin, before, after, finish] = boundary(-0.4, via, 1.9, 0.8, 1.1);
+        assert_eq!(begin, [-0.4, 0.0, 0.0]);
+        for (got, wanted) in before[..2].iter().chain(&after[..2]).zip([0.7, -1.3, 0.7, -1.3]) {
+            assert!((got - wanted).abs() < 1e-14, "{got} for {wanted}");
+        }
+        assert!((before[2] - after[2]).abs() < 1e-13);
+        for (got, wanted) in finish.into_iter().zip([1.9, 0.0, 0.0]) {
+            assert!((got - wanted).abs() < 1e-12, "{got} for {wanted}");
+        }
+    }
+
+    /// The extremes at `count` samples of a polynomial.
+    fn sampled(polynomial: &[f64], duration: f64, count: usize) -> Extremes {
+        let mut found =
+            Extremes { speed: 0.0, acceleration: 0.0, lowest: f64::INFINITY, highest: f64::NEG_INFINITY, travel: 0.0 };
+        let mut last = polynomial[0];
+        for i in 0..=count {
+            let [position, speed, acceleration] = evaluate(polynomial, duration * i as f64 / count as f64);
+            found.speed = found.speed.max(speed.abs());
+            found.acceleration = found.acceleration.max(acceleration.abs());
+            (found.lowest, found.highest) = (found.lowest.min(position), found.highest.max(position));
+            found.travel += (position - last).abs();
+            last = position;
+        }
+        found
+    }
+
+    fn assert_near(exact: &Extremes, sampled: &Extremes) {
+        let pairs = [
+            (exact.speed, sampled.speed),
+            (exact.acceleration, sampled.acceleration),
+            (exact.lowest, sampled.lowest),
+            (exact.highest, sampled.highest),
+            (exact.travel, sampled.travel),
+        ];
+        for (exact, sampled) in pairs {
+            assert!((exact - sampled).abs() <= 1e-4 * sampled.abs().max(1.0), "{exact:?}, sampled {sampled:?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn extremes_are_those_of_many_samples(
+            start in -3.0..3.0, position in -3.0..3.0, velocity in -3.0..3.0, end in -3.0..3.0,
+            t1 in 0.2..3.0, t2 in 0.2..3.0,
+        ) {
+            let via = ViaPoint { position, velocity };
+            let first = RestSegment::leaving(start, via, t1);
+            assert_near(&first.extremes(), &sampled(&quartic(start, via, t1), t1, 5000));
+            let acceleration = first.final_acceleration();
+            let second = RestSegment::arriving(via, acceleration, end, t2);
+            assert_near(&second.extremes(), &sampled(&quintic(via, acceleration, end, t2), t2, 5000));
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! A Jacobian that is known from differences alone: columns by antennae, then rank-one updates along every step made.
+
+use super::MAX_DOF;
+use super::box_step::{ROWS, box_step};
+
+/// Damping over the squared size of the Jacobian: enough to keep a singular system solvable.
+pub const LEAST_DAMPING: f64 = 1e-10;
+
+/// Steps shorter than this teach nothing but rounding.
+const SHORTEST: f64 = 1e-12;
+
+/// An estimate of dr/dx, by columns.
+#[derive(Debug, Clone)]
+pub struct Secant {
+    columns: [[f64; ROWS]; MAX_DOF],
+}
+
+impl Default for Secant {
+    fn default() -> Self {
+        Self { columns: [[0.0; ROWS]; MAX_DOF] }
+    }
+}
+
+impl Secant {
+    /// Column `j` from one antenna: entry j of x was moved by `length`, and r changed by `difference`.
+    pub fn set_column(&mut self, j: usize, length: f64, difference: &[f64; ROWS]) {
+        self.columns[j] = difference.map(|change| change / length);
+    }
+
+    /// The change of r that a step dx would make: J dx.
+    pub fn predict(&self, dx: impl Iterator<Item = f64>) -> [f64; ROWS] {
+        let mut sum = [0.0; ROWS];
+        for (column, dx) in self.columns.iter().zip(dx) {
+            (0..ROWS).for_each(|k| sum[k] += column[k] * dx);
+        }
+        sum
+    }
+
+    /// Learns from a step `dx` that changed r by `surprise` more than predicted: J + share surprise dx' / |dx|^2, the
+    /// least change of J that explains it (Broyden 1965, eq. 4.5), or a share of it where r is noisy.
+    pub fn learn(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; ROWS], share: f64) {
+        let squared: f64 = dx.clone().map(|dx| dx * dx).sum();
+        if squared < SHORTEST * SHORTEST {
+            return;
+        }
+        for (column, dx) in self.columns.iter_mut().zip(dx) {
+            let weight = share * dx / squared;
+            (0..ROWS).for_each(|k| column[k] += weight * surprise[k]);
+        }
+    }
+
+    /// Writes into `out` the bounded step from `x`; `damping` is relative to the squared size of the Jacobian.
+    pub fn step(&self, residual: &[f64; ROWS], damping: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
+        let size: f64 = self.columns[..x.len()].as_flattened().iter().map(|entry| entry * entry).sum();
+        box_step(&self.columns, residual, damping * size, x, lower, upper, out);
+    }
+}
+
+/// An antenna from `x` in \[`lower`, `upper`\]: `length` to the side that has room for it, else as far as the roomier
+/// side goes; zero where there is none.
+pub fn antenna(x: f64, length: f64, lower: f64, upper: f64) -> f64 {
+    let (below, above) = ((x - lower).max(0.0), (upper - x).max(0.0));
+    if above >= length || above >= below { length.min(above) } else { -length.min(below) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_update_explains_the_step_and_leaves_other_directions_alone() {
+        let mut secant = Secant::default();
+        secant.set_column(0, 0.1, &[0.1, 0.2, 0.0, 0.0, 0.0, 0.0]);
+        secant.set_column(1, -0.5, &[0.5, 0.0, -1.0, 0.0, 0.0, 0.0]);
+        let (dx, across) = ([0.3, 0.4], [0.4, -0.3]);
+        let (predicted, untouched) = (secant.predict(dx.into_iter()), secant.predict(across.into_iter()));
+        let seen = [0.7, -0.2, 0.1, 0.0, 0.0, 0.0];
+        secant.learn(dx.into_iter(), &std::array::from_fn(|k| seen[k] - predicted[k]), 1.0);
+        let (along, beside) = (secant.predict(dx.into_iter()), secant.predict(across.into_iter()));
+        for k in 0..ROWS {
+            assert!((along[k] - seen[k]).abs() < 1e-15 && (beside[k] - untouched[k]).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn antennae_stay_in_the_box() {
+        assert_eq!(antenna(0.0, 0.1, -1.0, 1.0), 0.1);
+        assert_eq!(antenna(0.95, 0.1, -1.0, 1.0), -0.1);
+        assert!((antenna(0.02, 0.1, 0.0, 0.05) - 0.03).abs() < 1e-15);
+        assert!((antenna(0.04, 0.1, 0.0, 0.05) + 0.04).abs() < 1e-15);
+        assert_eq!(antenna(0.5, 0.1, 0.5, 0.5), 0.0);
+    }
+}

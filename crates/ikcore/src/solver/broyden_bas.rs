@@ -1,0 +1,139 @@
+//! Antenna differences as secants: a quasi-Newton method that needs residuals alone.
+//!
+//! A beetle that smells with both antennae learns one sign from r(x + lambda b) - r(x). The difference itself is lambda J b,
+//! a secant of the Jacobian: so one antenna per entry of x gives a whole Jacobian, and from then on every step is an antenna
+//! too (Broyden 1965). Antennae are put out again where the steps stop predicting.
+
+use super::driver::Solver;
+use super::evaluator::{Evaluator, Halt};
+use crate::error::{Error, Result, require_positive};
+use crate::math::box_step::ROWS;
+use crate::math::secant::{LEAST_DAMPING, Secant, antenna};
+use crate::objective::{Point, Residual};
+
+/// Broyden's method on antenna differences.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BroydenBas {
+    /// Length of the first antennae (rad, m): far above the sensor's noise once the arm has levered it up, far below a
+    /// radian, where the arm bends.
+    pub antenna_length: f64,
+    /// Evaluations after which a step of a path ends; it goes on in the next.
+    pub max_evaluations_per_step: usize,
+    /// Measurements by which the sensor of a plant is late: every command is sent so many times more, and the last answer
+    /// counts.
+    pub sensor_delay: usize,
+}
+
+impl Default for BroydenBas {
+    fn default() -> Self {
+        Self { antenna_length: 0.01, max_evaluations_per_step: 20, sensor_delay: 0 }
+    }
+}
+
+/// Antennae of a solver, which has no noise to be afraid of: the middle between rounding and curvature.
+const NOISELESS_ANTENNA: f64 = 1e-6;
+
+/// Damping after a step that failed, over the squared size of the Jacobian; then ten times more for each failure.
+pub const FIRST_DAMPING: f64 = 1e-3;
+
+/// Damping beyond which no step of any use is left.
+pub const LARGEST_DAMPING: f64 = 1e2;
+
+/// Steps that leave more than half of the residual, in a row, before antennae are put out again.
+pub const SLOW_STEPS: usize = 3;
+
+impl BroydenBas {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        require_positive("antenna_length", self.antenna_length)?;
+        if self.max_evaluations_per_step == 0 {
+            return Err(Error::out_of_range("max_evaluations_per_step", "at least 1", 0.0));
+        }
+        Ok(())
+    }
+}
+
+/// Point and Jacobian estimate between steps.
+#[derive(Debug, Clone)]
+pub struct State {
+    x: Point,
+    value: f64,
+    residual: [f64; ROWS],
+    jacobian: Secant,
+    damping: f64,
+    /// Steps since antennae were out that left more than half of the residual.
+    slow: usize,
+    /// No step was made since antennae were out.
+    fresh: bool,
+}
+
+impl<O: Residual + ?Sized> Solver<O> for BroydenBas {
+    type State = State;
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+        let mut x = Point::from_slice(x0);
+        let mut residual = [0.0; ROWS];
+        let value = evaluator.residual(&mut x, &mut residual)?;
+        evaluator.before_steps()?;
+        let mut state =
+            State { x, value, residual, jacobian: Secant::default(), damping: LEAST_DAMPING, slow: 0, fresh: false };
+        state.put_out_antennae(evaluator)?;
+        Ok(state)
+    }
+
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+        if !state.value.is_finite() {
+            return Err(Halt::Stalled);
+        }
+        let bounds = evaluator.bounds();
+        let State { x, value, residual, jacobian, damping, .. } = state;
+        let (mut trial, mut trial_residual) = (x.clone(), [0.0; ROWS]);
+        jacobian.step(residual, *damping, x, [bounds.lower(), bounds.upper()], &mut trial);
+        let trial_value = evaluator.residual(&mut trial, &mut trial_residual)?;
+        if trial_value.is_finite() {
+            let dx = || trial.iter().zip(x.iter()).map(|(to, from)| to - from);
+            let predicted = jacobian.predict(dx());
+            let surprise = std::array::from_fn(|k| trial_residual[k] - residual[k] - predicted[k]);
+            jacobian.learn(dx(), &surprise, 1.0);
+        }
+        let reduction = trial_value / *value;
+        if reduction < 1.0 {
+            (*x, *value, *residual) = (trial, trial_value, trial_residual);
+            *damping = (*damping * 0.1).max(LEAST_DAMPING);
+            // Values are squares: a quarter is half of the residual.
+            state.slow = if reduction > 0.25 { state.slow + 1 } else { 0 };
+            state.fresh = false;
+            return if state.slow < SLOW_STEPS { Ok(()) } else { state.put_out_antennae(evaluator) };
+        }
+        if !state.fresh {
+            return state.put_out_antennae(evaluator);
+        }
+        *damping = (*damping * 10.0).max(FIRST_DAMPING);
+        if *damping > LARGEST_DAMPING { Err(Halt::Stalled) } else { Ok(()) }
+    }
+}
+
+impl State {
+    /// One antenna per entry of x: the Jacobian by forward differences.
+    #[cold]
+    fn put_out_antennae<O: Residual + ?Sized>(&mut self, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+        let bounds = evaluator.bounds();
+        for j in 0..self.x.len() {
+            let length = antenna(self.x[j], NOISELESS_ANTENNA, bounds.lower()[j], bounds.upper()[j]);
+            if length == 0.0 {
+                continue; // a locked joint: nothing to learn, nothing to use
+            }
+            let (mut x, mut residual) = (self.x.clone(), [0.0; ROWS]);
+            x[j] += length;
+            if evaluator.residual(&mut x, &mut residual)?.is_finite() {
+                let difference = std::array::from_fn(|k| residual[k] - self.residual[k]);
+                self.jacobian.set_column(j, x[j] - self.x[j], &difference);
+            }
+        }
+        (self.slow, self.fresh) = (0, true);
+        Ok(())
+    }
+}

@@ -1,0 +1,292 @@
+//! [`BroydenBas`] as a controller: the Jacobian estimate is carried along the path.
+//!
+//! A sensor may be noisy, and now and then wrong altogether, so a step that came out quite otherwise than predicted is sent
+//! again before it is believed. If the second measurement agrees with the first, the Jacobian is to blame: it learns, and if
+//! that does not help antennae are put out again. If it agrees with the prediction, the first was an outlier. If it
+//! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there.
+
+use super::{Tick, Verdict, distance};
+use crate::math::box_step::ROWS;
+use crate::math::secant::{LEAST_DAMPING, Secant, antenna};
+use crate::objective::Point;
+use crate::solver::BroydenBas;
+use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
+
+/// A measurement that misses the prediction by more than this share of the predicted motion is sent for again.
+const SURPRISING: f64 = 1.0;
+
+/// Steps are believed from this many noise levels on.
+const ABOVE_NOISE: f64 = 3.0;
+
+/// What the controller remembers.
+#[derive(Debug)]
+pub(super) struct Memory {
+    options: BroydenBas,
+    tolerance: f64,
+    jacobian: Secant,
+    /// The accepted configuration, and the position measured there (m).
+    q: Point,
+    position: [f64; 3],
+    /// The last command, and what it was for.
+    sent: Point,
+    purpose: Purpose,
+    next: Next,
+    damping: f64,
+    /// Steps in a row that left more than half of the error.
+    slow: usize,
+    /// No step was accepted since antennae were out.
+    fresh: bool,
+    noise: Noise,
+    /// How often the last command is still to be sent, for a sensor that is late.
+    due: usize,
+    /// Measurements in this tick.
+    measurements: usize,
+}
+
+/// What a command is for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Purpose {
+    Stand,
+    Antenna {
+        joint: usize,
+    },
+    Step,
+    /// A step sent again, because this position (m) surprised.
+    Again {
+        first: [f64; 3],
+    },
+}
+
+/// What to do next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Next {
+    /// Measure at the accepted configuration, then put out antennae.
+    Stand,
+    /// Put out the antenna of this joint, if there is one, then that of the next.
+    Antenna {
+        joint: usize,
+    },
+    Step,
+    Again {
+        first: [f64; 3],
+    },
+}
+
+impl Memory {
+    pub fn new(options: BroydenBas, start: &[f64], tolerance: f64) -> Box<Self> {
+        Box::new(Self {
+            options,
+            tolerance,
+            jacobian: Secant::default(),
+            q: start.into(),
+            position: [f64::NAN; 3],
+            sent: start.into(),
+            purpose: Purpose::Stand,
+            next: Next::Antenna { joint: 0 },
+            damping: LEAST_DAMPING,
+            slow: 0,
+            fresh: false,
+            noise: Noise::default(),
+            due: 0,
+            measurements: 0,
+        })
+    }
+
+    pub fn begin(&mut self, position: [f64; 3]) {
+        self.position = position;
+    }
+
+    pub fn accepted(&self) -> &[f64] {
+        &self.q
+    }
+
+    pub fn measured(&self) -> (&[f64], [f64; 3]) {
+        (&self.q, self.position)
+    }
+
+    pub fn command(&mut self, tick: Tick<'_>) -> &[f64] {
+        if self.due > 0 {
+            tick.bounds.clip(&mut self.sent);
+            return &self.sent;
+        }
+        self.due = 1 + self.options.sensor_delay;
+        self.return_to_box(tick);
+        self.sent.copy_from_slice(&self.q);
+        self.purpose = match self.next {
+            Next::Stand => Purpose::Stand,
+            Next::Antenna { joint } => self.put_out_antenna(joint, tick),
+            Next::Step => self.step(tick),
+            Next::Again { first } => {
+                self.step(tick);
+                Purpose::Again { first }
+            }
+        };
+        &self.sent
+    }
+
+    /// A limit may close in on the accepted configuration: then the arm has to be measured where it may stand.
+    fn return_to_box(&mut self, tick: Tick<'_>) {
+        if !tick.bounds.contains(&self.q) {
+            tick.bounds.clip(&mut self.q);
+            self.next = Next::Stand;
+        }
+    }
+
+    /// The first antenna, from `joint` on, that has room; the first step where none has.
+    fn put_out_antenna(&mut self, joint: usize, tick: Tick<'_>) -> Purpose {
+        let (lower, upper) = (tick.bounds.lower(), tick.bounds.upper());
+        for j in joint..self.q.len() {
+            let length = antenna(self.q[j], self.options.antenna_length, lower[j], upper[j]);
+            if length != 0.0 {
+                self.sent[j] += length;
+                return Purpose::Antenna { joint: j };
+            }
+        }
+        self.antennae_are_out();
+        self.step(tick)
+    }
+
+    fn antennae_are_out(&mut self) {
+        (self.next, self.slow, self.fresh) = (Next::Step, 0, true);
+    }
+
+    fn step(&mut self, tick: Tick<'_>) -> Purpose {
+        let residual = rows(self.position, tick.target);
+        let bounds = [tick.bounds.lower(), tick.bounds.upper()];
+        self.jacobian.step(&residual, self.damping, &self.q, bounds, &mut self.sent);
+        Purpose::Step
+    }
+
+    pub fn observe(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
+        self.measurements += 1;
+        let spent = self.measurements >= self.options.max_evaluations_per_step;
+        self.due -= 1;
+        let verdict = if self.due == 0 { self.learn(tick, position) } else { Verdict::GoOn };
+        if spent || verdict == Verdict::TickOver {
+            self.measurements = 0;
+            return Verdict::TickOver;
+        }
+        Verdict::GoOn
+    }
+
+    /// The answer to the last command was `position`.
+    fn learn(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
+        let verdict = match self.purpose {
+            Purpose::Stand => {
+                (self.position, self.next) = (position, Next::Antenna { joint: 0 });
+                Verdict::GoOn
+            }
+            Purpose::Antenna { joint } => {
+                self.feel(joint, position);
+                Verdict::GoOn
+            }
+            Purpose::Step => self.believe(tick, position, None),
+            Purpose::Again { first } => self.believe(tick, position, Some(first)),
+        };
+        let near_enough = self.tolerance.max(2.0 * self.noise.level());
+        let arrived = self.next == Next::Step && distance(self.position, tick.target) <= near_enough;
+        if arrived { Verdict::TickOver } else { verdict }
+    }
+
+    fn feel(&mut self, joint: usize, position: [f64; 3]) {
+        self.jacobian.set_column(joint, self.sent[joint] - self.q[joint], &rows(position, self.position));
+        self.next = Next::Antenna { joint: joint + 1 };
+        if joint + 1 == self.q.len() {
+            self.antennae_are_out();
+        }
+    }
+
+    /// A step was measured at `position`, and if it was sent again, at `first` before.
+    fn believe(&mut self, tick: Tick<'_>, position: [f64; 3], first: Option<[f64; 3]>) -> Verdict {
+        let Self { q, sent, jacobian, .. } = self;
+        let dq = || sent.iter().zip(q.iter()).map(|(to, from)| to - from);
+        let predicted = jacobian.predict(dq());
+        let seen = rows(position, self.position);
+        let surprise: [f64; ROWS] = std::array::from_fn(|k| seen[k] - predicted[k]);
+        let (motion, miss) = (norm(&predicted), norm(&surprise));
+        let surprising = miss > SURPRISING * motion;
+        self.next = Next::Step;
+        let mut noisy = motion < ABOVE_NOISE * self.noise.level();
+        match first {
+            None if surprising && !noisy => {
+                self.next = Next::Again { first: position };
+                return Verdict::GoOn;
+            }
+            Some(first) if surprising && distance(position, first) > 0.5 * miss => {
+                self.noise.note(distance(position, first));
+                noisy = true;
+            }
+            _ => {}
+        }
+        if !noisy {
+            jacobian.learn(dq(), &surprise, self.noise.share(motion));
+        }
+        self.judge(tick, position, noisy)
+    }
+
+    /// Keeps a step that came nearer; else does something about it, unless noise hides what.
+    fn judge(&mut self, tick: Tick<'_>, position: [f64; 3], noisy: bool) -> Verdict {
+        let (before, after) = (distance(self.position, tick.target), distance(position, tick.target));
+        if after < before {
+            self.q.copy_from_slice(&self.sent);
+            self.position = position;
+            self.damping = (self.damping * 0.1).max(LEAST_DAMPING);
+            self.fresh = false;
+            self.slow = if after > 0.5 * before && !noisy { self.slow + 1 } else { 0 };
+            if self.slow >= SLOW_STEPS {
+                self.next = Next::Stand;
+            }
+            return Verdict::GoOn;
+        }
+        if noisy {
+            return Verdict::TickOver;
+        }
+        if !self.fresh {
+            self.next = Next::Stand;
+            return Verdict::GoOn;
+        }
+        self.damping = (self.damping * 10.0).max(FIRST_DAMPING);
+        if self.damping <= LARGEST_DAMPING {
+            return Verdict::GoOn;
+        }
+        // Nothing more to gain in this tick; the next one starts as carefully as this one did.
+        self.damping = FIRST_DAMPING;
+        Verdict::TickOver
+    }
+}
+
+/// How far apart two measurements of the same command lie (m): the median of the last three that could tell, so that an
+/// outlier counts for nothing.
+#[derive(Debug, Default)]
+struct Noise {
+    repeats: [f64; 3],
+    noted: usize,
+}
+
+impl Noise {
+    fn note(&mut self, repeat: f64) {
+        self.repeats[self.noted % 3] = repeat;
+        self.noted += 1;
+    }
+
+    /// The noise of one measurement (m); zero until there is evidence.
+    fn level(&self) -> f64 {
+        let [a, b, c] = self.repeats;
+        a.max(b).min(a.min(b).max(c)) * std::f64::consts::FRAC_1_SQRT_2
+    }
+
+    /// How much of a surprise to learn from a step that moves the tip by `motion` (m).
+    fn share(&self, motion: f64) -> f64 {
+        let noise = ABOVE_NOISE * self.level();
+        if noise == 0.0 { 1.0 } else { motion * motion / (motion * motion + noise * noise) }
+    }
+}
+
+/// a - b in the rows of a task.
+fn rows(a: [f64; 3], b: [f64; 3]) -> [f64; ROWS] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2], 0.0, 0.0, 0.0]
+}
+
+fn norm(rows: &[f64; ROWS]) -> f64 {
+    rows.iter().map(|row| row * row).sum::<f64>().sqrt()
+}

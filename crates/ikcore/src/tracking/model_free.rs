@@ -1,0 +1,169 @@
+//! Following a path with an arm that nobody has a model of: a controller, and the plant that answers it.
+
+use super::controller::{self, Controller};
+use super::plant::{Fault, Plant, check};
+use super::record::{Accepted, Record};
+use super::session::Step;
+use crate::error::{Error, Result};
+use crate::limits::Limits;
+use crate::path::Reference;
+use crate::solver::stop::Stopwatch;
+use crate::solver::{Monitor, Status};
+use crate::task::Tolerance;
+use crate::wording::{number, time};
+
+/// How to track without a model.
+#[derive(Debug, Clone)]
+pub struct ModelFreeOptions {
+    /// What moves the arm.
+    pub controller: Controller,
+    /// Limits on every command, probes included; None: none.
+    pub limits: Option<Limits>,
+    /// The error band (m).
+    pub tolerance: f64,
+    /// Seed of the random draws: the same seed, the same bits.
+    pub seed: u64,
+}
+
+impl Default for ModelFreeOptions {
+    fn default() -> Self {
+        Self { controller: Controller::default(), limits: None, tolerance: 1e-9, seed: 0 }
+    }
+}
+
+/// The record of a track without a model.
+#[derive(Debug, Clone)]
+pub struct ModelFreeRecord {
+    /// Rows as in any track: `q` what was accepted, `position` what was measured (m), at `command`. Its violations are those
+    /// of all commands.
+    pub track: Record,
+    /// The command at which each row's position was measured (k, n). [`Znnbas`](controller::Znnbas) measures an antenna
+    /// away from what it accepts.
+    pub command: Vec<f64>,
+    /// Why the plant ended the run, if it did.
+    pub fault: Option<Fault>,
+}
+
+/// Follows `reference` with whatever `plant` moves, from `start` (n,). Row 0 is one measurement at the start.
+///
+/// # Errors
+/// Any [`Error`] for wrong input, and [`Error::PlantFailed`] where the plant does not even answer at the start. One that
+/// fails later ends the run with [`Status::PlantFailed`]. A path that cannot be followed is a status, not an error.
+pub fn track_model_free(
+    plant: &mut dyn Plant,
+    reference: &Reference,
+    start: &[f64],
+    options: &ModelFreeOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<ModelFreeRecord> {
+    let stopwatch = Stopwatch::start();
+    let ticks = reference.len() - 1;
+    check_call(reference, options)?;
+    let limits = options.limits.clone().unwrap_or_else(|| Limits::none_for(start.len()));
+    limits.validate(reference.dt(), ticks)?;
+    let ModelFreeOptions { controller, tolerance, seed, .. } = options;
+    let mut session = controller::Session::new(controller, start, reference.dt(), limits.clone(), *tolerance, *seed)?;
+    let band = Tolerance { position: *tolerance, rotation: f64::INFINITY };
+    let track = Record::new(start.len(), reference.len(), limits, band, reference.dt());
+    let command = Vec::with_capacity(reference.len() * start.len());
+    let mut record = ModelFreeRecord { track, command, fault: None };
+    let mut interrupted = false;
+    for i in 0..=ticks {
+        interrupted = !monitor.keep_going();
+        if interrupted {
+            break;
+        }
+        match tick(plant, &mut session, reference.position(i), &mut record.track)? {
+            Ok(step) => record.push(&session, reference.position(i), &step),
+            Err(fault) if i == 0 => return Err(Error::PlantFailed { problem: fault.0 }),
+            Err(fault) => {
+                record.fault = Some(fault);
+                break;
+            }
+        }
+        monitor.progress(i, ticks);
+    }
+    record.finish(interrupted, &stopwatch);
+    Ok(record)
+}
+
+fn check_call(reference: &Reference, options: &ModelFreeOptions) -> Result<()> {
+    let ticks = reference.len() - 1;
+    if reference.rotation(0).is_some() {
+        let problem = "it has orientations, which track_model_free does not follow; give positions alone".into();
+        return Err(Error::InvalidPath { problem });
+    }
+    match &options.controller {
+        Controller::Znnbas(znnbas) if znnbas.delay_steps >= ticks => {
+            let requirement = format!("less than the {ticks} steps of the run");
+            Err(Error::out_of_range("delay_steps", &requirement, znnbas.delay_steps as f64))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Commands and measurements until the controller has no more to ask in this tick.
+fn tick(
+    plant: &mut dyn Plant,
+    session: &mut controller::Session,
+    target: [f64; 3],
+    track: &mut Record,
+) -> Result<Result<Step, Fault>> {
+    loop {
+        let measured = plant.measure(session.command(target)?).and_then(check);
+        let (excess, joint, sent) = session.excess();
+        track.note_excess(excess, joint, sent, session.time() + session.dt());
+        match measured {
+            Err(fault) => return Ok(Err(fault)),
+            Ok(position) => {
+                if let Some(step) = session.observe(position)? {
+                    return Ok(Ok(step));
+                }
+            }
+        }
+    }
+}
+
+impl ModelFreeRecord {
+    fn push(&mut self, session: &controller::Session, reference: [f64; 3], step: &Step) {
+        let accepted = Accepted {
+            time: session.time(),
+            q: session.q(),
+            qd: session.qd(),
+            velocity_limit: session.velocity_limit(),
+        };
+        self.track.push(&accepted, reference, step);
+        self.command.extend_from_slice(session.measured_command());
+    }
+
+    fn finish(&mut self, interrupted: bool, stopwatch: &Stopwatch) {
+        self.track.finish(interrupted, stopwatch.elapsed());
+        if self.fault.is_some() {
+            self.track.status = Status::PlantFailed;
+        }
+    }
+
+    /// Root mean square of the measured error over the second half of the rows (m).
+    pub fn settled_error(&self) -> f64 {
+        let errors = &self.track.position_error[self.track.position_error.len() / 2..];
+        (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
+    }
+
+    /// What happened, and what to try.
+    pub fn message(&self) -> String {
+        if let Some(Fault(reason)) = &self.fault {
+            let rows = self.track.time.len();
+            let when = time(rows as f64 * self.track.dt());
+            return format!("the plant {reason} at t = {when} s; the {rows} rows before are recorded");
+        }
+        let message = self.track.message();
+        match self.track.status {
+            Status::Solved | Status::Interrupted => message,
+            _ => format!(
+                "{message}. Over the second half the error was {} m (root mean square): a position_tolerance below what the \
+                 sensor and the controller can keep is never met",
+                number(self.settled_error())
+            ),
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What is controlled: something that takes a joint command and answers with a position.
+
+use crate::error::Error;
+use crate::error::{Result, require_finite};
+use crate::rng::{self, LazyRng};
+use crate::robot::Robot;
+
+/// An arm and its sensor, as a controller sees them.
+pub trait Plant {
+    /// Sends the arm to `command` (n,) (rad, m) and says where its tip is then (m).
+    ///
+    /// # Errors
+    /// [`Fault`] ends the run, with what was recorded until then.
+    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault>;
+}
+
+/// Why a plant has no answer, as the end of "the plant ...".
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault(pub String);
+
+/// A plant that is a function of its command.
+#[derive(Debug)]
+pub struct FunctionPlant<F>(pub F);
+
+impl<F: FnMut(&[f64]) -> [f64; 3]> Plant for FunctionPlant<F> {
+    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault> {
+        Ok(self.0(command))
+    }
+}
+
+/// A robot that goes at once where it is sent, and a sensor with Gaussian noise. Give it another robot than the one you
+/// have in mind ([`Robot::with_errors`]), and it is an arm with a wrong model.
+#[derive(Debug, Clone)]
+pub struct KinematicPlant {
+    robot: Robot,
+    noise: f64,
+    rng: LazyRng,
+}
+
+impl KinematicPlant {
+    /// A plant whose sensor has this standard deviation (m) on each axis.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for noise that is negative or not finite.
+    pub fn new(robot: Robot, noise: f64, seed: u64) -> Result<Self> {
+        if !(noise.is_finite() && noise >= 0.0) {
+            return Err(Error::out_of_range("noise", "zero or more and finite", noise));
+        }
+        // Stream 0 of the same seed is the controller's.
+        Ok(Self { robot, noise, rng: rng::stream(seed, 1) })
+    }
+
+    /// The robot that moves.
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// Standard deviation of the sensor on each axis (m).
+    pub fn noise(&self) -> f64 {
+        self.noise
+    }
+}
+
+impl Plant for KinematicPlant {
+    #[inline]
+    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault> {
+        let position = self.robot.tip_position(command);
+        if self.noise == 0.0 {
+            return Ok(position);
+        }
+        let ([x, y], [z, _]) = (self.rng.normal_pair(), self.rng.normal_pair());
+        let noise = [x, y, z].map(|draw| self.noise * draw);
+        Ok(std::array::from_fn(|k| position[k] + noise[k]))
+    }
+}
+
+/// Err unless a measured position is finite.
+pub(super) fn check(position: [f64; 3]) -> Result<[f64; 3], Fault> {
+    match require_finite("the position", &position, |k| format!("entry {k}")) {
+        Ok(()) => Ok(position),
+        Err(_) => Err(Fault(format!("returned a position that is not finite: {position:?}"))),
+    }
+}
