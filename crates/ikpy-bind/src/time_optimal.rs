@@ -74,6 +74,6 @@ pub fn time_optimal(
     };
     let path = path.map_err(raise)?;
     let options = TimingOptions { gridpoints: optional_count("gridpoints", gridpoints)?, start_speed, end_speed };
-    let limits = TimingLimits::new(&limits).map_err(raise)?;
+    let limits = TimingLimits::new(&limits, "time_optimal").map_err(raise)?;
     py.detach(|| fastest(&path, &limits, &options)).map(PyTrajectory::from).map_err(raise)
 }

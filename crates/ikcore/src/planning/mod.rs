@@ -11,6 +11,7 @@
 //! | [`point_to_point`] | the planner from end to end, whatever its method |
 //! | [`along_path`] | the planner along a path, whatever its method |
 //! | [`time_optimal`](mod@time_optimal) | the fastest timing of a joint path |
+//! | `timed` | along a path, redundancy and timing together |
 //! | `tpbso` | both as published by Wang et al. (2019) |
 
 pub mod along_path;
@@ -22,6 +23,7 @@ pub mod plan;
 pub mod planar_arm;
 pub mod point_to_point;
 pub mod time_optimal;
+mod timed;
 mod tpbso;
 
 pub use along_path::{AlongPathMethod, AlongPathOptions, plan_along_path};

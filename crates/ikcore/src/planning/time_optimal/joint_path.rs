@@ -119,6 +119,20 @@ impl JointPath {
         jump > JUMP_TOLERANCE * size
     }
 
+    /// By how much a joint leaves this range (rad, m), summed over the pieces: by their Bezier points, which hold the curve
+    /// between them and are quicker to find than its extremes.
+    pub(in crate::planning) fn excess(&self, joint: usize, lower: f64, upper: f64) -> f64 {
+        let of_piece = |piece: usize| {
+            let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);
+            let h = self.length(piece);
+            let (first, second) = (c0 + h * c1 / 3.0, c0 + h * (2.0 * c1 + h * c2) / 3.0);
+            let end = c0 + h * (c1 + h * (c2 + h * c3));
+            let beyond = |q: f64| (lower - q).max(q - upper).max(0.0);
+            beyond(first).max(beyond(second)).max(beyond(end))
+        };
+        (0..self.pieces()).map(of_piece).sum()
+    }
+
     /// The exact smallest and largest position of a joint (rad or m).
     pub fn range(&self, joint: usize) -> [f64; 2] {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];

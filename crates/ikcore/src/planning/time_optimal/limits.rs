@@ -17,33 +17,32 @@ pub struct TimingLimits {
     pub(super) jerk: Option<Vec<f64>>,
 }
 
-const METHOD: &str = "time_optimal";
-
 impl TimingLimits {
-    /// The constant ones among `limits`.
+    /// The constant ones among `limits`; `method` is named in errors.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`] for limits that vary in time, and for joints without an acceleration limit;
     /// [`Error::NegativeLimit`], [`Error::EmptyRange`].
-    pub fn new(limits: &Limits) -> Result<Self> {
+    pub fn new(limits: &Limits, method: &str) -> Result<Self> {
         limits.validate(0.0, 0)?;
-        let acceleration = constants(limits, Field::Acceleration)?;
+        let constants = |field: Field| constants(limits, field, method);
+        let acceleration = constants(Field::Acceleration)?;
         let unlimited = acceleration.iter().position(|limit| *limit == f64::INFINITY);
         if let Some(joint) = if acceleration.is_empty() { Some(0) } else { unlimited } {
             return Err(Error::UnsupportedLimit {
                 field: "infinite acceleration".into(),
-                method: METHOD.into(),
+                method: method.into(),
                 remedy: format!(
                     "joint '{}' could start at any speed; give acceleration limits",
                     limits.joint_name(joint)
                 ),
             });
         }
-        let jerk = constants(limits, Field::Jerk)?;
+        let jerk = constants(Field::Jerk)?;
         Ok(Self {
-            lower: constants(limits, Field::Lower)?,
-            upper: constants(limits, Field::Upper)?,
-            velocity: constants(limits, Field::Velocity)?,
+            lower: constants(Field::Lower)?,
+            upper: constants(Field::Upper)?,
+            velocity: constants(Field::Velocity)?,
             acceleration,
             jerk: jerk.iter().any(|limit| limit.is_finite()).then_some(jerk),
         })
@@ -89,13 +88,13 @@ impl TimingLimits {
 }
 
 /// The constants of a field; none where there is no such limit.
-fn constants(limits: &Limits, field: Field) -> Result<Vec<f64>> {
+fn constants(limits: &Limits, field: Field, method: &str) -> Result<Vec<f64>> {
     let profiles = limits.field(field).unwrap_or_default();
     let constant = |profile: &Profile| match profile {
         Profile::Constant(value) => Ok(*value),
         _ => Err(Error::UnsupportedLimit {
             field: format!("time-varying {field}"),
-            method: METHOD.into(),
+            method: method.into(),
             remedy: "when a point of the path is passed is what it looks for; give numbers".into(),
         }),
     };

@@ -85,6 +85,16 @@ pub fn time_optimal(path: &JointPath, limits: &TimingLimits, options: &TimingOpt
     }
 }
 
+/// How long the fastest motion from rest to rest on a grid of about so many segments takes (s), for whoever compares many
+/// paths; position limits are the caller's.
+///
+/// # Errors
+/// None in practice: from rest to rest there is always a way.
+pub(super) fn coarse_duration(path: &JointPath, limits: &TimingLimits, segments: usize) -> Result<f64> {
+    let ends = [end_range(path, 0.0, false)?, end_range(path, 0.0, true)?];
+    SpeedProfile::fastest(path, limits, cut(path, segments), ends).map(|profile| profile.duration())
+}
+
 /// The squared path speeds for a joint speed at an end. Where the path has no direction the joints are at rest however
 /// fast the parameter goes, and the fastest is best.
 fn end_range(path: &JointPath, speed: f64, at_end: bool) -> Result<Range> {

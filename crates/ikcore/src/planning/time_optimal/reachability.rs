@@ -99,8 +99,11 @@ impl Pass<'_> {
     /// The fastest way: at each grid point the largest acceleration that stays controllable.
     fn forward(&mut self, sets: &[Range], start: Range) -> Result<Vec<f64>> {
         let mut x = start[1].min(sets[0][1]);
-        if x < start[0].max(sets[0][0]) {
+        if x < start[0] {
             return Err(too_fast("start"));
+        }
+        if x < sets[0][0] {
+            return Err(too_fast("end"));
         }
         let mut xs = Vec::with_capacity(sets.len());
         xs.push(x);
@@ -126,7 +129,7 @@ impl Pass<'_> {
             let crossing = (upper.offset - lower.offset) / (upper.slope - lower.slope);
             let inward = if from > 0.0 { crossing < x } else { crossing > x };
             if !inward || crossing < 0.0 {
-                let narrow = (lower.at(x) - upper.at(x)) <= ROUNDING * (lower.at(x).abs() + upper.at(x).abs());
+                let narrow = lower.at(x) - upper.at(x) <= ROUNDING * (lower.offset.abs() + upper.offset.abs());
                 return narrow.then_some(x);
             }
             x = crossing;
@@ -138,8 +141,8 @@ impl Pass<'_> {
 /// launch from the one before would give; on a fine grid that is as good as nothing.
 const LAUNCH_SHARE: f64 = 0.1;
 
-/// Lines that meet to so many digits do meet.
-const ROUNDING: f64 = 1e-9;
+/// Lines that meet to so many digits of their offsets do meet.
+const ROUNDING: f64 = 1e-12;
 
 /// x at the next grid point, x + 2 u length, must be in its set.
 struct Coupling {

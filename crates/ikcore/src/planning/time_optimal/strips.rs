@@ -31,8 +31,9 @@ pub(super) struct Strips {
     pub launch: f64,
 }
 
-/// A coefficient of u below this is none: its reciprocal would overflow.
-const NO_COEFFICIENT: f64 = 1e-150;
+/// A coefficient of u below this share of the largest is none: its line would be so steep that its rounding counts, while
+/// what it says of u does not.
+const NEGLIGIBLE: f64 = 1e-9;
 
 impl Strips {
     pub fn new(joints: usize) -> Self {
@@ -52,27 +53,26 @@ impl Strips {
         let n = limits.acceleration.len();
         let [d0, d1, d2] = shape.slope.each_ref().map(|row| &row[..n]);
         let [e0, e1] = shape.bend.each_ref().map(|row| &row[..n]);
-        let mut ceiling = f64::INFINITY;
         let (offsets, slopes) = (&mut self.offsets[..3 * n], &mut self.slopes[..3 * n]);
         for j in 0..n {
-            let c = limits.acceleration[j];
-            let coefficients = [
-                (d0[j], e0[j]),
-                (d1[j] + length * e0[j], 0.5 * (e0[j] + e1[j])),
-                (d2[j] + 2.0 * length * e1[j], e1[j]),
-            ];
-            for (k, (a, b)) in coefficients.into_iter().enumerate() {
-                let reciprocal = 1.0 / a;
-                let says_nothing = a.abs() < NO_COEFFICIENT;
-                offsets[k * n + j] = if says_nothing { f64::INFINITY } else { c * reciprocal.abs() };
-                slopes[k * n + j] = if says_nothing { 0.0 } else { b * reciprocal };
-                if says_nothing && b.abs() * ceiling > c {
-                    ceiling = c / b.abs();
+            (offsets[j], slopes[j]) = (d0[j], e0[j]);
+            (offsets[n + j], slopes[n + j]) = (d1[j] + length * e0[j], 0.5 * (e0[j] + e1[j]));
+            (offsets[2 * n + j], slopes[2 * n + j]) = (d2[j] + 2.0 * length * e1[j], e1[j]);
+        }
+        let largest = offsets.iter().fold(0.0_f64, |largest, a| largest.max(a.abs()));
+        (self.ceiling, self.launch) = (f64::INFINITY, f64::INFINITY);
+        for (of_end, slopes) in offsets.chunks_exact_mut(n).zip(slopes.chunks_exact_mut(n)) {
+            for ((offset, slope), c) in of_end.iter_mut().zip(slopes).zip(&limits.acceleration) {
+                let (a, b) = (*offset, *slope);
+                if a.abs() <= NEGLIGIBLE * largest {
+                    self.ceiling = self.ceiling.min(if b == 0.0 { f64::INFINITY } else { c / b.abs() });
+                    (*offset, *slope) = (f64::INFINITY, 0.0);
+                } else {
+                    (*offset, *slope) = (c / a.abs(), b / a);
+                    self.launch = self.launch.min(*offset);
                 }
             }
         }
-        self.ceiling = ceiling;
-        self.launch = offsets.iter().copied().fold(f64::INFINITY, f64::min);
     }
 
     /// The lowest upper line at `x`.
