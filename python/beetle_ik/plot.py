@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _plan_figure
 from ._shapes import draw_capsules, draw_obstacles
 from ._style import BLUE, FORBIDDEN, GREEN, VERMILION, line, style
 from ._text import counted
 
 if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
@@ -68,8 +70,17 @@ def track(result: TrackResult) -> Figure:
 
 
 def plan(plan: Plan) -> Figure:
-    """A planned motion: position, velocity and acceleration of each joint over time."""
-    return trajectory(plan.trajectory)
+    """A planned motion: the arm on its way, the search, and the joints over time."""
+    with style():
+        figure = _new_figure(13.0, 3 * _ROW_HEIGHT + 0.4)
+        _plan_figure.draw(figure, plan)
+    return figure
+
+
+def animation(plan: Plan) -> FuncAnimation:
+    """The arm on its planned way, in its own time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
+    with style():
+        return _plan_figure.animate(_new_figure(6.0, 6.0), plan)
 
 
 def trajectory(trajectory: Trajectory) -> Figure:

@@ -161,6 +161,12 @@ pub enum Error {
         /// What to do instead.
         remedy: String,
     },
+    /// Nothing satisfies what was asked.
+    #[error("infeasible: {problem}")]
+    Infeasible {
+        /// What stands against what.
+        problem: String,
+    },
     /// A matrix that is not a rigid transform.
     #[error("{what} is not a rigid transform: {problem}")]
     NotRigid {

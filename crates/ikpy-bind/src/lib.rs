@@ -6,6 +6,7 @@ mod convert;
 mod error;
 mod ik;
 mod limits;
+mod minimize;
 mod model_free;
 mod monitor;
 mod obstacle;
@@ -16,6 +17,7 @@ mod pose;
 mod robot;
 mod sinusoid;
 mod solver;
+mod time_optimal;
 mod tracker;
 mod tracking;
 mod trajectory;
@@ -37,6 +39,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
+    module.add_class::<minimize::PyMinimum>()?;
+    module.add_function(wrap_pyfunction!(minimize::minimize_function, module)?)?;
     path::register(module)?;
     obstacle::register(module)?;
     planning::register(module)?;
@@ -50,6 +54,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<model_free::PyModelFreeResult>()?;
     module.add_function(wrap_pyfunction!(model_free::track_model_free, module)?)?;
     module.add_class::<trajectory::PyTrajectory>()?;
+    module.add_function(wrap_pyfunction!(time_optimal::time_optimal, module)?)?;
     // The package names what is public; a second list here would only go stale.
     module.dict().del_item("__all__")
 }

@@ -16,7 +16,7 @@ use crate::monitor::{Progress, Watcher};
 use crate::obstacle::Given;
 use crate::path::PyPath;
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, derivative_free, status};
+use crate::solver::{PyStop, derivative_free_solver, status};
 use crate::trajectory::PyTrajectory;
 use crate::upward;
 
@@ -270,7 +270,7 @@ pub fn plan_point_to_point(
         margin,
         elbows: [read_elbow("elbows[0]", elbows[0])?, read_elbow("elbows[1]", elbows[1])?],
         limits: resolved,
-        solver: solver.map(derivative_free).transpose()?,
+        solver: solver.map(|solver| derivative_free_solver("plan_point_to_point", solver)).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
@@ -335,7 +335,7 @@ pub fn plan_along_path(
         limits: resolved,
         elbow: read_elbow("elbow", elbow)?,
         accuracy,
-        solver: solver.map(derivative_free).transpose()?,
+        solver: solver.map(|solver| derivative_free_solver("plan_along_path", solver)).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };

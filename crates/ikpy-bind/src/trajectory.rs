@@ -25,7 +25,8 @@ impl From<Trajectory> for PyTrajectory {
     }
 }
 
-fn names(given: Option<Vec<String>>, n: usize) -> Vec<String> {
+/// The joints' names, or "q1", "q2", ... where none were given.
+pub fn names(given: Option<Vec<String>>, n: usize) -> Vec<String> {
     given.unwrap_or_else(|| (1..=n).map(|i| format!("q{i}")).collect())
 }
 
@@ -137,6 +138,12 @@ impl PyTrajectory {
     /// knots are not in it.
     fn max_acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.0.max_acceleration())
+    }
+
+    /// The largest jerk of each joint (n,) (rad/s^3, m/s^3), exact inside the pieces; jumps of the acceleration at knots
+    /// are not in it.
+    fn max_jerk<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.0.max_jerk())
     }
 
     /// (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside are clamped.

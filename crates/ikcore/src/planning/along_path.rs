@@ -5,7 +5,7 @@ use std::str::FromStr;
 use super::cost::Cost;
 use super::plan::Plan;
 use super::planar_arm::Elbow;
-use super::tpbso;
+use super::{timed, tpbso};
 use crate::error::{Error, Result};
 use crate::limits::Limits;
 use crate::path::Reference;
@@ -69,7 +69,7 @@ pub fn plan_along_path(
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     match options.method {
-        AlongPathMethod::Timed => Err(Error::unknown_option("method", "timed", &["tpbso"])),
+        AlongPathMethod::Timed => timed::along_path(robot, path, options, monitor),
         AlongPathMethod::Tpbso => tpbso::along_path(robot, path, options, monitor),
     }
 }

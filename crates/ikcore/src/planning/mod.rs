@@ -10,6 +10,8 @@
 //! | `minmax` | from end to end by the nearest configurations, and around obstacles |
 //! | [`point_to_point`] | the planner from end to end, whatever its method |
 //! | [`along_path`] | the planner along a path, whatever its method |
+//! | [`time_optimal`](mod@time_optimal) | the fastest timing of a joint path |
+//! | `timed` | along a path, redundancy and timing together |
 //! | `tpbso` | both as published by Wang et al. (2019) |
 
 pub mod along_path;
@@ -20,6 +22,8 @@ pub mod motion_limits;
 pub mod plan;
 pub mod planar_arm;
 pub mod point_to_point;
+pub mod time_optimal;
+mod timed;
 mod tpbso;
 
 pub use along_path::{AlongPathMethod, AlongPathOptions, plan_along_path};
@@ -29,3 +33,4 @@ pub use motion_limits::MotionLimits;
 pub use plan::{Improvement, Plan, Violation};
 pub use planar_arm::Elbow;
 pub use point_to_point::{PointToPointMethod, PointToPointOptions, plan_point_to_point};
+pub use time_optimal::{JointPath, SplineEnds, TimingLimits, TimingOptions, time_optimal};

@@ -1,7 +1,7 @@
 //! Piecewise polynomials, one a segment and joint.
 
 use super::hermite;
-use crate::error::{Error, Result, require_finite};
+use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Knots;
 use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range};
 use crate::math::ticks::ticks;
@@ -159,6 +159,30 @@ impl Trajectory {
     /// knots, which would need an infinite one, are not in it.
     pub fn max_acceleration(&self) -> Vec<f64> {
         self.largest(|position| derivative(&derivative(position)))
+    }
+
+    /// The exact largest jerk of each joint within the segments (rad/s^3 or m/s^3). Jumps of the acceleration at knots,
+    /// which would need an infinite one, are not in it.
+    pub fn max_jerk(&self) -> Vec<f64> {
+        self.largest(|position| derivative(&derivative(&derivative(position))))
+    }
+
+    /// The same motion `factor` times as slow.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] where `factor` is not positive and finite.
+    pub fn slowed(&self, factor: f64) -> Result<Self> {
+        require_positive("factor", factor)?;
+        let knots = self.knots().iter().map(|time| time * factor).collect();
+        let slow = |given: &Coefficients| {
+            let (mut scale, mut slowed) = (1.0, *given);
+            for c in &mut slowed {
+                *c *= scale;
+                scale /= factor;
+            }
+            slowed
+        };
+        Self::new(self.joints.clone(), knots, self.coefficients.iter().map(slow).collect())
     }
 
     /// The exact lowest and highest position of each joint (rad or m).

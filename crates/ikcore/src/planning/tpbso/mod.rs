@@ -15,7 +15,7 @@ mod path_cost;
 mod placement;
 mod redundancy;
 mod rest_segment;
-mod search;
+pub(super) mod search;
 mod surroundings;
 mod via_point;
 mod weights;
@@ -143,7 +143,7 @@ pub(super) fn along_path(
 const ACCURACY: f64 = 0.04;
 
 /// The longest edge of the box that holds the path (m).
-fn extent(path: &Reference) -> f64 {
+pub(super) fn extent(path: &Reference) -> f64 {
     let along = |k: usize| {
         let values = (0..path.len()).map(move |i| path.position(i)[k]);
         values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
