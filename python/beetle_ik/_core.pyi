@@ -4,13 +4,14 @@
 # SI units and radians throughout; results are read-only.
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
 from typing import Any, Literal, Protocol, TypeAlias, final, type_check_only
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
 
 __version__: str
 
@@ -94,6 +95,11 @@ class Robot:
     def with_base(self, base: ArrayLike) -> Robot: ...
     def with_limits(
         self, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None, velocity: ArrayLike | None = None
+    ) -> Robot: ...
+    @property
+    def capsules(self) -> list[tuple[str, _Array, _Array, float]]: ...  # link, a (3,), b (3,), radius in m
+    def with_capsules(
+        self, capsules: list[tuple[str, ArrayLike, ArrayLike, float]] | None = None, *, radius: float | None = None
     ) -> Robot: ...
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot: ...  # up to, m and rad
     def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
@@ -886,6 +892,156 @@ class Step:
     def evaluations(self) -> int: ...
     @property
     def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
+
+# --- obstacles ----------------------------------------------------------------------------------
+
+@disjoint_base
+class Obstacle:
+    @property
+    def triangles(self) -> _Array: ...  # (t, 3, 3) m, for drawing
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class Sphere(Obstacle):
+    def __new__(cls, center: ArrayLike, radius: float) -> Sphere: ...
+    @property
+    def center(self) -> _Array: ...
+    @property
+    def radius(self) -> float: ...
+
+@final
+class Box(Obstacle):
+    def __new__(cls, center: ArrayLike, size: ArrayLike, rotation: ArrayLike | None = None) -> Box: ...
+    @property
+    def center(self) -> _Array: ...
+    @property
+    def size(self) -> _Array: ...
+    @property
+    def rotation(self) -> _Array: ...  # (3, 3)
+
+@final
+class Capsule(Obstacle):
+    def __new__(cls, a: ArrayLike, b: ArrayLike, radius: float) -> Capsule: ...
+    @property
+    def a(self) -> _Array: ...
+    @property
+    def b(self) -> _Array: ...
+    @property
+    def radius(self) -> float: ...
+
+@final
+class Ellipsoid(Obstacle):
+    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, rotation: ArrayLike | None = None) -> Ellipsoid: ...
+    @property
+    def center(self) -> _Array: ...
+    @property
+    def semi_axes(self) -> _Array: ...
+    @property
+    def rotation(self) -> _Array: ...  # (3, 3)
+
+@final
+class Ellipse(Obstacle):
+    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, angle: float = 0.0) -> Ellipse: ...
+    @property
+    def center(self) -> _Array: ...  # (2,)
+    @property
+    def semi_axes(self) -> _Array: ...  # (2,)
+    @property
+    def angle(self) -> float: ...
+
+@final
+class ConvexMesh(Obstacle):
+    def __new__(cls, points: ArrayLike) -> ConvexMesh: ...  # (k, 3)
+    @property
+    def points(self) -> _Array: ...
+
+# A number for q (n,), (m,) for q (m, n).
+def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any: ...
+
+# --- planning -----------------------------------------------------------------------------------
+
+def plan_point_to_point(
+    robot: Robot,
+    start: ArrayLike | None = None,  # (4, 4) pose or (3,) position
+    end: ArrayLike | None = None,
+    *,
+    start_q: ArrayLike | None = None,  # (n,), instead of start
+    end_q: ArrayLike | None = None,
+    limits: Limits | None = None,
+    method: Literal["minmax", "tpbso"] = "minmax",
+    objective: Literal["time", "joint_travel", "tip_travel"] = "time",
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,  # m
+    elbows: Sequence[int] = [1, 1],
+    solver: _Solver | None = None,
+    stop: Stop | None = None,
+    seed: int = 0,
+    progress: _Progress = None,
+) -> Plan: ...
+def plan_along_path(
+    robot: Robot,
+    path: Path | ArrayLike,  # or (k, 3) points or (k, 4, 4) poses
+    *,
+    start_q: ArrayLike | None = None,  # (n,)
+    limits: Limits | None = None,
+    method: Literal["timed", "tpbso"] = "timed",
+    objective: Literal["time", "joint_travel"] = "time",
+    elbow: int = 1,
+    accuracy: float | None = None,  # m
+    solver: _Solver | None = None,
+    stop: Stop | None = None,
+    seed: int = 0,
+    progress: _Progress = None,
+) -> Plan: ...
+
+@final
+class Plan:
+    @property
+    def trajectory(self) -> Trajectory: ...
+    @property
+    def objective(self) -> str: ...
+    @property
+    def cost(self) -> float: ...  # of the objective on the trajectory: s, rad or m
+    @property
+    def history(self) -> _Array: ...  # (h, 2): evaluations, lowest cost from then on
+    @property
+    def clearance(self) -> float: ...  # m; NaN without obstacles
+    @property
+    def violations(self) -> list[Violation]: ...
+    @property
+    def accuracy(self) -> float: ...  # m, from the points of the path; NaN from end to end
+    @property
+    def redundancy(self) -> _Array: ...  # (points, links, 3): orientation chosen, lowest, highest (rad)
+    @property
+    def reference(self) -> _Array | None: ...  # (k, 3): the path asked for
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]: ...
+    def plot(self) -> Figure: ...
+
+@final
+class Violation:
+    @property
+    def what(self) -> str: ...
+    @property
+    def value(self) -> float: ...
+    @property
+    def bound(self) -> float: ...
+    @property
+    def unit(self) -> str: ...
 
 # --- tracking without a model -------------------------------------------------------------------
 

@@ -1,7 +1,9 @@
 """Trajectories to and from files.
 
 npz keeps the polynomial pieces themselves. CSV keeps samples at the knots, with as many derivatives as determine the
-pieces: positions for straight lines, velocities too up to cubics, accelerations too up to quintics.
+pieces: positions for straight lines, velocities too up to cubics, accelerations too up to quintics. Samples at knots do
+not determine pieces of degree 6, such as the fastest timing of a spline has: CSV then keeps positions and velocities, and
+reads back as the cubics that meet them.
 """
 
 import os
@@ -18,13 +20,14 @@ from ._files import whole_file
 
 # Columns are named "q:joint", "qd:joint", "qdd:joint": position, velocity and acceleration of each joint.
 _DERIVATIVES = ("q", "qd", "qdd")
+_QUINTIC = 5
 _PREFIXES = tuple(f"{derivative}:" for derivative in _DERIVATIVES)
 
 
 def to_csv(trajectory: Trajectory, file: str | os.PathLike[str]) -> None:
     """Write the trajectory's knots as CSV: time (s), then positions and what derivatives its degree needs."""
     degree = trajectory.coefficients.shape[2] - 1
-    kept = _DERIVATIVES[: min(max(degree, 1) // 2 + 1, len(_DERIVATIVES))]
+    kept = _DERIVATIVES[: max(degree, 1) // 2 + 1 if degree <= _QUINTIC else 2]
     samples = (trajectory.q, trajectory.qd, trajectory.qdd)[: len(kept)]
     columns = ["time", *(f"{derivative}:{joint}" for derivative in kept for joint in trajectory.joint_names)]
     write_table(file, columns, np.column_stack((trajectory.time, *samples)))

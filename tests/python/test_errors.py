@@ -287,7 +287,7 @@ def test_paths(call: Callable[[], object], error: type[Exception], message: str)
         (
             lambda: bik.Trajectory([0, 1], np.zeros((1, 2))),
             Invalid,
-            "coefficients: expected shape (k - 1, n, degree + 1), degree at most 5, got (1, 2)",
+            "coefficients: expected shape (k - 1, n, degree + 1), degree at most 6, got (1, 2)",
         ),
         (lambda: bik.Trajectory([0], np.zeros((0, 2, 2))), Invalid, "trajectory times: expected at least 2, got 1"),
         (

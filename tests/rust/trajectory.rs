@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
 
-use ikcore::trajectory::Trajectory;
+use ikcore::trajectory::{Coefficients, Trajectory, polynomial};
 use proptest::prelude::*;
 
 fn names(count: usize) -> Vec<String> {
@@ -18,8 +18,8 @@ fn state(trajectory: &Trajectory, t: f64) -> [Vec<f64>; 3] {
 }
 
 /// Rest to rest over unit distance in `span` (s): 10 s^3 - 15 s^4 + 6 s^5 of the relative time.
-fn rest_to_rest(span: f64) -> [f64; 6] {
-    [0.0, 0.0, 0.0, 10.0 / span.powi(3), -15.0 / span.powi(4), 6.0 / span.powi(5)]
+fn rest_to_rest(span: f64) -> Coefficients {
+    polynomial([0.0, 0.0, 0.0, 10.0 / span.powi(3), -15.0 / span.powi(4), 6.0 / span.powi(5)])
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn sample_times_end_at_the_end() {
 
 #[test]
 fn wrong_trajectories_are_named() {
-    let line = |from: f64, slope: f64| [from, slope, 0.0, 0.0, 0.0, 0.0];
+    let line = |from: f64, slope: f64| polynomial([from, slope]);
     let ramp = vec![line(0.0, 1.0), line(1.0, 1.0)];
     for (result, expected) in [
         (Trajectory::new(vec![], vec![0.0, 1.0], vec![]), "trajectory: it needs at least 1 joint"),
@@ -111,18 +111,18 @@ fn wrong_trajectories_are_named() {
     assert_eq!(error.to_string(), "state of the trajectory: expected 1 joints, got 2");
 }
 
-/// Random quintic segments of two joints, each continued from where the one before it ends.
+/// Random segments of degree 6 of two joints, each continued from where the one before it ends.
 fn any_trajectory() -> impl Strategy<Value = Trajectory> {
-    let segment = (0.05..2.0_f64, prop::array::uniform10(-3.0..3.0_f64));
+    let segment = (0.05..2.0_f64, prop::array::uniform12(-3.0..3.0_f64));
     prop::collection::vec(segment, 1..5).prop_map(|segments| {
         let (mut knots, mut coefficients, mut reached) = (vec![0.0], Vec::new(), [0.3, -0.7]);
         for (span, c) in segments {
             let start = knots[knots.len() - 1];
             for joint in 0..2 {
-                let [a, b, d, e, f] = [0, 1, 2, 3, 4].map(|i| c[5 * joint + i]);
-                coefficients.push([reached[joint], a, b, d, e, f]);
+                let [a, b, d, e, f, g] = [0, 1, 2, 3, 4, 5].map(|i| c[6 * joint + i]);
+                coefficients.push([reached[joint], a, b, d, e, f, g]);
                 let s = (start + span) - start;
-                reached[joint] += s * (a + s * (b + s * (d + s * (e + s * f))));
+                reached[joint] += s * (a + s * (b + s * (d + s * (e + s * (f + s * g)))));
             }
             knots.push(start + span);
         }

@@ -131,6 +131,14 @@ pub enum Error {
         /// Its upper limit (rad or m).
         upper: f64,
     },
+    /// An end of a motion that the robot does not reach.
+    #[error("{what} cannot be reached: {problem}")]
+    Unreachable {
+        /// Which end, such as "start".
+        what: String,
+        /// By how much it is missed, and what would be right.
+        problem: String,
+    },
     /// A limit that is negative, at least for some time.
     #[error("{field} limit of joint '{joint}' is {value} at t = {time} s: a limit cannot be negative")]
     NegativeLimit {
@@ -153,6 +161,12 @@ pub enum Error {
         /// What to do instead.
         remedy: String,
     },
+    /// Nothing satisfies what was asked.
+    #[error("infeasible: {problem}")]
+    Infeasible {
+        /// What stands against what.
+        problem: String,
+    },
     /// A matrix that is not a rigid transform.
     #[error("{what} is not a rigid transform: {problem}")]
     NotRigid {
@@ -172,6 +186,45 @@ pub enum Error {
     Contradiction {
         /// Which, and what would be right.
         problem: String,
+    },
+    /// An obstacle that cannot be one, or not for this robot.
+    #[error("{problem}")]
+    InvalidObstacle {
+        /// What is wrong and what would be right.
+        problem: String,
+    },
+    /// Nothing is known of the room that a robot takes up.
+    #[error(
+        "robot '{robot}' {problem}: give it capsules with with_capsules(radius=...) along its links or \
+         with_capsules([(link, a, b, radius), ...]), or load a URDF whose links have <collision> shapes of spheres, \
+         cylinders, capsules and boxes"
+    )]
+    NoCapsules {
+        /// The robot's name.
+        robot: String,
+        /// What is missing.
+        problem: String,
+    },
+    /// A start or end that touches something.
+    #[error("{what}: link '{link}' is {depth} {other}")]
+    InCollision {
+        /// What was passed, such as "start".
+        what: String,
+        /// The link.
+        link: String,
+        /// What it is in, such as "obstacle 0 (Box)".
+        other: String,
+        /// How deep, such as "0.02 m inside".
+        depth: String,
+    },
+    /// A joint that no limit slows down.
+    #[error(
+        "joint '{joint}' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
+         limits=Limits(velocity=...)"
+    )]
+    NoPace {
+        /// The joint's name.
+        joint: String,
     },
     /// A path without points, or one that cannot be followed in time.
     #[error("path: {problem}")]

@@ -20,7 +20,7 @@
 //!      robot ───────────────┐
 //! path (reference)          ├─> task ─> problem ··implements··> objective <──uses── solver ─> solution
 //!      limits ──────────────┘                                                                    │
-//!                                           tracking · batch  <──────────────────────────────────┘
+//!                                tracking · planning · batch  <──────────────────────────────────┘
 //!                                              │
 //!                                          trajectory
 //! ```
@@ -47,11 +47,11 @@
 //! |---|---|
 //! | 0 | [`error`], [`rng`], [`math`], `wording` |
 //! | 1 | [`robot`], [`path`], [`trajectory`], [`objective`] |
-//! | 2 | [`limits`], [`manipulability`] |
+//! | 2 | [`limits`], [`obstacle`], [`manipulability`] |
 //! | 3 | [`task`], [`solver`] |
 //! | 4 | [`problem`] |
 //! | 5 | [`ik`], [`minimize`](mod@minimize) |
-//! | 6 | [`tracking`], [`batch`] |
+//! | 6 | [`tracking`], [`planning`], [`batch`] |
 
 pub mod batch;
 pub mod error;
@@ -61,7 +61,9 @@ pub mod manipulability;
 pub mod math;
 pub mod minimize;
 pub mod objective;
+pub mod obstacle;
 pub mod path;
+pub mod planning;
 pub mod problem;
 pub mod rng;
 pub mod robot;

@@ -14,6 +14,7 @@ struct Classes {
     urdf: Py<PyType>,
     limit: Py<PyType>,
     unsupported_limit: Py<PyType>,
+    infeasible: Py<PyType>,
 }
 
 impl Classes {
@@ -24,6 +25,7 @@ impl Classes {
             Error::Urdf { .. } | Error::AmbiguousTip { .. } => &self.urdf,
             Error::EmptyRange { .. } | Error::OutsideLimits { .. } | Error::NegativeLimit { .. } => &self.limit,
             Error::UnsupportedLimit { .. } => &self.unsupported_limit,
+            Error::Infeasible { .. } => &self.infeasible,
             _ => &self.invalid_input,
         }
     }
@@ -69,6 +71,11 @@ fn classes(py: Python<'_>) -> PyResult<&Classes> {
                 "A limit that the method cannot honour. No method ignores one.",
                 vec![bound(&limit)],
             )?,
+            infeasible: class(
+                "InfeasibleError",
+                "A question without an answer: what it asks for contradicts itself; the message says what stands against what.",
+                vec![bound(&invalid_input)],
+            )?,
             base,
             invalid_input,
             limit,
@@ -78,8 +85,8 @@ fn classes(py: Python<'_>) -> PyResult<&Classes> {
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
-    let Classes { base, invalid_input, unknown_name, urdf, limit, unsupported_limit } = classes(py)?;
-    for class in [base, invalid_input, unknown_name, urdf, limit, unsupported_limit] {
+    let Classes { base, invalid_input, unknown_name, urdf, limit, unsupported_limit, infeasible } = classes(py)?;
+    for class in [base, invalid_input, unknown_name, urdf, limit, unsupported_limit, infeasible] {
         let class = class.bind(py);
         module.add(class.name()?, class)?;
     }

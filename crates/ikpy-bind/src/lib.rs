@@ -12,13 +12,16 @@ mod manipulability;
 mod minimize;
 mod model_free;
 mod monitor;
+mod obstacle;
 mod path;
+mod planning;
 mod plant;
 mod pose;
 mod robot;
 mod sinusoid;
 mod solver;
 mod task;
+mod time_optimal;
 mod tracker;
 mod tracking;
 mod trajectory;
@@ -48,6 +51,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<minimize::PyMinimum>()?;
     module.add_function(wrap_pyfunction!(minimize::minimize_function, module)?)?;
     path::register(module)?;
+    obstacle::register(module)?;
+    planning::register(module)?;
     module.add_class::<tracking::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;
     module.add_class::<tracker::PyStep>()?;
@@ -58,6 +63,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<model_free::PyModelFreeResult>()?;
     module.add_function(wrap_pyfunction!(model_free::track_model_free, module)?)?;
     module.add_class::<trajectory::PyTrajectory>()?;
+    module.add_function(wrap_pyfunction!(time_optimal::time_optimal, module)?)?;
     // The package names what is public; a second list here would only go stale.
     module.dict().del_item("__all__")
 }

@@ -241,15 +241,18 @@ impl PyLimits {
 
     /// The same for the core, functions of time sampled.
     pub fn resolve(&self, py: Python<'_>, robot: &Robot, sampling: &Sampling) -> PyResult<Limits> {
-        self.laid_over(py, Limits::of(robot), robot.dof(), sampling)
+        self.applied_to(py, Limits::of(robot), robot.dof(), sampling)
     }
 
-    /// `limits` of n joints, replaced where these are given.
-    fn laid_over(&self, py: Python<'_>, mut limits: Limits, n: usize, sampling: &Sampling) -> PyResult<Limits> {
+    /// The same for joints that belong to no robot: none where no limit is given.
+    pub fn for_joints(&self, py: Python<'_>, joints: &[String]) -> PyResult<Limits> {
+        self.applied_to(py, Limits::none(joints.to_vec()), joints.len(), &Sampling::once())
+    }
+
+    fn applied_to(&self, py: Python<'_>, mut limits: Limits, n: usize, sampling: &Sampling) -> PyResult<Limits> {
         for (given, field) in self.given.iter().zip(FIELDS) {
             if let Some(given) = given {
-                let profiles = given.profiles(py, field, sampling, n)?;
-                limits = limits.replace(field, profiles).map_err(raise)?;
+                limits = limits.replace(field, given.profiles(py, field, sampling, n)?).map_err(raise)?;
             }
         }
         Ok(limits)
@@ -285,9 +288,9 @@ pub fn limits_without_robot(
 ) -> PyResult<(Py<PyLimits>, Limits)> {
     let none = PyLimits::none(n);
     match limits {
-        None => Ok((Py::new(py, none)?, Limits::none(n))),
+        None => Ok((Py::new(py, none)?, Limits::none_for(n))),
         Some(limits) => {
-            let resolved = limits.laid_over(py, Limits::none(n), n, sampling)?;
+            let resolved = limits.applied_to(py, Limits::none_for(n), n, sampling)?;
             Ok((Py::new(py, limits.else_of(py, none))?, resolved))
         }
     }

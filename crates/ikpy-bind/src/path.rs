@@ -49,7 +49,7 @@ const DIFFERENCE: f64 = 1e-5;
 impl PyPath {
     /// How long the path lasts (s).
     #[getter]
-    fn duration(&self) -> f64 {
+    pub fn duration(&self) -> f64 {
         match &self.curve {
             Curve::Core(path) => path.duration(),
             Curve::Function { duration, .. } => *duration,

@@ -1,6 +1,6 @@
 //! `Trajectory`.
 
-use ikcore::trajectory::{Coefficients, Trajectory};
+use ikcore::trajectory::{Coefficients, POWERS, Trajectory};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict, PyTuple};
@@ -13,7 +13,7 @@ use crate::upward;
 ///
 /// Args:
 ///     time: the knots (k,) (s), from 0.
-///     coefficients: (k - 1, n, degree + 1), degree at most 5, in ascending powers.
+///     coefficients: (k - 1, n, degree + 1), degree at most 6, in ascending powers.
 ///     joint_names: n names; None: "q1", "q2", ...
 #[pyclass(name = "Trajectory", module = "beetle_ik", frozen, eq)]
 #[derive(PartialEq)]
@@ -25,10 +25,8 @@ impl From<Trajectory> for PyTrajectory {
     }
 }
 
-/// Powers that coefficients have in the core.
-const POWERS: usize = 6;
-
-fn names(given: Option<Vec<String>>, n: usize) -> Vec<String> {
+/// The joints' names, or "q1", "q2", ... where none were given.
+pub fn names(given: Option<Vec<String>>, n: usize) -> Vec<String> {
     given.unwrap_or_else(|| (1..=n).map(|i| format!("q{i}")).collect())
 }
 
@@ -45,7 +43,7 @@ impl PyTrajectory {
         let &[_, n, powers @ 1..=POWERS] = values.shape() else {
             let got = shape_text(values.shape());
             return Err(invalid(format!(
-                "coefficients: expected shape (k - 1, n, degree + 1), degree at most 5, got {got}"
+                "coefficients: expected shape (k - 1, n, degree + 1), degree at most 6, got {got}"
             )));
         };
         let padded = values.as_slice()?.chunks_exact(powers).map(|given| {
@@ -140,6 +138,12 @@ impl PyTrajectory {
     /// knots are not in it.
     fn max_acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.0.max_acceleration())
+    }
+
+    /// The largest jerk of each joint (n,) (rad/s^3, m/s^3), exact inside the pieces; jumps of the acceleration at knots
+    /// are not in it.
+    fn max_jerk<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.0.max_jerk())
     }
 
     /// (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside are clamped.

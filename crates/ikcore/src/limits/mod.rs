@@ -65,16 +65,15 @@ impl Limits {
     }
 
     /// No limits, for `n` joints that are known by their numbers (from 0) alone.
-    pub fn none(n: usize) -> Self {
-        let free = |limit: f64| vec![Profile::Constant(limit); n];
-        Self {
-            joints: (0..n).map(|j| j.to_string()).collect(),
-            lower: free(f64::NEG_INFINITY),
-            upper: free(f64::INFINITY),
-            velocity: free(f64::INFINITY),
-            acceleration: None,
-            jerk: None,
-        }
+    pub fn none_for(n: usize) -> Self {
+        Self::none((0..n).map(|j| j.to_string()).collect())
+    }
+
+    /// No limits for joints of these names.
+    pub fn none(joints: Vec<String>) -> Self {
+        let all = |value: f64| vec![Profile::Constant(value); joints.len()];
+        let (lower, upper, velocity) = (all(f64::NEG_INFINITY), all(f64::INFINITY), all(f64::INFINITY));
+        Self { joints, lower, upper, velocity, acceleration: None, jerk: None }
     }
 
     /// Replaces one field for all joints; one profile per joint, or a single one for all of them.

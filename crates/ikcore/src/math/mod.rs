@@ -1,5 +1,5 @@
-//! Rotations, rigid transforms, fast sines, singular values, polynomials, knots in time and the one bounded step. Plain
-//! arrays where it is hot, nalgebra elsewhere.
+//! Rotations, rigid transforms, fast sines, singular values, polynomials, splines, knots in time and the one bounded step.
+//! Plain arrays where it is hot, nalgebra elsewhere.
 
 pub mod arithmetic;
 pub mod box_step;
@@ -7,6 +7,7 @@ pub mod frame;
 pub mod interval;
 pub mod knots;
 pub mod logarithm;
+pub mod natural_spline;
 pub mod polynomial;
 pub mod pose;
 pub mod secant;

@@ -2,8 +2,8 @@
 
 use smallvec::SmallVec;
 
-/// Coefficients or roots of a polynomial up to degree 5, on the stack.
-pub type Short = SmallVec<[f64; 6]>;
+/// Coefficients or roots of a polynomial up to degree 6, on the stack.
+pub type Short = SmallVec<[f64; 7]>;
 
 /// Value, first and second derivative at `x`, in one Horner pass.
 pub fn evaluate(coefficients: &[f64], x: f64) -> [f64; 3] {
@@ -43,10 +43,31 @@ pub fn roots(coefficients: &[f64], lower: f64, upper: f64) -> Short {
     found
 }
 
+/// The real roots of a + b x + c x^2 strictly inside `(lower, upper)`, ascending, in closed form.
+pub fn quadratic_roots(a: f64, b: f64, c: f64, lower: f64, upper: f64) -> SmallVec<[f64; 2]> {
+    let discriminant = b * b - 4.0 * a * c;
+    if discriminant < 0.0 {
+        return SmallVec::new();
+    }
+    // Both roots from the half-sum that does not cancel; c = 0 leaves -a/b alone, the other is infinite.
+    let half_sum = -0.5 * (b + discriminant.sqrt().copysign(b));
+    let [first, second] = [half_sum / c, a / half_sum];
+    let ordered = if second < first { [second, first] } else { [first, second] };
+    ordered.into_iter().filter(|x| lower < *x && *x < upper).collect()
+}
+
 /// The largest magnitude on `[lower, upper]`: at an end, or where the derivative vanishes.
 pub fn largest_magnitude(coefficients: &[f64], lower: f64, upper: f64) -> f64 {
     let candidates = stationary_points(coefficients, lower, upper).into_iter().chain([lower, upper]);
     candidates.map(|x| evaluate(coefficients, x)[0].abs()).fold(0.0, f64::max)
+}
+
+/// The smallest and the largest value on `[lower, upper]`.
+pub fn range(coefficients: &[f64], lower: f64, upper: f64) -> (f64, f64) {
+    let candidates = stationary_points(coefficients, lower, upper).into_iter().chain([lower, upper]);
+    candidates
+        .map(|x| evaluate(coefficients, x)[0])
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 /// Where the derivative vanishes strictly inside `(lower, upper)`.

@@ -32,6 +32,6 @@ impl Robot {
                 Element::Moving { .. } | Element::Link(_) => {}
             }
         }
-        Self::assembled(description, *self.base(), *self.tool())
+        Self::assembled(description, *self.base(), *self.tool(), self.collision().clone())
     }
 }

@@ -32,6 +32,8 @@ pub(super) struct LinkFrame {
 /// The folded chain.
 #[derive(Debug, Clone)]
 pub(super) struct Chain {
+    /// How many elements move; the rest of the stages is padding.
+    pub moving: usize,
     /// One per moving element, then padding that moves nothing.
     pub stages: Vec<Frame>,
     pub motions: Vec<Motion>,
@@ -50,6 +52,7 @@ impl Chain {
     /// Folds `elements` between `base` and `tool`. The number of moving elements has been checked.
     pub fn new(elements: &[Element], base: &Pose, tool: &Pose) -> Self {
         let mut chain = Self {
+            moving: 0,
             stages: vec![],
             motions: vec![],
             tip: Frame::IDENTITY,
@@ -78,6 +81,7 @@ impl Chain {
             }
         }
         chain.tip = Frame::from(&(constant * tool));
+        chain.moving = chain.stages.len();
         let padded = padded_size(elements);
         chain.stages.resize(padded, Frame::IDENTITY);
         chain.motions.resize(padded.next_multiple_of(LANES), Motion::NONE);

@@ -4,6 +4,7 @@ mod as_built;
 mod builder;
 mod catalog;
 mod chain;
+mod collision;
 mod dh;
 mod dispatch;
 mod joint;
@@ -19,6 +20,7 @@ mod seeds;
 mod urdf;
 
 pub use builder::{ChainBuilder, Drive};
+pub use collision::LinkCapsule;
 pub use dh::{Dh, DhTable};
 pub use joint::{Joint, JointKind};
 pub use kinematics::{Columns, Wrench};

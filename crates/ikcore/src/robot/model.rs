@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::builder::{ChainBuilder, Element};
 use super::chain::Chain;
+use super::collision::CollisionModel;
 use super::joint::Joint;
 use super::seed_index::SeedIndex;
 use super::{Columns, MAX_DOF, Wrench};
@@ -25,6 +26,7 @@ pub struct Robot {
     base: Pose,
     tool: Pose,
     chain: Chain,
+    collision: CollisionModel,
     /// Built when first asked for; copies that differ in base and tool share it.
     seed_index: Arc<OnceLock<SeedIndex>>,
 }
@@ -32,11 +34,12 @@ pub struct Robot {
 impl PartialEq for Robot {
     /// The chain follows from the rest.
     fn eq(&self, other: &Self) -> bool {
-        (&self.description, &self.base, &self.tool) == (&other.description, &other.base, &other.tool)
+        (&self.description, &self.base, &self.tool, &self.collision)
+            == (&other.description, &other.base, &other.tool, &other.collision)
     }
 }
 
-/// What is stored of a robot; the first byte is [`FORMAT`].
+/// What is stored of a robot; the first byte is [`FORMAT`]. Its [`CollisionModel`] follows where it has one.
 #[derive(Serialize, Deserialize)]
 struct Stored {
     description: ChainBuilder,
@@ -49,13 +52,18 @@ const FORMAT: u8 = 1;
 
 impl Robot {
     pub(super) fn new(description: ChainBuilder) -> Result<Self> {
-        Self::assembled(description, Pose::identity(), Pose::identity())
+        Self::assembled(description, Pose::identity(), Pose::identity(), CollisionModel::default())
     }
 
-    pub(super) fn assembled(description: ChainBuilder, base: Pose, tool: Pose) -> Result<Self> {
+    pub(super) fn assembled(
+        description: ChainBuilder,
+        base: Pose,
+        tool: Pose,
+        collision: CollisionModel,
+    ) -> Result<Self> {
         description.validate()?;
         let chain = Chain::new(&description.elements, &base, &tool);
-        Ok(Self { description, base, tool, chain, seed_index: Arc::default() })
+        Ok(Self { description, base, tool, chain, collision, seed_index: Arc::default() })
     }
 
     /// The robot's name.
@@ -94,7 +102,7 @@ impl Robot {
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
     pub fn with_base(&self, base: Pose) -> Result<Self> {
         let base = pose::checked("base", base)?;
-        let robot = Self::assembled(self.description.clone(), base, self.tool)?;
+        let robot = Self::assembled(self.description.clone(), base, self.tool, self.collision.clone())?;
         Ok(Self { seed_index: self.seed_index.clone(), ..robot })
     }
 
@@ -104,7 +112,7 @@ impl Robot {
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
     pub fn with_tool(&self, tool: Pose) -> Result<Self> {
         let tool = pose::checked("tool", tool)?;
-        let robot = Self::assembled(self.description.clone(), self.base, tool)?;
+        let robot = Self::assembled(self.description.clone(), self.base, tool, self.collision.clone())?;
         Ok(Self { seed_index: self.seed_index.clone(), ..robot })
     }
 
@@ -117,7 +125,7 @@ impl Robot {
         for (index, joint) in description.joints.iter_mut().enumerate() {
             change(index, joint);
         }
-        Self::assembled(description, self.base, self.tool)
+        Self::assembled(description, self.base, self.tool, self.collision.clone())
     }
 
     /// Whether a whole turn of joint `joint` brings all that it moves back to where it was.
@@ -214,6 +222,15 @@ impl Robot {
         Ok(qs)
     }
 
+    /// The same robot, taking up other room.
+    pub(super) fn with_collision(&self, collision: CollisionModel) -> Self {
+        Self { collision, ..self.clone() }
+    }
+
+    pub(super) fn collision(&self) -> &CollisionModel {
+        &self.collision
+    }
+
     pub(super) fn description(&self) -> &ChainBuilder {
         &self.description
     }
@@ -237,7 +254,11 @@ impl Robot {
     /// [`Error::Corrupt`] if the encoder fails.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
         let stored = Stored { description: self.description.clone(), base: self.base, tool: self.tool };
-        postcard::to_extend(&stored, vec![FORMAT]).map_err(|e| corrupt(e.to_string()))
+        let bytes = postcard::to_extend(&stored, vec![FORMAT]).map_err(|e| corrupt(e.to_string()))?;
+        if self.collision == CollisionModel::default() {
+            return Ok(bytes);
+        }
+        postcard::to_extend(&self.collision, bytes).map_err(|e| corrupt(e.to_string()))
     }
 
     /// The robot that [`to_bytes`](Self::to_bytes) stored.
@@ -249,8 +270,14 @@ impl Robot {
         if *version != FORMAT {
             return Err(corrupt(format!("format version {version}, this library reads version {FORMAT}")));
         }
-        let stored: Stored = postcard::from_bytes(rest).map_err(|e| corrupt(e.to_string()))?;
-        Self::assembled(stored.description, stored.base, stored.tool)
+        let (stored, rest): (Stored, _) = postcard::take_from_bytes(rest).map_err(|e| corrupt(e.to_string()))?;
+        let collision = match rest {
+            [] => CollisionModel::default(),
+            _ => postcard::from_bytes(rest).map_err(|e| corrupt(e.to_string()))?,
+        };
+        let bare = Self::assembled(stored.description, stored.base, stored.tool, CollisionModel::default())?;
+        let checked = bare.with_capsules(collision.capsules.clone())?;
+        Ok(checked.with_collision(collision))
     }
 }
 

@@ -59,7 +59,7 @@ pub fn track_model_free(
     let stopwatch = Stopwatch::start();
     let ticks = reference.len() - 1;
     check_call(reference, options)?;
-    let limits = options.limits.clone().unwrap_or_else(|| Limits::none(start.len()));
+    let limits = options.limits.clone().unwrap_or_else(|| Limits::none_for(start.len()));
     limits.validate(reference.dt(), ticks)?;
     let ModelFreeOptions { controller, tolerance, seed, .. } = options;
     let mut session = controller::Session::new(controller, start, reference.dt(), limits.clone(), *tolerance, *seed)?;

@@ -3,4 +3,4 @@
 mod hermite;
 mod piecewise;
 
-pub use piecewise::{Coefficients, Trajectory};
+pub use piecewise::{Coefficients, POWERS, Trajectory, polynomial};

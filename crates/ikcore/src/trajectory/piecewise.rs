@@ -1,14 +1,30 @@
 //! Piecewise polynomials, one a segment and joint.
 
 use super::hermite;
-use crate::error::{Error, Result, require_finite};
+use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Knots;
-use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude};
+use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range};
 use crate::math::ticks::ticks;
 
-/// A polynomial up to degree 5 in the time s (s) since the segment began: q = c\[0\] + c\[1\] s + ... + c\[5\] s^5, in
+/// Powers of time that a segment may use: up to the sixth, which a cubic in a path parameter takes where that parameter is
+/// a parabola in time.
+pub const POWERS: usize = 7;
+
+/// A polynomial up to degree 6 in the time s (s) since the segment began: q = c\[0\] + c\[1\] s + ... + c\[6\] s^6, in
 /// rad or m and powers of s.
-pub type Coefficients = [f64; 6];
+pub type Coefficients = [f64; POWERS];
+
+/// The polynomial with these coefficients, at most [`POWERS`] of them in ascending powers, and zeros above.
+pub const fn polynomial<const N: usize>(given: [f64; N]) -> Coefficients {
+    const { assert!(N <= POWERS) };
+    let mut padded = [0.0; POWERS];
+    let mut power = 0;
+    while power < N {
+        padded[power] = given[power];
+        power += 1;
+    }
+    padded
+}
 
 /// How far a joint may jump at a knot (rad or m, relative beyond 1): coefficients that were stored or computed meet only
 /// up to rounding.
@@ -42,7 +58,7 @@ impl Trajectory {
             return Err(Error::WrongLength { what, expected, got: coefficients.len() });
         }
         require_finite("trajectory coefficients", coefficients.as_flattened(), |i| {
-            let (segment, joint, power) = (i / 6 / n, i / 6 % n, i % 6);
+            let (segment, joint, power) = (i / POWERS / n, i / POWERS % n, i % POWERS);
             format!("power {power} of joint '{}' in segment {segment}", joints[joint])
         })?;
         let trajectory = Self { joints, knots, coefficients };
@@ -143,6 +159,42 @@ impl Trajectory {
     /// knots, which would need an infinite one, are not in it.
     pub fn max_acceleration(&self) -> Vec<f64> {
         self.largest(|position| derivative(&derivative(position)))
+    }
+
+    /// The exact largest jerk of each joint within the segments (rad/s^3 or m/s^3). Jumps of the acceleration at knots,
+    /// which would need an infinite one, are not in it.
+    pub fn max_jerk(&self) -> Vec<f64> {
+        self.largest(|position| derivative(&derivative(&derivative(position))))
+    }
+
+    /// The same motion `factor` times as slow.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] where `factor` is not positive and finite.
+    pub fn slowed(&self, factor: f64) -> Result<Self> {
+        require_positive("factor", factor)?;
+        let knots = self.knots().iter().map(|time| time * factor).collect();
+        let slow = |given: &Coefficients| {
+            let (mut scale, mut slowed) = (1.0, *given);
+            for c in &mut slowed {
+                *c *= scale;
+                scale /= factor;
+            }
+            slowed
+        };
+        Self::new(self.joints.clone(), knots, self.coefficients.iter().map(slow).collect())
+    }
+
+    /// The exact lowest and highest position of each joint (rad or m).
+    pub fn position_range(&self) -> Vec<(f64, f64)> {
+        let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); self.joints.len()];
+        for segment in 0..self.knots.segments() {
+            for ((lowest, highest), position) in ranges.iter_mut().zip(self.segment(segment)) {
+                let (low, high) = range(position, 0.0, self.knots.span(segment));
+                (*lowest, *highest) = (lowest.min(low), highest.max(high));
+            }
+        }
+        ranges
     }
 
     /// The times i `dt` (s) from 0 on, and the duration as the last one.

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use nalgebra::Vector3;
 use urdf_rs::JointType;
 
+use super::collision;
 use super::document::Document;
 use super::mimic::{self, Coupling};
 use super::tree::Step;
@@ -30,7 +31,9 @@ pub(super) fn build(document: &Document, base: &str, path: &[Step]) -> Result<Ro
         append(&mut chain, document, *step, &index_in_q)?;
         chain.link(far_link(document, *step));
     }
-    chain.build()
+    let robot = chain.build()?;
+    let collision = collision::of_links(document, robot.link_names());
+    Ok(robot.with_collision(collision))
 }
 
 /// Adds the independent joints in chain order, narrowed by their followers, and returns the index in q of each joint of

@@ -3,10 +3,11 @@
 //! urdf-rs alone stops at unknown geometry, reads NaN, skips words that are no numbers and cannot tell a missing limit
 //! from zero; so it is handed a text in which only links and joints are left and every number is written out.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use roxmltree::Node;
 
+use super::collision::{self, LinkCollision};
 use super::xml;
 use crate::error::{Error, Result, suggestion};
 
@@ -18,6 +19,8 @@ pub(super) struct Document {
     pub(super) model: urdf_rs::Robot,
     /// Line of each joint, in the order of the model.
     joint_lines: Vec<u32>,
+    /// What each link takes up, by name.
+    pub(super) collision: HashMap<String, LinkCollision>,
 }
 
 impl Document {
@@ -33,7 +36,9 @@ impl Document {
         let joint_lines = xml::children(root, "joint").map(xml::line).collect();
         let model = urdf_rs::read_from_string(&reduced(root)?)
             .map_err(|error| Error::Urdf { line: None, problem: error.to_string() })?;
-        Ok(Self { model, joint_lines })
+        let links = xml::children(root, "link").filter_map(|link| Some((link.attribute("name")?, link)));
+        let collision = links.map(|(name, link)| (name.to_owned(), collision::read(name, link))).collect();
+        Ok(Self { model, joint_lines, collision })
     }
 
     /// An error at a joint.

@@ -1,7 +1,9 @@
 //! Robots from URDF: the text is checked and reduced ([`document`]), its joints form a tree ([`tree`]), and the way
-//! through the tree from base to tip becomes a chain ([`chain`]) in which mimic joints follow ([`mimic`]).
+//! through the tree from base to tip becomes a chain ([`chain`]) in which mimic joints follow ([`mimic`]) and links take
+//! up the room of their collision shapes ([`collision`]).
 
 mod chain;
+mod collision;
 mod document;
 mod mimic;
 mod tree;
@@ -27,6 +29,9 @@ impl Robot {
     /// Limits: where a revolute or prismatic joint gives neither `lower` nor `upper` it is unlimited (URDF's default
     /// of zero for both would lock it); where it gives one, the other is zero, as URDF has it. Without `velocity` the
     /// speed is unlimited; an explicit zero locks the joint. Soft limits (`<safety_controller>`) are ignored.
+    ///
+    /// Collision shapes of the links on the chain become [capsules](Robot::capsules) that hold them: spheres exactly,
+    /// cylinders and boxes with caps that stick out. Meshes are not read; [`Robot::unread_collision_shapes`] names them.
     ///
     /// # Errors
     /// [`Error::Unreadable`] for a file; [`Error::Urdf`], with the line where there is one, for text that is no URDF;

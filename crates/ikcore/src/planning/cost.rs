@@ -1,0 +1,81 @@
+//! What a plan minimises.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::motion_limits::MotionLimits;
+use crate::error::{Error, Result};
+use crate::robot::Robot;
+
+/// What a plan minimises (Wang et al. 2019, eq. 8-10).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Cost {
+    /// How long the motion takes (s): eq. (8) and (19).
+    #[default]
+    Time,
+    /// How far all joints together travel (rad, m): eq. (9) and (20).
+    JointTravel,
+    /// How far the tip travels (m): eq. (10).
+    TipTravel,
+}
+
+impl Cost {
+    const ALL: [Self; 3] = [Self::Time, Self::JointTravel, Self::TipTravel];
+
+    /// What it measures, in words.
+    pub fn noun(self) -> &'static str {
+        match self {
+            Self::Time => "a duration",
+            Self::JointTravel => "a joint travel",
+            Self::TipTravel => "a tip travel",
+        }
+    }
+
+    /// Its unit. (Joints that slide add their metres to the radians of the others.)
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Time => "s",
+            Self::JointTravel => "rad",
+            Self::TipTravel => "m",
+        }
+    }
+
+    /// What is a lot of it for `robot` under `limits`: the measure of penalties.
+    pub(super) fn scale(self, robot: &Robot, limits: &MotionLimits) -> f64 {
+        let ranges = (0..limits.dof()).map(|j| limits.finite_range(j));
+        match self {
+            Self::Time => limits.whole_range_time(),
+            Self::JointTravel => ranges.map(|(lower, upper)| upper - lower).sum(),
+            Self::TipTravel => chain_length(robot),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Time => "time",
+            Self::JointTravel => "joint_travel",
+            Self::TipTravel => "tip_travel",
+        }
+    }
+}
+
+impl fmt::Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Cost {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        let found = Self::ALL.into_iter().find(|cost| cost.name() == name);
+        found.ok_or_else(|| Error::unknown_option("objective", name, &Self::ALL.map(Self::name)))
+    }
+}
+
+/// Length of the chain from link to link (m).
+fn chain_length(robot: &Robot) -> f64 {
+    let poses = robot.link_poses(&vec![0.0; robot.dof()]).unwrap_or_default();
+    poses.windows(2).map(|ends| (ends[1].translation.vector - ends[0].translation.vector).norm()).sum()
+}

@@ -1,0 +1,27 @@
+//! Where a motion starts or ends.
+
+use crate::error::Result;
+use crate::robot::Robot;
+use crate::task::Target;
+
+/// Where a motion starts or ends.
+#[derive(Debug, Clone, PartialEq)]
+pub enum End {
+    /// The tip is there; which configuration is the planner's choice.
+    Target(Target),
+    /// Exactly this configuration (n,) (rad, m).
+    Configuration(Vec<f64>),
+}
+
+impl End {
+    /// Err unless all numbers are finite and a configuration has one a joint; `what` names the end.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`](crate::Error::NotFinite) or [`Error::WrongLength`](crate::Error::WrongLength).
+    pub fn check(&self, what: &str, robot: &Robot) -> Result<()> {
+        match self {
+            Self::Target(target) => target.validate(),
+            Self::Configuration(q) => robot.check(what, q),
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! A collision-free way through joint space: two trees that grow towards each other (RRT-Connect, Kuffner and LaValle,
+//! ICRA 2000), every edge certified between its ends.
+
+use super::pace::Polyline;
+use crate::obstacle::{Edge, Scene, Sweep};
+use crate::planning::MotionLimits;
+use crate::rng::LazyRng;
+use crate::solver::Monitor;
+
+/// How the search for a way ended.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Way {
+    /// A way, clear on all its lines.
+    Found(Polyline),
+    /// The budget was spent before the trees met.
+    NotFound,
+    /// The caller's monitor asked to stop.
+    Interrupted,
+}
+
+/// Length of an edge while a tree grows, in ranges of the joints.
+const STRIDE: f64 = 0.08;
+
+/// What the search is held to.
+pub(super) struct Room<'a> {
+    pub scene: &'a Scene<'a>,
+    pub sweep: Sweep<'a>,
+    /// Distance to keep (m).
+    pub margin: f64,
+    /// Lowest and highest value of each joint.
+    pub ranges: Vec<(f64, f64)>,
+    /// Configurations that may be looked at in all.
+    pub budget: usize,
+}
+
+impl<'a> Room<'a> {
+    pub(super) fn new(scene: &'a Scene<'a>, limits: &MotionLimits, margin: f64, budget: usize) -> Self {
+        let joints = scene.robot().joints().iter().enumerate();
+        let ranges = joints.map(|(j, joint)| joint.sampling_range_within(limits.lower[j], limits.upper[j])).collect();
+        Self { scene, sweep: Sweep::new(scene), margin, ranges, budget }
+    }
+
+    /// Whether the straight line keeps clear.
+    pub(super) fn is_clear(&mut self, from: &[f64], to: &[f64]) -> bool {
+        self.scene.is_clear(to, self.margin) && self.sweep.check(&Edge { from, to }, [0.0, 1.0], self.margin).is_ok()
+    }
+
+    fn is_spent(&self) -> bool {
+        self.sweep.looks() >= self.budget
+    }
+
+    /// Squared distance in ranges of the joints.
+    fn squared_distance(&self, a: &[f64], b: &[f64]) -> f64 {
+        let share = |j: usize| (a[j] - b[j]) / (self.ranges[j].1 - self.ranges[j].0).max(1e-9);
+        (0..a.len()).map(|j| share(j) * share(j)).sum()
+    }
+
+    /// A way from `start` to any of `ends`.
+    pub(super) fn connect(
+        &mut self,
+        start: &[f64],
+        ends: &[Vec<f64>],
+        rng: &mut LazyRng,
+        monitor: &mut dyn Monitor,
+    ) -> Way {
+        let mut growing = Tree::rooted(&[start.to_vec()]);
+        let mut other = Tree::rooted(ends);
+        let mut from_start = true;
+        while !self.is_spent() {
+            if !monitor.keep_going() {
+                return Way::Interrupted;
+            }
+            let sample: Vec<f64> = self.ranges.iter().map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect();
+            if let Some(reached) = self.grow(&mut growing, &sample, 1) {
+                let goal = growing.nodes[reached].clone();
+                let meeting = self.grow(&mut other, &goal, usize::MAX);
+                if let Some(meeting) = meeting.filter(|node| other.nodes[*node] == goal) {
+                    let (mut way, mut rest) = (growing.way_from_root(reached), other.way_from_root(meeting));
+                    rest.reverse();
+                    way.extend(rest.into_iter().skip(1));
+                    if !from_start {
+                        way.reverse();
+                    }
+                    return Way::Found(Polyline(way));
+                }
+            }
+            std::mem::swap(&mut growing, &mut other);
+            from_start = !from_start;
+        }
+        Way::NotFound
+    }
+
+    /// Grows `tree` towards `goal` by up to `strides` edges; returns the last node reached, None where it cannot grow.
+    fn grow(&mut self, tree: &mut Tree, goal: &[f64], strides: usize) -> Option<usize> {
+        let distances = tree.nodes.iter().map(|node| self.squared_distance(node, goal)).enumerate();
+        let (mut at, _) = distances.min_by(|one, other| one.1.total_cmp(&other.1))?;
+        let mut reached = None;
+        for _ in 0..strides {
+            let here = &tree.nodes[at];
+            if here == goal {
+                return Some(at);
+            }
+            let share = STRIDE / self.squared_distance(here, goal).sqrt();
+            let next: Vec<f64> = if share >= 1.0 {
+                goal.to_vec()
+            } else {
+                here.iter().zip(goal).map(|(here, goal)| here + share * (goal - here)).collect()
+            };
+            if self.is_spent() || !self.is_clear(&tree.nodes[at], &next) {
+                break;
+            }
+            at = tree.add(next, at);
+            reached = Some(at);
+        }
+        reached
+    }
+
+    /// Straightens a way: points that can be left out, then random shortcuts.
+    pub(super) fn shorten(&mut self, way: Polyline, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Polyline {
+        let mut points = self.with_long_lines(way.0);
+        for _ in 0..SHORTCUTS {
+            if points.len() < 3 || self.is_spent() || !monitor.keep_going() {
+                break;
+            }
+            let (first, second, lines) = (rng.uniform(), rng.uniform(), (points.len() - 1) as f64);
+            let (i, from) = along(&points, first.min(second) * lines);
+            let (k, to) = along(&points, first.max(second) * lines);
+            if i < k && self.is_clear(&from, &to) {
+                points.splice(i + 1..=k, [from, to]);
+                points.dedup();
+            }
+        }
+        Polyline(self.with_long_lines(points))
+    }
+
+    /// From each point straight to the farthest one that can be reached so.
+    fn with_long_lines(&mut self, points: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        let last = points.len() - 1;
+        let (mut i, mut kept) = (0, vec![points[0].clone()]);
+        while i < last {
+            let farthest = (i + 2..=last).rev().find(|k| self.is_clear(&points[i], &points[*k]));
+            i = farthest.unwrap_or(i + 1);
+            kept.push(points[i].clone());
+        }
+        kept.dedup();
+        kept
+    }
+}
+
+/// Shortcuts that are tried.
+const SHORTCUTS: usize = 60;
+
+/// The line on which `place` lies (counted in lines), and the point there.
+fn along(points: &[Vec<f64>], place: f64) -> (usize, Vec<f64>) {
+    let line = (place as usize).min(points.len() - 2);
+    let share = place - line as f64;
+    (line, points[line].iter().zip(&points[line + 1]).map(|(a, b)| a + share * (b - a)).collect())
+}
+
+/// Configurations, each joined to its parent by a clear straight line.
+struct Tree {
+    nodes: Vec<Vec<f64>>,
+    parents: Vec<Option<usize>>,
+}
+
+impl Tree {
+    fn rooted(roots: &[Vec<f64>]) -> Self {
+        Self { nodes: roots.to_vec(), parents: vec![None; roots.len()] }
+    }
+
+    fn add(&mut self, node: Vec<f64>, parent: usize) -> usize {
+        self.nodes.push(node);
+        self.parents.push(Some(parent));
+        self.nodes.len() - 1
+    }
+
+    fn way_from_root(&self, node: usize) -> Vec<Vec<f64>> {
+        let line = std::iter::successors(Some(node), |node| self.parents[*node]);
+        let mut way: Vec<Vec<f64>> = line.map(|node| self.nodes[node].clone()).collect();
+        way.reverse();
+        way
+    }
+}

@@ -1,0 +1,149 @@
+//! Timing: the quickest smooth motion along straight lines in joint space that keeps velocity and acceleration limits.
+
+use crate::error::Result;
+use crate::planning::MotionLimits;
+use crate::trajectory::{Coefficients, Trajectory, polynomial};
+
+/// Largest speed of a quintic from rest to rest, over displacement / duration.
+const QUINTIC_SPEED: f64 = 15.0 / 8.0;
+/// Largest acceleration of it, over displacement / duration^2: 10 / sqrt(3).
+const QUINTIC_ACCELERATION: f64 = 5.773_502_691_896_258;
+/// Largest acceleration of a blend, over change of velocity / duration.
+const BLEND_ACCELERATION: f64 = 1.5;
+/// So much longer than exact, that rounding breaks no limit.
+const CAUTION: f64 = 1.0 + 1e-12;
+
+/// Rounds in which blends are fitted between the velocities beside them.
+const ROUNDS: usize = 200;
+
+impl MotionLimits {
+    /// The shortest time (s) in which a quintic from rest to rest covers these displacements (rad, m).
+    pub(super) fn quintic_duration(&self, displacement: impl Iterator<Item = f64>) -> f64 {
+        let of_joint = |(j, displacement): (usize, f64)| {
+            let size = displacement.abs();
+            if size == 0.0 {
+                return 0.0;
+            }
+            (QUINTIC_SPEED * size / self.velocity[j]).max((QUINTIC_ACCELERATION * size / self.acceleration[j]).sqrt())
+        };
+        displacement.enumerate().map(of_joint).fold(0.0, f64::max)
+    }
+
+    /// How far a quintic can bring joint `j` (rad, m) in `duration` (s).
+    pub(super) fn quintic_reach(&self, j: usize, duration: f64) -> f64 {
+        let by_speed = self.velocity[j] * duration / QUINTIC_SPEED;
+        by_speed.min(self.acceleration[j] * duration * duration / QUINTIC_ACCELERATION)
+    }
+}
+
+/// Points (n each) joined by straight lines in joint space, consecutive ones different.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Polyline(pub Vec<Vec<f64>>);
+
+impl Polyline {
+    /// From rest to rest along each line by a quintic: exactly on the lines, at rest in every point.
+    pub(super) fn with_stops(&self, limits: &MotionLimits) -> Result<Trajectory> {
+        let (mut knots, mut coefficients) = (vec![0.0], vec![]);
+        let mut time = 0.0;
+        for line in self.0.windows(2) {
+            let displacement = |j: usize| line[1][j] - line[0][j];
+            let h = CAUTION * limits.quintic_duration((0..limits.dof()).map(displacement));
+            time += h;
+            knots.push(time);
+            coefficients.extend((0..limits.dof()).map(|j| quintic(line[0][j], displacement(j), h)));
+        }
+        Trajectory::new(limits.joint_names(), knots, coefficients)
+    }
+
+    /// At constant velocity along the lines, with smooth blends at the points; `shares[i]` in (0, 1] is how much of the
+    /// shorter line beside point i its blend may take. None where a joint has no velocity limit.
+    ///
+    /// In a blend the velocity goes from that of one line to that of the next with an acceleration of shape 6 s (1 - s):
+    /// continuous throughout, never beyond either velocity, and inside the triangle that the lines span.
+    pub(super) fn with_blends(&self, limits: &MotionLimits, shares: &[f64]) -> Option<Result<Trajectory>> {
+        let mut lines: Vec<f64> = self.0.windows(2).map(|line| line_duration(line, limits)).collect();
+        if lines.iter().any(|duration| !duration.is_finite() || *duration <= 0.0) {
+            return None;
+        }
+        let mut blends = vec![0.0; self.0.len()];
+        for _ in 0..ROUNDS {
+            let mut settled = true;
+            for (i, blend) in blends.iter_mut().enumerate() {
+                let (before, after) = (i.checked_sub(1), (i < lines.len()).then_some(i));
+                let beside = before.into_iter().chain(after);
+                let room = shares[i] * beside.clone().map(|line| lines[line]).fold(f64::INFINITY, f64::min);
+                let needed = (0..limits.dof()).map(|j| {
+                    let change = self.velocity(after, j, &lines) - self.velocity(before, j, &lines);
+                    BLEND_ACCELERATION * change.abs() / limits.acceleration[j]
+                });
+                let needed = CAUTION * needed.fold(0.0, f64::max);
+                // At rest on one side a blend costs time: there it is no longer than it must be.
+                let at_end = before.is_none() || after.is_none();
+                *blend = if at_end && needed > 0.0 { needed.min(room) } else { room };
+                if needed > room * (1.0 + 1e-9) {
+                    // Twice as slow takes a quarter of the acceleration.
+                    let slower = (needed / room).sqrt().min(2.0) * CAUTION;
+                    beside.for_each(|line| lines[line] *= slower);
+                    settled = false;
+                }
+            }
+            if settled {
+                return Some(self.blended(limits, &lines, &blends));
+            }
+        }
+        None
+    }
+
+    /// Velocity of joint `j` on a line, zero where there is none.
+    fn velocity(&self, line: Option<usize>, j: usize, durations: &[f64]) -> f64 {
+        line.map_or(0.0, |line| (self.0[line + 1][j] - self.0[line][j]) / durations[line])
+    }
+
+    fn blended(&self, limits: &MotionLimits, lines: &[f64], blends: &[f64]) -> Result<Trajectory> {
+        let n = limits.dof();
+        let (mut knots, mut coefficients) = (vec![0.0], vec![]);
+        let mut time = 0.0;
+        for (i, &blend) in blends.iter().enumerate() {
+            let (before, after) = (i.checked_sub(1), (i < lines.len()).then_some(i));
+            time += blend;
+            knots.push(time);
+            coefficients.extend((0..n).map(|j| {
+                let (from, to) = (self.velocity(before, j, lines), self.velocity(after, j, lines));
+                let change = to - from;
+                let begin = self.0[i][j] - 0.5 * blend * from;
+                polynomial([begin, from, 0.0, change / (blend * blend), -0.5 * change / blend.powi(3)])
+            }));
+            let Some(line) = after else { break };
+            let rest = lines[line] - 0.5 * (blend + blends[i + 1]);
+            if rest > 1e-9 * lines[line] {
+                time += rest;
+                knots.push(time);
+                coefficients.extend((0..n).map(|j| {
+                    let velocity = self.velocity(after, j, lines);
+                    polynomial([self.0[i][j] + 0.5 * blend * velocity, velocity])
+                }));
+            }
+        }
+        Trajectory::new(limits.joint_names(), knots, coefficients)
+    }
+}
+
+/// The shortest time (s) for a line at constant velocity.
+fn line_duration(line: &[Vec<f64>], limits: &MotionLimits) -> f64 {
+    let of_joint = |j: usize| {
+        let size = (line[1][j] - line[0][j]).abs();
+        if size == 0.0 { 0.0 } else { size / limits.velocity[j] }
+    };
+    let fastest = CAUTION * (0..limits.dof()).map(of_joint).fold(0.0, f64::max);
+    if fastest > 0.0 {
+        return fastest;
+    }
+    // Without velocity limits acceleration alone sets the pace.
+    0.5 * limits.quintic_duration((0..limits.dof()).map(|j| line[1][j] - line[0][j]))
+}
+
+/// From rest to rest over `displacement` in `h` (s).
+fn quintic(start: f64, displacement: f64, h: f64) -> Coefficients {
+    let over = |power: i32| displacement / h.powi(power);
+    polynomial([start, 0.0, 0.0, 10.0 * over(3), -15.0 * over(4), 6.0 * over(5)])
+}

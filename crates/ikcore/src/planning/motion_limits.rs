@@ -1,0 +1,177 @@
+//! Constant limits of each joint, as planners keep them.
+
+use std::f64::consts::PI;
+
+use super::plan::Violation;
+use crate::error::{Error, Result};
+use crate::limits::{Field, Limits, Profile};
+use crate::math::interval;
+use crate::robot::{JointKind, Robot};
+use crate::trajectory::Trajectory;
+
+/// Constant limits of each joint (n,); infinite where there is none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionLimits {
+    /// Lower position limits (rad, m).
+    pub lower: Vec<f64>,
+    /// Upper position limits (rad, m).
+    pub upper: Vec<f64>,
+    /// Velocity limits (rad/s, m/s).
+    pub velocity: Vec<f64>,
+    /// Acceleration limits (rad/s^2, m/s^2).
+    pub acceleration: Vec<f64>,
+    joints: Vec<(String, JointKind)>,
+}
+
+/// A limit counts as kept up to this share of it: the rounding of a polynomial's coefficients.
+const ROUNDING: f64 = 1e-9;
+
+impl MotionLimits {
+    /// The limits for `robot`, its own where None; `method` names the planner in errors.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`] for jerk limits and such that vary in time, [`Error::OutOfRange`] for a velocity or
+    /// acceleration limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`], [`Error::WrongLength`].
+    pub fn new(robot: &Robot, limits: Option<&Limits>, method: &str) -> Result<Self> {
+        let limits = limits.cloned().unwrap_or_else(|| Limits::of(robot));
+        limits.require_for(robot)?;
+        limits.require_none(&[Field::Jerk], method, "retime the plan with a jerk limit afterwards")?;
+        limits.validate(0.0, 0)?;
+        let constants = |field: Field| -> Result<Vec<f64>> {
+            let profiles = limits.field(field).unwrap_or_default();
+            profiles.iter().map(|profile| constant(profile, field, method)).collect()
+        };
+        let joints = robot.joints().iter().map(|joint| (joint.name.clone(), joint.kind)).collect();
+        let mut acceleration = constants(Field::Acceleration)?;
+        acceleration.resize(robot.dof(), f64::INFINITY);
+        let limits = Self {
+            lower: constants(Field::Lower)?,
+            upper: constants(Field::Upper)?,
+            velocity: constants(Field::Velocity)?,
+            acceleration,
+            joints,
+        };
+        limits.require_motion()?;
+        Ok(limits)
+    }
+
+    /// Number of joints.
+    pub fn dof(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Name of a joint.
+    pub fn joint_name(&self, joint: usize) -> &str {
+        &self.joints[joint].0
+    }
+
+    /// Names of all joints.
+    pub fn joint_names(&self) -> Vec<String> {
+        self.joints.iter().map(|(name, _)| name.clone()).collect()
+    }
+
+    /// Positions of a joint that a search may use (rad, m): its limits, half a turn to either side where there are none.
+    pub fn finite_range(&self, joint: usize) -> (f64, f64) {
+        interval::finite(self.lower[joint], self.upper[joint], PI)
+    }
+
+    /// Time (s) that the slowest joint takes through its range, at full speed or from rest to rest at full acceleration.
+    pub fn whole_range_time(&self) -> f64 {
+        let time = |j: usize| {
+            let (lower, upper) = self.finite_range(j);
+            let range = upper - lower;
+            (range / self.velocity[j]).max(2.0 * (range / self.acceleration[j]).sqrt())
+        };
+        (0..self.dof()).map(time).fold(0.0, f64::max)
+    }
+
+    /// `robot` with these position limits.
+    ///
+    /// # Errors
+    /// None in practice: the limits were checked.
+    pub fn applied_to(&self, robot: &Robot) -> Result<Robot> {
+        robot.with_limits(|j, joint| (joint.lower, joint.upper) = (self.lower[j], self.upper[j]))
+    }
+
+    /// Err unless `q` lies within the position limits; `what` names it.
+    ///
+    /// # Errors
+    /// [`Error::OutsideLimits`].
+    pub fn require_inside(&self, what: &str, q: &[f64]) -> Result<()> {
+        match (0..self.dof()).find(|j| !(self.lower[*j] <= q[*j] && q[*j] <= self.upper[*j])) {
+            None => Ok(()),
+            Some(j) => Err(Error::OutsideLimits {
+                what: what.into(),
+                joint: self.joint_name(j).into(),
+                value: q[j],
+                lower: self.lower[j],
+                upper: self.upper[j],
+            }),
+        }
+    }
+
+    /// Err for a joint without a velocity limit, which `method` needs.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`].
+    pub fn require_velocities(&self, method: &str) -> Result<()> {
+        match self.velocity.iter().position(|limit| limit.is_infinite()) {
+            None => Ok(()),
+            Some(j) => {
+                let what = format!("velocity limit of joint '{}'", self.joint_name(j));
+                let requirement = format!("finite for {method}: give limits=Limits(velocity=...)");
+                Err(Error::out_of_range(what, &requirement, self.velocity[j]))
+            }
+        }
+    }
+
+    /// What `trajectory` breaks, by the exact extremes of its polynomials.
+    pub fn violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
+        let (velocity, acceleration) = (trajectory.max_velocity(), trajectory.max_acceleration());
+        let mut found = vec![];
+        for (j, (lowest, highest)) in trajectory.position_range().into_iter().enumerate() {
+            let units = if self.joints[j].1.turns() { ["rad", "rad/s", "rad/s^2"] } else { ["m", "m/s", "m/s^2"] };
+            let checks = [
+                ("lowest position", lowest, self.lower[j], self.lower[j] - lowest, units[0]),
+                ("highest position", highest, self.upper[j], highest - self.upper[j], units[0]),
+                ("velocity", velocity[j], self.velocity[j], velocity[j] - self.velocity[j], units[1]),
+                (
+                    "acceleration",
+                    acceleration[j],
+                    self.acceleration[j],
+                    acceleration[j] - self.acceleration[j],
+                    units[2],
+                ),
+            ];
+            for (quantity, value, bound, excess, unit) in checks {
+                if excess > ROUNDING * bound.abs().max(1.0) {
+                    let what = format!("{quantity} of joint '{}'", self.joint_name(j));
+                    found.push(Violation { what, value, bound, unit });
+                }
+            }
+        }
+        found
+    }
+
+    /// Err for a joint that may not move at all.
+    fn require_motion(&self) -> Result<()> {
+        for (name, values) in [("velocity", &self.velocity), ("acceleration", &self.acceleration)] {
+            if let Some(j) = values.iter().position(|value| *value <= 0.0) {
+                let what = format!("{name} limit of joint '{}'", self.joint_name(j));
+                return Err(Error::out_of_range(what, "positive", values[j]));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn constant(profile: &Profile, field: Field, method: &str) -> Result<f64> {
+    match profile {
+        Profile::Constant(value) => Ok(*value),
+        _ => Err(Error::UnsupportedLimit {
+            field: format!("time-varying {field}"),
+            method: method.into(),
+            remedy: "give numbers".into(),
+        }),
+    }
+}

@@ -1,0 +1,94 @@
+//! What a planner hands back.
+
+use std::fmt;
+use std::time::Duration;
+
+use super::cost::Cost;
+use super::planar_arm::Orientations;
+use crate::solver::Status;
+use crate::trajectory::Trajectory;
+use crate::wording::number;
+
+/// A planned motion, and what became of the search for it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The motion: the best that keeps everything, else the least violating one.
+    pub trajectory: Trajectory,
+    /// What was minimised.
+    pub objective: Cost,
+    /// Its value on the trajectory (s, rad or m).
+    pub cost: f64,
+    /// How the search came to its best, evaluation by evaluation.
+    pub history: Vec<Improvement>,
+    /// Smallest distance (m) between robot and obstacles on the trajectory; None where there are no obstacles.
+    pub clearance: Option<f64>,
+    /// Largest distance (m) of the tip from the points of the path that it was to follow; None from end to end.
+    pub accuracy: Option<f64>,
+    /// The orientations that a planar arm was free to choose, at every point of the path, from the tip's link down; empty
+    /// where there is no such choice.
+    pub redundancy: Vec<Orientations>,
+    /// What the trajectory breaks; nothing for a plan that succeeded.
+    pub violations: Vec<Violation>,
+    /// [`Status::Solved`] for a trajectory that breaks nothing; else why the search ended.
+    pub status: Status,
+    /// Evaluations of the planner's cost.
+    pub evaluations: usize,
+    /// Time taken.
+    pub elapsed: Duration,
+}
+
+/// A step of a search to something better.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Improvement {
+    /// Evaluations up to then, that one included.
+    pub evaluations: usize,
+    /// The lowest value of the search's function from then on; with penalties as long as the plan breaks something.
+    pub cost: f64,
+}
+
+/// A bound that a trajectory breaks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Violation {
+    /// What breaks it, such as "velocity of joint 'elbow'".
+    pub what: String,
+    /// How far it goes, in `unit`.
+    pub value: f64,
+    /// How far it may go, in `unit`.
+    pub bound: f64,
+    /// "rad/s" and so on.
+    pub unit: &'static str,
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { what, value, bound, unit } = self;
+        write!(f, "{what} is {} {unit}, allowed {} {unit}", number(*value), number(*bound))
+    }
+}
+
+/// So many violations are written out in a message.
+const NAMED_IN_MESSAGE: usize = 3;
+
+impl Plan {
+    /// What happened, and what to try.
+    pub fn message(&self) -> String {
+        let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
+        match self.status {
+            Status::Solved => format!("planned with {cost}"),
+            Status::Interrupted if self.violations.is_empty() => {
+                format!("stopped with {cost}: {}", self.status.advice())
+            }
+            _ => format!("no plan keeps everything; the least violating one breaks: {}; {ADVICE}", self.broken()),
+        }
+    }
+
+    fn broken(&self) -> String {
+        let mut named: Vec<String> = self.violations.iter().take(NAMED_IN_MESSAGE).map(Violation::to_string).collect();
+        if let Some(more @ 1..) = self.violations.len().checked_sub(NAMED_IN_MESSAGE) {
+            named.push(format!("and {more} more"));
+        }
+        named.join("; ")
+    }
+}
+
+const ADVICE: &str = "try another seed, a larger budget in stop=Stop(...) or wider limits";

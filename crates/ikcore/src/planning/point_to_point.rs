@@ -1,0 +1,79 @@
+//! From one end to another.
+
+use std::str::FromStr;
+
+use super::cost::Cost;
+use super::end::End;
+use super::plan::Plan;
+use super::planar_arm::Elbow;
+use super::{minmax, tpbso};
+use crate::error::{Error, Result};
+use crate::limits::Limits;
+use crate::obstacle::Obstacle;
+use crate::robot::Robot;
+use crate::solver::{AnySolver, DerivativeFree, Monitor, Stop};
+
+/// How to plan from end to end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PointToPointMethod {
+    /// The ends' configurations with the smallest largest displacement, joined at the limits' pace.
+    #[default]
+    MinMax,
+    /// Polynomials through a via point, searched by a swarm (Wang et al. 2019).
+    Tpbso,
+}
+
+impl FromStr for PointToPointMethod {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "minmax" => Ok(Self::MinMax),
+            "tpbso" => Ok(Self::Tpbso),
+            _ => Err(Error::unknown_option("method", name, &["minmax", "tpbso"])),
+        }
+    }
+}
+
+/// How to plan from end to end, and what to keep.
+#[derive(Debug, Clone, Default)]
+pub struct PointToPointOptions {
+    /// The planner.
+    pub method: PointToPointMethod,
+    /// What to minimise.
+    pub objective: Cost,
+    /// What the robot may not touch; it may never touch itself if it has capsules.
+    pub obstacles: Vec<Obstacle>,
+    /// Distance to keep from obstacles and between links (m); None: 1 mm.
+    pub margin: Option<f64>,
+    /// Limits to keep; None keeps the robot's.
+    pub limits: Option<Limits>,
+    /// Which way a planar arm bends at its ends, where [`Tpbso`](PointToPointMethod::Tpbso) chooses its configuration.
+    pub elbows: [Elbow; 2],
+    /// What searches; None: the method's own.
+    pub solver: Option<AnySolver<DerivativeFree>>,
+    /// Budgets; None: the method's own.
+    pub stop: Option<Stop>,
+    /// Seed of the random draws: the same seed, the same bits.
+    pub seed: u64,
+}
+
+/// Plans a motion of `robot` from `start` to `end`, at rest at both.
+///
+/// # Errors
+/// Any [`Error`] for wrong input, [`Error::Unreachable`] for an end out of reach. That no plan keeps everything is a
+/// status, not an error.
+pub fn plan_point_to_point(
+    robot: &Robot,
+    start: &End,
+    end: &End,
+    options: &PointToPointOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
+    start.check("start", robot)?;
+    end.check("end", robot)?;
+    match options.method {
+        PointToPointMethod::MinMax => minmax::point_to_point(robot, start, end, options, monitor),
+        PointToPointMethod::Tpbso => tpbso::point_to_point(robot, start, end, options, monitor),
+    }
+}

@@ -1,0 +1,88 @@
+//! How fast the velocity limits let the path be followed.
+
+use super::grid::Segment;
+use super::joint_path::JointPath;
+use super::limits::TimingLimits;
+use super::shape::Shape;
+
+/// Stands for "as fast as you like", and leaves room to calculate.
+pub(super) const UNLIMITED: f64 = 1e100;
+
+/// From one grid point to the next the bound may grow by this factor at most. Where the path turns it has a pole, and a
+/// line from a finite to an infinite bound bounds nothing.
+const LARGEST_GROWTH: f64 = 4.0;
+
+/// Bounds on the squared path speed x = (ds/dt)^2 at the ends of all segments, such that a motion which keeps them, with
+/// x linear in s in between, keeps the velocity limits at every point: |dq/ds| sqrt(x) <= v.
+pub(super) fn ceilings(path: &JointPath, limits: &TimingLimits, segments: &[Segment], shape: &mut Shape) -> Vec<f64> {
+    let mut ceilings = at_grid_points(path, limits, segments, shape);
+    tame_poles(&mut ceilings);
+    let mut factor_before = f64::INFINITY;
+    let mut left = ceilings[0];
+    for (i, segment) in segments.iter().enumerate() {
+        shape.fill(path, segment);
+        let right = ceilings[i + 1];
+        let factor = chord_factor(shape, limits, left, right);
+        ceilings[i] = left * factor.min(factor_before);
+        (left, factor_before) = (right, factor);
+    }
+    ceilings[segments.len()] = left * factor_before;
+    ceilings
+}
+
+/// min over the joints of (v / q')^2; zero at corners.
+fn at_grid_points(path: &JointPath, limits: &TimingLimits, segments: &[Segment], shape: &mut Shape) -> Vec<f64> {
+    let mut ceilings = vec![UNLIMITED; segments.len() + 1];
+    let bound = |slope: &[f64]| {
+        let ratios = slope
+            .iter()
+            .zip(&limits.velocity)
+            .map(|(slope, limit)| if *slope == 0.0 { UNLIMITED } else { limit / slope });
+        ratios.map(|ratio| ratio * ratio).fold(UNLIMITED, f64::min)
+    };
+    for (i, segment) in segments.iter().enumerate() {
+        shape.fill(path, segment);
+        ceilings[i] = bound(&shape.slope[0]).min(ceilings[i]);
+        ceilings[i + 1] = bound(&shape.slope[2]);
+        if segment.piece > 0 && segment.from == 0.0 && path.has_corner_after(segment.piece - 1) {
+            ceilings[i] = 0.0;
+        }
+    }
+    ceilings
+}
+
+fn tame_poles(ceilings: &mut [f64]) {
+    for i in 1..ceilings.len() {
+        ceilings[i] = ceilings[i].min(growth(ceilings[i - 1]));
+    }
+    for i in (1..ceilings.len()).rev() {
+        ceilings[i - 1] = ceilings[i - 1].min(growth(ceilings[i]));
+    }
+}
+
+/// What may follow on a bound; a corner's zero says nothing about its neighbours.
+fn growth(bound: f64) -> f64 {
+    if bound == 0.0 { UNLIMITED } else { LARGEST_GROWTH * bound }
+}
+
+/// By how much the chord x(s) from `left` to `right` must be lowered to keep the velocity limits in between.
+///
+/// sqrt(x) lies below its tangent at any m^2, sqrt(x) <= (x / m + m) / 2, which is linear in s as x is; so the speed of a
+/// joint lies below a cubic, whose Bernstein coefficients are those of the product.
+fn chord_factor(shape: &Shape, limits: &TimingLimits, left: f64, right: f64) -> f64 {
+    let m = (0.5 * (left + right)).sqrt();
+    if m == 0.0 || m >= UNLIMITED.sqrt() {
+        return 1.0;
+    }
+    let [g0, g1] = [left, right].map(|x| 0.5 * (x / m + m));
+    let [d0, d1, d2] = &shape.slope;
+    let mut excess = 1.0_f64;
+    for (j, limit) in limits.velocity.iter().enumerate() {
+        let inner = [(2.0 * d1[j] * g0 + d0[j] * g1) / 3.0, (d2[j] * g0 + 2.0 * d1[j] * g1) / 3.0];
+        let largest = inner[0].abs().max(inner[1].abs()).max((d0[j] * g0).abs()).max((d2[j] * g1).abs());
+        if largest > excess * limit {
+            excess = largest / limit;
+        }
+    }
+    1.0 / (excess * excess)
+}

@@ -1,0 +1,218 @@
+//! Jerk limits, by smoothing the fastest motion in time.
+//!
+//! The path parameter of the fastest motion is averaged over a moving window, which leaves the joints on the path and
+//! makes their jerk finite: the wider the window the smaller. The whole is then played as fast as all limits allow, and
+//! the window is the one that makes this shortest. So every limit holds, but this is a smoothed optimum, not the optimum
+//! under jerk limits.
+
+use super::joint_path::JointPath;
+use super::limits::TimingLimits;
+use super::reachability::SpeedProfile;
+use crate::error::{Error, Result};
+use crate::trajectory::Trajectory;
+
+/// The window as a share of the duration, narrowest and widest.
+const WINDOWS: [f64; 2] = [1e-3, 2.0];
+/// Windows tried over that range, in geometric steps.
+const SCANNED: usize = 18;
+/// Cuts of the best one's neighbourhood after that; each leaves two thirds.
+const CUTS: usize = 10;
+/// Knots nearer to each other than this share of the duration are taken as one: a third derivative over less than that is
+/// rounding.
+const SMALLEST_SPAN: f64 = 3e-4;
+/// Knots at equal distances in time, besides those where something happens.
+const EVEN_KNOTS: usize = 500;
+/// Quintics that must be played slower than their knots show by more than this factor swing between them: nearer knots
+/// hold them, halved so often at the most.
+const FAITHFUL: f64 = 1.03;
+const HALVINGS: usize = 2;
+/// What the rounding of polynomials may take from a limit.
+const MARGIN: f64 = 1e-9;
+
+/// The motion of `profile` along `path`, smoothed until it keeps the jerk limits `jerk` too.
+///
+/// # Errors
+/// [`Error::UnsupportedLimit`] for a path whose curvature jumps.
+pub(super) fn smooth(
+    path: &JointPath,
+    profile: &SpeedProfile,
+    limits: &TimingLimits,
+    jerk: &[f64],
+) -> Result<Trajectory> {
+    if (1..path.pieces()).any(|piece| path.has_curvature_jump_after(piece - 1)) {
+        return Err(Error::UnsupportedLimit {
+            field: "jerk".into(),
+            method: "time_optimal on a polyline".into(),
+            remedy: "its curvature jumps; use a spline".into(),
+        });
+    }
+    let clock = Clock::new(path, profile);
+    let played = |window: f64| {
+        let smoothed = Smoothed { path, clock: &clock, window };
+        (clock.duration() + window) * smoothed.stretch(limits, jerk)
+    };
+    let window = shortest(played, clock.duration());
+    Smoothed { path, clock: &clock, window }.trajectory(limits, jerk)
+}
+
+/// The window for which `played` is shortest, near enough.
+fn shortest(played: impl Fn(f64) -> f64, duration: f64) -> f64 {
+    let [narrowest, widest] = WINDOWS.map(f64::ln);
+    let step = (widest - narrowest) / (SCANNED - 1) as f64;
+    let window = |logarithm: f64| duration * logarithm.exp();
+    let scanned = (0..SCANNED).map(|i| narrowest + i as f64 * step);
+    let best = scanned.min_by(|a, b| played(window(*a)).total_cmp(&played(window(*b)))).unwrap_or(widest);
+    let [mut lower, mut upper] = [best - step, best + step];
+    for _ in 0..CUTS {
+        let third = (upper - lower) / 3.0;
+        if played(window(lower + third)) < played(window(upper - third)) {
+            upper -= third;
+        } else {
+            lower += third;
+        }
+    }
+    window(0.5 * (lower + upper))
+}
+
+/// The path parameter s over time, with its integral; it rests before and after.
+struct Clock {
+    times: Vec<f64>,
+    /// s, its rate, half its acceleration, and the integral of s from the beginning: at the beginning of each segment,
+    /// and at the end of the last.
+    states: Vec<[f64; 4]>,
+}
+
+impl Clock {
+    fn new(path: &JointPath, profile: &SpeedProfile) -> Self {
+        let mut clock = Self { times: vec![0.0], states: Vec::with_capacity(profile.segments.len() + 1) };
+        let mut integral = 0.0;
+        for (i, (segment, span)) in profile.segments.iter().zip(profile.spans()).enumerate() {
+            let [x0, x1] = [profile.squared_speeds[i], profile.squared_speeds[i + 1]];
+            let s = path.breaks()[segment.piece] + segment.from;
+            let (v, w) = (x0.sqrt(), 0.25 * (x1 - x0) / segment.length);
+            clock.states.push([s, v, w, integral]);
+            clock.times.push(clock.times[i] + span);
+            integral += span * (s + span * (v / 2.0 + span * w / 3.0));
+        }
+        clock.states.push([path.breaks()[path.pieces()], 0.0, 0.0, integral]);
+        clock
+    }
+
+    fn duration(&self) -> f64 {
+        self.times[self.times.len() - 1]
+    }
+
+    /// The integral of s, s, its rate, and its acceleration at `t`, of the segment that begins there.
+    fn at(&self, t: f64) -> [f64; 4] {
+        if t < 0.0 {
+            let s = self.states[0][0];
+            return [s * t, s, 0.0, 0.0];
+        }
+        let i = self.times.partition_point(|time| *time <= t) - 1;
+        let [s, v, w, integral] = self.states[i];
+        let h = t - self.times[i];
+        [integral + h * (s + h * (v / 2.0 + h * w / 3.0)), s + h * (v + h * w), v + 2.0 * h * w, 2.0 * w]
+    }
+}
+
+/// The motion with its path parameter averaged over the last `window` seconds.
+struct Smoothed<'a> {
+    path: &'a JointPath,
+    clock: &'a Clock,
+    window: f64,
+}
+
+impl Smoothed<'_> {
+    /// s, its rate, acceleration and jerk at `t`.
+    fn parameter(&self, t: f64) -> [f64; 4] {
+        let [now, before] = [self.clock.at(t), self.clock.at(t - self.window)];
+        [0, 1, 2, 3].map(|i| (now[i] - before[i]) / self.window)
+    }
+
+    /// When the parameter's jerk changes, where the clock's acceleration does, now and a window ago; and times in between,
+    /// because one segment may pass much of the path.
+    fn knots(&self) -> Vec<f64> {
+        let times = &self.clock.times;
+        let evenly = (0..EVEN_KNOTS).map(|i| (self.clock.duration() + self.window) * i as f64 / EVEN_KNOTS as f64);
+        let late = times.iter().map(|time| time + self.window);
+        let mut knots: Vec<f64> = times.iter().copied().chain(late).chain(evenly).collect();
+        knots.sort_by(f64::total_cmp);
+        let end = knots[knots.len() - 1];
+        knots.dedup_by(|later, earlier| *later - *earlier < SMALLEST_SPAN * end);
+        // The end itself stays, whatever lies close before it.
+        knots.pop();
+        knots.push(end);
+        knots
+    }
+
+    /// How much slower the motion must be played to keep all limits, as far as its knots show; below 1 for faster.
+    fn stretch(&self, limits: &TimingLimits, jerk: &[f64]) -> f64 {
+        let mut largest = 0.0_f64;
+        for t in self.knots() {
+            let [s, rate, acceleration, change] = self.parameter(t);
+            let (piece, from) = self.path.locate(s);
+            for j in 0..jerk.len() {
+                let [_, slope, bend] = self.path.joint_at(piece, from, j);
+                let third = 6.0 * self.path.powers(piece)[3][j];
+                let derivatives = [
+                    slope * rate,
+                    bend * rate * rate + slope * acceleration,
+                    third * rate.powi(3) + 3.0 * bend * rate * acceleration + slope * change,
+                ];
+                largest = largest.max(scale(derivatives, [limits.velocity[j], limits.acceleration[j], jerk[j]]));
+            }
+        }
+        largest
+    }
+
+    /// The motion as quintics, as fast as their exact extremes allow.
+    fn trajectory(&self, limits: &TimingLimits, jerk: &[f64]) -> Result<Trajectory> {
+        let expected = self.stretch(limits, jerk);
+        let mut knots = self.knots();
+        for _ in 0..HALVINGS {
+            let (played, stretch) = self.interpolated(&knots, limits, jerk)?;
+            if stretch <= FAITHFUL * expected {
+                return played.slowed(stretch * (1.0 + MARGIN));
+            }
+            knots = with_midpoints(&knots);
+        }
+        let (played, stretch) = self.interpolated(&knots, limits, jerk)?;
+        played.slowed(stretch * (1.0 + MARGIN))
+    }
+
+    /// The quintics between `knots`, and how much slower they must be played.
+    fn interpolated(&self, knots: &[f64], limits: &TimingLimits, jerk: &[f64]) -> Result<(Trajectory, f64)> {
+        let n = jerk.len();
+        let [mut q, mut qd, mut qdd] = [(); 3].map(|()| Vec::with_capacity(knots.len() * n));
+        for t in knots {
+            let [s, rate, acceleration, _] = self.parameter(*t);
+            let (piece, from) = self.path.locate(s);
+            for j in 0..n {
+                let [position, slope, bend] = self.path.joint_at(piece, from, j);
+                q.push(position);
+                qd.push(slope * rate);
+                qdd.push(bend * rate * rate + slope * acceleration);
+            }
+        }
+        let played = Trajectory::from_samples(self.path.joints().to_vec(), knots, &q, Some(&qd), Some(&qdd))?;
+        let extremes = [played.max_velocity(), played.max_acceleration(), played.max_jerk()];
+        let of_joint = |j: usize| {
+            scale(extremes.each_ref().map(|of| of[j]), [limits.velocity[j], limits.acceleration[j], jerk[j]])
+        };
+        let stretch = (0..n).map(of_joint).fold(0.0, f64::max);
+        Ok((played, stretch))
+    }
+}
+
+fn with_midpoints(knots: &[f64]) -> Vec<f64> {
+    let mut finer: Vec<f64> = knots.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]).collect();
+    finer.extend(knots.last());
+    finer
+}
+
+/// How much slower a motion with these derivatives must be played to keep their limits: the k-th falls with the k-th
+/// power of time.
+fn scale([velocity, acceleration, jerk]: [f64; 3], [v, a, j]: [f64; 3]) -> f64 {
+    let ratio = |value: f64, limit: f64| if value == 0.0 { 0.0 } else { value.abs() / limit };
+    ratio(velocity, v).max(ratio(acceleration, a).sqrt()).max(ratio(jerk, j).cbrt())
+}

@@ -1,0 +1,174 @@
+//! Where the joints go, without when: cubics in a path parameter.
+
+use crate::error::{Error, Result, require_finite};
+use crate::math::polynomial::{derivative, roots};
+
+/// Powers of a cubic.
+const POWERS: usize = 4;
+
+/// How far a derivative may differ on both sides of a break before it counts as a jump (relative to its size there).
+const JUMP_TOLERANCE: f64 = 1e-9;
+
+/// Slope, relative to the path's largest, below which the path counts as having no direction: rounding leaves that much.
+const VANISHING: f64 = 1e-12;
+
+/// A continuous path of all joints: piece by piece a cubic q(s) in the path parameter s.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointPath {
+    joints: Vec<String>,
+    /// Where the pieces begin and the last one ends.
+    breaks: Vec<f64>,
+    /// Of s since the piece began: piece by piece, within it power by power, within that joint by joint, because a grid
+    /// point asks for one power of all joints.
+    coefficients: Vec<f64>,
+}
+
+impl JointPath {
+    /// Pieces that are known to be in order.
+    pub(super) fn from_parts(joints: Vec<String>, breaks: Vec<f64>, coefficients: Vec<f64>) -> Self {
+        Self { joints, breaks, coefficients }
+    }
+
+    /// Names of the joints.
+    pub fn joints(&self) -> &[String] {
+        &self.joints
+    }
+
+    /// The path parameter where the pieces begin and the last one ends.
+    pub fn breaks(&self) -> &[f64] {
+        &self.breaks
+    }
+
+    /// Number of pieces.
+    pub fn pieces(&self) -> usize {
+        self.breaks.len() - 1
+    }
+
+    /// How far the parameter goes in a piece.
+    pub fn length(&self, piece: usize) -> f64 {
+        self.breaks[piece + 1] - self.breaks[piece]
+    }
+
+    /// Coefficients of all joints in a piece: those of 1, s, s^2 and s^3.
+    #[inline]
+    pub(super) fn powers(&self, piece: usize) -> [&[f64]; POWERS] {
+        let n = self.joints.len();
+        let of_piece = &self.coefficients[piece * POWERS * n..(piece + 1) * POWERS * n];
+        [0, 1, 2, 3].map(|power| &of_piece[power * n..(power + 1) * n])
+    }
+
+    /// Position and its first and second derivative by the path parameter of one joint, `from` after a piece began.
+    pub(super) fn joint_at(&self, piece: usize, from: f64, joint: usize) -> [f64; 3] {
+        let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);
+        [
+            c0 + from * (c1 + from * (c2 + from * c3)),
+            c1 + from * (2.0 * c2 + from * 3.0 * c3),
+            2.0 * c2 + 6.0 * from * c3,
+        ]
+    }
+
+    /// Writes the position of all joints (rad or m) at the path parameter `s`, clamped to the path.
+    pub fn position(&self, s: f64, q: &mut [f64]) {
+        let (piece, from) = self.locate(s);
+        for (joint, q) in q.iter_mut().enumerate() {
+            *q = self.joint_at(piece, from, joint)[0];
+        }
+    }
+
+    /// The piece of the path parameter `s`, clamped to the path, and how far it lies in it.
+    pub(super) fn locate(&self, s: f64) -> (usize, f64) {
+        let piece = self.breaks.partition_point(|start| *start <= s).saturating_sub(1).min(self.pieces() - 1);
+        (piece, s.clamp(self.breaks[0], self.breaks[self.pieces()]) - self.breaks[piece])
+    }
+
+    /// Euclidean length of dq/ds where a piece begins, or where it ends.
+    pub(super) fn slope(&self, piece: usize, at_end: bool) -> f64 {
+        let from = if at_end { self.length(piece) } else { 0.0 };
+        (0..self.joints.len()).map(|joint| self.joint_at(piece, from, joint)[1].powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Whether the path stands at its beginning, or at its end, however fast the parameter goes: a clamped spline does.
+    pub(super) fn has_no_direction(&self, at_end: bool) -> bool {
+        let piece = if at_end { self.pieces() - 1 } else { 0 };
+        let chord = (0..self.joints.len())
+            .map(|joint| self.joint_at(piece, self.length(piece), joint)[0] - self.joint_at(piece, 0.0, joint)[0])
+            .fold(0.0, |sum: f64, d| sum + d * d)
+            .sqrt();
+        self.slope(piece, at_end) <= VANISHING * chord / self.length(piece)
+    }
+
+    /// Whether the direction jumps between this piece and the next: only standing still passes there.
+    pub(super) fn has_corner_after(&self, piece: usize) -> bool {
+        self.jumps_after(piece, 1)
+    }
+
+    /// Whether the second derivative jumps there: the jerk would be infinite.
+    pub(super) fn has_curvature_jump_after(&self, piece: usize) -> bool {
+        self.has_corner_after(piece) || self.jumps_after(piece, 2)
+    }
+
+    fn jumps_after(&self, piece: usize, order: usize) -> bool {
+        let (end, mut jump, mut size) = (self.length(piece), 0.0_f64, 0.0_f64);
+        for joint in 0..self.joints.len() {
+            let [before, after] = [self.joint_at(piece, end, joint), self.joint_at(piece + 1, 0.0, joint)];
+            jump = jump.max((after[order] - before[order]).abs());
+            // What rounding leaves of the second derivative is in proportion to the first.
+            let scale = |at: &[f64; 3]| at[1].abs() / end.powi(order as i32 - 1) + at[order].abs();
+            size = size.max(scale(&before)).max(scale(&after));
+        }
+        jump > JUMP_TOLERANCE * size
+    }
+
+    /// By how much a joint leaves this range (rad, m), summed over the pieces: by their Bezier points, which hold the curve
+    /// between them and are quicker to find than its extremes.
+    pub(in crate::planning) fn excess(&self, joint: usize, lower: f64, upper: f64) -> f64 {
+        let of_piece = |piece: usize| {
+            let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);
+            let h = self.length(piece);
+            let (first, second) = (c0 + h * c1 / 3.0, c0 + h * (2.0 * c1 + h * c2) / 3.0);
+            let end = c0 + h * (c1 + h * (c2 + h * c3));
+            let beyond = |q: f64| (lower - q).max(q - upper).max(0.0);
+            beyond(first).max(beyond(second)).max(beyond(end))
+        };
+        (0..self.pieces()).map(of_piece).sum()
+    }
+
+    /// The exact smallest and largest position of a joint (rad or m).
+    pub fn range(&self, joint: usize) -> [f64; 2] {
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for piece in 0..self.pieces() {
+            let cubic = self.powers(piece).map(|of_power| of_power[joint]);
+            let end = self.length(piece);
+            for s in roots(&derivative(&cubic), 0.0, end).into_iter().chain([0.0, end]) {
+                let q = self.joint_at(piece, s, joint)[0];
+                range = [range[0].min(q), range[1].max(q)];
+            }
+        }
+        range
+    }
+}
+
+/// Err unless these are waypoints that a path can join: at least two rows of one finite position a joint, no row like
+/// the one before. Returns their number.
+pub(super) fn check_waypoints(joints: &[String], waypoints: &[f64]) -> Result<usize> {
+    let n = joints.len();
+    if n == 0 {
+        return Err(Error::InvalidPath { problem: "it needs at least 1 joint".into() });
+    }
+    if !waypoints.len().is_multiple_of(n) {
+        let expected = format!("rows of {n} joints");
+        return Err(Error::WrongLength { what: "waypoints".into(), expected, got: waypoints.len() });
+    }
+    let rows = waypoints.len() / n;
+    if rows < 2 {
+        return Err(Error::WrongLength { what: "waypoints".into(), expected: "at least 2".into(), got: rows });
+    }
+    require_finite("waypoints", waypoints, |i| format!("joint '{}' of row {}", joints[i % n], i / n))?;
+    match (1..rows).find(|row| waypoints[(row - 1) * n..row * n] == waypoints[row * n..(row + 1) * n]) {
+        None => Ok(rows),
+        Some(row) => {
+            let problem = format!("waypoint {row} is the same as waypoint {}: leave one of them out", row - 1);
+            Err(Error::InvalidPath { problem })
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! The limits that a timing keeps.
+
+use super::joint_path::JointPath;
+use crate::error::{Error, Result};
+use crate::limits::{Field, Limits, Profile};
+
+/// Constant limits of each joint (n,). Only positions are a matter of the path alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimingLimits {
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    /// Velocity (rad/s, m/s); infinite where there is no limit.
+    pub(super) velocity: Vec<f64>,
+    /// Acceleration (rad/s^2, m/s^2), finite.
+    pub(super) acceleration: Vec<f64>,
+    /// Jerk (rad/s^3, m/s^3); None where no joint has a limit.
+    pub(super) jerk: Option<Vec<f64>>,
+}
+
+impl TimingLimits {
+    /// The constant ones among `limits`; `method` is named in errors.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`] for limits that vary in time, and for joints without an acceleration limit;
+    /// [`Error::NegativeLimit`], [`Error::EmptyRange`].
+    pub fn new(limits: &Limits, method: &str) -> Result<Self> {
+        limits.validate(0.0, 0)?;
+        let constants = |field: Field| constants(limits, field, method);
+        let acceleration = constants(Field::Acceleration)?;
+        let unlimited = acceleration.iter().position(|limit| *limit == f64::INFINITY);
+        if let Some(joint) = if acceleration.is_empty() { Some(0) } else { unlimited } {
+            return Err(Error::UnsupportedLimit {
+                field: "infinite acceleration".into(),
+                method: method.into(),
+                remedy: format!(
+                    "joint '{}' could start at any speed; give acceleration limits",
+                    limits.joint_name(joint)
+                ),
+            });
+        }
+        let jerk = constants(Field::Jerk)?;
+        Ok(Self {
+            lower: constants(Field::Lower)?,
+            upper: constants(Field::Upper)?,
+            velocity: constants(Field::Velocity)?,
+            acceleration,
+            jerk: jerk.iter().any(|limit| limit.is_finite()).then_some(jerk),
+        })
+    }
+
+    /// Err unless these are limits for the joints of `path`, which lies within the position limits, and joints that the
+    /// path moves may move.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::Infeasible`] names the joint.
+    pub(super) fn require_for(&self, path: &JointPath) -> Result<()> {
+        let joints = path.joints();
+        if self.velocity.len() != joints.len() {
+            let expected = format!("{} joints, as the path has", joints.len());
+            return Err(Error::WrongLength { what: "limits".into(), expected, got: self.velocity.len() });
+        }
+        for (j, joint) in joints.iter().enumerate() {
+            let [lowest, highest] = path.range(j);
+            for (place, outside, bound, limit) in [
+                (lowest, lowest < self.lower[j], self.lower[j], "lower"),
+                (highest, highest > self.upper[j], self.upper[j], "upper"),
+            ] {
+                if outside {
+                    let problem =
+                        format!("the path takes joint '{joint}' to {place}, beyond its {limit} limit {bound}");
+                    return Err(Error::Infeasible { problem });
+                }
+            }
+            let fields = [
+                ("velocity", Some(&self.velocity)),
+                ("acceleration", Some(&self.acceleration)),
+                ("jerk", self.jerk.as_ref()),
+            ];
+            for (field, limits) in fields {
+                if limits.is_some_and(|limits| limits[j] == 0.0) && highest > lowest {
+                    let moves = format!("the path moves joint '{joint}' from {lowest} to {highest}");
+                    return Err(Error::Infeasible { problem: format!("{moves}, but its {field} limit is 0") });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The constants of a field; none where there is no such limit.
+fn constants(limits: &Limits, field: Field, method: &str) -> Result<Vec<f64>> {
+    let profiles = limits.field(field).unwrap_or_default();
+    let constant = |profile: &Profile| match profile {
+        Profile::Constant(value) => Ok(*value),
+        _ => Err(Error::UnsupportedLimit {
+            field: format!("time-varying {field}"),
+            method: method.into(),
+            remedy: "when a point of the path is passed is what it looks for; give numbers".into(),
+        }),
+    };
+    profiles.iter().map(constant).collect()
+}

@@ -1,0 +1,171 @@
+//! The fastest speed profile along a path, by reachability analysis: Pham and Pham, "A new approach to time-optimal path
+//! parameterization based on reachability analysis", IEEE Transactions on Robotics 34 (2018), Algorithm 1.
+//!
+//! Their linear programs have two variables and strips for constraints. Here each is solved by Newton's method on the
+//! width of the interval that the strips leave for u, which is concave and piecewise linear in x: it converges from
+//! outside in a few steps, exactly.
+
+use super::ceiling::{UNLIMITED, ceilings};
+use super::grid::Segment;
+use super::joint_path::JointPath;
+use super::limits::TimingLimits;
+use super::shape::Shape;
+use super::strips::{Line, Strips};
+use crate::error::{Error, Result};
+
+/// The squared path speeds that are wanted at an end: from - to.
+pub(super) type Range = [f64; 2];
+
+/// x = (ds/dt)^2 at the ends of all segments, linear in s in between: constant acceleration along the path.
+#[derive(Debug)]
+pub(super) struct SpeedProfile {
+    pub segments: Vec<Segment>,
+    pub squared_speeds: Vec<f64>,
+}
+
+impl SpeedProfile {
+    /// The fastest profile on these `segments` that begins and ends in these ranges.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] where the speeds at the ends cannot be had.
+    pub fn fastest(
+        path: &JointPath,
+        limits: &TimingLimits,
+        segments: Vec<Segment>,
+        [start, end]: [Range; 2],
+    ) -> Result<Self> {
+        let mut shape = Shape::new(path.joints().len());
+        let mut strips = Strips::new(path.joints().len());
+        let ceilings = ceilings(path, limits, &segments, &mut shape);
+        let mut pass = Pass { path, limits, segments: &segments, shape: &mut shape, strips: &mut strips };
+        let controllable = pass.backward(ceilings, end)?;
+        let squared_speeds = pass.forward(&controllable, start)?;
+        Ok(Self { segments, squared_speeds })
+    }
+
+    /// How long each segment takes (s): its length over its mean speed, the speed being linear in time.
+    pub fn spans(&self) -> impl Iterator<Item = f64> + '_ {
+        let speeds = self.squared_speeds.windows(2).map(|pair| pair[0].sqrt() + pair[1].sqrt());
+        self.segments.iter().zip(speeds).map(|(segment, speeds)| 2.0 * segment.length / speeds)
+    }
+
+    /// How long the motion takes (s).
+    pub fn duration(&self) -> f64 {
+        self.spans().sum()
+    }
+}
+
+struct Pass<'a> {
+    path: &'a JointPath,
+    limits: &'a TimingLimits,
+    segments: &'a [Segment],
+    shape: &'a mut Shape,
+    strips: &'a mut Strips,
+}
+
+impl Pass<'_> {
+    fn enter(&mut self, i: usize) -> Segment {
+        let segment = self.segments[i];
+        self.shape.fill(self.path, &segment);
+        self.strips.fill(self.shape, segment.length, self.limits);
+        segment
+    }
+
+    /// The controllable sets: at each grid point the range of x from which the end can be reached.
+    fn backward(&mut self, ceilings: Vec<f64>, end: Range) -> Result<Vec<Range>> {
+        let last = self.segments.len();
+        let mut sets: Vec<Range> = ceilings.into_iter().map(|ceiling| [0.0, ceiling]).collect();
+        sets[last] = [end[0], end[1].min(sets[last][1])];
+        if sets[last][0] > sets[last][1] {
+            return Err(too_fast("end"));
+        }
+        for i in (0..last).rev() {
+            let segment = self.enter(i);
+            let [slowest, ceiling] = sets[i + 1];
+            let launch = LAUNCH_SHARE * (2.0 * segment.length * self.strips.launch).min(ceiling);
+            sets[i + 1][0] = slowest.max(launch);
+            let next = Coupling::new(sets[i + 1], segment.length);
+            let ceiling = sets[i][1].min(self.strips.ceiling);
+            // Whoever stands here can launch.
+            let floor = if next.set[0] <= launch { Some(0.0) } else { self.boundary(0.0, &next) };
+            sets[i] = match (floor, self.boundary(ceiling, &next)) {
+                (Some(floor), Some(ceiling)) if floor <= ceiling => [floor, ceiling],
+                _ => return Err(too_fast("end")),
+            };
+        }
+        Ok(sets)
+    }
+
+    /// The fastest way: at each grid point the largest acceleration that stays controllable.
+    fn forward(&mut self, sets: &[Range], start: Range) -> Result<Vec<f64>> {
+        let mut x = start[1].min(sets[0][1]);
+        if x < start[0] {
+            return Err(too_fast("start"));
+        }
+        if x < sets[0][0] {
+            return Err(too_fast("end"));
+        }
+        let mut xs = Vec::with_capacity(sets.len());
+        xs.push(x);
+        for i in 0..self.segments.len() {
+            let segment = self.enter(i);
+            let u = self.strips.upper(x).at(x);
+            let [floor, ceiling] = sets[i + 1];
+            x = (x + 2.0 * segment.length * u).clamp(floor, ceiling);
+            xs.push(x);
+        }
+        Ok(xs)
+    }
+
+    /// The nearest x to `from` that leaves an acceleration; None where there is none on that side.
+    fn boundary(&self, from: f64, next: &Coupling) -> Option<f64> {
+        let mut x = from.min(UNLIMITED);
+        loop {
+            let [upper, lower] = next.tighten(self.strips.tightest(x), x);
+            if lower.at(x) <= upper.at(x) {
+                return Some(x);
+            }
+            // Where the two lines cross: further out nothing is feasible.
+            let crossing = (upper.offset - lower.offset) / (upper.slope - lower.slope);
+            let inward = if from > 0.0 { crossing < x } else { crossing > x };
+            if !inward || crossing < 0.0 {
+                let narrow = lower.at(x) - upper.at(x) <= ROUNDING * (lower.offset.abs() + upper.offset.abs());
+                return narrow.then_some(x);
+            }
+            x = crossing;
+        }
+    }
+}
+
+/// Two grid points at rest in a row would never be left. So each is passed with at least this share of the x that a
+/// launch from the one before would give; on a fine grid that is as good as nothing.
+const LAUNCH_SHARE: f64 = 0.1;
+
+/// Lines that meet to so many digits of their offsets do meet.
+const ROUNDING: f64 = 1e-12;
+
+/// x at the next grid point, x + 2 u length, must be in its set.
+struct Coupling {
+    set: Range,
+    upper: Line,
+    lower: Line,
+}
+
+impl Coupling {
+    fn new(set: Range, length: f64) -> Self {
+        let slope = 0.5 / length;
+        let [lower, upper] = set.map(|x| Line { offset: x * slope, slope });
+        Self { set, upper, lower }
+    }
+
+    fn tighten(&self, [upper, lower]: [Line; 2], x: f64) -> [Line; 2] {
+        [
+            if self.upper.at(x) < upper.at(x) { self.upper } else { upper },
+            if self.lower.at(x) > lower.at(x) { self.lower } else { lower },
+        ]
+    }
+}
+
+fn too_fast(end: &str) -> Error {
+    Error::Infeasible { problem: format!("the speed at the {end} of the path is beyond what the limits allow there") }
+}

@@ -1,0 +1,166 @@
+//! Trajectory planning by beetle swarm optimisation (TPBSO): Wang et al. (2019), "A New Trajectory-Planning Beetle Swarm
+//! Optimization Algorithm for Trajectory Planning of Robot Manipulators".
+//!
+//! | file | paper |
+//! |---|---|
+//! | [`rest_segment`] | the segments of eq. (3)-(6), their extremes in closed form |
+//! | [`placement`] | the redundancy at the ends; any robot by inverse kinematics |
+//! | [`via_point`] | the decision vector and cost from end to end, eq. (8)-(18) |
+//! | [`surroundings`] | obstacles, eq. (14) and (18) |
+//! | [`redundancy`] | the free orientations along a path, eq. (7) |
+//! | [`path_cost`] | the decision vector and cost along a path, eq. (19)-(25) |
+//! | [`search`] | any solver on such a cost |
+
+mod path_cost;
+mod placement;
+mod redundancy;
+mod rest_segment;
+pub(super) mod search;
+mod surroundings;
+mod via_point;
+mod weights;
+
+use super::planar_arm::{Elbow, PlanarArm};
+use super::{AlongPathOptions, Cost, End, MotionLimits, Plan, PointToPointOptions, Violation};
+use crate::error::{Error, Result, require_positive};
+use crate::path::Reference;
+use crate::robot::Robot;
+use crate::solver::Monitor;
+use crate::solver::stop::Stopwatch;
+use path_cost::PathCost;
+use placement::Placement;
+use redundancy::Redundancy;
+use search::Search;
+use surroundings::Surroundings;
+use via_point::ViaPointCost;
+
+/// Plans from end to end.
+pub(super) fn point_to_point(
+    robot: &Robot,
+    start: &End,
+    end: &End,
+    options: &PointToPointOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
+    let stopwatch = Stopwatch::start();
+    let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    limits.require_velocities(METHOD)?;
+    let body = surroundings::body(robot, &options.obstacles)?;
+    let lines = robot.capsules().is_empty();
+    let surroundings = body.as_ref().map(|body| Surroundings::new(body, options, lines)).transpose()?;
+    let mut place = |what: &str, end: &End, elbow: Elbow| {
+        if let (End::Configuration(q), Some(surroundings)) = (end, &surroundings) {
+            surroundings.refuse_collision(what, q)?;
+        }
+        Placement::new(what, end, robot, &limits, elbow, options.seed, monitor)
+    };
+    let [start_elbow, end_elbow] = options.elbows;
+    let (start, end) = (place("start", start, start_elbow)?, place("end", end, end_elbow)?);
+    let mut cost = ViaPointCost::new(robot, &limits, [start, end], options.objective, surroundings.as_ref());
+    let search = Search { solver: options.solver.as_ref(), stop: options.stop, seed: options.seed };
+    let bounds = cost.bounds();
+    let found = search.run(&mut cost, &bounds, monitor)?;
+    let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration()))?;
+    let mut violations = limits.violations(&trajectory);
+    let nearest = surroundings.and_then(|surroundings| surroundings.clearance(&trajectory));
+    let clearance = nearest.map(|(distance, violation)| {
+        violations.extend(violation);
+        distance
+    });
+    let status = found.status(violations.is_empty());
+    Ok(Plan {
+        objective: options.objective,
+        cost: options.objective.of(robot, &trajectory),
+        accuracy: None,
+        redundancy: vec![],
+        history: found.history,
+        clearance,
+        status,
+        violations,
+        evaluations: found.evaluations,
+        elapsed: stopwatch.elapsed(),
+        trajectory,
+    })
+}
+
+const METHOD: &str = "method=\"tpbso\"";
+
+/// All that a search met had no inverse kinematics: of thousands of vectors that means a budget of a few.
+fn no_configuration() -> Error {
+    let problem = "the search met no configuration that reaches it: raise the budget in stop=Stop(...)".into();
+    Error::Unreachable { what: "start or end".into(), problem }
+}
+
+/// Plans along a path, for planar arms.
+pub(super) fn along_path(
+    robot: &Robot,
+    path: &Reference,
+    options: &AlongPathOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
+    let stopwatch = Stopwatch::start();
+    require_path_cost(options)?;
+    let arm = PlanarArm::of(robot).ok_or_else(|| not_planar(robot))?;
+    let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    limits.require_velocities(METHOD)?;
+    if let Some(q) = &options.start {
+        robot.check("start_q", q)?;
+        limits.require_inside("start_q", q)?;
+    }
+    let elbow = options.start.as_ref().map_or(options.elbow, |q| arm.elbow(q));
+    let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * extent(path));
+    require_positive("accuracy", accuracy)?;
+    let redundancy = Redundancy::new(arm, path, elbow)?;
+    let mut cost = PathCost::new(robot, &limits, redundancy, options.objective, accuracy, options.start.as_deref());
+    let search = Search { solver: options.solver.as_ref(), stop: options.stop, seed: options.seed };
+    let bounds = cost.bounds()?;
+    let found = search.run(&mut cost, &bounds, monitor)?;
+    let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration()))?;
+    let mut violations = limits.violations(&trajectory);
+    violations.extend(cost.distances().filter(|(_, distance)| *distance > accuracy).map(|(i, distance)| Violation {
+        what: format!("distance of the tip from point {i} of the path"),
+        value: distance,
+        bound: accuracy,
+        unit: "m",
+    }));
+    Ok(Plan {
+        objective: options.objective,
+        cost: options.objective.of(robot, &trajectory),
+        clearance: None,
+        accuracy: Some(cost.distances().map(|(_, distance)| distance).fold(0.0, f64::max)),
+        redundancy: cost.orientations(&found.x),
+        status: found.status(violations.is_empty()),
+        violations,
+        history: found.history,
+        evaluations: found.evaluations,
+        elapsed: stopwatch.elapsed(),
+        trajectory,
+    })
+}
+
+/// Allowed distance from the points that the splines do not pass, as a share of the path's extent: what the published
+/// planner needs for a pentagram with every second of 50 points.
+const ACCURACY: f64 = 0.04;
+
+/// The longest edge of the box that holds the path (m).
+pub(super) fn extent(path: &Reference) -> f64 {
+    let along = |k: usize| {
+        let values = (0..path.len()).map(move |i| path.position(i)[k]);
+        values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
+    };
+    (0..3).map(along).fold(0.0, f64::max)
+}
+
+fn require_path_cost(options: &AlongPathOptions) -> Result<()> {
+    match options.objective {
+        Cost::TipTravel => {
+            Err(Error::unknown_option("objective along a path", "tip_travel", &["time", "joint_travel"]))
+        }
+        Cost::Time | Cost::JointTravel => Ok(()),
+    }
+}
+
+fn not_planar(robot: &Robot) -> Error {
+    let problem = format!("{METHOD} plans along paths for planar arms alone: use method=\"timed\"");
+    Error::InvalidRobot { robot: robot.name().into(), problem }
+}

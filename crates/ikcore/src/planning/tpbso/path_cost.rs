@@ -1,0 +1,223 @@
+//! Along a path in uniform time: the decision vector and cost of Wang et al. (2019), eq. (7) and (19)-(25).
+
+use super::redundancy::{NODES, Redundancy, nearest_turn};
+use super::weights::{BROKEN_LIMIT, NO_CONFIGURATION};
+use crate::error::Result;
+use crate::math::natural_spline::{NaturalSpline, Piece};
+use crate::objective::{Bounds, Objective, Score};
+use crate::planning::cost::Cost;
+use crate::planning::motion_limits::MotionLimits;
+use crate::planning::planar_arm::Orientations;
+use crate::robot::Robot;
+use crate::trajectory::{Trajectory, polynomial};
+
+/// The spline goes through every second point; those between measure its accuracy.
+const STRIDE: usize = 2;
+
+/// The motion may last from this share of the slowest joint's way through its range ...
+const SHORTEST: f64 = 0.025;
+
+/// ... to so many times that.
+const LONGEST: f64 = 5.0;
+
+/// The cost F of eq. (25), as a function of \[x_phi (5 a free link), T\].
+#[derive(Debug, Clone)]
+pub struct PathCost<'a> {
+    robot: &'a Robot,
+    limits: &'a MotionLimits,
+    redundancy: Redundancy,
+    spline: NaturalSpline,
+    cost: Cost,
+    accuracy: f64,
+    scale: f64,
+    start: Option<&'a [f64]>,
+    motion: Motion,
+    /// Of the splines through x_phi.
+    node_bends: Vec<f64>,
+}
+
+/// Splines of all joints over the path from 0 to 1: joint by joint, knot by knot.
+#[derive(Debug, Clone)]
+struct Motion {
+    values: Vec<f64>,
+    bends: Vec<f64>,
+}
+
+impl<'a> PathCost<'a> {
+    /// The cost of motions of `robot`, a planar arm, along `redundancy`'s path, with the tip within `accuracy` (m) of the
+    /// points that its splines do not pass.
+    pub fn new(
+        robot: &'a Robot,
+        limits: &'a MotionLimits,
+        redundancy: Redundancy,
+        cost: Cost,
+        accuracy: f64,
+        start: Option<&'a [f64]>,
+    ) -> Self {
+        let last = redundancy.points() - 1;
+        let passed = (0..last).step_by(STRIDE).chain([last]);
+        let spline = NaturalSpline::over(passed.map(|i| i as f64 / last as f64).collect());
+        let size = robot.dof() * spline.knots().len();
+        Self {
+            scale: cost.scale(robot, limits),
+            motion: Motion { values: vec![0.0; size], bends: vec![0.0; size] },
+            node_bends: vec![0.0; NODES * redundancy.links()],
+            robot,
+            limits,
+            redundancy,
+            spline,
+            cost,
+            accuracy,
+            start,
+        }
+    }
+
+    /// What the decision vector may be. A given start fixes the first node of every free link.
+    pub fn bounds(&self) -> Result<Bounds> {
+        let whole_range = self.limits.whole_range_time();
+        let mut ranges = vec![(0.0, 1.0); NODES * self.redundancy.links()];
+        if let Some(q) = self.start {
+            for (nodes, share) in ranges.chunks_exact_mut(NODES).zip(self.redundancy.shares_of(q)?) {
+                nodes[0] = (share, share);
+            }
+        }
+        ranges.push((SHORTEST * whole_range, LONGEST * whole_range));
+        Ok(Bounds::from_ranges(ranges.into_iter()))
+    }
+
+    /// The motion of decision vector `x`; None where a point has no configuration.
+    pub fn trajectory(&mut self, x: &[f64]) -> Option<Result<Trajectory>> {
+        let (nodes, duration) = (&x[..x.len() - 1], x[x.len() - 1]);
+        self.place_knots(nodes).ok()?;
+        let knots: Vec<f64> = self.spline.knots().iter().map(|u| u * duration).collect();
+        let mut coefficients = vec![];
+        for i in 0..knots.len() - 1 {
+            coefficients.extend((0..self.robot.dof()).map(|j| {
+                let Piece { value, slope, bend, rate, .. } = self.piece(j, i);
+                let [first, second, third] = [duration, duration.powi(2), duration.powi(3)];
+                polynomial([value, slope / first, bend / (2.0 * second), rate / (6.0 * third)])
+            }));
+        }
+        Some(Trajectory::new(self.limits.joint_names(), knots, coefficients))
+    }
+
+    /// The free orientations of decision vector `x` at every point of the path; those without are left out.
+    pub fn orientations(&mut self, x: &[f64]) -> Vec<Orientations> {
+        let nodes = &x[..x.len() - 1];
+        self.redundancy.bends(nodes, &mut self.node_bends);
+        let mut q = vec![0.0; self.robot.dof()];
+        let points = 0..self.redundancy.points();
+        points.filter_map(|i| self.redundancy.configuration(i, nodes, &self.node_bends, &mut q).ok()).collect()
+    }
+
+    /// Distances (m) of the tip from the points that the splines do not pass, in the motion of the last
+    /// [`trajectory`](Self::trajectory): the skipped point of each stride.
+    pub fn distances(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let last = self.redundancy.points() - 1;
+        (0..=last).filter(move |i| i % STRIDE != 0 && *i != last).map(move |i| (i, self.distance(i)))
+    }
+
+    /// Puts the arm at every knot, each joint by whole turns nearest to the knot before, and runs splines through.
+    ///
+    /// # Errors
+    /// How much the cosines of eq. (1) exceed 1, in all.
+    fn place_knots(&mut self, nodes: &[f64]) -> Result<(), f64> {
+        let (n, knots, last) = (self.robot.dof(), self.spline.knots().len(), self.redundancy.points() - 1);
+        self.redundancy.bends(nodes, &mut self.node_bends);
+        let mut q = [0.0; crate::math::MAX_DOF];
+        let mut excess = 0.0;
+        for knot in 0..knots {
+            let point = (knot * STRIDE).min(last);
+            match self.redundancy.configuration(point, nodes, &self.node_bends, &mut q[..n]) {
+                Err(cosine) => excess += cosine.abs(),
+                Ok(_) => {
+                    for j in 0..n {
+                        let place = j * knots + knot;
+                        let before = if knot == 0 {
+                            self.start.map_or(q[j], |start| start[j])
+                        } else {
+                            self.motion.values[place - 1]
+                        };
+                        self.motion.values[place] = nearest_turn(q[j], before);
+                    }
+                }
+            }
+        }
+        if excess > 0.0 {
+            return Err(excess);
+        }
+        for (values, bends) in self.motion.values.chunks_exact(knots).zip(self.motion.bends.chunks_exact_mut(knots)) {
+            self.spline.bends(values, bends);
+        }
+        Ok(())
+    }
+
+    fn piece(&self, joint: usize, i: usize) -> Piece {
+        let knots = self.spline.knots().len();
+        let of_joint = joint * knots..(joint + 1) * knots;
+        self.spline.piece(i, &self.motion.values[of_joint.clone()], &self.motion.bends[of_joint])
+    }
+
+    /// F of eq. (25), with the weights that it is printed without: else error could be traded for time.
+    fn value(&mut self, x: &[f64]) -> f64 {
+        let (nodes, duration) = (&x[..x.len() - 1], x[x.len() - 1]);
+        if let Err(excess) = self.place_knots(nodes) {
+            return NO_CONFIGURATION * self.scale * excess;
+        }
+        let (mut travel, mut broken) = (0.0, 0.0);
+        for j in 0..self.robot.dof() {
+            let (way, speed, acceleration, outside) = self.joint_extremes(j);
+            travel += way;
+            let share = |value: f64, limit: f64| if value > limit { value / limit } else { 0.0 };
+            broken += share(speed / duration, self.limits.velocity[j])
+                + share(acceleration / (duration * duration), self.limits.acceleration[j])
+                + if outside > 0.0 { 1.0 + outside } else { 0.0 };
+        }
+        let missed: f64 = self.distances().map(|(_, d)| d / self.accuracy).filter(|share| *share > 1.0).sum();
+        let cost = if self.cost == Cost::Time { duration } else { travel };
+        cost + BROKEN_LIMIT * self.scale * (broken + missed)
+    }
+
+    /// Travel, largest speed and acceleration over the path from 0 to 1, and how far the joint leaves its limits.
+    fn joint_extremes(&self, j: usize) -> (f64, f64, f64, f64) {
+        let (mut travel, mut speed, mut acceleration, mut outside) = (0.0, 0.0_f64, 0.0_f64, f64::NEG_INFINITY);
+        for i in 0..self.spline.knots().len() - 1 {
+            let piece = self.piece(j, i);
+            let mut from = piece.value;
+            for s in piece.turning_points().into_iter().chain([piece.span]) {
+                let to = piece.at(s);
+                travel += (to - from).abs();
+                outside = outside.max(self.limits.lower[j] - to).max(to - self.limits.upper[j]);
+                from = to;
+            }
+            speed = speed.max(piece.steepest());
+            acceleration = acceleration.max(piece.bend.abs());
+        }
+        (travel, speed, acceleration, outside)
+    }
+
+    /// Distance of the tip from point `i` of the path when it is due there: eq. (24).
+    fn distance(&self, i: usize) -> f64 {
+        let knots = self.spline.knots().len();
+        let u = i as f64 / (self.redundancy.points() - 1) as f64;
+        let mut q = [0.0; crate::math::MAX_DOF];
+        let joints = self.motion.values.chunks_exact(knots).zip(self.motion.bends.chunks_exact(knots));
+        for (q, (values, bends)) in q.iter_mut().zip(joints) {
+            *q = self.spline.at(u, values, bends);
+        }
+        let tip = self.robot.tip_position(&q[..self.robot.dof()]);
+        let [x, y] = self.redundancy.place(i).position;
+        (tip[0] - x).hypot(tip[1] - y)
+    }
+}
+
+impl Objective for PathCost<'_> {
+    fn dimension(&self) -> usize {
+        NODES * self.redundancy.links() + 1
+    }
+
+    /// Never solved: there is no cost that a search could stop at.
+    fn evaluate(&mut self, x: &[f64]) -> Score {
+        Score { value: self.value(x), solved: false }
+    }
+}

@@ -1,0 +1,175 @@
+//! Where a motion starts or ends, as a function of parameters that a search is free to choose.
+
+use std::f64::consts::PI;
+
+use crate::error::{Error, Result};
+use crate::ik::{Prepared, Solution, SolveOptions};
+use crate::planning::end::End;
+use crate::planning::motion_limits::MotionLimits;
+use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Place, PlanarArm};
+use crate::rng;
+use crate::robot::Robot;
+use crate::solver::{Monitor, Status};
+use crate::task::Target;
+
+/// All configurations of one end that a search chooses from.
+#[derive(Debug, Clone)]
+pub enum Placement {
+    /// One, no choice.
+    Fixed(Vec<f64>),
+    /// A planar arm: the absolute orientations phi of the links from the third on are free.
+    Planar {
+        /// The arm.
+        arm: PlanarArm,
+        /// Where its tip is to be.
+        place: Place,
+        /// Which way it bends.
+        elbow: Elbow,
+    },
+    /// Any arm: one of these, found by inverse kinematics, neighbours next to each other.
+    OneOf(Vec<Vec<f64>>),
+}
+
+/// Inverse kinematics from so many random starts makes the list of [`Placement::OneOf`].
+const STARTS: usize = 48;
+
+/// Solutions nearer to each other than this in every joint count as one (rad or m).
+const DISTINCT: f64 = 1e-3;
+
+impl Placement {
+    /// What `end` leaves open; `what` names it.
+    ///
+    /// # Errors
+    /// [`Error::OutsideLimits`] for a configuration beyond its limits, [`Error::Unreachable`] for a target out of reach.
+    pub fn new(
+        what: &str,
+        end: &End,
+        robot: &Robot,
+        limits: &MotionLimits,
+        elbow: Elbow,
+        seed: u64,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Self> {
+        let target = match end {
+            End::Configuration(q) => {
+                limits.require_inside(what, q)?;
+                return Ok(Self::Fixed(q.clone()));
+            }
+            End::Target(target) => target,
+        };
+        if let Some((arm, place)) = planar(robot, target) {
+            if let Some(problem) = arm.problem(&place) {
+                return Err(Error::Unreachable { what: what.into(), problem });
+            }
+            return Ok(Self::Planar { arm, place, elbow });
+        }
+        solutions(what, target, &limits.applied_to(robot)?, seed, monitor).map(Self::OneOf)
+    }
+
+    /// Number of parameters.
+    pub fn dimension(&self) -> usize {
+        match self {
+            Self::Fixed(_) => 0,
+            Self::Planar { arm, place, .. } => arm.dof() - ELBOW_LINKS - usize::from(place.orientation.is_some()),
+            Self::OneOf(solutions) => usize::from(solutions.len() > 1),
+        }
+    }
+
+    /// What each parameter may be.
+    pub fn range(&self) -> (f64, f64) {
+        match self {
+            Self::Fixed(_) | Self::Planar { .. } => (-PI, PI),
+            Self::OneOf(_) => (0.0, 1.0),
+        }
+    }
+
+    /// Writes the configuration of these parameters.
+    ///
+    /// # Errors
+    /// The cosine of eq. (1) where the parameters leave a planar arm too long or too short a way.
+    pub fn configuration(&self, parameters: &[f64], q: &mut [f64]) -> Result<(), f64> {
+        match self {
+            Self::Fixed(fixed) => q.copy_from_slice(fixed),
+            Self::Planar { arm, place, elbow } => match place.orientation {
+                None => arm.solve(place.position, parameters, *elbow, q)?,
+                Some(orientation) => {
+                    let mut orientations = crate::objective::Point::from_slice(parameters);
+                    orientations.push(orientation);
+                    arm.solve(place.position, &orientations, *elbow, q)?;
+                }
+            },
+            Self::OneOf(solutions) => {
+                let share = parameters.first().copied().unwrap_or_default();
+                let index = ((share * solutions.len() as f64) as usize).min(solutions.len() - 1);
+                q.copy_from_slice(&solutions[index]);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The closed form, where there is one.
+fn planar(robot: &Robot, target: &Target) -> Option<(PlanarArm, Place)> {
+    let arm = PlanarArm::of(robot)?;
+    let place = arm.place(target)?;
+    (arm.dof() >= ELBOW_LINKS + usize::from(place.orientation.is_some())).then_some((arm, place))
+}
+
+/// Distinct solutions for `target`, each followed by the nearest of those not yet listed.
+fn solutions(
+    what: &str,
+    target: &Target,
+    robot: &Robot,
+    seed: u64,
+    monitor: &mut dyn Monitor,
+) -> Result<Vec<Vec<f64>>> {
+    let options = SolveOptions { seed, ..SolveOptions::default() };
+    let prepared = Prepared::new(robot, &options)?;
+    let starts = robot.random_configurations(STARTS, &mut rng::stream(seed, 0))?;
+    let mut found: Vec<Vec<f64>> = vec![];
+    let mut nearest: Option<Solution> = None;
+    for (i, start) in starts.chunks_exact(robot.dof()).enumerate() {
+        let solution = prepared.run(target, Some(start), i as u64 + 1, monitor);
+        if solution.status == Status::Solved {
+            if found.iter().all(|other| distance(other, &solution.q) > DISTINCT) {
+                found.push(solution.q.to_vec());
+            }
+        } else if nearest.is_none() {
+            nearest = Some(solution);
+        }
+        // A target that is out of reach for the first start is so for all.
+        if solution_is_hopeless(&found, i) {
+            break;
+        }
+    }
+    match nearest {
+        Some(missed) if found.is_empty() => {
+            let problem = format!("the nearest that the tip came is {} away", missed.error);
+            Err(Error::Unreachable { what: what.into(), problem })
+        }
+        _ => Ok(chained(found)),
+    }
+}
+
+/// Each start is a search from many starts of its own: three in vain are enough.
+fn solution_is_hopeless(found: &[Vec<f64>], searches: usize) -> bool {
+    found.is_empty() && searches >= 2
+}
+
+/// Orders by nearest neighbours, so that similar parameters mean similar configurations.
+fn chained(mut rest: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut chain: Vec<Vec<f64>> = rest.pop().into_iter().collect();
+    while let Some(last) = chain.last() {
+        let next = (0..rest.len()).min_by(|i, j| distance(last, &rest[*i]).total_cmp(&distance(last, &rest[*j])));
+        match next {
+            Some(next) => chain.push(rest.swap_remove(next)),
+            None => break,
+        }
+    }
+    chain
+}
+
+/// The largest difference of a joint (rad or m).
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}

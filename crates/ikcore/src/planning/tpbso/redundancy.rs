@@ -1,0 +1,152 @@
+//! The free orientations of a planar arm's links along a path: section III-A of Wang et al. (2019), eq. (7).
+
+use std::f64::consts::{PI, TAU};
+
+use smallvec::SmallVec;
+
+use crate::error::{Error, Result};
+use crate::math::natural_spline::NaturalSpline;
+use crate::path::Reference;
+use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Orientation, Orientations, Place, PlanarArm, wrapped};
+use crate::task::Target;
+use crate::wording::number;
+
+/// Numbers in \[0, 1\] by which the course of each free orientation is given: the paper's x_phi.
+pub const NODES: usize = 5;
+
+/// A planar arm along the points of a path.
+#[derive(Debug, Clone)]
+pub struct Redundancy {
+    arm: PlanarArm,
+    elbow: Elbow,
+    places: Vec<Place>,
+    nodes: NaturalSpline,
+}
+
+impl Redundancy {
+    /// The choices of `arm` along `path`.
+    ///
+    /// # Errors
+    /// [`Error::Unreachable`] for a point beside the arm's plane or out of its reach, or a path of poses for an arm of two
+    /// links.
+    pub fn new(arm: PlanarArm, path: &Reference, elbow: Elbow) -> Result<Self> {
+        let nodes = NaturalSpline::over((0..NODES).map(|i| i as f64 / (NODES - 1) as f64).collect());
+        let places = (0..path.len()).map(|i| place(&arm, path, i)).collect::<Result<Vec<_>>>()?;
+        Ok(Self { arm, elbow, places, nodes })
+    }
+
+    /// Where the tip is to be at point `i` of the path.
+    pub fn place(&self, i: usize) -> &Place {
+        &self.places[i]
+    }
+
+    /// Number of points of the path.
+    pub fn points(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Number of orientations that are free.
+    pub fn links(&self) -> usize {
+        self.arm.dof() - ELBOW_LINKS - usize::from(self.places[0].orientation.is_some())
+    }
+
+    /// Writes the joint angles at point `i`, wrapped, where `x` holds [`NODES`] numbers for each free link, from the tip
+    /// down, and `bends` their splines' second derivatives; returns the free orientations.
+    ///
+    /// # Errors
+    /// The cosine of eq. (1) where there is no configuration.
+    pub fn configuration(&self, i: usize, x: &[f64], bends: &[f64], q: &mut [f64]) -> Result<Orientations, f64> {
+        let Place { mut position, orientation } = self.places[i];
+        let mut link = self.arm.dof() - 1;
+        let mut absolute: SmallVec<[f64; 8]> = SmallVec::new();
+        if let Some(given) = orientation {
+            position = self.arm.start_of(link, position, given);
+            absolute.push(given);
+            link -= 1;
+        }
+        let mut free = Orientations::new();
+        let u = i as f64 / (self.places.len() - 1) as f64;
+        for (values, bends) in x.chunks_exact(NODES).zip(bends.chunks_exact(NODES)) {
+            // Clamped: between its nodes the spline may leave what its nodes keep to.
+            let share = self.nodes.at(u, values, bends).clamp(0.0, 1.0);
+            let (middle, half) = self.arm.orientation_range(position, link).ok_or(OUT_OF_REACH)?;
+            let value = middle - half + 2.0 * half * share; // eq. (7)
+            position = self.arm.start_of(link, position, value);
+            free.push(Orientation { value, lowest: middle - half, highest: middle + half });
+            absolute.push(value);
+            link -= 1;
+        }
+        absolute.reverse();
+        self.arm.solve(self.places[i].position, &absolute, self.elbow, q)?;
+        Ok(free)
+    }
+
+    /// The share x_phi of each free link, from the tip down, at the path's first point in configuration `q`.
+    ///
+    /// # Errors
+    /// [`Error::InvalidPath`] where the tip is elsewhere at `q`.
+    pub fn shares_of(&self, q: &[f64]) -> Result<Vec<f64>> {
+        let Place { mut position, orientation } = self.places[0];
+        let tip = self.arm.corners(q).last().unwrap_or(position);
+        let absolute = self.arm.orientations(q);
+        let mut link = self.arm.dof() - 1;
+        let turned = orientation.map_or(0.0, |wanted| wrapped(absolute[link] - wanted).abs());
+        let missed = (tip[0] - position[0]).hypot(tip[1] - position[1]);
+        if missed > START_TOLERANCE || turned > START_TOLERANCE {
+            let problem = format!(
+                "start_q puts the tip {} m and {} rad from the first point; it must be there",
+                number(missed),
+                number(turned)
+            );
+            return Err(Error::InvalidPath { problem });
+        }
+        if let Some(given) = orientation {
+            position = self.arm.start_of(link, position, given);
+            link -= 1;
+        }
+        let mut shares = vec![];
+        for _ in 0..self.links() {
+            let (middle, half) = self.arm.orientation_range(position, link).unwrap_or((absolute[link], PI));
+            shares.push((0.5 + wrapped(absolute[link] - middle) / (2.0 * half.max(f64::MIN_POSITIVE))).clamp(0.0, 1.0));
+            position = self.arm.start_of(link, position, absolute[link]);
+            link -= 1;
+        }
+        Ok(shares)
+    }
+
+    /// Writes the second derivatives of the splines through the nodes `x`.
+    pub fn bends(&self, x: &[f64], bends: &mut [f64]) {
+        for (values, bends) in x.chunks_exact(NODES).zip(bends.chunks_exact_mut(NODES)) {
+            self.nodes.bends(values, bends);
+        }
+    }
+}
+
+/// How far a given start may be from the path (m, rad).
+const START_TOLERANCE: f64 = 1e-6;
+
+/// Stands for a cosine where not even its triangle exists.
+const OUT_OF_REACH: f64 = 2.0;
+
+fn place(arm: &PlanarArm, path: &Reference, i: usize) -> Result<Place> {
+    let target = match path.pose(i) {
+        Some(pose) => Target::from(&pose),
+        None => Target::Position(path.position(i)),
+    };
+    let unreachable = |problem: String| Error::Unreachable { what: format!("point {i} of the path"), problem };
+    let beside = || unreachable("it lies beside the plane that the arm moves in".into());
+    let place = arm.place(&target).ok_or_else(beside)?;
+    let held = usize::from(place.orientation.is_some());
+    if arm.dof() < ELBOW_LINKS + held {
+        return Err(unreachable("an arm of two links cannot choose its orientation".into()));
+    }
+    match arm.problem(&place) {
+        None => Ok(place),
+        Some(problem) => Err(unreachable(problem)),
+    }
+}
+
+/// `angle` by whole turns nearest to `other`.
+pub fn nearest_turn(angle: f64, other: f64) -> f64 {
+    angle + TAU * ((other - angle) / TAU).round()
+}

@@ -1,0 +1,114 @@
+//! Any solver on the cost of a plan.
+
+use std::cell::Cell;
+
+use crate::error::Result;
+use crate::objective::{Bounds, Objective, Point, Score};
+use crate::planning::plan::Improvement;
+use crate::rng;
+use crate::solver::{AnySolver, BeetleSwarm, DerivativeFree, Evaluator, Monitor, Outcome, Schedule, Status, Stop};
+
+/// What searches, and for how long.
+pub struct Search<'a> {
+    /// None: the beetle swarm.
+    pub solver: Option<&'a AnySolver<DerivativeFree>>,
+    /// None: as many evaluations as the beetle swarm spends in its 200 iterations.
+    pub stop: Option<Stop>,
+    /// Of the random draws.
+    pub seed: u64,
+}
+
+/// The beetle swarm, for as long as its budget lasts: the published one does not look whether it still gains.
+fn published_swarm() -> BeetleSwarm {
+    let swarm = BeetleSwarm::default();
+    BeetleSwarm { schedule: Schedule { stall_generations: usize::MAX, ..swarm.schedule }, ..swarm }
+}
+
+/// 50 beetles that look at two antennae and at where they go, 200 times, and at where they start.
+const EVALUATIONS: usize = 50 * (3 * 200 + 1);
+
+/// What a search found.
+pub struct Found {
+    /// The best decision vector.
+    pub x: Point,
+    /// How it came to it.
+    pub history: Vec<Improvement>,
+    /// Evaluations.
+    pub evaluations: usize,
+    outcome: Outcome,
+}
+
+impl Found {
+    /// How a plan ends that keeps everything, or does not.
+    pub fn status(&self, keeps_everything: bool) -> Status {
+        match self.outcome.status() {
+            Status::Interrupted => Status::Interrupted,
+            _ if keeps_everything => Status::Solved,
+            other => other,
+        }
+    }
+}
+
+impl Search<'_> {
+    /// Minimises `cost` within `bounds`.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for wrong options of the solver or a budget of zero.
+    pub fn run(&self, cost: &mut dyn Objective, bounds: &Bounds, monitor: &mut dyn Monitor) -> Result<Found> {
+        let standard = AnySolver::Single(DerivativeFree::from(published_swarm()));
+        let solver = self.solver.unwrap_or(&standard);
+        let stop = self.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() });
+        solver.validate()?;
+        stop.validate()?;
+        let done = Cell::new(0);
+        let mut recorded = Recorded { cost, history: vec![], done: &done };
+        let mut reporting = Reporting { monitor, done: &done, total: stop.max_evaluations };
+        // Stream 0 and those after it belong to the inverse kinematics of the ends.
+        let mut rng = rng::stream(self.seed, u64::MAX);
+        let mut x0 = Point::from_elem(0.0, recorded.dimension());
+        bounds.sample(&mut rng, &mut x0);
+        let objective: &mut dyn Objective = &mut recorded;
+        let mut evaluator = Evaluator::new(objective, bounds, stop, &mut rng, &mut reporting);
+        let outcome = solver.run(&mut evaluator, &x0);
+        let (x, evaluations) = (evaluator.best().x.clone(), evaluator.evaluations());
+        let history = recorded.history;
+        monitor.progress(evaluations, evaluations);
+        Ok(Found { x, history, evaluations, outcome })
+    }
+}
+
+/// Remembers every improvement.
+struct Recorded<'a> {
+    cost: &'a mut dyn Objective,
+    history: Vec<Improvement>,
+    done: &'a Cell<usize>,
+}
+
+impl Objective for Recorded<'_> {
+    fn dimension(&self) -> usize {
+        self.cost.dimension()
+    }
+
+    fn evaluate(&mut self, x: &[f64]) -> Score {
+        let score = self.cost.evaluate(x);
+        self.done.set(self.done.get() + 1);
+        if self.history.last().is_none_or(|best| score.value < best.cost) {
+            self.history.push(Improvement { evaluations: self.done.get(), cost: score.value });
+        }
+        score
+    }
+}
+
+/// Tells the caller's monitor how many evaluations are done.
+struct Reporting<'a> {
+    monitor: &'a mut dyn Monitor,
+    done: &'a Cell<usize>,
+    total: usize,
+}
+
+impl Monitor for Reporting<'_> {
+    fn keep_going(&mut self) -> bool {
+        self.monitor.progress(self.done.get(), self.total);
+        self.monitor.keep_going()
+    }
+}

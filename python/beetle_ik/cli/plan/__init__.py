@@ -1,0 +1,12 @@
+"""`beetle-ik plan ...`: motions that do not exist yet."""
+
+import typer
+
+from .along_path import along_path
+from .point_to_point import point_to_point
+
+plan = typer.Typer(no_args_is_help=True, help="Plan motions within joint limits.")
+for command in (point_to_point, along_path):
+    plan.command()(command)
+
+__all__ = ["plan"]

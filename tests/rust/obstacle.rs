@@ -1,0 +1,212 @@
+//! Distances, capsules and sweeps against brute force.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
+use ikcore::nalgebra::{Point3, Rotation3, Vector3};
+use ikcore::obstacle::{Edge, Obstacle, Party, Scene, Shape, Sweep};
+use ikcore::rng::{self, LazyRng};
+use ikcore::robot::{LinkCapsule, Robot};
+
+/// A robot whose only capsule is a segment that stands still relative to its last link.
+fn rod(a: [f64; 3], b: [f64; 3], radius: f64) -> Robot {
+    let arm = Robot::named("iiwa14").unwrap();
+    let link = arm.link_names().last().unwrap().to_owned();
+    let pose = arm.fk(&[0.0; 7]).unwrap();
+    let local = |p: [f64; 3]| pose.inverse_transform_point(&p.into()).coords.into();
+    arm.with_capsules(vec![LinkCapsule { link, a: local(a), b: local(b), radius }]).unwrap()
+}
+
+fn distance(a: [f64; 3], b: [f64; 3], radius: f64, obstacle: &Obstacle) -> f64 {
+    let robot = rod(a, b, radius);
+    let obstacles = [obstacle.clone()];
+    let scene = Scene::new(&robot, &obstacles).unwrap();
+    scene.nearest(&[0.0; 7]).unwrap().unwrap().distance
+}
+
+fn point(rng: &mut LazyRng, reach: f64) -> [f64; 3] {
+    std::array::from_fn(|_| rng.uniform_in(-reach, reach))
+}
+
+fn rotation(rng: &mut LazyRng) -> Rotation3<f64> {
+    Rotation3::new(Vector3::from(point(rng, 2.0)))
+}
+
+/// A shape of each kind that touches everything.
+fn random_obstacle(rng: &mut LazyRng, kind: usize) -> Obstacle {
+    let (center, turn) = (point(rng, 0.5), *rotation(rng).matrix());
+    let sizes: [f64; 3] = std::array::from_fn(|_| rng.uniform_in(0.05, 0.6));
+    match kind {
+        0 => Obstacle::sphere(center, sizes[0]),
+        1 => Obstacle::cuboid(center, sizes, Some(turn)),
+        2 => Obstacle::capsule(center, point(rng, 0.5), 0.3 * sizes[0]),
+        3 => Obstacle::ellipsoid(center, sizes, Some(turn)),
+        _ => Obstacle::convex_mesh(&std::array::from_fn::<_, 9, _>(|_| point(rng, 0.4))),
+    }
+    .unwrap()
+}
+
+/// Points on the surface and inside, densely.
+fn points_of(obstacle: &Obstacle, rng: &mut LazyRng, count: usize) -> Vec<Vector3<f64>> {
+    let mut unit = [0.0; 3];
+    (0..count)
+        .map(|_| {
+            rng.direction(&mut unit);
+            let u = Vector3::from(unit);
+            match obstacle.shape() {
+                Shape::Sphere { center, radius } => Vector3::from(*center) + *radius * u,
+                Shape::Box { pose, size } => {
+                    (pose * nalgebra_point(u.component_mul(&(0.5 * Vector3::from(*size))) / u.amax())).coords
+                }
+                Shape::Capsule { a, b, radius } => {
+                    let share = rng.uniform();
+                    Vector3::from(*a) * (1.0 - share) + Vector3::from(*b) * share + *radius * u
+                }
+                Shape::Ellipsoid { pose, semi_axes } => {
+                    (pose * nalgebra_point(u.component_mul(&Vector3::from(*semi_axes)))).coords
+                }
+                Shape::ConvexMesh(hull) => {
+                    let triangles = hull.triangles();
+                    let triangle = triangles[(rng.uniform() * triangles.len() as f64) as usize];
+                    let (mut s, mut t) = (rng.uniform(), rng.uniform());
+                    if s + t > 1.0 {
+                        (s, t) = (1.0 - s, 1.0 - t);
+                    }
+                    let [p, q, r] = triangle.map(Vector3::from);
+                    p + s * (q - p) + t * (r - p)
+                }
+                shape => unreachable!("{shape:?}"),
+            }
+        })
+        .collect()
+}
+
+fn nalgebra_point(v: Vector3<f64>) -> Point3<f64> {
+    v.into()
+}
+
+fn to_segment(a: &Vector3<f64>, b: &Vector3<f64>, p: &Vector3<f64>) -> f64 {
+    let along = b - a;
+    let share = ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+    (a + share * along - p).norm()
+}
+
+#[test]
+fn distances_are_those_of_dense_points() {
+    let mut rng = rng::stream(3, 0);
+    let mut apart = 0;
+    for case in 0..60 {
+        let obstacle = random_obstacle(&mut rng, case % 5);
+        let (a, b) = (point(&mut rng, 1.5), point(&mut rng, 1.5));
+        let found = distance(a, b, 0.0, &obstacle);
+        let dense = points_of(&obstacle, &mut rng, 4000);
+        let nearest = dense.iter().map(|p| to_segment(&a.into(), &b.into(), p)).fold(f64::INFINITY, f64::min);
+        // Sampled points are never nearer than the truth.
+        assert!(found <= nearest + 1e-8, "case {case}: {found} {nearest}");
+        if found > 0.02 {
+            apart += 1;
+            assert!(nearest - found < 0.05, "case {case}: {found} {nearest} {obstacle:?} {a:?} {b:?}");
+        }
+    }
+    assert!(apart > 20);
+}
+
+#[test]
+fn distances_of_known_places() {
+    let box_ = Obstacle::cuboid([0.0; 3], [2.0, 2.0, 2.0], None).unwrap();
+    let ball = Obstacle::sphere([0.0; 3], 1.0).unwrap();
+    let egg = Obstacle::ellipsoid([0.0; 3], [3.0, 1.0, 1.0], None).unwrap();
+    let cube: Vec<[f64; 3]> = (0..8).map(|i| [0, 1, 2].map(|k| f64::from(((i >> k) & 1) * 2 - 1))).collect();
+    let mesh = Obstacle::convex_mesh(&cube).unwrap();
+    let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-8, "{found} {expected}");
+    for cube in [&box_, &mesh] {
+        close(distance([3.0, -5.0, 0.0], [3.0, 5.0, 0.0], 0.5, cube), 1.5); // beside a face
+        close(distance([2.0, 2.0, -3.0], [2.0, 2.0, 3.0], 0.0, cube), 2.0_f64.sqrt()); // beside an edge
+        close(distance([2.0, 2.0, 2.0], [3.0, 3.0, 3.0], 0.0, cube), 3.0_f64.sqrt()); // off a corner
+        close(distance([0.25, 0.0, -5.0], [0.25, 0.0, 5.0], 0.0, cube), -0.75); // through the middle
+    }
+    close(distance([-4.0, 1.5, 0.0], [4.0, 1.5, 0.0], 0.1, &ball), 0.4);
+    close(distance([-4.0, 0.5, 0.0], [4.0, 0.5, 0.0], 0.0, &ball), -0.5);
+    close(distance([4.0, 0.0, 0.0], [9.0, 0.0, 0.0], 0.0, &egg), 1.0);
+    close(distance([-4.0, 2.0, 0.5], [4.0, 2.0, 0.5], 0.0, &egg), 4.25_f64.sqrt() - 1.0);
+    close(distance([0.0, 0.0, 0.0], [0.0, 0.0, 0.0], 0.0, &egg), -1.0);
+    let capsule = Obstacle::capsule([0.0, 0.0, -1.0], [0.0, 0.0, 1.0], 0.5).unwrap();
+    close(distance([-4.0, 2.0, 0.0], [4.0, 2.0, 0.0], 0.25, &capsule), 1.25);
+}
+
+#[test]
+fn an_ellipse_is_as_far_as_its_own_boundary_in_the_plane() {
+    let robot = Robot::planar(&[1.0, 1.0]).unwrap().with_capsules_along_links(0.0).unwrap();
+    let mut rng = rng::stream(5, 0);
+    for _ in 0..50 {
+        let center = [rng.uniform_in(-2.0, 2.0), rng.uniform_in(-2.0, 2.0)];
+        let (semi_axes, angle) = ([rng.uniform_in(0.05, 0.5), rng.uniform_in(0.05, 0.5)], rng.uniform_in(-3.0, 3.0));
+        let obstacles = [Obstacle::ellipse(center, semi_axes, angle).unwrap()];
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let q = [rng.uniform_in(-3.0, 3.0), rng.uniform_in(-3.0, 3.0)];
+        let found = scene.nearest(&q).unwrap().unwrap().distance;
+        let joint = Vector3::new(q[0].cos(), q[0].sin(), 0.0);
+        let tip = joint + Vector3::new((q[0] + q[1]).cos(), (q[0] + q[1]).sin(), 0.0);
+        let boundary = (0..20_000).map(|i| {
+            let (sine, cosine) = (f64::from(i) * std::f64::consts::TAU / 20_000.0).sin_cos();
+            let (x, y) = (semi_axes[0] * cosine, semi_axes[1] * sine);
+            let (s, c) = angle.sin_cos();
+            Vector3::new(center[0] + c * x - s * y, center[1] + s * x + c * y, 0.0)
+        });
+        let nearest = boundary
+            .map(|p| to_segment(&Vector3::zeros(), &joint, &p).min(to_segment(&joint, &tip, &p)))
+            .fold(f64::INFINITY, f64::min);
+        if found > 0.0 {
+            assert!((nearest - found).abs() < 1e-6, "{found} {nearest}");
+        } else {
+            assert!(nearest < 0.51);
+        }
+    }
+}
+
+#[test]
+fn what_a_sweep_calls_free_is_free_at_every_sample() {
+    let robot = Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap();
+    let mut rng = rng::stream(7, 0);
+    let (mut free, mut hits) = (0, 0);
+    for case in 0..60 {
+        let obstacles: Vec<Obstacle> = (0..2).map(|k| random_obstacle(&mut rng, (case + k) % 5)).collect();
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let ends = robot.random_configurations(2, &mut rng).unwrap();
+        let edge = Edge { from: &ends[..7], to: &ends[7..] };
+        let mut sweep = Sweep::new(&scene);
+        let verdict = sweep.check(&edge, [0.0, 1.0], 0.001);
+        let smallest = sweep.smallest(&edge, [0.0, 1.0]).unwrap().contact.distance;
+        let sampled = (0..=1000)
+            .map(|i| {
+                let share = f64::from(i) / 1000.0;
+                let q: Vec<f64> = (0..7).map(|j| edge.from[j] + share * (edge.to[j] - edge.from[j])).collect();
+                scene.nearest(&q).unwrap().unwrap().distance
+            })
+            .fold(f64::INFINITY, f64::min);
+        assert!(smallest <= sampled + 1e-12, "case {case}: {smallest} {sampled}");
+        assert!(sampled - smallest < 5e-3 + 0.02 * sampled.abs(), "case {case}: {smallest} {sampled}");
+        match verdict {
+            Ok(()) => {
+                free += 1;
+                assert!(sampled >= 0.001, "case {case}: {sampled}");
+            }
+            Err(near) => {
+                hits += 1;
+                assert!(near.contact.distance < 0.001 + 1e-5, "case {case}: {near:?}");
+            }
+        }
+    }
+    assert!(free > 5 && hits > 5, "{free} {hits}");
+}
+
+#[test]
+fn pairs_that_belong_to_the_model_are_left_out() {
+    let robot = Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap();
+    let scene = Scene::new(&robot, &[]).unwrap();
+    let rest: Vec<f64> = robot.joints().iter().map(|joint| 0.5 * (joint.lower + joint.upper)).collect();
+    assert!(scene.nearest(&rest).unwrap().unwrap().distance > 0.0);
+    // Folded back the hand meets the base.
+    let folded = [0.0, -1.7, 0.0, -3.0, 0.0, 0.5, 0.0];
+    let contact = scene.nearest(&folded).unwrap().unwrap();
+    assert!(matches!(contact.other, Party::Link(_)), "{contact:?}");
+}

@@ -1,0 +1,250 @@
+//! Point to point: against the bound of the plane's arms, and around a box.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
+use ikcore::limits::{Field, Limits, Profile};
+use ikcore::obstacle::{Obstacle, Scene};
+use ikcore::planning::{End, Plan, PointToPointOptions, plan_point_to_point};
+use ikcore::rng;
+use ikcore::robot::Robot;
+use ikcore::solver::{Status, Stop, Unattended};
+use ikcore::task::Target;
+
+fn limits(robot: &Robot, velocity: Option<f64>, acceleration: f64) -> Limits {
+    let limits = Limits::of(robot).replace(Field::Acceleration, vec![Profile::Constant(acceleration)]).unwrap();
+    match velocity {
+        Some(velocity) => limits.replace(Field::Velocity, vec![Profile::Constant(velocity)]).unwrap(),
+        None => limits,
+    }
+}
+
+fn position(x: f64, y: f64) -> End {
+    End::Target(Target::Position([x, y, 0.0]))
+}
+
+fn states(plan: &Plan, count: usize) -> impl Iterator<Item = Vec<f64>> {
+    let n = plan.trajectory.joints().len();
+    (0..=count).map(move |i| {
+        let t = plan.trajectory.duration() * i as f64 / count as f64;
+        let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        plan.trajectory.at(t, &mut q, &mut qd, &mut qdd).unwrap();
+        q
+    })
+}
+
+#[test]
+fn plane_arms_come_near_the_time_of_bang_bang() {
+    // Best over elbows and redundancy of max 2 sqrt(D / a): what no motion of this kind can beat.
+    for (links, bound) in [(2, 0.7403), (3, 0.5912), (4, 0.5201), (5, 0.4702)] {
+        let robot = Robot::planar(&vec![2.0 / links as f64; links]).unwrap();
+        let limits = limits(&robot, Some(std::f64::consts::PI), std::f64::consts::TAU);
+        let mut sum = 0.0;
+        for seed in 0..20 {
+            let options = PointToPointOptions { limits: Some(limits.clone()), seed, ..Default::default() };
+            let plan = plan_point_to_point(&robot, &position(1.0, 0.0), &position(0.5, 1.5), &options, &mut Unattended);
+            let plan = plan.unwrap();
+            assert_eq!(plan.status, Status::Solved, "{}", plan.message());
+            assert!(plan.trajectory.max_velocity().iter().all(|v| *v <= std::f64::consts::PI));
+            assert!(plan.trajectory.max_acceleration().iter().all(|a| *a <= std::f64::consts::TAU));
+            sum += plan.cost / 20.0;
+        }
+        assert!(sum <= 1.25 * bound, "{links} links: {sum} {bound}");
+    }
+}
+
+/// A pose behind the box that the arm reaches without touching anything.
+fn poses_behind(robot: &Robot, obstacles: &[Obstacle], count: usize) -> Vec<End> {
+    let scene = Scene::new(robot, obstacles).unwrap();
+    let mut rng = rng::stream(11, 0);
+    let mut found = vec![];
+    while found.len() < count {
+        let q = robot.random_configurations(1, &mut rng).unwrap();
+        let tip = robot.fk(&q).unwrap();
+        let [x, y, z] = tip.translation.vector.into();
+        if x > 0.62 && y.abs() < 0.3 && (0.0..0.4).contains(&z) && scene.is_clear(&q, 0.002) {
+            found.push(End::Target(Target::from(&tip)));
+        }
+    }
+    found
+}
+
+#[test]
+fn arms_find_their_way_around_a_box() {
+    let obstacles = vec![Obstacle::cuboid([0.5, 0.0, 0.2], [0.2, 0.6, 0.4], None).unwrap()];
+    for name in ["panda", "iiwa14"] {
+        let robot = Robot::named(name).unwrap().with_capsules_along_links(0.06).unwrap();
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let start: Vec<f64> = robot.joints().iter().map(|joint| 0.5 * (joint.lower + joint.upper)).collect();
+        let mut solved = 0;
+        for end in &poses_behind(&robot, &obstacles, 20) {
+            let options = PointToPointOptions {
+                limits: Some(limits(&robot, None, 10.0)),
+                obstacles: obstacles.clone(),
+                ..Default::default()
+            };
+            let plan = plan_point_to_point(&robot, &End::Configuration(start.clone()), end, &options, &mut Unattended);
+            let plan = plan.unwrap();
+            if plan.status == Status::Solved {
+                solved += 1;
+                let nearest = |q: Vec<f64>| scene.nearest(&q).unwrap().unwrap().distance;
+                let sampled = states(&plan, 500).map(nearest).fold(f64::INFINITY, f64::min);
+                let clearance = plan.clearance.unwrap();
+                assert!(0.001 <= clearance && clearance <= sampled + 1e-9, "{clearance} {sampled}");
+                let reached = states(&plan, 1).last().unwrap();
+                if let End::Target(target) = end {
+                    let error = ikcore::task::TipError::from(target.error(&robot, &reached));
+                    assert!(error.position < 2e-6 && error.rotation < 2e-6, "{error}");
+                }
+            } else {
+                assert!(!plan.violations.is_empty());
+            }
+        }
+        assert!(solved >= 19, "{name}: {solved} of 20");
+    }
+}
+
+#[test]
+fn a_way_around_a_wall_is_found_and_smooth() {
+    // Between the two ends stands a wall that no straight motion passes.
+    let obstacles = vec![Obstacle::cuboid([0.55, 0.0, 0.3], [0.5, 0.05, 0.6], None).unwrap()];
+    let robot = Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap();
+    let side = |turn: f64| End::Configuration(vec![turn, 0.8, 0.0, -1.6, 0.0, 2.4, 0.8]);
+    for seed in 0..5 {
+        let options = PointToPointOptions {
+            limits: Some(limits(&robot, None, 10.0)),
+            obstacles: obstacles.clone(),
+            seed,
+            ..Default::default()
+        };
+        let plan = plan_point_to_point(&robot, &side(-0.7), &side(0.7), &options, &mut Unattended).unwrap();
+        assert_eq!(plan.status, Status::Solved, "{}", plan.message());
+        assert!(plan.trajectory.max_acceleration().iter().all(|a| *a <= 10.0));
+        // Velocity and acceleration go on across every knot.
+        let knots = plan.trajectory.knots();
+        for knot in &knots[1..knots.len() - 1] {
+            let state = |t: f64| {
+                let (mut q, mut qd, mut qdd) = (vec![0.0; 7], vec![0.0; 7], vec![0.0; 7]);
+                plan.trajectory.at(t, &mut q, &mut qd, &mut qdd).unwrap();
+                (qd, qdd)
+            };
+            let (before, after) = (state(knot - 1e-9), state(*knot));
+            for j in 0..7 {
+                assert!((before.0[j] - after.0[j]).abs() < 1e-6 && (before.1[j] - after.1[j]).abs() < 1e-4);
+            }
+        }
+        let again = plan_point_to_point(&robot, &side(-0.7), &side(0.7), &options, &mut Unattended).unwrap();
+        assert_eq!(again.trajectory, plan.trajectory);
+    }
+}
+
+#[test]
+fn plans_reported_free_are_free_at_every_sample() {
+    let robots = [
+        Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap(),
+        Robot::planar(&[0.5, 0.4, 0.3]).unwrap().with_capsules_along_links(0.0).unwrap(),
+    ];
+    let mut rng = rng::stream(21, 0);
+    let (mut free, mut around) = (0, 0);
+    for case in 0..200 {
+        let robot = &robots[case % 2];
+        let flat = case % 2 == 1;
+        let obstacles: Vec<Obstacle> = (0..1 + case % 3)
+            .map(|k| {
+                let [x, y, z] = std::array::from_fn(|_| rng.uniform_in(-0.8, 0.8));
+                let sizes: [f64; 3] = std::array::from_fn(|_| rng.uniform_in(0.03, 0.2));
+                match (flat, (case + k) % 5) {
+                    (true, _) => Obstacle::ellipse([x, y], [sizes[0], sizes[1]], z),
+                    (_, 0) => Obstacle::sphere([x, y, z], sizes[0]),
+                    (_, 1) => Obstacle::cuboid([x, y, z], sizes, None),
+                    (_, 2) => Obstacle::capsule([x, y, z], [x + sizes[0], y, z], sizes[1]),
+                    (_, 3) => Obstacle::ellipsoid([x, y, z], sizes, None),
+                    _ => Obstacle::convex_mesh(&std::array::from_fn::<_, 6, _>(|_| {
+                        std::array::from_fn(|axis| [x, y, z][axis] + rng.uniform_in(-0.2, 0.2))
+                    })),
+                }
+                .unwrap()
+            })
+            .collect();
+        let n = robot.dof();
+        let ends = robot.random_configurations(2, &mut rng).unwrap();
+        let [start, end] = [&ends[..n], &ends[n..]].map(|q| End::Configuration(q.to_vec()));
+        let options = PointToPointOptions {
+            limits: Some(limits(robot, Some(1.0), 5.0)),
+            obstacles: obstacles.clone(),
+            stop: Some(Stop { max_evaluations: 4000, ..Stop::default() }),
+            ..Default::default()
+        };
+        let Ok(plan) = plan_point_to_point(robot, &start, &end, &options, &mut Unattended) else { continue };
+        if plan.status != Status::Solved {
+            assert!(!plan.violations.is_empty(), "{}", plan.message());
+            continue;
+        }
+        free += 1;
+        around += usize::from(plan.trajectory.knots().len() > 4);
+        let scene = Scene::new(robot, &obstacles).unwrap();
+        let hit = states(&plan, 2000).find(|q| !scene.is_clear(q, 0.001));
+        assert!(hit.is_none(), "case {case}: {hit:?}");
+    }
+    assert!(free > 60 && around > 10, "{free} {around}");
+}
+
+fn refused(robot: &Robot, start: &End, end: &End, options: PointToPointOptions) -> String {
+    plan_point_to_point(robot, start, end, &options, &mut Unattended).unwrap_err().to_string()
+}
+
+#[test]
+fn mistakes_are_named() {
+    let arm = Robot::planar(&[1.0, 1.0]).unwrap();
+    let thin = arm.with_capsules_along_links(0.01).unwrap();
+    let (here, there) = (End::Configuration(vec![0.0, 0.0]), End::Configuration(vec![1.0, 0.0]));
+    let with = |obstacles: Vec<Obstacle>, arm: &Robot| PointToPointOptions {
+        obstacles,
+        limits: Some(limits(arm, Some(1.0), 1.0)),
+        ..Default::default()
+    };
+    let ball = Obstacle::sphere([1.0, 0.0, 0.0], 0.25).unwrap();
+    let advice = "give it capsules with with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), \
+                  ...]), or load a URDF whose links have <collision> shapes of spheres, cylinders, capsules and boxes";
+    let bare = Robot::named("panda").unwrap();
+    let rest = End::Configuration(vec![0.0, 0.0, 0.0, -1.5, 0.0, 1.5, 0.0]);
+    assert_eq!(
+        refused(&bare, &rest, &rest, with(vec![ball.clone()], &bare)),
+        format!("robot 'panda' has no capsules, so that nothing is known of the room it takes up: {advice}")
+    );
+    assert_eq!(
+        refused(&thin, &here, &there, with(vec![ball.clone()], &thin)),
+        "start: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere)"
+    );
+    assert_eq!(
+        refused(&arm, &here, &position(3.0, 0.0), with(vec![], &arm)),
+        "end cannot be reached: the nearest configuration found stays 1.000 m away"
+    );
+    assert_eq!(
+        refused(&arm, &here, &there, PointToPointOptions::default()),
+        "joint 'joint_1' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
+         limits=Limits(velocity=...)"
+    );
+    assert_eq!(
+        Obstacle::sphere([0.0; 3], 0.0).unwrap_err().to_string(),
+        "radius of the sphere must be positive and finite, got 0"
+    );
+    assert_eq!(
+        Obstacle::cuboid([0.0; 3], [1.0, 0.0, 1.0], None).unwrap_err().to_string(),
+        "size of the box along y must be positive and finite, got 0"
+    );
+    assert_eq!(
+        Obstacle::sphere([0.0, f64::NAN, 0.0], 1.0).unwrap_err().to_string(),
+        "center must be finite, but coordinate y is NaN"
+    );
+    let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    assert_eq!(
+        Obstacle::convex_mesh(&square).unwrap_err().to_string(),
+        "the points of a convex mesh lie in a plane: it needs at least 4 that do not"
+    );
+    let panda = Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap();
+    let oval = Obstacle::ellipse([0.5, 0.0], [0.1, 0.2], 0.0).unwrap();
+    assert_eq!(
+        refused(&panda, &rest, &rest, with(vec![oval], &panda)),
+        "obstacle 0 is an Ellipse, which lies in the plane z = 0, and robot 'panda' leaves that plane: use an Ellipsoid"
+    );
+}

@@ -1,0 +1,280 @@
+//! The fastest timing of joint paths: known optima, limits at every instant, errors by their messages.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
+use ikcore::limits::{Field, Limits, Profile};
+use ikcore::planning::{JointPath, SplineEnds, TimingLimits, TimingOptions, time_optimal};
+use ikcore::trajectory::Trajectory;
+use ikcore::{Error, Result};
+use proptest::prelude::*;
+
+fn names(count: usize) -> Vec<String> {
+    (1..=count).map(|i| format!("q{i}")).collect()
+}
+
+fn limits(fields: &[(Field, Vec<f64>)], joints: usize) -> Result<TimingLimits> {
+    let constants = |values: &[f64]| values.iter().map(|value| Profile::Constant(*value)).collect();
+    let start = Limits::none(names(joints));
+    let all = fields.iter().try_fold(start, |limits, (field, values)| limits.replace(*field, constants(values)))?;
+    TimingLimits::new(&all, "time_optimal")
+}
+
+fn velocity_and_acceleration(velocity: &[f64], acceleration: &[f64]) -> TimingLimits {
+    let fields = [(Field::Velocity, velocity.to_vec()), (Field::Acceleration, acceleration.to_vec())];
+    limits(&fields, acceleration.len()).unwrap()
+}
+
+fn spline(joints: usize, waypoints: &[f64], ends: SplineEnds) -> JointPath {
+    JointPath::spline(names(joints), waypoints, None, ends).unwrap()
+}
+
+fn on_grid(gridpoints: usize) -> TimingOptions {
+    TimingOptions { gridpoints: Some(gridpoints), ..TimingOptions::default() }
+}
+
+fn state(trajectory: &Trajectory, t: f64) -> [Vec<f64>; 3] {
+    let n = trajectory.joints().len();
+    let [mut q, mut qd, mut qdd] = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
+    trajectory.at(t, &mut q, &mut qd, &mut qdd).unwrap();
+    [q, qd, qdd]
+}
+
+#[test]
+fn a_straight_line_takes_the_known_time() {
+    // 2 rad at 8 rad/s^2: bang-bang, 2 sqrt(2/8) = 1 s. At most 1 rad/s: 2/1 + 1/8 s.
+    for (velocity, expected) in [(f64::INFINITY, 1.0), (100.0, 1.0), (1.0, 2.125)] {
+        for ends in [SplineEnds::Natural, SplineEnds::NotAKnot] {
+            let path = spline(2, &[0.0, 1.0, 2.0, 0.5], ends);
+            let fast = velocity_and_acceleration(&[velocity; 2], &[8.0; 2]);
+            let trajectory = time_optimal(&path, &fast, &TimingOptions::default()).unwrap();
+            let excess = trajectory.duration() / expected - 1.0;
+            assert!((-1e-12..1e-3).contains(&excess), "{velocity} {ends:?}: {}", trajectory.duration());
+        }
+    }
+}
+
+#[test]
+fn a_clamped_spline_is_as_fast_as_its_line() {
+    // Without slope at its ends it is the same straight line: only how the parameter runs along it differs.
+    let fast = velocity_and_acceleration(&[f64::INFINITY], &[8.0]);
+    let path = spline(1, &[0.0, 2.0], SplineEnds::Clamped);
+    let trajectory = time_optimal(&path, &fast, &TimingOptions::default()).unwrap();
+    assert!((trajectory.duration() - 1.0).abs() < 1e-3, "{}", trajectory.duration());
+    assert!(state(&trajectory, 0.0)[1][0].abs() < 1e-9 && state(&trajectory, 9.0)[1][0].abs() < 1e-9);
+}
+
+#[test]
+fn speeds_at_the_ends_are_met_and_save_time() {
+    let path = spline(2, &[0.0, 0.0, 3.0, 4.0], SplineEnds::Natural);
+    let fast = velocity_and_acceleration(&[2.0; 2], &[1.0; 2]);
+    let options = TimingOptions { start_speed: 1.0, end_speed: 0.5, ..TimingOptions::default() };
+    let trajectory = time_optimal(&path, &fast, &options).unwrap();
+    for (t, speed) in [(0.0, 1.0), (trajectory.duration(), 0.5)] {
+        let [_, qd, _] = state(&trajectory, t);
+        assert!((qd[0] - 0.6 * speed).abs() < 1e-9 && (qd[1] - 0.8 * speed).abs() < 1e-9, "{qd:?}");
+    }
+    assert!(trajectory.duration() < time_optimal(&path, &fast, &TimingOptions::default()).unwrap().duration());
+}
+
+#[test]
+fn polylines_stop_at_corners_and_pass_rounded_ones() {
+    let waypoints = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0];
+    let fast = velocity_and_acceleration(&[10.0; 2], &[4.0; 2]);
+    let timed = |blend: f64| {
+        let path = JointPath::polyline(names(2), &waypoints, blend).unwrap();
+        time_optimal(&path, &fast, &TimingOptions::default()).unwrap()
+    };
+    // Each leg alone is bang-bang: 2 sqrt(1/4) = 1 s.
+    let stopping = timed(0.0);
+    assert!((stopping.duration() - 2.0).abs() < 1e-3, "{}", stopping.duration());
+    let corner = state(&stopping, 0.5 * stopping.duration());
+    assert!((corner[0][0] - 1.0).abs() < 1e-3 && corner[1][0].abs() < 0.1);
+    let rounded = timed(0.2);
+    assert!(rounded.duration() < 1.8, "{}", rounded.duration());
+    // The corner is passed at blend / 2 at the most: here at blend |d_out - d_in| / 4.
+    let nearest = (0..=1000)
+        .map(|i| state(&rounded, rounded.duration() * f64::from(i) / 1000.0)[0].clone())
+        .map(|q| (q[0] - 1.0).hypot(q[1]))
+        .fold(f64::INFINITY, f64::min);
+    assert!((nearest - 0.2 * 2.0_f64.sqrt() / 4.0).abs() < 1e-3, "{nearest}");
+    assert!(rounded.max_acceleration().iter().all(|a| *a <= 4.0 * (1.0 + 1e-9)));
+}
+
+#[test]
+fn jerk_limits_are_kept_and_the_path_too() {
+    let waypoints = [0.0, 0.3, 1.0, -0.5, -0.5, 0.8, 0.7, 1.5];
+    let path = spline(2, &waypoints, SplineEnds::Natural);
+    let fields = [(Field::Velocity, vec![2.0]), (Field::Acceleration, vec![10.0]), (Field::Jerk, vec![80.0, 120.0])];
+    let smooth = time_optimal(&path, &limits(&fields, 2).unwrap(), &TimingOptions::default()).unwrap();
+    let fastest = time_optimal(&path, &limits(&fields[..2], 2).unwrap(), &TimingOptions::default()).unwrap();
+    let within = |values: Vec<f64>, limits: [f64; 2]| values.iter().zip(limits).all(|(v, l)| *v <= l * (1.0 + 1e-9));
+    assert!(within(smooth.max_velocity(), [2.0; 2]));
+    assert!(within(smooth.max_acceleration(), [10.0; 2]));
+    assert!(within(smooth.max_jerk(), [80.0, 120.0]));
+    let cost = smooth.duration() / fastest.duration();
+    assert!((1.0..1.25).contains(&cost), "{cost}");
+    // No jump of the acceleration either, not even at the ends.
+    assert!(state(&smooth, 0.0)[2].iter().chain(&state(&smooth, 99.0)[2]).all(|a| a.abs() < 1e-6));
+    for pair in smooth.knots().windows(2) {
+        let step = pair[1] - pair[0];
+        let [before, after] = [pair[1] - 1e-3 * step, pair[1]].map(|t| state(&smooth, t)[2].clone());
+        assert!(before.iter().zip(&after).all(|(b, a)| (b - a).abs() <= 120.0 * 2e-3 * step + 1e-6));
+    }
+    assert!(farthest_from(&path, &smooth) < 1e-6);
+}
+
+/// How far the motion leaves the path (rad), by dense samples of both.
+fn farthest_from(path: &JointPath, trajectory: &Trajectory) -> f64 {
+    let n = path.joints().len();
+    let rows: Vec<Vec<f64>> = (0..=4000)
+        .map(|i| {
+            let mut q = vec![0.0; n];
+            path.position(f64::from(i) / 4000.0, &mut q);
+            q
+        })
+        .collect();
+    let gap = |q: &[f64]| {
+        // To the chords between samples of the path.
+        let chord = |pair: &[Vec<f64>]| {
+            let along: Vec<f64> = pair[1].iter().zip(&pair[0]).map(|(b, a)| b - a).collect();
+            let from: Vec<f64> = q.iter().zip(&pair[0]).map(|(q, a)| q - a).collect();
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let share = (dot(&from, &along) / dot(&along, &along)).clamp(0.0, 1.0);
+            from.iter().zip(&along).map(|(f, a)| (f - share * a).powi(2)).sum::<f64>().sqrt()
+        };
+        rows.windows(2).map(chord).fold(f64::INFINITY, f64::min)
+    };
+    (0..=100).map(|i| gap(&state(trajectory, trajectory.duration() * f64::from(i) / 100.0)[0])).fold(0.0, f64::max)
+}
+
+#[test]
+fn mistakes_are_named() {
+    let two = names(2);
+    let path = || spline(2, &[0.0, 0.0, 1.0, 2.0], SplineEnds::Natural);
+    let timed = |fields: &[(Field, Vec<f64>)], options: TimingOptions| -> Result<Trajectory> {
+        time_optimal(&path(), &limits(fields, 2)?, &options)
+    };
+    let standard = (Field::Acceleration, vec![1.0]);
+    for (result, expected) in [
+        (
+            JointPath::spline(two.clone(), &[0.0, 1.0], None, SplineEnds::Natural).map(drop),
+            "waypoints: expected at least 2, got 1",
+        ),
+        (
+            JointPath::spline(two.clone(), &[0.0, 1.0, f64::NAN, 2.0], None, SplineEnds::Natural).map(drop),
+            "waypoints must be finite, but joint 'q1' of row 1 is NaN",
+        ),
+        (
+            JointPath::spline(two.clone(), &[0.0, 1.0, 2.0, 3.0, 2.0, 3.0], None, SplineEnds::Natural).map(drop),
+            "path: waypoint 2 is the same as waypoint 1: leave one of them out",
+        ),
+        (
+            JointPath::spline(two.clone(), &[0.0, 1.0, 2.0, 3.0], Some(&[0.0, 0.5, 1.0]), SplineEnds::Natural)
+                .map(drop),
+            "knots: expected 2 (one per waypoint), got 3",
+        ),
+        (
+            JointPath::spline(two.clone(), &[0.0, 1.0, 2.0, 3.0], Some(&[0.0, 0.0]), SplineEnds::Natural).map(drop),
+            "knots must increase, but row 1 has 0 after 0",
+        ),
+        (
+            JointPath::polyline(two.clone(), &[0.0, 1.0, 2.0, 3.0], -0.1).map(drop),
+            "blend must be zero or more and finite, got -0.1",
+        ),
+        (
+            timed(&[], TimingOptions::default()).map(drop),
+            "time_optimal cannot honour infinite acceleration limits: joint 'q1' could start at any speed; give \
+             acceleration limits",
+        ),
+        (
+            timed(&[(Field::Acceleration, vec![1.0, f64::INFINITY])], TimingOptions::default()).map(drop),
+            "time_optimal cannot honour infinite acceleration limits: joint 'q2' could start at any speed; give \
+             acceleration limits",
+        ),
+        (
+            timed(&[(Field::Acceleration, vec![1.0, 0.0])], TimingOptions::default()).map(drop),
+            "infeasible: the path moves joint 'q2' from 0 to 2, but its acceleration limit is 0",
+        ),
+        (
+            timed(&[standard.clone(), (Field::Velocity, vec![0.0, 1.0])], TimingOptions::default()).map(drop),
+            "infeasible: the path moves joint 'q1' from 0 to 1, but its velocity limit is 0",
+        ),
+        (
+            timed(&[standard.clone(), (Field::Velocity, vec![-1.0])], TimingOptions::default()).map(drop),
+            "velocity limit of joint 'q1' is -1 at t = 0 s: a limit cannot be negative",
+        ),
+        (
+            timed(&[standard.clone(), (Field::Upper, vec![1.5])], TimingOptions::default()).map(drop),
+            "infeasible: the path takes joint 'q2' to 2, beyond its upper limit 1.5",
+        ),
+        (
+            timed(&[(Field::Acceleration, vec![1.0; 3])], TimingOptions::default()).map(drop),
+            "acceleration limit: expected one number, or 2 (one per joint), got 3",
+        ),
+        (timed(&[standard.clone()], on_grid(2)).map(drop), "gridpoints must be from 3 to 200000, got 2"),
+        (
+            timed(&[standard.clone()], TimingOptions { end_speed: 9.0, ..TimingOptions::default() }).map(drop),
+            "infeasible: the speed at the end of the path is beyond what the limits allow there",
+        ),
+        (
+            timed(&[standard.clone()], TimingOptions { start_speed: -1.0, ..TimingOptions::default() }).map(drop),
+            "start_speed must be zero or more and finite, got -1",
+        ),
+        (
+            time_optimal(&path(), &velocity_and_acceleration(&[1.0], &[1.0]), &TimingOptions::default()).map(drop),
+            "limits: expected 2 joints, as the path has, got 1",
+        ),
+    ] {
+        assert_eq!(result.unwrap_err().to_string(), expected);
+    }
+    let corner = JointPath::polyline(two, &[0.0, 0.0, 1.0, 0.0, 1.0, 1.0], 0.1).unwrap();
+    let jerky = limits(&[standard, (Field::Jerk, vec![5.0])], 2).unwrap();
+    let error = time_optimal(&corner, &jerky, &TimingOptions::default()).unwrap_err();
+    assert!(matches!(error, Error::UnsupportedLimit { .. }), "{error}");
+}
+
+#[test]
+fn a_joint_that_stays_needs_no_speed() {
+    let path = spline(2, &[0.0, 0.5, 1.0, 0.5], SplineEnds::NotAKnot);
+    let still = velocity_and_acceleration(&[1.0, 0.0], &[1.0, 0.0]);
+    let trajectory = time_optimal(&path, &still, &TimingOptions::default()).unwrap();
+    assert!((trajectory.duration() - 2.0).abs() < 2e-3);
+}
+
+/// Waypoints of up to four joints with limits for each.
+fn any_problem() -> impl Strategy<Value = (JointPath, Vec<f64>, Vec<f64>)> {
+    let ends = prop::sample::select(vec![SplineEnds::Natural, SplineEnds::NotAKnot, SplineEnds::Clamped]);
+    (1..5_usize, 2..8_usize, ends).prop_flat_map(|(n, rows, ends)| {
+        // Two rows that are the same are a mistake: each differs from the one before by its own number.
+        let waypoints = prop::collection::vec(-2.0..2.0_f64, n * rows)
+            .prop_map(move |q| q.iter().enumerate().map(|(i, q)| q + 1e-3 * (i / n) as f64).collect::<Vec<_>>());
+        let positive = || prop::collection::vec(0.3..30.0_f64, n);
+        (waypoints, positive(), positive()).prop_map(move |(q, v, a)| (spline(n, &q, ends), v, a))
+    })
+}
+
+proptest! {
+    #[test]
+    fn limits_hold_at_every_instant_on_any_grid((path, velocity, acceleration) in any_problem(), gridpoints in 3..300_usize) {
+        let allowed = velocity_and_acceleration(&velocity, &acceleration);
+        let trajectory = time_optimal(&path, &allowed, &on_grid(gridpoints)).unwrap();
+        // Exact extremes, not samples.
+        for (largest, limit) in trajectory.max_velocity().iter().zip(&velocity) {
+            prop_assert!(*largest <= limit * (1.0 + 1e-9), "velocity {largest} over {limit}");
+        }
+        for (largest, limit) in trajectory.max_acceleration().iter().zip(&acceleration) {
+            prop_assert!(*largest <= limit * (1.0 + 1e-9), "acceleration {largest} over {limit}");
+        }
+        prop_assert!(state(&trajectory, 0.0)[1].iter().all(|qd| qd.abs() < 1e-9));
+        prop_assert!(state(&trajectory, 1e9)[1].iter().all(|qd| qd.abs() < 1e-6));
+    }
+
+    #[test]
+    fn a_finer_grid_is_faster_and_the_default_is_fine_enough((path, velocity, acceleration) in any_problem()) {
+        let allowed = velocity_and_acceleration(&velocity, &acceleration);
+        let duration = |options: TimingOptions| time_optimal(&path, &allowed, &options).unwrap().duration();
+        let (chosen, fine) = (duration(TimingOptions::default()), duration(on_grid(5001)));
+        prop_assert!(chosen <= fine * (1.0 + 2e-3), "{chosen} {fine}");
+        prop_assert!(duration(on_grid(30)) >= fine * (1.0 - 1e-3));
+    }
+}
