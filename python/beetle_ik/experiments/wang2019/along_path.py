@@ -9,10 +9,24 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import BLUE, FORBIDDEN, GREEN, VERMILION, Block, Claim, Column, Figure, Section, Spread, Table, drawing, number
+from ...report import (
+    BLUE,
+    FORBIDDEN,
+    GREEN,
+    VERMILION,
+    Block,
+    Claim,
+    Column,
+    Figure,
+    Section,
+    Spread,
+    Table,
+    drawing,
+    number,
+)
 from ..experiment import Context
 from .drawing import draw_arm, draw_bound, draw_search
-from .settings import ALONG_PATH, EVOLUTION, pentagram, trefoil
+from .settings import ALONG_PATH, EVOLUTION, each, pentagram, trefoil
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,7 +34,7 @@ if TYPE_CHECKING:
 
 TITLE = "Along a path"
 _SEEDS = 20
-_SEEDS_SHORT = 2
+_SEEDS_SHORT = 4
 _EVALUATIONS = 50 * (3 * 100 + 1)
 _UNITS = {"time": "s", "joint_travel": "rad"}
 _WORDS = {"time": "least time", "joint_travel": "least rotation"}
@@ -66,7 +80,8 @@ def along_path(context: Context) -> tuple[Section, list[Claim]]:
     paths = {"pentagram": (pentagram(), 0.04), "closed curve": (trefoil(), 0.02)}
     which = [(name, objective) for name in paths for objective in _UNITS]
     cases = [
-        _case(name, objective, *paths[name], seeds) for name, objective in context.each("wang2019: Figures 13-16", which)
+        _case(name, objective, *paths[name], seeds)
+        for name, objective in context.each("wang2019: Figures 13-16", which)
     ]
     blocks: list[Block] = [_TEXT]
     for i, case in enumerate(cases):
@@ -100,7 +115,12 @@ def _case(name: str, objective: str, path: Any, accuracy: float, seeds: range) -
     timed = bik.plan_along_path(arm, path, limits=ALONG_PATH, accuracy=accuracy) if objective == "time" else None
     few = seeds[: max(1, len(seeds) // 4)]
     return Case(
-        name, objective, accuracy, [plan(seed, None) for seed in seeds], [plan(seed, EVOLUTION) for seed in few], timed
+        name,
+        objective,
+        accuracy,
+        each(lambda seed: plan(seed, None), seeds),
+        each(lambda seed: plan(seed, EVOLUTION), few),
+        timed,
     )
 
 
@@ -108,21 +128,19 @@ def _draw(case: Case) -> Drawing:
     best = case.best
     with drawing(5.2) as figure:
         (search, space), (redundancy, distance) = figure.subplots(2, 2)
-        top = 4.0 * best.cost
-        draw_search(search, case.plans, name="TPBSO", color=BLUE, evaluations=_EVALUATIONS, top=top)
-        draw_search(search, case.evolved, name="DE", color=GREEN, evaluations=_EVALUATIONS, top=top)
+        draw_search(search, case.plans, name="TPBSO", color=BLUE, evaluations=_EVALUATIONS)
+        draw_search(search, case.evolved, name="DE", color=GREEN, evaluations=_EVALUATIONS)
         if case.objective == "time":
             draw_bound(search, case.retimed, "same joint path, best timing")
             if case.timed is not None:
                 search.axhline(case.timed.cost, color="black", linestyle=":", label="redundancy and timing together")
         else:
             draw_bound(search, best.cost, "best known")
-        search.set(ylabel=f"{case.objective.replace('_', ' ')} [{_UNITS[case.objective]}]", ylim=(0.0, None))
-        search.legend(fontsize="small")
+        search.set(ylabel=f"{case.objective.replace('_', ' ')} [{_UNITS[case.objective]}]")
+        search.legend(fontsize="small", loc="upper right")
         reference = np.asarray(best.reference)
         space.plot(*reference[:, :2].T, color=VERMILION, marker="x", markersize=4, linestyle="none", label="points")
         draw_arm(space, best)
-        space.legend(fontsize="small", loc="lower left")
         _draw_redundancy(redundancy, best)
         _draw_distance(distance, best, case.accuracy)
     return figure
@@ -143,7 +161,9 @@ def _draw_distance(axes: Axes, plan: bik.Plan, accuracy: float) -> None:
     reference = np.asarray(plan.reference)
     time = np.linspace(0.0, plan.trajectory.duration, len(reference))
     tip = plan.robot.fk(plan.trajectory.at(time)[0])[:, :3, 3]
-    axes.plot(time, 1e3 * np.linalg.norm(tip - reference, axis=1), color=BLUE, marker=".", label="distance from the points")
+    axes.plot(
+        time, 1e3 * np.linalg.norm(tip - reference, axis=1), color=BLUE, marker=".", label="distance from the points"
+    )
     axes.axhline(1e3 * accuracy, color=VERMILION, linestyle="--", label="accuracy asked for")
     axes.set(xlabel="time [s]", ylabel="distance [mm]")
     axes.legend(fontsize="small")

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
 
@@ -97,6 +98,12 @@ def best_so_far(plans: Sequence[bik.Plan], evaluations: NDArray[np.float64]) -> 
         at = np.searchsorted(plan.history[:, 0], evaluations, side="right") - 1
         rows.append(plan.history[np.maximum(at, 0), 1])
     return np.array(rows)
+
+
+def each(plan: Callable[[int], bik.Plan], seeds: Sequence[int]) -> list[bik.Plan]:
+    """The plans of all seeds, on all cores: planning leaves the interpreter to others."""
+    with ThreadPoolExecutor() as pool:
+        return list(pool.map(plan, seeds))
 
 
 def pentagram() -> bik.Path:
