@@ -26,7 +26,7 @@ from ...report import (
 )
 from ..experiment import Context
 from .drawing import draw_arm, draw_bound, draw_search
-from .settings import ALONG_PATH, EVOLUTION, each, pentagram, trefoil
+from .settings import ALONG_PATH, EVOLUTION, Criterion, each, pentagram, trefoil
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,8 +36,8 @@ TITLE = "Along a path"
 _SEEDS = 20
 _SEEDS_SHORT = 4
 _EVALUATIONS = 50 * (3 * 100 + 1)
-_UNITS = {"time": "s", "joint_travel": "rad"}
-_WORDS = {"time": "least time", "joint_travel": "least rotation"}
+_UNITS: dict[Criterion, str] = {"time": "s", "joint_travel": "rad"}
+_WORDS: dict[Criterion, str] = {"time": "least time", "joint_travel": "least rotation"}
 _ACCEPTED = {"pentagram": 6.14, "closed curve": 3.72}  # s, mean of TPBSO
 
 _TEXT = """
@@ -57,7 +57,7 @@ class Case:
     """One path and objective, over all seeds."""
 
     name: str
-    objective: str
+    objective: Criterion
     accuracy: float
     plans: list[bik.Plan]
     evolved: list[bik.Plan]
@@ -90,13 +90,13 @@ def along_path(context: Context) -> tuple[Section, list[Claim]]:
                 name=f"figure_{13 + i}",
                 title=f"Figure {13 + i}: {_WORDS[case.objective]} along the {case.name}",
                 drawing=_draw(case),
-                caption="Best cost so far; the best plan; how the last link stands within its range; distance from the path.",
+                caption="Best cost so far; the best plan; how its last link stands; how far its tip is from the points.",
             )
         )
     return Section(TITLE, [*blocks, _table(cases)]), _claims(cases)
 
 
-def _case(name: str, objective: str, path: Any, accuracy: float, seeds: range) -> Case:
+def _case(name: str, objective: Criterion, path: Any, accuracy: float, seeds: range) -> Case:
     arm = bik.Robot.planar([1.0, 1.0, 1.0])
 
     def plan(seed: int, solver: bik.DifferentialEvolution | None) -> bik.Plan:
@@ -207,7 +207,9 @@ def _claims(cases: list[Case]) -> list[Claim]:
             Claim.checked(
                 f"The manipulator follows the {case.name} in little time.",
                 source="Section IV-C, Figure 13" if case.name == "pentagram" else "Section IV-C, Figure 15",
-                measured=f"{number(mean)} s on average (at most {number(bound)} s), within {number(1e3 * case.accuracy)} mm",
+                measured=(
+                    f"{number(mean)} s on average (at most {number(bound)} s), within {number(1e3 * case.accuracy)} mm"
+                ),
                 holds=mean <= bound and all(plan.success for plan in case.plans),
                 reading="Size and place of the path, links and limits are ours; eq. (25) needs weights, which it lacks.",
                 section=TITLE,

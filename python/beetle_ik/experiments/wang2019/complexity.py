@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -35,7 +36,11 @@ def complexity(context: Context) -> tuple[Section, list[Claim]]:
     repeats = context.pick(full=_REPEATS, short=_REPEATS_SHORT)
     swarm = bik.BeetleSwarm(stall_generations=None)
     particles = bik.PSO(population=50, stall_generations=None)
-    population = {"TPBSO": (bik.BeetleSwarm, 3), "PSO": (bik.PSO, 1), "GA": (bik.Genetic, 1)}
+    population: dict[str, tuple[Any, int]] = {
+        "TPBSO": (bik.BeetleSwarm, 3),
+        "PSO": (bik.PSO, 1),
+        "GA": (bik.Genetic, 1),
+    }
     rows: list[list[str | int | float]] = []
 
     def add(what: str, low: int, high: int, run: Callable[[int], bik.Plan]) -> None:
@@ -54,15 +59,12 @@ def complexity(context: Context) -> tuple[Section, list[Claim]]:
             ]
         )
 
-    for name, (make, each) in context.each("wang2019: Tables 2 and 3", list(population.items())):
-        add(
-            f"{name}: members, n_p",
-            25,
-            100,
-            lambda members, make=make, each=each: _plan(
-                4, make(population=members, stall_generations=None), members * (100 * each + 1)
-            ),
-        )
+    def with_members(name: str) -> Callable[[int], bik.Plan]:
+        make, looks = population[name]
+        return lambda members: _plan(4, make(population=members, stall_generations=None), members * (100 * looks + 1))
+
+    for name in context.each("wang2019: Tables 2 and 3", list(population)):
+        add(f"{name}: members, n_p", 25, 100, with_members(name))
     add("TPBSO: iterations, n_i", 50, 200, lambda generations: _plan(4, swarm, 50 * (3 * generations + 1)))
     add("TPBSO: links (dimension 4 k - 2)", 3, 6, lambda links: _plan(links, swarm, 50 * 301))
     add("PSO: links", 3, 6, lambda links: _plan(links, particles, 50 * 301))

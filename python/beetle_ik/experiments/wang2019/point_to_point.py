@@ -27,7 +27,18 @@ from ...report import (
 )
 from ..experiment import Context
 from .drawing import draw_arm, draw_bound, draw_joints, draw_search
-from .settings import EVALUATIONS, LINKS, SAME_EVALUATIONS, SAME_ITERATIONS, TPBSO, Search, bang_bang, each, nearest
+from .settings import (
+    EVALUATIONS,
+    LINKS,
+    SAME_EVALUATIONS,
+    SAME_ITERATIONS,
+    TPBSO,
+    Criterion,
+    Search,
+    bang_bang,
+    each,
+    nearest,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -36,8 +47,8 @@ TITLE = "From place to place"
 _SEEDS = 20  # as the paper
 _SEEDS_SHORT = 2
 _SEARCHES = (TPBSO, *SAME_ITERATIONS, *SAME_EVALUATIONS)
-_UNITS = {"time": "s", "joint_travel": "rad"}
-_WORDS = {"time": "least time", "joint_travel": "least rotation"}
+_UNITS: dict[Criterion, str] = {"time": "s", "joint_travel": "rad"}
+_WORDS: dict[Criterion, str] = {"time": "least time", "joint_travel": "least rotation"}
 
 # What means over 20 seeds must not exceed: mean, three standard errors and 5 % of an independent prototype.
 _ACCEPTED = {"time": (1.40, 1.41, 1.51, 1.65), "joint_travel": (2.4136, 2.49, 2.68, 3.27)}
@@ -69,7 +80,7 @@ blends.
 class Case:
     """One objective and number of links, all searches over all seeds."""
 
-    objective: str
+    objective: Criterion
     links: int
     plans: dict[str, list[bik.Plan]]
 
@@ -95,7 +106,7 @@ def point_to_point(context: Context) -> tuple[Section, list[Claim]]:
     return Section(TITLE, [*blocks, _TEXT_NEAREST, _nearest_table(cases)]), _claims(cases)
 
 
-def _case(objective: str, links: int, seeds: range) -> Case:
+def _case(objective: Criterion, links: int, seeds: range) -> Case:
     def all_seeds(search: Search) -> list[bik.Plan]:
         return each(lambda seed: search.plan(links, objective, seed), seeds)
 

@@ -11,7 +11,7 @@ import beetle_ik as bik
 
 from ...report import Claim, Column, Section, Spread, Table
 from ..experiment import Context
-from .settings import POPULATION, each
+from .settings import POPULATION, Criterion, each
 
 TITLE = "Table 1"
 _SEEDS = 10
@@ -88,10 +88,10 @@ def _row(path: str, algorithm: str, seeds: range) -> _Row:
     }
     solver, evaluations = solvers[algorithm]
 
-    def plans(objective: str) -> list[bik.Plan]:
+    def plans(objective: Criterion) -> list[bik.Plan]:
         return each(lambda seed: plan(objective, seed), seeds)
 
-    def plan(objective: str, seed: int) -> bik.Plan:
+    def plan(objective: Criterion, seed: int) -> bik.Plan:
         return bik.plan_along_path(
             bik.Robot.planar([1.0, 1.0, 1.0]),
             _points(path),
