@@ -7,6 +7,7 @@ from typer.core import TyperGroup
 
 from .. import BeetleIkError, __version__
 from .fk import fk
+from .plan import plan
 from .reproduce import reproduce
 from .robots import robots
 from .solve import solve
@@ -56,6 +57,7 @@ def _options_of_all(
 
 for command in (robots, fk, solve, track, reproduce):
     app.command()(command)
+app.add_typer(plan, name="plan")
 
 
 def main() -> None:
