@@ -124,8 +124,8 @@ WRONG: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
         [[0.0], [1.0]],
         {"limits": bik.Limits(velocity=1.0)},
         bik.UnsupportedLimit,
-        "time_optimal cannot honour infinite acceleration limits: joint 'q1' could start at any speed; give acceleration "
-        "limits",
+        "time_optimal cannot honour infinite acceleration limits: joint 'q1' could start at any speed; give "
+        "acceleration limits",
     ),
     (
         [[0.0], [1.0]],
@@ -172,7 +172,18 @@ def test_mistakes_are_named(waypoints: Any, options: dict[str, Any], error: type
 def test_retime_from_the_command_line(tmp_path: Any) -> None:
     file = tmp_path / "points.csv"
     file.write_text("time,a,b\n0,0,0\n1,1,-0.5\n3,0.5,1\n")
-    arguments = ["plan", "retime", str(file), "--acceleration", "5,4", "--velocity", "2", "--json", "--out", str(tmp_path / "out")]
+    arguments = [
+        "plan",
+        "retime",
+        str(file),
+        "--acceleration",
+        "5,4",
+        "--velocity",
+        "2",
+        "--json",
+        "--out",
+        str(tmp_path / "out"),
+    ]
     result = CliRunner().invoke(app, arguments)
     assert result.exit_code == 0, result.output
     summary = json.loads(result.output)

@@ -30,7 +30,8 @@ class SplineName(StrEnum):
 
 def retime(
     file: Annotated[
-        Path, typer.Argument(help="CSV with a column per joint, named by it or 'q:joint'; a column 'time' sets the knots.")
+        Path,
+        typer.Argument(help="CSV with a column per joint, named by it or 'q:joint'; a column 'time' sets the knots."),
     ],
     *,
     acceleration: Annotated[str, typer.Option(help="Limit in rad/s^2: a number, or one a joint: a1,a2,...")],
@@ -40,7 +41,9 @@ def retime(
     blend: Annotated[
         float | None, typer.Option(help="Of a polyline: corners are rounded from so far before them, in rad.")
     ] = None,
-    gridpoints: Annotated[int | None, typer.Option(help="Points where the acceleration may change; chosen if absent.")] = None,
+    gridpoints: Annotated[
+        int | None, typer.Option(help="Points where the acceleration may change; chosen if absent.")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for trajectory.csv, trajectory.npz, limits.png and summary.json.")
     ] = None,
