@@ -4,7 +4,7 @@
 # SI units and radians throughout; results are read-only.
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
 from typing import Any, Literal, Protocol, TypeAlias, final, type_check_only
 
@@ -15,7 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 _Array: TypeAlias = NDArray[np.float64]
-_Solver: TypeAlias = BAS | BroydenBAS | LevenbergMarquardt | MultiStart
+_DerivativeFree: TypeAlias = BAS | BeeColony | BeetleSwarm | DifferentialEvolution | Firefly | Genetic | PSO | QPSO
+_Single: TypeAlias = _DerivativeFree | BroydenBAS | LevenbergMarquardt
+_Solver: TypeAlias = _Single | MultiStart
 _LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
 _LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] | None
 _Plant: TypeAlias = KinematicPlant | Callable[[_Array], ArrayLike] | _Mover
@@ -91,6 +93,11 @@ class Robot:
     def with_base(self, base: ArrayLike) -> Robot: ...
     def with_limits(
         self, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None, velocity: ArrayLike | None = None
+    ) -> Robot: ...
+    @property
+    def capsules(self) -> list[tuple[str, _Array, _Array, float]]: ...  # link, a (3,), b (3,), radius in m
+    def with_capsules(
+        self, capsules: list[tuple[str, ArrayLike, ArrayLike, float]] | None = None, *, radius: float | None = None
     ) -> Robot: ...
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot: ...  # up to, m and rad
     def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
@@ -209,6 +216,206 @@ class BroydenBAS:
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
+class BeeColony:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        limit: int | None = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> BeeColony: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def limit(self) -> int | None: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class BeetleSwarm:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        inertia: float = ...,
+        c1: float = ...,
+        c2: float = ...,
+        velocity_limit: float = ...,
+        velocity_share: float = ...,
+        step: float = ...,
+        step_decay: float = ...,
+        step_over_antennae: float = ...,
+        direction: Literal["printed", "downhill"] = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> BeetleSwarm: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def inertia(self) -> float: ...
+    @property
+    def c1(self) -> float: ...
+    @property
+    def c2(self) -> float: ...
+    @property
+    def velocity_limit(self) -> float: ...
+    @property
+    def velocity_share(self) -> float: ...
+    @property
+    def step(self) -> float: ...
+    @property
+    def step_decay(self) -> float: ...
+    @property
+    def step_over_antennae(self) -> float: ...
+    @property
+    def direction(self) -> str: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class DifferentialEvolution:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        weight: float = ...,
+        crossover_rate: float = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> DifferentialEvolution: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def weight(self) -> float: ...
+    @property
+    def crossover_rate(self) -> float: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class Firefly:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        attractiveness: float = ...,
+        absorption: float = ...,
+        randomness: float = ...,
+        randomness_decay: float = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> Firefly: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def attractiveness(self) -> float: ...
+    @property
+    def absorption(self) -> float: ...
+    @property
+    def randomness(self) -> float: ...
+    @property
+    def randomness_decay(self) -> float: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class Genetic:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        elite_share: float = ...,
+        crossover_share: float = ...,
+        tournament: int = ...,
+        mutation_scale: float = ...,
+        mutation_decay: float = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> Genetic: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def elite_share(self) -> float: ...
+    @property
+    def crossover_share(self) -> float: ...
+    @property
+    def tournament(self) -> int: ...
+    @property
+    def mutation_scale(self) -> float: ...
+    @property
+    def mutation_decay(self) -> float: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class PSO:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        form: Literal["constriction", "inertia"] = "constriction",
+        inertia: float | None = None,  # 0.729 with form "inertia"
+        c1: float | None = None,
+        c2: float | None = None,
+        velocity_limit: float = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> PSO: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def form(self) -> str: ...
+    @property
+    def inertia(self) -> float | None: ...
+    @property
+    def c1(self) -> float: ...
+    @property
+    def c2(self) -> float: ...
+    @property
+    def velocity_limit(self) -> float: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class QPSO:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        expansion: float = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> QPSO: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def expansion(self) -> float: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class LevenbergMarquardt:
     def __new__(cls, *, initial_damping: float = ...) -> LevenbergMarquardt: ...
     @property
@@ -217,9 +424,9 @@ class LevenbergMarquardt:
 
 @final
 class MultiStart:
-    def __new__(cls, solver: BAS | BroydenBAS | LevenbergMarquardt, *, max_starts: int | None = None) -> MultiStart: ...
+    def __new__(cls, solver: _Single, *, max_starts: int | None = None) -> MultiStart: ...
     @property
-    def solver(self) -> BAS | BroydenBAS | LevenbergMarquardt: ...
+    def solver(self) -> _Single: ...
     @property
     def max_starts(self) -> int | None: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
@@ -227,7 +434,12 @@ class MultiStart:
 @final
 class Stop:
     def __new__(
-        cls, *, max_evaluations: int | None = None, max_iterations: int | None = None, max_time: float | None = None
+        cls,
+        *,
+        max_evaluations: int | None = None,
+        max_iterations: int | None = None,
+        max_time: float | None = None,
+        value_below: float | None = None,
     ) -> Stop: ...
     @property
     def max_evaluations(self) -> int | None: ...
@@ -235,6 +447,8 @@ class Stop:
     def max_iterations(self) -> int | None: ...
     @property
     def max_time(self) -> float | None: ...  # s
+    @property
+    def value_below(self) -> float | None: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- inverse kinematics -------------------------------------------------------------------------
@@ -319,6 +533,43 @@ class BatchSolution:
     def limits(self) -> Limits: ...  # those in force
     def __len__(self) -> int: ...
     def __getitem__(self, index: int, /) -> Solution: ...
+
+# --- minimisation of any function ----------------------------------------------------------------
+
+def minimize(
+    function: Callable[[_Array], Any],  # (n,) -> a number; vectorized: (m, n) -> (m,)
+    lower: ArrayLike,
+    upper: ArrayLike,
+    *,
+    solver: _DerivativeFree | MultiStart,
+    start: ArrayLike | None = None,
+    stop: Stop | None = None,
+    seed: int = 0,
+    vectorized: bool = False,
+) -> Minimum: ...
+
+@final
+class Minimum:
+    @property
+    def x(self) -> _Array: ...  # (n,)
+    @property
+    def value(self) -> float: ...
+    @property
+    def history(self) -> _Array: ...  # (k, 2): evaluations, best value
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def restarts(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...
 
 # --- reference paths (public as beetle_ik.paths) ------------------------------------------------
 
@@ -486,6 +737,70 @@ class Step:
     @property
     def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
 
+# --- obstacles ----------------------------------------------------------------------------------
+
+class Obstacle:
+    @property
+    def triangles(self) -> _Array: ...  # (t, 3, 3) m, for drawing
+    def __eq__(self, other: object) -> bool: ...
+
+@final
+class Sphere(Obstacle):
+    def __new__(cls, center: ArrayLike, radius: float) -> Sphere: ...
+    @property
+    def center(self) -> _Array: ...
+    @property
+    def radius(self) -> float: ...
+
+@final
+class Box(Obstacle):
+    def __new__(cls, center: ArrayLike, size: ArrayLike, rotation: ArrayLike | None = None) -> Box: ...
+    @property
+    def center(self) -> _Array: ...
+    @property
+    def size(self) -> _Array: ...
+    @property
+    def rotation(self) -> _Array: ...  # (3, 3)
+
+@final
+class Capsule(Obstacle):
+    def __new__(cls, a: ArrayLike, b: ArrayLike, radius: float) -> Capsule: ...
+    @property
+    def a(self) -> _Array: ...
+    @property
+    def b(self) -> _Array: ...
+    @property
+    def radius(self) -> float: ...
+
+@final
+class Ellipsoid(Obstacle):
+    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, rotation: ArrayLike | None = None) -> Ellipsoid: ...
+    @property
+    def center(self) -> _Array: ...
+    @property
+    def semi_axes(self) -> _Array: ...
+    @property
+    def rotation(self) -> _Array: ...  # (3, 3)
+
+@final
+class Ellipse(Obstacle):
+    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, angle: float = 0.0) -> Ellipse: ...
+    @property
+    def center(self) -> _Array: ...  # (2,)
+    @property
+    def semi_axes(self) -> _Array: ...  # (2,)
+    @property
+    def angle(self) -> float: ...
+
+@final
+class ConvexMesh(Obstacle):
+    def __new__(cls, points: ArrayLike) -> ConvexMesh: ...  # (k, 3)
+    @property
+    def points(self) -> _Array: ...
+
+# A number for q (n,), (m,) for q (m, n).
+def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any: ...
+
 # --- planning -----------------------------------------------------------------------------------
 
 def plan_point_to_point(
@@ -498,7 +813,9 @@ def plan_point_to_point(
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
-    elbows: Sequence[int] = [1, 1],  # noqa: B006
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,  # m
+    elbows: Sequence[int] = [1, 1],
     solver: _Solver | None = None,
     stop: Stop | None = None,
     seed: int = 0,

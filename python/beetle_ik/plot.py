@@ -5,19 +5,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _plan_figure
+from ._shapes import draw_capsules, draw_obstacles
 from ._style import BLUE, FORBIDDEN, GREEN, VERMILION, line, style
 from ._text import counted
 
 if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from ._core import Limits, Plan, Robot, TrackResult, Trajectory
+    from ._core import Limits, Obstacle, Plan, Robot, TrackResult, Trajectory
 
 _ROW_HEIGHT = 2.4  # inches, of a panel over time
 _VELOCITY_PANELS_A_ROW = 7
@@ -26,15 +30,16 @@ _LEGEND_ROWS = 10
 _TRAJECTORY_SAMPLES = 2001
 
 
-def robot(robot: Robot, q: ArrayLike) -> Figure:
-    """The robot as a stick figure at the configuration `q` (n,)."""
+def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] = ()) -> Figure:
+    """The robot as a stick figure at the configuration `q` (n,), with its capsules, among `obstacles`."""
     origins = robot.link_poses(q)[:, :3, 3]
     with style():
         figure = _new_figure(6.0, 6.0)
         axes = figure.add_subplot(projection="3d")
         axes.plot(*origins.T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
         axes.plot(*origins[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
-        _equal_axes(axes, origins)
+        draw_capsules(axes, robot, q)
+        _equal_axes(axes, np.vstack((origins, draw_obstacles(axes, obstacles))))
         axes.set_title(f"{robot.name}, {counted(robot.dof, 'joint')}")
         axes.legend(loc="upper left")
     return figure
@@ -65,8 +70,17 @@ def track(result: TrackResult) -> Figure:
 
 
 def plan(plan: Plan) -> Figure:
-    """A planned motion: position, velocity and acceleration of each joint over time."""
-    return trajectory(plan.trajectory)
+    """A planned motion: the arm on its way, the search, and the joints over time."""
+    with style():
+        figure = _new_figure(13.0, 3 * _ROW_HEIGHT + 0.4)
+        _plan_figure.draw(figure, plan)
+    return figure
+
+
+def animation(plan: Plan) -> FuncAnimation:
+    """The arm on its planned way, in its own time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
+    with style():
+        return _plan_figure.animate(_new_figure(6.0, 6.0), plan)
 
 
 def trajectory(trajectory: Trajectory) -> Figure:

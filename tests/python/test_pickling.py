@@ -23,13 +23,24 @@ SOLVERS = [
     bik.MultiStart(bik.LevenbergMarquardt(initial_damping=0.5), max_starts=3),
 ]
 STOPS = [bik.Stop(), bik.Stop(max_evaluations=10, max_iterations=20, max_time=0.25)]
-VALUES = [*SINUSOIDS, *SOLVERS, *STOPS]
+TURN = bik.pose([0, 0, 0], rpy=[0.1, 0.2, 0.3])[:3, :3]
+OBSTACLES = [
+    bik.obstacles.Sphere([0.1, 0.2, 0.3], 0.5),
+    bik.obstacles.Box([0.1, 0.2, 0.3], [1, 2, 3]),
+    bik.obstacles.Box([0.1, 0.2, 0.3], [1, 2, 3], rotation=TURN),
+    bik.obstacles.Capsule([0.1, 0.2, 0.3], [1, 2, 3], 0.25),
+    bik.obstacles.Ellipsoid([0.1, 0.2, 0.3], [1, 2, 3], rotation=TURN),
+    bik.obstacles.Ellipse([0.1, 0.2], [1, 2], angle=0.7),
+    bik.obstacles.ConvexMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
+]
+VALUES = [*SINUSOIDS, *SOLVERS, *STOPS, *OBSTACLES]
 
 MECHANISM, MECHANISM_BASE, MECHANISM_TIP = chain(joints=9, place="branch", seed=4)
 ROBOTS = [
     bik.Robot.named("iiwa14"),
     bik.Robot.planar([1.0, 0.5], velocity=0.3),
     bik.Robot.from_urdf(MECHANISM, base=MECHANISM_BASE, tip=MECHANISM_TIP),
+    bik.Robot.named("ur5e").with_capsules(radius=0.05),
     bik.Robot.named("panda").with_tool(bik.pose([0, 0, 0.1], rpy=[1, 2, 3])).with_base(bik.pose([1, 2, 3])),
 ]
 

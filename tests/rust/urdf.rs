@@ -390,3 +390,37 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn collision_shapes_become_capsules_that_hold_them() {
+    let text = r#"<robot name="arm"><link name="base"/>
+      <link name="upper">
+        <collision><origin xyz="0 0 0.5"/><geometry><cylinder radius="0.1" length="1"/></geometry></collision>
+        <collision><geometry><sphere radius="0.2"/></geometry></collision>
+      </link>
+      <link name="fore"><collision><origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/>
+        <geometry><box size="0.8 0.3 0.4"/></geometry></collision></link>
+      <link name="hand"><collision><geometry><mesh filename="hand.stl"/></geometry></collision>
+        <collision><geometry><sphere radius="-1"/></geometry></collision></link>
+      <joint name="a" type="revolute"><parent link="base"/><child link="upper"/><limit lower="-1" upper="1" velocity="1"/></joint>
+      <joint name="b" type="revolute"><parent link="upper"/><child link="fore"/><limit lower="-1" upper="1" velocity="1"/></joint>
+      <joint name="c" type="fixed"><parent link="fore"/><child link="hand"/></joint></robot>"#;
+    let robot = Robot::from_urdf(text, None, None).unwrap();
+    let [cylinder, ball, block] = robot.capsules() else { panic!("{:?}", robot.capsules()) };
+    assert_eq!(
+        (cylinder.link.as_str(), cylinder.a, cylinder.b, cylinder.radius),
+        ("upper", [0.0; 3], [0.0, 0.0, 1.0], 0.1)
+    );
+    assert_eq!((ball.a, ball.b, ball.radius), ([0.0; 3], [0.0; 3], 0.2));
+    assert!(
+        (block.radius - 0.25).abs() < 1e-15 && (block.a[1] + 0.4).abs() < 1e-15 && (block.b[1] - 0.4).abs() < 1e-15
+    );
+    assert_eq!(robot.unread_collision_shapes(), ["a mesh of link 'hand'", "a sphere of link 'hand'"]);
+    let restored = Robot::from_bytes(&robot.to_bytes().unwrap()).unwrap();
+    assert!(restored == robot && restored.unread_collision_shapes() == robot.unread_collision_shapes());
+    let message = ikcore::obstacle::Scene::new(&robot, &[]).unwrap_err().to_string();
+    assert!(
+        message.starts_with("robot 'arm' has collision shapes that cannot be read (a mesh of link 'hand', a sphere")
+    );
+    assert!(ikcore::obstacle::Scene::new(&robot.with_capsules_along_links(0.1).unwrap(), &[]).is_ok());
+}

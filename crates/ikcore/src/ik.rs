@@ -57,6 +57,7 @@ impl Solution {
         match self.status {
             _ if errors.position.is_nan() => format!("not solved: {}", self.status.advice()),
             Status::Solved => format!("solved to {errors}"),
+            Status::Improved => format!("below the value asked for, {errors} away"),
             Status::Stalled => format!("no further progress {errors} away: {}", self.status.advice()),
             Status::BudgetSpent => format!("budget spent {errors} away: {}", self.status.advice()),
             Status::TimeUp => format!("time limit over {errors} away: {}", self.status.advice()),

@@ -12,9 +12,10 @@ use crate::convert::{array, count, point, rigid_rows, shape_text, table, vector}
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::{Progress, Watcher};
+use crate::obstacle::read_obstacles;
 use crate::path::PyPath;
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, derivative_free, status};
+use crate::solver::{PyStop, derivative_free_solver, status};
 use crate::trajectory::PyTrajectory;
 use crate::upward;
 
@@ -209,6 +210,8 @@ impl PyPlan {
 ///     robot: the arm.
 ///     start, end: position (3,) (m) or pose (4, 4) of the tip; the configuration is the planner's choice.
 ///     start_q, end_q: instead of them, joint angles (n,).
+///     obstacles: what the robot may not touch, from `bik.obstacles`; it may never touch itself if it has capsules.
+///     margin: distance to keep from obstacles and between links (m); None: 1 mm.
 ///     limits: positions, velocities and accelerations to keep; None: the robot's.
 ///     method: "minmax": the ends' configurations that are nearest in time, joined at the limits' pace; "tpbso":
 ///         polynomials through a via point, searched by a beetle swarm (Wang et al. 2019).
@@ -228,7 +231,8 @@ impl PyPlan {
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
 #[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method="minmax",
-                    objective="time", elbows=[1, 1], solver=None, stop=None, seed=0, progress=None))]
+                    objective="time", obstacles=None, margin=None, elbows=[1, 1], solver=None, stop=None, seed=0,
+                    progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point(
     py: Python<'_>,
@@ -240,6 +244,8 @@ pub fn plan_point_to_point(
     limits: Option<&PyLimits>,
     method: &str,
     objective: &str,
+    obstacles: Option<&Bound<'_, PyAny>>,
+    margin: Option<f64>,
     elbows: [i128; 2],
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
@@ -252,11 +258,11 @@ pub fn plan_point_to_point(
     let options = PointToPointOptions {
         method: method.parse().map_err(raise)?,
         objective: objective.parse().map_err(raise)?,
-        obstacles: vec![],
-        margin: None,
+        obstacles: read_obstacles(obstacles)?,
+        margin,
         elbows: [read_elbow("elbows[0]", elbows[0])?, read_elbow("elbows[1]", elbows[1])?],
         limits: resolved,
-        solver: solver.map(derivative_free).transpose()?,
+        solver: solver.map(|solver| derivative_free_solver("plan_point_to_point", solver)).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
@@ -321,7 +327,7 @@ pub fn plan_along_path(
         limits: resolved,
         elbow: read_elbow("elbow", elbow)?,
         accuracy,
-        solver: solver.map(derivative_free).transpose()?,
+        solver: solver.map(|solver| derivative_free_solver("plan_along_path", solver)).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ikcore::manipulability;
 use ikcore::rng;
-use ikcore::robot::{Dh, DhTable, Joint, JointKind, Robot};
+use ikcore::robot::{Dh, DhTable, Joint, JointKind, LinkCapsule, Robot};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -58,8 +58,8 @@ impl PyRobot {
     ///     base: link in whose frame everything is expressed; None takes the root. It need not be an ancestor of `tip`.
     ///     tip: link that is to be moved; None takes the only leaf.
     ///
-    /// Revolute, continuous, prismatic, fixed and mimic joints are understood; visuals, meshes and unknown tags are
-    /// passed over. A missing velocity limit is infinite, a zero one locks the joint; `safety_controller` is ignored.
+    /// Revolute, continuous, prismatic, fixed and mimic joints are understood; collision shapes of spheres, cylinders,
+    /// capsules and boxes become `capsules` that hold them; visuals, meshes and unknown tags are passed over. A missing velocity limit is infinite, a zero one locks the joint; `safety_controller` is ignored.
     ///
     /// Raises:
     ///     UrdfError: not XML, no joint, a cycle, two roots, a zero axis, several leaves and no `tip`.
@@ -246,6 +246,36 @@ impl PyRobot {
         self.core.with_limits(change).map(Self::from).map_err(raise)
     }
 
+    /// The room that the links take up: (link, a, b, radius) each, all points within `radius` (m) of the segment from a
+    /// (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to a URDF's collision shapes.
+    #[getter]
+    fn capsules<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> Vec<(String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64)> {
+        let capsules = self.core.capsules().iter();
+        capsules.map(|c| (c.link.clone(), row(py, c.a.to_vec()), row(py, c.b.to_vec()), c.radius)).collect()
+    }
+
+    /// The same robot, its links taking up capsules: of this `radius` (m) along every link, or these alone, each (link,
+    /// a, b, radius) with its axis from a (3,) to b (3,) in the frame of the link (m). Along the links they end at the
+    /// tip: set a tool first. The way that a sliding joint opens between two links is part of neither.
+    ///
+    /// Raises:
+    ///     UnknownNameError: no link of that name; the message lists them.
+    #[pyo3(signature = (capsules=None, *, radius=None))]
+    fn with_capsules(&self, capsules: Option<Vec<Bound<'_, PyAny>>>, radius: Option<f64>) -> PyResult<Self> {
+        let robot = match (capsules, radius) {
+            (Some(capsules), None) => {
+                let capsules = capsules.iter().enumerate().map(|(i, capsule)| read_capsule(i, capsule));
+                self.core.with_capsules(capsules.collect::<PyResult<_>>()?)
+            }
+            (None, Some(radius)) => self.core.with_capsules_along_links(radius),
+            _ => return Err(invalid("with_capsules: give either radius= or a list of (link, a, b, radius)".into())),
+        };
+        robot.map(Self::from).map_err(raise)
+    }
+
     /// The same robot with errors of manufacture, drawn at random: every constant offset between two joints is longer or
     /// shorter by up to `length` (m), every turning joint's zero is off by up to `angle` (rad). As a `KinematicPlant` it
     /// is an arm whose model is wrong.
@@ -331,6 +361,16 @@ impl PyRobot {
     fn _from_bytes(bytes: &[u8]) -> PyResult<Self> {
         Robot::from_bytes(bytes).map(Self::from).map_err(raise)
     }
+}
+
+/// (link, a, b, radius).
+fn read_capsule(i: usize, value: &Bound<'_, PyAny>) -> PyResult<LinkCapsule> {
+    type Parts<'py> = (String, Bound<'py, PyAny>, Bound<'py, PyAny>, f64);
+    let (link, a, b, radius) = value
+        .extract::<Parts<'_>>()
+        .map_err(|_| invalid(format!("capsule {i} must be (link, a, b, radius), got {}", convert::summary(value))))?;
+    let end = |name: &str, value: &Bound<'_, PyAny>| convert::point(&format!("{name} of capsule {i}"), value);
+    Ok(LinkCapsule { link, a: end("a", &a)?, b: end("b", &b)?, radius })
 }
 
 /// `work` on whole rows of `n` numbers, without the interpreter, looking for Ctrl-C in between.

@@ -9,6 +9,7 @@
 //! | `segment` | distance of a segment to a convex set or another segment, certified from below |
 //! | [`scene`] | a robot among obstacles: which pairs can touch, and how near they are at one configuration |
 //! | `displacement` | how far a link can move while the joints move by so much |
+//! | `surface` | triangles for drawing |
 //! | [`sweep`] | whether a whole motion keeps clear, and its smallest clearance |
 
 #[cfg(feature = "convex-mesh")]
@@ -18,6 +19,7 @@ mod ellipsoid;
 pub mod scene;
 mod segment;
 pub mod shape;
+mod surface;
 pub mod sweep;
 mod tangent;
 

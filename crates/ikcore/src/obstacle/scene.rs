@@ -135,6 +135,15 @@ impl<'a> Scene<'a> {
         Ok(nearest.map(|(distance, pair)| self.contact(pair, distance)))
     }
 
+    /// The smallest distance (m) at each of the configurations stored one after another; infinite where nothing can touch.
+    ///
+    /// # Errors
+    /// As [`nearest`](Self::nearest).
+    pub fn clearances(&self, qs: &[f64]) -> Result<Vec<f64>> {
+        let distance = |contact: Option<Contact>| contact.map_or(f64::INFINITY, |contact| contact.distance);
+        qs.chunks(self.robot.dof()).map(|q| self.nearest(q).map(distance)).collect()
+    }
+
     /// Whether everything is at least `margin` (m) apart at `q`.
     pub fn is_clear(&self, q: &[f64], margin: f64) -> bool {
         let placement = self.place(q);

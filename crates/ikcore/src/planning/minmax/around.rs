@@ -8,6 +8,7 @@ use super::pace::Polyline;
 use super::{NO_TIME, PAIRS, no_pair, straight};
 use crate::error::{Error, Result};
 use crate::obstacle::{Contact, Scene};
+use crate::planning::planar_arm::PlanarArm;
 use crate::planning::{End, Improvement, MotionLimits, Plan, PointToPointOptions, Violation};
 use crate::rng;
 use crate::solver::{Monitor, Status};
@@ -23,6 +24,8 @@ const BUDGET: usize = 200_000;
 /// Fewer open pairs make more be sought, so many from so many random starts.
 const FEW_PAIRS: usize = 3;
 const TRIES: usize = 400;
+/// Places of a straight line that are looked at to find how deep it goes.
+const PLACES: usize = 16;
 /// Ways that are searched, of which the quickest is taken.
 const WAYS: u64 = 4;
 /// Times that blends are narrowed before the motion stops at every corner instead.
@@ -35,7 +38,11 @@ pub(super) fn plan(search: &mut Search, options: &PointToPointOptions, monitor: 
         return Err(Error::out_of_range("margin", "zero or more and finite", margin));
     }
     let robot = search.robot;
-    let scene = Scene::new(robot, &options.obstacles)?;
+    // Without capsules the links of an arm in the plane are lines that may cross each other, as in Wang et al. (2019).
+    let bare = robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
+    let lines = if bare && PlanarArm::of(robot).is_some() { Some(robot.with_capsules_along_links(0.0)?) } else { None };
+    let scene = Scene::new(lines.as_ref().unwrap_or(robot), &options.obstacles)?;
+    let scene = if lines.is_some() { scene.without_self_collision() } else { scene };
     let pairs = search.pairs(PAIRS, monitor)?;
     let first = pairs.first().ok_or_else(no_pair)?;
     let is_clear = |q: &[f64]| scene.is_clear(q, margin + EXTRA);
@@ -57,10 +64,25 @@ pub(super) fn plan(search: &mut Search, options: &PointToPointOptions, monitor: 
     search.evaluations += room.sweep.looks();
     let (trajectory, ended) = match found {
         Found::Clear(trajectory) => (trajectory, Status::Solved),
-        // The least violating one: straight through.
-        Found::Nothing(status) => (straight(open.first().unwrap_or(first), limits)?, status),
+        Found::Nothing(status) => {
+            let tried = if open.is_empty() { &pairs } else { &open };
+            (straight(least_deep(&scene, tried).unwrap_or(first), limits)?, status)
+        }
     };
     finish(search, &scene, trajectory, ended, options, margin)
+}
+
+/// The pair whose straight line, looked at in some places, goes least deep into anything.
+fn least_deep<'p>(scene: &Scene, pairs: &'p [Pair]) -> Option<&'p Pair> {
+    let distance = |pair: &Pair| {
+        let at = |i: usize| -> Vec<f64> {
+            let share = i as f64 / PLACES as f64;
+            pair.start.iter().zip(&pair.end).map(|(start, end)| start + share * (end - start)).collect()
+        };
+        let nearest = (0..=PLACES).filter_map(|i| scene.nearest(&at(i)).ok().flatten());
+        nearest.map(|contact| contact.distance).fold(f64::INFINITY, f64::min)
+    };
+    pairs.iter().max_by(|one, other| distance(one).total_cmp(&distance(other)))
 }
 
 /// What the search for a way came to.

@@ -1,0 +1,128 @@
+"""A planned motion in pictures: the arm on its way, the search, the joints; and the arm moving."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._style import BLACK, BLUE, GREEN, SKY, VERMILION, line
+
+if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from ._core import Plan
+
+_SAMPLES = 801
+_SNAPSHOTS = 6
+_FLAT = 1e-9  # m
+_FRAMES_A_SECOND = 25
+_PAUSE = 15  # frames at the end
+
+
+class Scene:
+    """The way of the arm in axes that suit it: flat for an arm that stays in a plane, else in space."""
+
+    def __init__(self, figure: Any, place: Any, plan: Plan) -> None:
+        """Make the axes at `place`, a cell of a grid."""
+        self._plan = plan
+        time = np.linspace(0.0, plan.trajectory.duration, _SAMPLES)
+        self._q = plan.trajectory.at(time)[0]
+        self._tip = plan.robot.fk(self._q)[:, :3, 3]
+        self._corners = np.array([self._origins(q) for q in self._q[:: _SAMPLES // 40]])
+        self._flat = bool(np.ptp(self._corners[..., 2]) < _FLAT)
+        self.axes = figure.add_subplot(place, projection=None if self._flat else "3d")
+
+    def draw_way(self) -> None:
+        """The tip's way, beginning and end, and the points that it was to follow."""
+        if self._plan.reference is not None:
+            points = np.asarray(self._plan.reference)
+            self._plot(points, color=VERMILION, marker="x", markersize=4, linestyle="none", label="points to follow")
+        self._plot(self._tip, color=BLUE, label="tip")
+        self._plot(self._tip[:1], color=GREEN, marker="o", linestyle="none", label="start")
+        self._plot(self._tip[-1:], color=BLACK, marker="o", linestyle="none", label="end")
+        self._scale()
+
+    def draw_arm(self, share: float, **style: Any) -> Any:
+        """The arm after this share of the time."""
+        return self._plot(self._origins(self._at(share)), marker="o", markersize=3, **style)
+
+    def move_arm(self, drawn: Any, share: float) -> None:
+        """Put an arm that was drawn where it is after this share of the time."""
+        corners = self._origins(self._at(share)).T
+        if self._flat:
+            drawn.set_data(corners[0], corners[1])
+        else:
+            drawn.set_data_3d(*corners)
+
+    def _at(self, share: float) -> NDArray[np.float64]:
+        return np.asarray(self._plan.trajectory.at(share * self._plan.trajectory.duration)[0])
+
+    def _origins(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(self._plan.robot.link_poses(q)[:, :3, 3])
+
+    def _plot(self, points: NDArray[np.float64], **style: Any) -> Any:
+        return self.axes.plot(*points.T[: 2 if self._flat else 3], **style)[0]
+
+    def _scale(self) -> None:
+        if self._flat:
+            self.axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
+            return
+        corners = self._corners.reshape(-1, 3)
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        middle, reach = (low + high) / 2, 0.55 * max(float((high - low).max()), 1e-9)
+        for name, center in zip("xyz", middle, strict=True):
+            self.axes.set(**{f"{name}lim": (center - reach, center + reach), f"{name}label": f"{name} [m]"})
+        self.axes.set_box_aspect((1, 1, 1), zoom=0.9)
+
+
+def draw(figure: Figure, plan: Plan) -> None:
+    """The arm on its way and the search on the left; positions, velocities, accelerations on the right."""
+    grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.15])
+    scene = Scene(figure, grid[:2, 0], plan)
+    for i in range(_SNAPSHOTS):
+        share = i / (_SNAPSHOTS - 1)
+        label = "arm" if i == _SNAPSHOTS - 1 else None
+        scene.draw_arm(share, color=SKY, alpha=0.25 + 0.75 * share, label=label)
+    scene.draw_way()
+    scene.axes.legend(loc="upper left", fontsize="small")
+    _draw_search(figure.add_subplot(grid[2, 0]), plan)
+    time = np.linspace(0.0, plan.trajectory.duration, _SAMPLES)
+    labels = ("position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]")
+    panels = [figure.add_subplot(grid[row, 1]) for row in range(3)]
+    for axes, label, values in zip(panels, labels, plan.trajectory.at(time), strict=True):
+        for j, name in enumerate(plan.trajectory.joint_names):
+            axes.plot(time, values[:, j], label=name, **line(j))
+        axes.set(ylabel=label, xlim=(0.0, plan.trajectory.duration))
+    panels[2].set_xlabel("time [s]")
+    panels[0].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize="small")
+    figure.suptitle(f"{plan.robot.name}: {plan.message}")
+
+
+def _draw_search(axes: Axes, plan: Plan) -> None:
+    evaluations, cost = plan.history.T
+    steps = np.append(evaluations, max(plan.evaluations, 1))
+    axes.step(steps, np.append(cost, cost[-1:]), where="post", color=BLUE)
+    axes.set(xlabel="evaluations", ylabel="best cost so far", yscale="log" if (cost > 0).all() else "linear")
+
+
+def animate(figure: Figure, plan: Plan) -> FuncAnimation:
+    """The arm on its way, in its own time."""
+    from matplotlib.animation import FuncAnimation
+
+    scene = Scene(figure, figure.add_gridspec(1, 1)[0], plan)
+    scene.draw_arm(0.0, color=SKY, alpha=0.4, label="arm at the start")
+    scene.draw_arm(1.0, color=SKY, alpha=0.4)
+    scene.draw_way()
+    arm = scene.draw_arm(0.0, color=VERMILION, linewidth=2.5, label="arm")
+    scene.axes.legend(loc="upper left", fontsize="small")
+    moving = max(2, round(plan.trajectory.duration * _FRAMES_A_SECOND))
+
+    def show(frame: int) -> tuple[Any]:
+        scene.move_arm(arm, min(frame / (moving - 1), 1.0))
+        return (arm,)
+
+    return FuncAnimation(figure, show, frames=moving + _PAUSE, interval=1e3 / _FRAMES_A_SECOND)

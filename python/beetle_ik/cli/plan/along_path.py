@@ -1,0 +1,79 @@
+"""`beetle-ik plan along-path`: the tip follows a path."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ... import InvalidInputError, plan_along_path
+from ..curves import CurveName, make_curve, read_points
+from ..options import AsJson, BaseLink, RobotName, Seed, Start, TipLink, UrdfFile, load_robot, numbers
+from .planned import Acceleration, Animated, Budget, Out, Solver, Velocity, options, report
+
+_DURATION = 1.0  # s; the planner does not look at it
+
+
+class Method(StrEnum):
+    """Planners by their names."""
+
+    TIMED = "timed"
+    TPBSO = "tpbso"
+
+
+class Objective(StrEnum):
+    """What is minimised."""
+
+    TIME = "time"
+    JOINT_TRAVEL = "joint_travel"
+
+
+def along_path(
+    robot: RobotName = None,
+    *,
+    curve: Annotated[CurveName | None, typer.Option(help="A built-in curve, sized and placed to suit the arm.")] = None,
+    points: Annotated[Path | None, typer.Option("--path", help="Or a CSV file: columns x,y,z in m.")] = None,
+    method: Annotated[
+        Method, typer.Option(help="Redundancy and timing together, or a beetle swarm in uniform time.")
+    ] = Method.TIMED,
+    objective: Annotated[Objective, typer.Option(help="What to minimise.")] = Objective.TIME,
+    accuracy: Annotated[float | None, typer.Option(help="Allowed distance from the points in m.")] = None,
+    start: Start = None,
+    velocity: Velocity = None,
+    acceleration: Acceleration = None,
+    solver: Solver = None,
+    max_evaluations: Budget = None,
+    seed: Seed = 0,
+    out: Out = None,
+    animation: Animated = False,
+    urdf: UrdfFile = None,
+    tip: TipLink = None,
+    base: BaseLink = None,
+    as_json: AsJson = False,
+) -> None:
+    """Plan a motion whose tip follows a path, in order."""
+    arm = load_robot(robot, urdf, base, tip)
+    if (curve is None) == (points is None):
+        raise InvalidInputError(f"give one of --path FILE and --curve with one of {', '.join(CurveName)}")
+    path = read_points(points, _DURATION) if points is not None else make_curve(curve, arm, _DURATION, {})
+    if animation and out is None:
+        raise InvalidInputError("--animation writes a file: use --out DIR too")
+    chosen = options(velocity, acceleration, solver, max_evaluations)
+    report(
+        lambda: plan_along_path(
+            arm,
+            path,
+            start_q=None if start is None else numbers("--start", start),
+            method=method.value,
+            objective=objective.value,
+            accuracy=accuracy,
+            seed=seed,
+            progress=not as_json,
+            **chosen,
+        ),
+        method.value,
+        seed,
+        out,
+        animation,
+        as_json,
+    )

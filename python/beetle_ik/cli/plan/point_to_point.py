@@ -1,0 +1,95 @@
+"""`beetle-ik plan point-to-point`: from one place to another."""
+
+from enum import StrEnum
+from typing import Annotated, Any
+
+import typer
+
+from ... import InvalidInputError, plan_point_to_point
+from ...obstacles import Ellipse
+from ..options import AsJson, BaseLink, RobotName, Seed, TipLink, UrdfFile, load_robot, numbers
+from .planned import Acceleration, Animated, Budget, Out, Solver, Velocity, options, report
+
+
+class Method(StrEnum):
+    """Planners by their names."""
+
+    MINMAX = "minmax"
+    TPBSO = "tpbso"
+
+
+class Objective(StrEnum):
+    """What is minimised."""
+
+    TIME = "time"
+    JOINT_TRAVEL = "joint_travel"
+    TIP_TRAVEL = "tip_travel"
+
+
+_ELLIPSE_NUMBERS = 5
+
+Place = Annotated[str | None, typer.Option(metavar="X,Y,Z", help="Position of the tip in m.")]
+Configuration = Annotated[str | None, typer.Option(metavar="Q1,Q2,...", help="Or joint positions.")]
+
+
+def point_to_point(
+    robot: RobotName = None,
+    *,
+    start: Place = None,
+    start_q: Configuration = None,
+    end: Place = None,
+    end_q: Configuration = None,
+    method: Annotated[
+        Method, typer.Option(help="Nearest configurations joined straight, or a beetle swarm's via point.")
+    ] = Method.MINMAX,
+    objective: Annotated[Objective, typer.Option(help="What to minimise.")] = Objective.TIME,
+    ellipses: Annotated[
+        list[str] | None,
+        typer.Option("--ellipse", metavar="X,Y,A,B,ANGLE", help="An obstacle of a planar arm; may be repeated."),
+    ] = None,
+    velocity: Velocity = None,
+    acceleration: Acceleration = None,
+    solver: Solver = None,
+    max_evaluations: Budget = None,
+    seed: Seed = 0,
+    out: Out = None,
+    animation: Animated = False,
+    urdf: UrdfFile = None,
+    tip: TipLink = None,
+    base: BaseLink = None,
+    as_json: AsJson = False,
+) -> None:
+    """Plan a motion from one place to another, at rest at both."""
+    arm = load_robot(robot, urdf, base, tip)
+    texts = {"start": start, "start_q": start_q, "end": end, "end_q": end_q}
+    ends: dict[str, Any] = {
+        name: numbers(f"--{name.replace('_', '-')}", text, None if name.endswith("_q") else 3)
+        for name, text in texts.items()
+        if text is not None
+    }
+    if animation and out is None:
+        raise InvalidInputError("--animation writes a file: use --out DIR too")
+    chosen = options(velocity, acceleration, solver, max_evaluations)
+    obstacles = [_ellipse(text) for text in ellipses or ()]
+    report(
+        lambda: plan_point_to_point(
+            arm,
+            **ends,
+            method=method.value,
+            objective=objective.value,
+            obstacles=obstacles,
+            seed=seed,
+            progress=not as_json,
+            **chosen,
+        ),
+        method.value,
+        seed,
+        out,
+        animation,
+        as_json,
+    )
+
+
+def _ellipse(text: str) -> Any:
+    x, y, a, b, angle = numbers("--ellipse", text, _ELLIPSE_NUMBERS)
+    return Ellipse((x, y), (a, b), angle)

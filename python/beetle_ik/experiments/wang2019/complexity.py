@@ -1,0 +1,100 @@
+"""Tables 2 and 3: how evaluations and time grow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+import beetle_ik as bik
+
+from ...report import Claim, Column, Section, Table, number
+from ..experiment import Context
+from .settings import ALONG_PATH, END, FROM_END_TO_END, START, arm
+
+TITLE = "Tables 2 and 3"
+_REPEATS = 5
+_REPEATS_SHORT = 2
+
+_TEXT = """
+The paper states orders of growth and measures none. Below, each quantity is doubled while the others stay, and the
+shortest of several runs is taken. An exponent of 1 means that time doubles with it.
+
+Two things differ from the paper's tables. Our search looks at no output points: extremes come from formulas, so that
+Experiment I does not depend on their number at all. And a beetle needs three evaluations where a particle needs one,
+which orders of growth do not show.
+
+Memory is that of the swarm: place, velocity, best place and two antennae of each member, 5 numbers for each of its
+dimensions (3 for a particle, 2 for evolution), and for Experiment II one spline value and one curvature a joint and
+point. It was counted, not measured: all of it is less than a megabyte.
+"""
+
+
+def complexity(context: Context) -> tuple[Section, list[Claim]]:
+    """Measure by doubling."""
+    repeats = context.pick(full=_REPEATS, short=_REPEATS_SHORT)
+    swarm = bik.BeetleSwarm(stall_generations=None)
+    particles = bik.PSO(population=50, stall_generations=None)
+    population = {"TPBSO": (bik.BeetleSwarm, 3), "PSO": (bik.PSO, 1), "GA": (bik.Genetic, 1)}
+    rows: list[list[str | int | float]] = []
+
+    def add(what: str, low: int, high: int, run: Callable[[int], bik.Plan]) -> None:
+        first, second = _shortest(lambda: run(low), repeats), _shortest(lambda: run(high), repeats)
+        exponent = np.log(second.elapsed / first.elapsed) / np.log(high / low)
+        rows.append([what, low, high, first.evaluations, second.evaluations, 1e3 * first.elapsed, 1e3 * second.elapsed, float(exponent)])
+
+    for name, (make, each) in context.each("wang2019: Tables 2 and 3", list(population.items())):
+        add(
+            f"{name}: members, n_p",
+            25,
+            100,
+            lambda members, make=make, each=each: _plan(4, make(population=members, stall_generations=None), members * (100 * each + 1)),
+        )
+    add("TPBSO: iterations, n_i", 50, 200, lambda generations: _plan(4, swarm, 50 * (3 * generations + 1)))
+    add("TPBSO: links (dimension 4 k - 2)", 3, 6, lambda links: _plan(links, swarm, 50 * 301))
+    add("PSO: links", 3, 6, lambda links: _plan(links, particles, 50 * 301))
+    add("TPBSO along a path: points, n_in", 51, 201, _follow)
+    table = Table(
+        name="tables_2_and_3",
+        title="Growth of time, by doubling",
+        columns=[
+            Column(name="what grows"),
+            Column(name="from"),
+            Column(name="to"),
+            Column(name="evaluations"),
+            Column(name="evaluations then"),
+            Column(name="time", unit="ms"),
+            Column(name="time then", unit="ms"),
+            Column(name="exponent", digits=2),
+        ],
+        rows=rows,
+    )
+    exponents = [float(row[-1]) for row in rows]
+    claim = Claim.checked(
+        "Time grows in proportion to population, dimension, points and iterations.",
+        source="Section IV-D.3, Table 2",
+        measured=f"exponents between {number(min(exponents), 2)} and {number(max(exponents), 2)} (at most 1.5)",
+        holds=max(exponents) <= 1.5,
+        section=TITLE,
+    )
+    return Section(TITLE, [_TEXT, table]), [claim]
+
+
+def _shortest(run: Callable[[], bik.Plan], repeats: int) -> bik.Plan:
+    return min((run() for _ in range(repeats)), key=lambda plan: plan.elapsed)
+
+
+def _plan(links: int, solver: bik.BeetleSwarm | bik.PSO | bik.Genetic, evaluations: int) -> bik.Plan:
+    stop = bik.Stop(max_evaluations=evaluations)
+    return bik.plan_point_to_point(
+        arm(links), START, END, method="tpbso", limits=FROM_END_TO_END, solver=solver, stop=stop
+    )
+
+
+def _follow(points: int) -> bik.Plan:
+    angle = np.linspace(0.0, 2 * np.pi, points)
+    circle = np.column_stack((1.0 + 0.4 * np.cos(angle), 1.0 + 0.4 * np.sin(angle), 0.0 * angle))
+    stop = bik.Stop(max_evaluations=3000)
+    return bik.plan_along_path(
+        bik.Robot.planar([1.0, 1.0, 1.0]), circle, method="tpbso", limits=ALONG_PATH, accuracy=0.02, stop=stop
+    )

@@ -1,0 +1,113 @@
+"""Obstacles, link capsules and plans among them."""
+
+import numpy as np
+import pytest
+
+import beetle_ik as bik
+
+PANDA = bik.Robot.named("panda").with_capsules(radius=0.06)
+CENTRE = (PANDA.lower + PANDA.upper) / 2
+CRATE = bik.obstacles.Box(center=(0.5, 0, 0.2), size=(0.2, 0.6, 0.4))
+LIMITS = bik.Limits(acceleration=10.0)
+
+
+def test_a_plan_around_a_crate_keeps_clear_and_within_limits() -> None:
+    target = bik.pose([0.72, 0.0, 0.25], rpy=[np.pi, 0, 0])
+    plan = bik.plan_point_to_point(PANDA, start_q=CENTRE, end=target, obstacles=[CRATE], limits=LIMITS)
+    assert plan.success, plan.message
+    _, q, qd, qdd = plan.trajectory.sample(0.001)
+    distances = bik.obstacles.clearance(PANDA, q, [CRATE])
+    assert 0.001 <= plan.clearance <= distances.min() + 1e-9
+    assert (np.abs(qd) <= PANDA.velocity_limit).all()
+    assert (np.abs(qdd) <= 10.0).all()
+    assert np.allclose(PANDA.fk(q[-1]), target, atol=3e-6)
+
+
+def test_a_larger_margin_is_kept_too() -> None:
+    plan = bik.plan_point_to_point(
+        PANDA, start_q=CENTRE, end=[0.72, 0.0, 0.3], obstacles=[CRATE], margin=0.03, limits=LIMITS
+    )
+    assert plan.success
+    assert plan.clearance >= 0.03
+
+
+def test_an_end_inside_an_obstacle_is_told_by_name() -> None:
+    plan = bik.plan_point_to_point(PANDA, start_q=CENTRE, end=[0.5, 0.0, 0.2], obstacles=[CRATE], limits=LIMITS)
+    assert not plan.success
+    assert plan.violations[-1].what.startswith("distance of link '")
+    assert plan.violations[-1].what.endswith("' from obstacle 0 (Box)")
+    assert plan.violations[-1].bound == 0.001
+    assert plan.clearance < 0
+
+
+def test_a_start_in_collision_names_link_obstacle_and_depth() -> None:
+    arm = bik.Robot.planar([1.0, 1.0], velocity=1.0).with_capsules(radius=0.01)
+    ball = bik.obstacles.Sphere([1.0, 0.0, 0.0], 0.25)
+    depth = r"^start: link 'link_1' is 0\.2600 m inside obstacle 0 \(Sphere\)$"
+    with pytest.raises(bik.InvalidInputError, match=depth):
+        bik.plan_point_to_point(arm, start_q=[0, 0], end_q=[1, 0], obstacles=[ball])
+
+
+def test_clearance_of_one_and_of_many() -> None:
+    arm = bik.Robot.planar([1.0, 1.0]).with_capsules(radius=0.1)
+    ball = bik.obstacles.Sphere([0.0, 2.0, 0.0], 0.5)
+    assert bik.obstacles.clearance(arm, [0, 0], [ball]) == pytest.approx(1.4, abs=1e-8)
+    many = bik.obstacles.clearance(arm, [[0, 0], [np.pi / 2, 0]], [ball])
+    assert many == pytest.approx([1.4, -0.6], abs=1e-8)
+    assert bik.obstacles.clearance(arm, [0, 0]) == np.inf
+
+
+def test_capsules_are_seen_from_their_links() -> None:
+    arm = bik.Robot.planar([1.0, 0.5]).with_capsules([("link_2", [0, 0, 0], [0.5, 0, 0], 0.2)])
+    [(link, a, b, radius)] = arm.capsules
+    assert (link, a.tolist(), b.tolist(), radius) == ("link_2", [0, 0, 0], [0.5, 0, 0], 0.2)
+    ball = bik.obstacles.Sphere([2.0, 0.0, 0.0], 0.1)
+    assert bik.obstacles.clearance(arm, [0, 0], [ball]) == pytest.approx(0.2, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: PANDA.with_capsules(), "with_capsules: give either radius= or a list of (link, a, b, radius)"),
+        (lambda: PANDA.with_capsules([1]), "capsule 0 must be (link, a, b, radius), got 1"),
+        (lambda: PANDA.with_capsules(radius=-1.0), "radius must be zero or more and finite, got -1"),
+        (lambda: bik.obstacles.Sphere([0, 0], 1), "center: expected shape (3,), got (2,)"),
+        (lambda: bik.obstacles.Sphere([0, 0, np.nan], 1), "center must be finite, but coordinate z is NaN"),
+        (
+            lambda: bik.obstacles.Box([0, 0, 0], [1, 0, 1]),
+            "size of the box along y must be positive and finite, got 0",
+        ),
+        (
+            lambda: bik.obstacles.ConvexMesh([[0, 0, 0], [1, 0, 0]]),
+            "a convex mesh needs at least 4 points that do not lie in a plane, got 2",
+        ),
+        (
+            lambda: bik.plan_point_to_point(PANDA, start_q=CENTRE, end_q=CENTRE, obstacles=[3]),
+            "obstacle 0 must be made by bik.obstacles, such as Sphere or Box, got 3",
+        ),
+        (
+            lambda: bik.plan_point_to_point(PANDA, start_q=CENTRE, end_q=CENTRE, obstacles=CRATE),
+            f"obstacles must be made by bik.obstacles, such as Sphere or Box, got {CRATE!r}",
+        ),
+        (
+            lambda: bik.plan_point_to_point(PANDA, start_q=CENTRE, end_q=CENTRE, margin=-1.0),
+            "margin must be zero or more and finite, got -1",
+        ),
+    ],
+)
+def test_mistakes_are_named(call: object, message: str) -> None:
+    with pytest.raises(bik.InvalidInputError) as caught:
+        call()  # type: ignore[operator]
+    assert str(caught.value) == message
+
+
+def test_a_link_that_does_not_exist_is_named() -> None:
+    with pytest.raises(bik.UnknownNameError, match="has no link 'hand'"):
+        PANDA.with_capsules([("hand", [0, 0, 0], [0, 0, 1], 0.1)])
+
+
+def test_obstacles_and_capsules_are_drawn() -> None:
+    plt = pytest.importorskip("matplotlib.pyplot")
+    figure = bik.plot.robot(PANDA, CENTRE, obstacles=[CRATE, bik.obstacles.Sphere([0, 0.5, 0.5], 0.1)])
+    assert len(figure.axes[0].collections) == 2 + len(PANDA.capsules)
+    plt.close(figure)
