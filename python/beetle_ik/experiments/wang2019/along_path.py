@@ -211,7 +211,7 @@ def _claims(cases: list[Case]) -> list[Claim]:
                     f"{number(mean)} s on average (at most {number(bound)} s), within {number(1e3 * case.accuracy)} mm"
                 ),
                 holds=mean <= bound and all(plan.success for plan in case.plans),
-                reading="Size and place of the path, links and limits are ours; eq. (25) needs weights, which it lacks.",
+                reading="Path, links and limits are ours; eq. (25) needs weights, which it lacks.",
                 section=TITLE,
             )
         )

@@ -88,7 +88,10 @@ def complexity(context: Context) -> tuple[Section, list[Claim]]:
     claim = Claim.checked(
         "Time grows in proportion to population, dimension, points and iterations.",
         source="Section IV-D.3, Table 2",
-        measured=f"exponents between {number(min(exponents), 2)} and {number(max(exponents), 2)} (at most 1.5, where the shortest of several runs is taken)",
+        measured=(
+            f"exponents between {number(min(exponents), 2)} and {number(max(exponents), 2)} (at most 1.5, where the "
+            "shortest of several runs is taken)"
+        ),
         holds=context.short or max(exponents) <= 1.5,  # one run each says little
         section=TITLE,
     )
