@@ -84,7 +84,14 @@ def test_a_path_is_followed_within_the_accuracy() -> None:
 
 
 def test_what_no_plan_keeps_is_named() -> None:
-    plan = along([[1.0, 1.0, 0.0], [2.0, 1.0, 0.0], [1.0, 1.0, 0.0]], accuracy=1e-3)
+    plan = bik.plan_along_path(  # two links leave no choice of how to get past the point between
+        bik.Robot.planar([1.0, 1.0]),
+        [[1.0, 1.0, 0.0], [1.5, 1.0, 0.0], [0.5, 1.0, 0.0]],
+        method="tpbso",
+        limits=LIMITS,
+        accuracy=1e-3,
+        stop=QUICK,
+    )
     assert not plan.success
     assert plan.status == bik.Status.BUDGET_SPENT
     (missed,) = plan.violations

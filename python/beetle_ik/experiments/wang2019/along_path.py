@@ -90,7 +90,7 @@ def along_path(context: Context) -> tuple[Section, list[Claim]]:
                 name=f"figure_{13 + i}",
                 title=f"Figure {13 + i}: {_WORDS[case.objective]} along the {case.name}",
                 drawing=_draw(case),
-                caption="Best cost so far; the best plan; how its last link stands; how far its tip is from the points.",
+                caption="Best cost so far; the best plan; how its last link stands; how far the tip is off.",
             )
         )
     return Section(TITLE, [*blocks, _table(cases)]), _claims(cases)
