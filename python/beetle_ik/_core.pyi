@@ -815,7 +815,7 @@ def plan_point_to_point(
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,  # m
-    elbows: Sequence[int] = [1, 1],
+    elbows: Sequence[int] = ...,  # (1, 1)
     solver: _Solver | None = None,
     stop: Stop | None = None,
     seed: int = 0,
