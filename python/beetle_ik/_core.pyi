@@ -38,6 +38,7 @@ class UnknownNameError(BeetleIkError, LookupError): ...
 class UrdfError(InvalidInputError): ...
 class LimitError(InvalidInputError): ...
 class UnsupportedLimit(LimitError): ...
+class InfeasibleError(InvalidInputError): ...
 
 # --- robots -------------------------------------------------------------------------------------
 
@@ -972,12 +973,24 @@ def plan_point_to_point(
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,  # m
-    elbows: Sequence[int] = [1, 1],
+    elbows: Sequence[int] = ...,  # (1, 1)
     solver: _Solver | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     progress: _Progress = None,
 ) -> Plan: ...
+def time_optimal(
+    waypoints_q: ArrayLike,  # (k, n)
+    limits: Limits,
+    *,
+    knots: ArrayLike | None = None,  # (k,), None: uniform in [0, 1]
+    spline: str = "natural",  # or "not-a-knot", "clamped", "polyline"
+    blend: float | None = None,
+    gridpoints: int | None = None,
+    start_speed: float = 0.0,
+    end_speed: float = 0.0,
+    joint_names: list[str] | None = None,
+) -> Trajectory: ...
 def plan_along_path(
     robot: Robot,
     path: Path | ArrayLike,  # or (k, 3) points or (k, 4, 4) poses
@@ -1198,6 +1211,7 @@ class Trajectory:
     def joint_names(self) -> list[str]: ...
     def max_velocity(self) -> _Array: ...  # (n,), exact over all t
     def max_acceleration(self) -> _Array: ...  # (n,), exact inside the pieces
+    def max_jerk(self) -> _Array: ...  # (n,), exact inside the pieces
     def at(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...  # q, qd, qdd: (n,) each, or (k, n) for (k,)
     def sample(self, dt: float) -> tuple[_Array, _Array, _Array, _Array]: ...  # time, q, qd, qdd
     def to_csv(self, file: str | os.PathLike[str]) -> None: ...

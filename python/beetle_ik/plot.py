@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from ._core import ModelFreeResult, Obstacle, Plan, Robot, TrackResult, Trajectory
+    from ._core import Limits, ModelFreeResult, Obstacle, Plan, Robot, TrackResult, Trajectory
 
 _ROW_HEIGHT = 2.4  # inches, of a panel over time
 _VELOCITY_PANELS_A_ROW = 7
@@ -120,6 +120,42 @@ def trajectory(trajectory: Trajectory) -> Figure:
         columns = _legend_columns(trajectory.joint_names)
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper", ncols=columns)
     return figure
+
+
+def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
+    """Velocity, acceleration and jerk of each joint as shares of their limits: 1 is all that is allowed.
+
+    Of the fastest timing of a path some joint is always at 1; `limits` are numbers, as `time_optimal` takes them.
+    """
+    time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
+    _, velocity, acceleration = trajectory.at(time)
+    shares = {
+        name: np.abs(values) / np.broadcast_to(np.asarray(limit, dtype=float), values.shape)
+        for name, values, limit in (
+            ("velocity", velocity, limits.velocity),
+            ("acceleration", acceleration, limits.acceleration),
+            ("jerk", _slopes(time, acceleration), limits.jerk),
+        )
+        if limit is not None
+    }
+    with style():
+        figure = _new_figure(9.0, _ROW_HEIGHT * len(shares) + 0.6)
+        panels = figure.subplots(len(shares), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, (name, values) in zip(panels, shares.items(), strict=True):
+            axes.axhspan(1.0, 1.1, color=FORBIDDEN, linewidth=0)
+            _draw_joints(axes, time, values, trajectory.joint_names)
+            axes.set_ylim(0.0, 1.1)
+            axes.set_ylabel(f"share of {name} limit")
+        panels[-1].set_xlabel("time [s]; shaded: beyond the limit")
+        columns = _legend_columns(trajectory.joint_names)
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper", ncols=columns)
+    return figure
+
+
+def _slopes(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Derivatives by time between samples, as many as there are samples."""
+    slopes = np.diff(values, axis=0) / np.diff(time)[:, None]
+    return np.vstack((slopes, slopes[-1:]))
 
 
 def _draw_space(axes: Any, result: TrackResult | ModelFreeResult) -> None:

@@ -52,7 +52,6 @@ fn faster_than_the_optimum_in_uniform_time_by_what_was_measured() {
     for (curve, uniform, factor) in [(pentagram as fn(f64) -> [f64; 3], 5.501, 1.9), (trefoil, 3.234, 1.35)] {
         for seed in 0..3 {
             let plan = plan(curve, seed);
-            println!(
                 "{} {} {:?} {} {:?}",
                 plan.cost,
                 uniform / plan.cost,

@@ -68,8 +68,18 @@ pub fn plan_along_path(
     options: &AlongPathOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
+    refuse_repetition(path)?;
     match options.method {
         AlongPathMethod::Timed => timed::along_path(robot, path, options, monitor),
         AlongPathMethod::Tpbso => tpbso::along_path(robot, path, options, monitor),
+    }
+}
+
+/// Err where a point is the one before it again: no curve leads on from there.
+fn refuse_repetition(path: &Reference) -> Result<()> {
+    let repeats = |i: &usize| path.position(*i) == path.position(i - 1) && path.rotation(*i) == path.rotation(i - 1);
+    match (1..path.len()).find(repeats) {
+        None => Ok(()),
+        Some(i) => Err(Error::InvalidPath { problem: format!("point {i} repeats point {}: leave it out", i - 1) }),
     }
 }

@@ -1,6 +1,6 @@
 //! Where a motion starts or ends.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::robot::Robot;
 use crate::task::Target;
 
@@ -20,7 +20,10 @@ impl End {
     /// [`Error::NotFinite`](crate::Error::NotFinite) or [`Error::WrongLength`](crate::Error::WrongLength).
     pub fn check(&self, what: &str, robot: &Robot) -> Result<()> {
         match self {
-            Self::Target(target) => target.validate(),
+            Self::Target(target) => target.validate().map_err(|error| match error {
+                Error::NotFinite { place, value, .. } => Error::NotFinite { what: what.into(), place, value },
+                other => other,
+            }),
             Self::Configuration(q) => robot.check(what, q),
         }
     }

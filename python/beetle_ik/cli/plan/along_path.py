@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from ... import InvalidInputError, plan_along_path
+from ... import InvalidInputError, Robot, plan_along_path
+from ... import Path as ReferencePath
 from ..curves import CurveName, make_curve, read_points
 from ..options import AsJson, BaseLink, RobotName, Seed, Start, TipLink, UrdfFile, load_robot, numbers
 from .planned import Acceleration, Animated, Budget, Out, Solver, Velocity, options, report
@@ -53,9 +54,7 @@ def along_path(
 ) -> None:
     """Plan a motion whose tip follows a path, in order."""
     arm = load_robot(robot, urdf, base, tip)
-    if (curve is None) == (points is None):
-        raise InvalidInputError(f"give one of --path FILE and --curve with one of {', '.join(CurveName)}")
-    path = read_points(points, _DURATION) if points is not None else make_curve(curve, arm, _DURATION, {})
+    path = _path(arm, curve, points)
     if animation and out is None:
         raise InvalidInputError("--animation writes a file: use --out DIR too")
     chosen = options(velocity, acceleration, solver, max_evaluations)
@@ -77,3 +76,12 @@ def along_path(
         animation,
         as_json,
     )
+
+
+def _path(robot: Robot, curve: CurveName | None, points: Path | None) -> ReferencePath:
+    match curve, points:
+        case None, Path():
+            return read_points(points, _DURATION)
+        case CurveName(), None:
+            return make_curve(curve, robot, _DURATION, {})
+    raise InvalidInputError(f"give one of --path FILE and --curve with one of {', '.join(CurveName)}")

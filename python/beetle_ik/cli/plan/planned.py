@@ -28,15 +28,14 @@ from ..show import print_json, print_pairs, to_json
 from ..track_files import can_draw
 
 Velocity = Annotated[
-    str | None, typer.Option("--velocity", help="Limit in rad/s: a number, or one a joint: v1,v2,...; else the robot's.")
+    str | None,
+    typer.Option("--velocity", help="Limit in rad/s: a number, or one a joint: v1,v2,...; else the robot's."),
 ]
 Acceleration = Annotated[str | None, typer.Option("--acceleration", help="The same in rad/s^2; else there is none.")]
 Budget = Annotated[
     int | None, typer.Option("--max-evaluations", min=1, help="Budget of the search; else the method's own.")
 ]
-Out = Annotated[
-    Path | None, typer.Option(help="Folder for trajectory.csv, trajectory.npz, plan.png and summary.json.")
-]
+Out = Annotated[Path | None, typer.Option(help="Folder for trajectory.csv, trajectory.npz, plan.png and summary.json.")]
 Animated = Annotated[bool, typer.Option("--animation", help="Write plan.gif too; needs --out.")]
 
 

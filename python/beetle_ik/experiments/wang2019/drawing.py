@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _POINTS = 400
+_WITH_PENALTIES = {"time": 17.0, "tip_travel": 17.0, "joint_travel": 100.0}  # costs above: something is broken
 
 
 def draw_arm(axes: Axes, plan: bik.Plan, snapshots: int = 5) -> None:
@@ -30,20 +31,22 @@ def draw_arm(axes: Axes, plan: bik.Plan, snapshots: int = 5) -> None:
     tip = plan.robot.fk(q)[:, :2, 3]
     axes.plot(*tip.T, color=BLUE, label="tip")
     axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize="small", columnspacing=1.0)
 
 
-def draw_search(
-    axes: Axes, plans: Sequence[bik.Plan], *, name: str, color: str, evaluations: int, top: float
-) -> None:
-    """Mean and spread (one standard deviation) of the best cost so far; above `top` limits are still broken."""
+def draw_search(axes: Axes, plans: Sequence[bik.Plan], *, name: str, color: str, evaluations: int) -> None:
+    """Mean and spread (one standard deviation) of the best cost so far, from where all plans keep what they must."""
     counts = np.unique(np.geomspace(100, evaluations, 120).astype(int)).astype(float)
     costs = best_so_far(plans, counts)
-    costs[costs > top] = np.nan  # with penalties: not yet a plan
+    costs[costs > _WITH_PENALTIES[plans[0].objective]] = np.nan
     found = np.isfinite(costs).all(axis=0)
     mean, spread = costs[:, found].mean(axis=0), costs[:, found].std(axis=0)
     axes.fill_between(counts[found], mean - spread, mean + spread, color=color, alpha=0.2, linewidth=0)
     axes.plot(counts[found], mean, color=color, label=name)
-    axes.set(xscale="log", xlabel="evaluations")
+    axes.set(xscale="log", yscale="log", xlabel="evaluations")
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter("{x:g}")
+    axes.tick_params(axis="y", which="minor", labelsize="x-small")
 
 
 def draw_bound(axes: Axes, value: float, name: str) -> None:

@@ -7,17 +7,31 @@ from typing import TYPE_CHECKING
 
 import beetle_ik as bik
 
-from ...report import BLUE, FORBIDDEN, GREEN, Block, Claim, Column, Figure, Section, Spread, Table, drawing, number
+from ...report import (
+    BLUE,
+    FORBIDDEN,
+    GREEN,
+    Block,
+    Claim,
+    Column,
+    Figure,
+    Section,
+    Spread,
+    Table,
+    Value,
+    drawing,
+    number,
+)
 from ..experiment import Context
 from .drawing import draw_arm, draw_bound, draw_joints, draw_search
-from .settings import EVALUATIONS, SAME_EVALUATIONS, TPBSO, Search
+from .settings import EVALUATIONS, SAME_EVALUATIONS, TPBSO, Search, each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
 TITLE = "Past an obstacle"
-_SEEDS = 20
-_SEEDS_SHORT = 2
+_SEEDS = 12
+_SEEDS_SHORT = 1
 _LINKS = (3, 4, 5)
 _CENTER, _SEMI_AXES = (0.8, 0.8), (0.3, 0.2)  # m; the paper does not state them
 _TANGENT = 1.64757  # m: straight to the ellipse, along it, straight on: the shortest way for the tip alone
@@ -43,7 +57,7 @@ def obstacle(context: Context) -> tuple[Section, list[Claim]]:
     blocks: list[Block] = [_TEXT]
     found: dict[int, dict[str, list[bik.Plan]]] = {}
     for links in context.each("wang2019: Figures 10-12", _LINKS):
-        found[links] = {search.name: [_plan(search, links, seed) for seed in seeds] for search in (TPBSO, _EVOLUTION)}
+        found[links] = {search.name: _plans(search, links, seeds) for search in (TPBSO, _EVOLUTION)}
         blocks.append(
             Figure(
                 name=f"figure_{links + 7}",
@@ -55,8 +69,9 @@ def obstacle(context: Context) -> tuple[Section, list[Claim]]:
     return Section(TITLE, [*blocks, _table(found)]), [_claim(found)]
 
 
-def _plan(search: Search, links: int, seed: int) -> bik.Plan:
-    return search.plan(links, "tip_travel", seed, [bik.obstacles.Ellipse(_CENTER, _SEMI_AXES)])
+def _plans(search: Search, links: int, seeds: range) -> list[bik.Plan]:
+    oval = bik.obstacles.Ellipse(_CENTER, _SEMI_AXES)
+    return each(lambda seed: search.plan(links, "tip_travel", seed, [oval]), seeds)
 
 
 def _draw(found: dict[str, list[bik.Plan]]) -> Drawing:
@@ -69,7 +84,7 @@ def _draw(found: dict[str, list[bik.Plan]]) -> Drawing:
         for (name, plans), color in zip(found.items(), (BLUE, GREEN), strict=True):
             clear = [plan for plan in plans if plan.success]
             if clear:
-                draw_search(search, clear, name=name, color=color, evaluations=EVALUATIONS, top=3.0 * _TANGENT)
+                draw_search(search, clear, name=name, color=color, evaluations=EVALUATIONS)
         draw_bound(search, _TANGENT, "shortest way round")
         search.set(ylabel="way of the tip [m]", ylim=(1.5, None))
         search.legend()
@@ -81,7 +96,7 @@ def _draw(found: dict[str, list[bik.Plan]]) -> Drawing:
 
 
 def _table(found: dict[int, dict[str, list[bik.Plan]]]) -> Table:
-    rows = []
+    rows: list[list[Value]] = []
     for links, searches in found.items():
         for name, plans in searches.items():
             sound = [plan for plan in plans if plan.success]

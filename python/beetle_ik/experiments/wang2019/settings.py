@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 import beetle_ik as bik
+
+Criterion: TypeAlias = Literal["time", "joint_travel"]
 
 START, END = (1.0, 0.0, 0.0), (0.5, 1.5, 0.0)  # section IV-A.1
 REACH = 2.0  # m; the paper does not state it
@@ -42,7 +46,13 @@ class Search:
     solver: bik.BeetleSwarm | bik.PSO | bik.Genetic | bik.DifferentialEvolution | None
     evaluations: int
 
-    def plan(self, links: int, objective: str, seed: int, obstacles: Sequence[object] = ()) -> bik.Plan:
+    def plan(
+        self,
+        links: int,
+        objective: Criterion | Literal["tip_travel"],
+        seed: int,
+        obstacles: Sequence[bik.obstacles.Ellipse] = (),
+    ) -> bik.Plan:
         """The motion of the paper's section IV-A for an arm of so many links."""
         return bik.plan_point_to_point(
             arm(links),
@@ -97,6 +107,12 @@ def best_so_far(plans: Sequence[bik.Plan], evaluations: NDArray[np.float64]) -> 
         at = np.searchsorted(plan.history[:, 0], evaluations, side="right") - 1
         rows.append(plan.history[np.maximum(at, 0), 1])
     return np.array(rows)
+
+
+def each(plan: Callable[[int], bik.Plan], seeds: Sequence[int]) -> list[bik.Plan]:
+    """The plans of all seeds, on all cores: planning leaves the interpreter to others."""
+    with ThreadPoolExecutor() as pool:
+        return list(pool.map(plan, seeds))
 
 
 def pentagram() -> bik.Path:

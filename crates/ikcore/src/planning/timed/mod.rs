@@ -27,7 +27,7 @@ use self_motion::SelfMotion;
 const METHOD: &str = "method=\"timed\"";
 
 /// Evaluations of the search: after so many the duration falls by less than a hundredth.
-const EVALUATIONS: usize = 3000;
+const EVALUATIONS: usize = 2000;
 
 /// Members of a generation of the search.
 const POPULATION: usize = 30;

@@ -1,0 +1,151 @@
+"""`beetle-ik plan retime`: the fastest timing of joint positions from a file."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from ... import InvalidInputError, Limits, Trajectory, plot, time_optimal
+from ..._csv import read_table
+from ..._files import whole_file, whole_folder
+from ..._text import counted
+from ..options import AsJson, numbers
+from ..show import listed, print_json, print_pairs, to_json
+from ..track_files import can_draw
+
+_OTHER_COLUMNS = ("qd:", "qdd:")
+
+
+class SplineName(StrEnum):
+    """Joint paths by their names on the command line."""
+
+    NATURAL = "natural"
+    NOT_A_KNOT = "not-a-knot"
+    CLAMPED = "clamped"
+    POLYLINE = "polyline"
+
+
+def retime(
+    file: Annotated[
+        Path,
+        typer.Argument(help="CSV with a column per joint, named by it or 'q:joint'; a column 'time' sets the knots."),
+    ],
+    *,
+    acceleration: Annotated[str, typer.Option(help="Limit in rad/s^2: a number, or one a joint: a1,a2,...")],
+    velocity: Annotated[str | None, typer.Option(help="The same in rad/s; without it there is none.")] = None,
+    jerk: Annotated[str | None, typer.Option(help="The same in rad/s^3; without it there is none.")] = None,
+    spline: Annotated[SplineName, typer.Option(help="What joins the rows.")] = SplineName.NATURAL,
+    blend: Annotated[
+        float | None, typer.Option(help="Of a polyline: corners are rounded from so far before them, in rad.")
+    ] = None,
+    gridpoints: Annotated[
+        int | None, typer.Option(help="Points where the acceleration may change; chosen if absent.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for trajectory.csv, trajectory.npz, limits.png and summary.json.")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Time the joint path through the rows of FILE as fast as the limits allow."""
+    joints, waypoints, time = _read(file)
+    limits = Limits(
+        acceleration=_limit("--acceleration", acceleration),
+        velocity=None if velocity is None else _limit("--velocity", velocity),
+        jerk=None if jerk is None else _limit("--jerk", jerk),
+    )
+    trajectory = time_optimal(
+        waypoints,
+        limits,
+        knots=None if spline == SplineName.POLYLINE else time,
+        spline=spline.value,
+        blend=blend,
+        gridpoints=gridpoints,
+        joint_names=joints,
+    )
+    summary = _summarize(file, trajectory, limits, waypoints, time)
+    if out is not None:
+        with whole_folder(out) as folder:
+            _write(trajectory, limits, summary, folder)
+    if as_json:
+        print_json(summary)
+    else:
+        _print(summary, out)
+
+
+def _read(file: Path) -> tuple[list[str], NDArray[np.float64], NDArray[np.float64] | None]:
+    """Joint names, their positions row by row, and the times, if the file has any."""
+    table = read_table(file, [])
+    columns = [column for column in table if column.startswith("q:")]
+    if not columns:
+        columns = [column for column in table if column != "time" and not column.startswith(_OTHER_COLUMNS)]
+    if not columns:
+        raise InvalidInputError(
+            f"{file}, line 1: no joint positions: expected a column for each joint, named 'q:joint' or by the joint "
+            f"alone; columns found: {', '.join(table)}"
+        )
+    waypoints = np.column_stack([table[column] for column in columns])
+    return [column.removeprefix("q:") for column in columns], waypoints, table.get("time")
+
+
+def _limit(option: str, text: str) -> float | list[float]:
+    values = numbers(option, text)
+    return values[0] if len(values) == 1 else values
+
+
+def _summarize(
+    file: Path,
+    trajectory: Trajectory,
+    limits: Limits,
+    waypoints: NDArray[np.float64],
+    time: NDArray[np.float64] | None,
+) -> dict[str, Any]:
+    reached = {
+        "velocity": trajectory.max_velocity(),
+        "acceleration": trajectory.max_acceleration(),
+        "jerk": trajectory.max_jerk(),
+    }
+    return {
+        "file": str(file),
+        "joints": trajectory.joint_names,
+        "waypoints": len(waypoints),
+        "success": True,
+        "duration": trajectory.duration,
+        "duration_before": None if time is None else time[-1] - time[0],
+        "pieces": len(trajectory.time) - 1,
+        "limits": {name: getattr(limits, name) for name in reached},
+        "largest": reached,
+        "saturation": {
+            name: np.max(values / getattr(limits, name))
+            for name, values in reached.items()
+            if getattr(limits, name) is not None
+        },
+    }
+
+
+def _write(trajectory: Trajectory, limits: Limits, summary: dict[str, Any], folder: Path) -> None:
+    trajectory.to_csv(folder / "trajectory.csv")
+    trajectory.to_npz(folder / "trajectory.npz")
+    with whole_file(folder / "summary.json") as stream:
+        stream.write(to_json(summary).encode() + b"\n")
+    if can_draw():
+        plot.saturation(trajectory, limits).savefig(folder / "limits.png")
+
+
+def _print(summary: dict[str, Any], out: Path | None) -> None:
+    before = summary["duration_before"]
+    change = [] if before is None else [("duration in the file [s]", f"{before:.6g}")]
+    print_pairs(
+        f"{counted(len(summary['joints']), 'joint')}, {counted(summary['waypoints'], 'waypoint')}",
+        [
+            ("duration [s]", f"{summary['duration']:.6g}"),
+            *change,
+            *((f"largest {name}", listed(values)) for name, values in summary["largest"].items()),
+            *((f"share of the {name} limit", f"{share:.4g}") for name, share in summary["saturation"].items()),
+        ],
+    )
+    if out is not None:
+        figure = "" if can_draw() else ", without a figure: that needs `pip install beetle-ik[plot]`"
+        typer.echo(f"Files in {out}/{figure}")

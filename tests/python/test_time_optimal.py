@@ -1,0 +1,203 @@
+"""The fastest timing of joint paths: against toppra, against limits sampled finely, and wrong input by its messages."""
+
+import json
+import logging
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import beetle_ik as bik
+from beetle_ik.cli import app
+
+SAMPLES = 10_000
+
+
+def problem(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Waypoints, velocity and acceleration limits."""
+    rng = np.random.default_rng(seed)
+    rows, joints = rng.integers(3, 9), rng.integers(1, 8)
+    return rng.uniform(-2, 2, (rows, joints)), rng.uniform(0.5, 3, joints), rng.uniform(1, 20, joints)
+
+
+def largest_share(trajectory: bik.Trajectory, velocity: np.ndarray, acceleration: np.ndarray) -> float:
+    """Of any limit, over fine samples."""
+    _, qd, qdd = trajectory.at(np.linspace(0, trajectory.duration, SAMPLES))
+    return max(np.max(np.abs(qd) / velocity), np.max(np.abs(qdd) / acceleration))
+
+
+@pytest.mark.parametrize("gridpoints", [3, 10, 150, 1000, None])
+@pytest.mark.parametrize("spline", ["natural", "not-a-knot", "clamped", "polyline"])
+def test_limits_hold_between_grid_points(spline: str, gridpoints: int | None) -> None:
+    for seed in range(5):
+        q, velocity, acceleration = problem(seed)
+        limits = bik.Limits(velocity=velocity, acceleration=acceleration)
+        blend = 0.1 if spline == "polyline" else None
+        trajectory = bik.time_optimal(q, limits, spline=spline, gridpoints=gridpoints, blend=blend)
+        assert largest_share(trajectory, velocity, acceleration) <= 1 + 1e-6
+        np.testing.assert_allclose(trajectory.q[[0, -1]], q[[0, -1]], atol=1e-9)
+        np.testing.assert_allclose(trajectory.at([0.0, trajectory.duration])[1], 0.0, atol=1e-6)
+
+
+def toppra_duration(q: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray, segments: int) -> float:
+    """What toppra takes on so many segments of the natural spline."""
+    toppra = pytest.importorskip("toppra")
+    from toppra import algorithm, constraint
+
+    logging.getLogger("toppra").setLevel(logging.ERROR)
+    path = toppra.SplineInterpolator(np.linspace(0, 1, len(q)), q, bc_type="natural")
+    grid = np.linspace(0, 1, segments + 1)
+    limits = [
+        constraint.JointVelocityConstraint(np.column_stack((-velocity, velocity))),
+        constraint.JointAccelerationConstraint(np.column_stack((-acceleration, acceleration))),
+    ]
+    _, speeds, _ = algorithm.TOPPRA(limits, path, gridpoints=grid).compute_parameterization(0, 0)
+    return float(np.sum(2 * np.diff(grid) / (speeds[1:] + speeds[:-1])))
+
+
+@pytest.mark.filterwarnings("ignore")  # toppra's own
+@pytest.mark.parametrize("seed", range(4))
+def test_durations_are_those_of_toppra(seed: int) -> None:
+    q, velocity, acceleration = problem(100 + seed)
+    expected = toppra_duration(q, velocity, acceleration, 2000)
+    limits = bik.Limits(velocity=velocity, acceleration=acceleration)
+    assert bik.time_optimal(q, limits, gridpoints=2001).duration == pytest.approx(expected, rel=1e-3)
+    chosen = bik.time_optimal(q, limits).duration
+    assert (1 - 2e-4) * expected <= chosen <= (1 + 2e-3) * expected
+    assert bik.time_optimal(q, limits, gridpoints=150).duration <= 1.03 * expected
+
+
+def test_splines_are_those_of_scipy() -> None:
+    interpolate = pytest.importorskip("scipy.interpolate")
+    q, velocity, acceleration = problem(7)
+    knots = np.cumsum(np.random.default_rng(1).uniform(0.5, 2.0, len(q)))
+    limits = bik.Limits(velocity=velocity, acceleration=acceleration)
+    for spline in ("natural", "not-a-knot", "clamped"):
+        trajectory = bik.time_optimal(q, limits, knots=knots, spline=spline, gridpoints=400)
+        expected = interpolate.CubicSpline(knots, q, bc_type=spline)(np.linspace(knots[0], knots[-1], 20_001))
+        passed = trajectory.at(np.linspace(0, trajectory.duration, 200))[0]
+        gaps = [np.min(np.linalg.norm(expected - row, axis=1)) for row in passed]
+        assert max(gaps) < 6e-3  # the distance between samples of the curve
+
+
+def test_jerk_limits_hold() -> None:
+    q, velocity, acceleration = problem(3)
+    limits = bik.Limits(velocity=velocity, acceleration=acceleration, jerk=20 * acceleration)
+    trajectory = bik.time_optimal(q, limits)
+    assert np.all(trajectory.max_velocity() <= velocity * (1 + 1e-9))
+    assert np.all(trajectory.max_acceleration() <= acceleration * (1 + 1e-9))
+    assert np.all(trajectory.max_jerk() <= 20 * acceleration * (1 + 1e-9))
+
+
+LIMITS = bik.Limits(velocity=1.0, acceleration=1.0)
+WRONG: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
+    ([0.0, 1.0], {}, bik.InvalidInputError, "waypoints_q: expected shape (k, n), a row for each waypoint, got (2,)"),
+    ([[0.0, 1.0]], {}, bik.InvalidInputError, "waypoints: expected at least 2, got 1"),
+    ([[0.0], [np.nan]], {}, bik.InvalidInputError, "waypoints must be finite, but joint 'q1' of row 1 is NaN"),
+    (
+        [[0.0], [1.0], [1.0]],
+        {},
+        bik.InvalidInputError,
+        "path: waypoint 2 is the same as waypoint 1: leave one of them out",
+    ),
+    (
+        [[0.0], [1.0]],
+        {"limits": bik.Limits(acceleration=1.0, velocity=0.0)},
+        bik.InfeasibleError,
+        "infeasible: the path moves joint 'q1' from 0 to 1, but its velocity limit is 0",
+    ),
+    (
+        [[0.0], [1.0]],
+        {"limits": bik.Limits(acceleration=1.0, upper=0.5)},
+        bik.InfeasibleError,
+        "infeasible: the path takes joint 'q1' to 1, beyond its upper limit 0.5",
+    ),
+    (
+        [[0.0, 0.0], [1.0, 2.0]],
+        {"limits": bik.Limits(acceleration=[1.0, 2.0, 3.0])},
+        bik.InvalidInputError,
+        "acceleration limit: expected one number, or 2 (one per joint), got 3",
+    ),
+    (
+        [[0.0], [1.0]],
+        {"limits": bik.Limits(velocity=1.0)},
+        bik.UnsupportedLimit,
+        "time_optimal cannot honour infinite acceleration limits: joint 'q1' could start at any speed; give "
+        "acceleration limits",
+    ),
+    (
+        [[0.0], [1.0]],
+        {"limits": bik.Limits(velocity=lambda t: 1.0 + t, acceleration=1.0)},
+        bik.UnsupportedLimit,
+        "time_optimal cannot honour time-varying velocity limits: when a point of the path is passed is what it looks "
+        "for; give numbers",
+    ),
+    (
+        [[0.0], [1.0]],
+        {"spline": "cubic"},
+        bik.InvalidInputError,
+        "spline must be one of 'natural', 'not-a-knot', 'clamped', 'polyline', got 'cubic'",
+    ),
+    (
+        [[0.0], [1.0]],
+        {"blend": 0.1},
+        bik.InvalidInputError,
+        "blend rounds the corners of spline='polyline', and 'natural' has none",
+    ),
+    (
+        [[0.0], [1.0]],
+        {"knots": [0.0, 1.0], "spline": "polyline"},
+        bik.InvalidInputError,
+        "knots belong to a spline: the parameter of a polyline is its length",
+    ),
+    ([[0.0], [1.0]], {"knots": [0.0, 0.0]}, bik.InvalidInputError, "knots must increase, but row 1 has 0 after 0"),
+    ([[0.0], [1.0]], {"gridpoints": 2}, bik.InvalidInputError, "gridpoints must be from 3 to 200000, got 2"),
+    (
+        [[0.0], [1.0]],
+        {"end_speed": 9.0},
+        bik.InfeasibleError,
+        "infeasible: the speed at the end of the path is beyond what the limits allow there",
+    ),
+]
+
+
+@pytest.mark.parametrize(("waypoints", "options", "error", "message"), WRONG)
+def test_mistakes_are_named(waypoints: Any, options: dict[str, Any], error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=f"^{re.escape(message)}$"):
+        bik.time_optimal(waypoints, **{"limits": LIMITS, **options})
+
+
+def test_retime_from_the_command_line(tmp_path: Any) -> None:
+    file = tmp_path / "points.csv"
+    file.write_text("time,a,b\n0,0,0\n1,1,-0.5\n3,0.5,1\n")
+    arguments = [
+        "plan",
+        "retime",
+        str(file),
+        "--acceleration",
+        "5,4",
+        "--velocity",
+        "2",
+        "--json",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 0, result.output
+    summary = json.loads(result.output)
+    assert summary["joints"] == ["a", "b"]
+    assert summary["duration"] < summary["duration_before"] == 3.0
+    assert 0.999 < summary["saturation"]["acceleration"] <= 1 + 1e-9
+    assert {"trajectory.csv", "trajectory.npz", "summary.json"} <= {path.name for path in (tmp_path / "out").iterdir()}
+    again = bik.Trajectory.from_npz(tmp_path / "out" / "trajectory.npz")
+    assert again.duration == summary["duration"]
+
+
+def test_saturation_is_drawn() -> None:
+    pytest.importorskip("matplotlib").use("Agg")
+    q, velocity, acceleration = problem(2)
+    limits = bik.Limits(velocity=velocity, acceleration=acceleration)
+    figure = bik.plot.saturation(bik.time_optimal(q, limits), limits)
+    assert [axes.get_ylabel() for axes in figure.axes] == ["share of velocity limit", "share of acceleration limit"]
