@@ -12,9 +12,10 @@
 mod cost;
 mod self_motion;
 
+use super::time_optimal::time;
 use super::tpbso::extent;
 use super::tpbso::search::{Found, Search};
-use super::{AlongPathOptions, Cost, MotionLimits, Plan, TimingLimits, TimingOptions, Violation, time_optimal};
+use super::{AlongPathOptions, Cost, MotionLimits, Plan, TimingLimits, TimingOptions, Violation};
 use crate::error::{Error, Result, require_positive};
 use crate::limits::Limits;
 use crate::path::Reference;
@@ -99,7 +100,7 @@ fn plan(
     let found = search(&mut cost, options, monitor)?;
     let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
     let (joint_path, _) = cost.joint_path(z)?;
-    let trajectory = time_optimal(&joint_path, cost.timing_limits, &TimingOptions::default())?;
+    let trajectory = time(&joint_path, cost.timing_limits, &TimingOptions::default())?;
     let mut violations = cost.limits.violations(&trajectory);
     violations.extend(cost.distances(&joint_path).filter(|(_, distance)| *distance > cost.accuracy).map(
         |(row, distance)| Violation {
