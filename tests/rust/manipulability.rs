@@ -67,6 +67,20 @@ fn the_gradient_is_that_of_finite_differences() {
 }
 
 #[test]
+fn the_gradient_of_the_logarithm_is_added_with_its_factor() {
+    let arm = robot("iiwa14");
+    let q = [0.3, 0.5, -0.2, -1.1, 0.4, 0.9, 0.1];
+    let measure = Manipulability::of(&arm, Motion::Pose);
+    let mut gradient = [1.0; 7];
+    let cost = measure.add_log_gradient(&arm, &q, -2.0, &mut gradient);
+    assert!((cost + 2.0 * measure.index(&arm, &q).ln()).abs() < 1e-12);
+    let expected: Vec<f64> =
+        differences(&q, |q| -2.0 * measure.index(&arm, q).ln()).iter().map(|slope| 1.0 + slope).collect();
+    assert_near(&gradient, &expected, 1.0, "logarithm");
+    assert_eq!(measure.add_log_gradient(&arm, &[0.0; 7], -1.0, &mut [0.0; 7]), f64::INFINITY);
+}
+
+#[test]
 fn the_gradient_of_the_sum_is_that_of_finite_differences() {
     for (robot, q) in arms() {
         let measure = Manipulability::of(&robot, Motion::Position);

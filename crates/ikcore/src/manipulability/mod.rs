@@ -17,8 +17,7 @@ use std::str::FromStr;
 use crate::error::{Error, Result};
 use crate::math::MAX_DOF;
 use crate::math::singular::SingularValues;
-use crate::rng;
-use crate::robot::{Columns, Joint, Robot};
+use crate::robot::{Columns, Directions, Robot};
 
 /// Which motion of the tip counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -82,26 +81,16 @@ pub struct Manipulability {
     directions: usize,
 }
 
-/// Singular values below this share of the largest are no direction of motion.
-const RANK: f64 = 1e-9;
-
-/// Postures looked at to see how many directions there are; one of them would do but for an unlucky draw.
-const DRAWS: u64 = 3;
-
 impl Manipulability {
     /// The measure of `motion` for `robot`.
     pub fn of(robot: &Robot, motion: Motion) -> Self {
-        let rank = |draw| {
-            let mut rng = rng::stream(0, draw);
-            let mut q = [0.0; MAX_DOF];
-            for (q, joint) in q.iter_mut().zip(robot.joints()) {
-                let (lower, upper) = Joint::sampling_range(joint);
-                *q = rng.uniform_in(lower, upper);
-            }
-            let values = decompose(robot, motion, &q[..robot.dof()]);
-            values.lengths.iter().filter(|length| **length > RANK * values.lengths[0]).count()
+        let Directions { pose, position, rotation } = robot.directions();
+        let directions = match motion {
+            Motion::Pose => pose,
+            Motion::Position => position,
+            Motion::Rotation => rotation,
         };
-        Self { motion, directions: (0..DRAWS).map(rank).max().unwrap_or(0) }
+        Self { motion, directions }
     }
 
     /// Which motion counts.
@@ -125,6 +114,18 @@ impl Manipulability {
     /// then points out of the singularity on one of its two sides, or is zero.
     pub fn gradient(&self, robot: &Robot, q: &[f64], out: &mut [f64]) -> f64 {
         gradient::index(self, robot, q, out)
+    }
+
+    /// Adds `factor` times the gradient of ln w at `q` to `out`; `factor` ln w. In a singular posture, where it is minus
+    /// infinity, nothing is added.
+    pub fn add_log_gradient(&self, robot: &Robot, q: &[f64], factor: f64, out: &mut [f64]) -> f64 {
+        let mut buffer = [0.0; MAX_DOF];
+        let gradient = &mut buffer[..q.len()];
+        let index = self.gradient(robot, q, gradient);
+        if index > 0.0 {
+            out.iter_mut().zip(gradient).for_each(|(out, slope)| *out += factor / index * *slope);
+        }
+        factor * index.ln()
     }
 
     /// The ellipsoid of tip velocities at `q`, which has one finite entry per joint.

@@ -4,6 +4,7 @@ mod builder;
 mod catalog;
 mod chain;
 mod dh;
+mod directions;
 mod dispatch;
 mod joint;
 mod kinematics;
@@ -18,6 +19,7 @@ mod urdf;
 
 pub use builder::{ChainBuilder, Drive};
 pub use dh::{Dh, DhTable};
+pub use directions::Directions;
 pub use joint::{Joint, JointKind};
 pub use kinematics::Columns;
 pub use model::Robot;

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::builder::{ChainBuilder, Element};
 use super::chain::Chain;
+use super::directions::Directions;
 use super::joint::Joint;
 use super::seed_index::SeedIndex;
 use super::{Columns, MAX_DOF};
@@ -27,6 +28,8 @@ pub struct Robot {
     chain: Chain,
     /// Built when first asked for; copies that differ in base and tool share it.
     seed_index: Arc<OnceLock<SeedIndex>>,
+    /// Found when first asked for.
+    directions: OnceLock<Directions>,
 }
 
 impl PartialEq for Robot {
@@ -55,7 +58,7 @@ impl Robot {
     fn assembled(description: ChainBuilder, base: Pose, tool: Pose) -> Result<Self> {
         description.validate()?;
         let chain = Chain::new(&description.elements, &base, &tool);
-        Ok(Self { description, base, tool, chain, seed_index: Arc::default() })
+        Ok(Self { description, base, tool, chain, seed_index: Arc::default(), directions: OnceLock::new() })
     }
 
     /// The robot's name.
@@ -202,6 +205,11 @@ impl Robot {
 
     pub(super) fn chain(&self) -> &Chain {
         &self.chain
+    }
+
+    /// In how many directions the tip can move at all.
+    pub fn directions(&self) -> Directions {
+        *self.directions.get_or_init(|| Directions::of(self))
     }
 
     pub(super) fn seed_index(&self) -> &SeedIndex {

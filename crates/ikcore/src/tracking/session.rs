@@ -23,7 +23,7 @@ pub struct Step {
     pub evaluations: usize,
     /// Iterations of the rule; passes of the beetle.
     pub iterations: usize,
-    /// False where a joint cannot be brought within its position limits in this tick.
+    /// False where a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this tick.
     pub inside_limits: bool,
     /// The monitor asked to stop; nothing was accepted and time stands still.
     pub interrupted: bool,
@@ -33,7 +33,7 @@ impl Step {
     /// What happened, and what to try.
     pub fn message(&self) -> String {
         let error = &self.error;
-        let limits = if self.inside_limits { "" } else { "; a joint is outside its position limits and returns" };
+        let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
         match self.status {
             Status::Solved => format!("within the tolerances, {error} away{limits}"),
             Status::Improved => format!("nearer than before, {error} away{limits}"),
@@ -75,8 +75,8 @@ impl Session {
         options.tolerance.validate()?;
         limits.require_for(robot)?;
         limits.validate(dt, 0)?;
-        let remedy = "this tracker keeps position and velocity limits; leave it out";
-        limits.require_none(&[Field::Acceleration, Field::Jerk], "track", remedy)?;
+        let remedy = "this tracker keeps position, velocity and acceleration limits; leave it out";
+        limits.require_none(&[Field::Jerk], "track", remedy)?;
         robot.check("start", start)?;
         limits.require_inside("start", 0.0, start)?;
         Ok(Self {
@@ -153,7 +153,8 @@ impl Session {
     pub fn step(&mut self, target: &Target, monitor: &mut dyn Monitor) -> Result<Step> {
         target.validate()?;
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
-        let inside_limits = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
+        let within = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
+        let slow_enough = self.limits.brake(&self.q, &self.qd, [from, to], self.dt, &mut self.tick_box);
         let tick = Tick {
             robot: &self.robot,
             target,
@@ -178,7 +179,15 @@ impl Session {
             (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
         }
         let Found { error, position, evaluations, iterations, interrupted, .. } = found;
-        Ok(Step { status, error: error.into(), position, evaluations, iterations, inside_limits, interrupted })
+        Ok(Step {
+            status,
+            error: error.into(),
+            position,
+            evaluations,
+            iterations,
+            inside_limits: within && slow_enough,
+            interrupted,
+        })
     }
 
     /// Back to rest in `start` (n,), at t = 0.
