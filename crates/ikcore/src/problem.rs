@@ -3,32 +3,32 @@
 use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
 use crate::rng::LazyRng;
 use crate::robot::{Robot, Seeds};
-use crate::task::{SquaredError, Target, TipError, Tolerance};
+use crate::task::{Assessment, Criterion, Target};
 
 /// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
 #[derive(Debug, Clone, Copy)]
 pub struct Problem<'a> {
     robot: &'a Robot,
     target: &'a Target,
-    tolerance: Tolerance,
+    criterion: Criterion,
     /// Found when the first start is asked for.
     seeds: Option<Seeds<'a>>,
 }
 
 impl<'a> Problem<'a> {
     /// The problem of bringing the tip of `robot` to `target`.
-    pub fn new(robot: &'a Robot, target: &'a Target, tolerance: Tolerance) -> Self {
-        Self { robot, target, tolerance, seeds: None }
+    pub fn new(robot: &'a Robot, target: &'a Target, criterion: impl Into<Criterion>) -> Self {
+        Self { robot, target, criterion: criterion.into(), seeds: None }
     }
 
-    /// The errors at `q`, by forward kinematics.
-    pub fn verify(&self, q: &[f64]) -> TipError {
-        self.target.error(self.robot, q).into()
+    /// Where the tip is to be.
+    pub fn target(&self) -> &'a Target {
+        self.target
     }
 
-    #[inline]
-    fn score(&self, error: SquaredError) -> Score {
-        Score { value: error.sum(), solved: error.within(&self.tolerance) }
+    /// The errors at `q` and what they come to, by forward kinematics.
+    pub fn assess(&self, q: &[f64]) -> Assessment {
+        self.target.assess(self.robot, q, &self.criterion)
     }
 }
 
@@ -39,14 +39,14 @@ impl Objective for Problem<'_> {
 
     #[inline]
     fn evaluate(&mut self, q: &[f64]) -> Score {
-        self.score(self.target.error(self.robot, q))
+        self.assess(q).score
     }
 
     fn evaluate_all(&mut self, qs: &[f64], out: &mut [Score]) {
         let mut scores = out.iter_mut();
-        self.target.errors(self.robot, qs, |error| {
+        self.target.assess_all(self.robot, qs, &self.criterion, |assessment| {
             if let Some(score) = scores.next() {
-                *score = self.score(error);
+                *score = assessment.score;
             }
         });
     }
@@ -54,11 +54,14 @@ impl Objective for Problem<'_> {
     /// The nearest of the robot's indexed configurations, then uniform in the box, where a side without a limit is drawn
     /// from the joint's sampling range. Whoever brings a start of their own gets the nearest as their second.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
-        let seeds = self.seeds.get_or_insert_with(|| match self.target {
-            Target::Position(position) => self.robot.seeds_near_position(position),
-            Target::Pose(pose) => self.robot.seeds_near_pose(pose),
-        });
-        if seeds.write_next(bounds.lower(), bounds.upper(), q) {
+        if self.seeds.is_none() {
+            self.seeds = match (self.target, self.target.position()) {
+                (Target::Pose(pose), _) => Some(self.robot.seeds_near_pose(pose)),
+                (_, Some(position)) => Some(self.robot.seeds_near_position(&position)),
+                _ => None,
+            };
+        }
+        if self.seeds.as_mut().is_some_and(|seeds| seeds.write_next(bounds.lower(), bounds.upper(), q)) {
             return;
         }
         for (i, joint) in self.robot.joints().iter().enumerate() {
@@ -71,7 +74,6 @@ impl Objective for Problem<'_> {
 impl LeastSquares for Problem<'_> {
     #[inline]
     fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> Score {
-        let error = self.target.linearize(self.robot, q, out);
-        self.score(error)
+        self.target.linearize(self.robot, q, &self.criterion, out).score
     }
 }

@@ -237,7 +237,7 @@ impl PyTrackResult {
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, dt not positive.
 ///     LimitError: a start outside its limits, a limit below zero.
-///     UnsupportedLimit: acceleration or jerk limits, which this tracker does not keep.
+///     UnsupportedLimit: jerk limits, which this tracker does not keep.
 #[pyfunction]
 #[pyo3(signature = (robot, path, start=None, *, dt, solver=None, limits=None, position_tolerance=1e-6,
                     rotation_tolerance=1e-6, seed=0, limit_at="interval", progress=None))]

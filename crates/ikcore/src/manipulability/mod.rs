@@ -116,18 +116,6 @@ impl Manipulability {
         gradient::index(self, robot, q, out)
     }
 
-    /// Adds `factor` times the gradient of ln w at `q` to `out`; `factor` ln w. In a singular posture, where it is minus
-    /// infinity, nothing is added.
-    pub fn add_log_gradient(&self, robot: &Robot, q: &[f64], factor: f64, out: &mut [f64]) -> f64 {
-        let mut buffer = [0.0; MAX_DOF];
-        let gradient = &mut buffer[..q.len()];
-        let index = self.gradient(robot, q, gradient);
-        if index > 0.0 {
-            out.iter_mut().zip(gradient).for_each(|(out, slope)| *out += factor / index * *slope);
-        }
-        factor * index.ln()
-    }
-
     /// The ellipsoid of tip velocities at `q`, which has one finite entry per joint.
     pub fn ellipsoid(&self, robot: &Robot, q: &[f64]) -> Ellipsoid {
         Ellipsoid::new(&decompose(robot, self.motion, q), self.directions)
@@ -164,4 +152,16 @@ pub fn manipulability_all(robot: &Robot, motion: Motion, qs: &[f64]) -> Result<V
     let rows = robot.rows(qs)?;
     let measure = Manipulability::of(robot, motion);
     Ok(rows.map(|q| measure.index(robot, q)).collect())
+}
+
+/// Adds `factor` times the gradient of ln w at `q` to `gradient`, w the index of [`Motion::Pose`]; `factor` ln w. In a
+/// singular posture, where ln w is minus infinity, nothing is added. `q` and `gradient` have one entry per joint.
+pub fn add_log_gradient(robot: &Robot, q: &[f64], factor: f64, gradient: &mut [f64]) -> f64 {
+    let mut buffer = [0.0; MAX_DOF];
+    let slopes = &mut buffer[..q.len()];
+    let index = Manipulability::of(robot, Motion::Pose).gradient(robot, q, slopes);
+    if index > 0.0 {
+        gradient.iter_mut().zip(slopes).for_each(|(gradient, slope)| *gradient += factor / index * *slope);
+    }
+    factor * index.ln()
 }

@@ -12,6 +12,7 @@ mod lane_search;
 mod many;
 mod model;
 mod planar;
+mod reach;
 mod screws;
 mod seed_index;
 mod seeds;
@@ -23,6 +24,7 @@ pub use directions::Directions;
 pub use joint::{Joint, JointKind};
 pub use kinematics::Columns;
 pub use model::Robot;
+pub use reach::Reach;
 pub use screws::{Screw, Screws};
 pub use seeds::Seeds;
 

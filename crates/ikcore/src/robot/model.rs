@@ -123,6 +123,13 @@ impl Robot {
         Self::assembled(description, self.base, self.tool)
     }
 
+    /// Whether a whole turn of joint `joint` brings all that it moves back to where it was.
+    pub fn repeats_every_turn(&self, joint: usize) -> bool {
+        let driven = self.chain.motions.iter().filter(|motion| motion.joint == joint);
+        let scales = driven.map(|motion| (motion.turn_scale, motion.slide_scale));
+        self.joints()[joint].kind.turns() && scales.into_iter().all(|(turn, slide)| turn.fract() == 0.0 && slide == 0.0)
+    }
+
     /// Err unless `q` has one finite entry per joint; `what` names it in the message.
     pub fn check(&self, what: &str, q: &[f64]) -> Result<()> {
         if q.len() != self.dof() {

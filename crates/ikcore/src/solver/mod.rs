@@ -105,6 +105,14 @@ impl AnySolver {
         matches!(algorithm, Algorithm::Bas(_))
     }
 
+    /// The descent that is begun again and again, where this is one.
+    pub fn restarted_descent(&self) -> Option<&LevenbergMarquardt> {
+        match self {
+            Self::MultiStart(MultiStart { solver: Algorithm::LevenbergMarquardt(descent), .. }) => Some(descent),
+            _ => None,
+        }
+    }
+
     /// Runs from `x0` until solved, stopped or given up.
     pub fn run(&self, evaluator: &mut Evaluator<'_, dyn LeastSquares + '_>, x0: &[f64]) -> Outcome {
         match self {

@@ -69,11 +69,13 @@ pub enum Status {
     Lost = 7,
     /// An item of a batch whose target or start is wrong: nothing was solved.
     Invalid = 8,
+    /// The target is farther from the base than the arm is long.
+    OutOfReach = 9,
 }
 
 impl Status {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Solved,
         Self::Improved,
         Self::Capped,
@@ -83,6 +85,7 @@ impl Status {
         Self::Interrupted,
         Self::Lost,
         Self::Invalid,
+        Self::OutOfReach,
     ];
 
     /// The name as Python shows it.
@@ -97,6 +100,7 @@ impl Status {
             Self::Interrupted => "INTERRUPTED",
             Self::Lost => "LOST",
             Self::Invalid => "INVALID",
+            Self::OutOfReach => "OUT_OF_REACH",
         }
     }
 
@@ -112,6 +116,7 @@ impl Status {
             Self::Lost => {
                 "slow the path down, raise the velocity limits, start elsewhere (another start or seed), or move the path into reach"
             }
+            Self::OutOfReach => "move the target nearer to the base, or the base nearer to the target",
             Self::Invalid => "on_invalid=\"raise\" says what is wrong",
         }
     }

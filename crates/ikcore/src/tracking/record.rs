@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::session::{Session, Step};
 use crate::limits::Limits;
 use crate::solver::Status;
-use crate::task::{TipError, Tolerance};
+use crate::task::{Criterion, TipError};
 use crate::wording::{number, time};
 
 /// Rounding that a limit may be exceeded by: units in the last place of q.
@@ -49,7 +49,7 @@ pub struct Record {
     /// The limits in force.
     pub limits: Limits,
     /// The error band.
-    pub tolerance: Tolerance,
+    pub criterion: Criterion,
     /// How the track as a whole ended.
     pub status: Status,
     /// Time taken.
@@ -78,7 +78,7 @@ impl Record {
             worst_violation: None,
             limit_margin: f64::INFINITY,
             limits: session.limits().clone(),
-            tolerance: session.tolerance(),
+            criterion: *session.criterion(),
             status: Status::Lost,
             elapsed: Duration::ZERO,
             dt: session.dt(),
@@ -167,7 +167,11 @@ impl Record {
                 time(when)
             );
         }
-        let band = self.in_words(self.tolerance.position, self.tolerance.rotation);
+        let Criterion { tolerance, components } = self.criterion;
+        let band = match components.and_then(|components| components.tolerance) {
+            Some(_) => "its tolerance in each component".into(),
+            None => self.in_words(tolerance.position, tolerance.rotation),
+        };
         let advice = Status::Lost.advice();
         let Some(joined) = self.joined() else {
             let (position, rotation) = (smallest(&self.position_error), smallest(&self.rotation_error));
@@ -185,10 +189,12 @@ impl Record {
         )
     }
 
-    /// Errors (m, rad) with their units; the angle only where orientations were asked for.
+    /// Errors (m, rad) with their units, as far as they were asked for.
     fn in_words(&self, position: f64, rotation: f64) -> String {
-        let asked = self.rotation_error.iter().any(|error| !error.is_nan());
-        TipError { position, rotation: if asked { rotation } else { f64::NAN } }.to_string()
+        let asked =
+            |errors: &[f64], value: f64| if errors.iter().any(|error| !error.is_nan()) { value } else { f64::NAN };
+        let position = asked(&self.position_error, position);
+        TipError { position, rotation: asked(&self.rotation_error, rotation) }.to_string()
     }
 }
 

@@ -4,11 +4,11 @@ use super::TrackOptions;
 use super::rule::{Found, Running, Tick, TickRule};
 use crate::error::{Result, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
-use crate::objective::Point;
+use crate::objective::{Bounds, Point, Score};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::{Target, TipError, Tolerance};
+use crate::task::{Assessment, Criterion, Goal, Goals, Target, Task, TipError};
 
 /// What became of one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +50,11 @@ pub struct Session {
     limit_at: LimitAt,
     rule: TickRule,
     running: Running,
-    tolerance: Tolerance,
+    task: Option<Task>,
+    criterion: Criterion,
+    goals: Vec<Goal>,
+    /// The position limits at the start: what goals take for the joints' ranges.
+    ranges: Bounds,
     dt: f64,
     ticks: usize,
     q: Point,
@@ -72,7 +76,8 @@ impl Session {
         let limits = options.limits_for(robot);
         require_positive("dt", dt)?;
         options.rule.validate()?;
-        options.tolerance.validate()?;
+        let criterion = options.criterion()?;
+        options.check_goals(robot)?;
         limits.require_for(robot)?;
         limits.validate(dt, 0)?;
         let remedy = "this tracker keeps position, velocity and acceleration limits; leave it out";
@@ -80,12 +85,15 @@ impl Session {
         robot.check("start", start)?;
         limits.require_inside("start", 0.0, start)?;
         Ok(Self {
-            robot: robot.clone(),
+            ranges: Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into())),
+            robot: options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone()),
             limits,
             limit_at: options.limit_at,
             rule: options.rule.clone(),
             running: options.rule.start(),
-            tolerance: options.tolerance,
+            task: options.task,
+            criterion,
+            goals: options.goals.clone(),
             dt,
             ticks: 0,
             q: Point::from_slice(start),
@@ -127,8 +135,14 @@ impl Session {
         &self.tick_box.velocity
     }
 
-    pub(super) fn tolerance(&self) -> Tolerance {
-        self.tolerance
+    pub(super) fn criterion(&self) -> &Criterion {
+        &self.criterion
+    }
+
+    /// What of `wanted` the task asks for, checked.
+    fn read(&self, wanted: &Target) -> Result<Target> {
+        wanted.validate()?;
+        self.task.map_or(Ok(*wanted), |task| task.target(wanted))
     }
 
     /// The robot that is moved.
@@ -137,37 +151,42 @@ impl Session {
     }
 
     /// Stands still and takes the error to `target` as what the first tick has to beat.
-    pub fn begin(&mut self, target: &Target) -> Step {
-        let error = target.error(&self.robot, &self.q);
-        self.last_value = Some(error.sum());
-        let status = if error.within(&self.tolerance) { Status::Solved } else { Status::Improved };
-        let position = self.robot.tip_position(&self.q);
-        let error = error.into();
-        Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false }
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn begin(&mut self, target: &Target) -> Result<Step> {
+        let Assessment { score, error } = self.read(target)?.assess(&self.robot, &self.q, &self.criterion);
+        self.last_value = Some(score.value);
+        let status = if score.solved { Status::Solved } else { Status::Improved };
+        let (position, error) = (self.robot.tip_position(&self.q), error.into());
+        Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false })
     }
 
     /// Moves by one tick towards `target`, inside the limits. Time advances whatever comes of it.
     ///
     /// # Errors
-    /// [`Error::NotFinite`](crate::Error::NotFinite) for a target that is not finite.
+    /// [`Error::NotFinite`](crate::Error::NotFinite) for a target that is not finite,
+    /// [`Error::WrongTarget`](crate::Error::WrongTarget) for one that says too little for the task.
     pub fn step(&mut self, target: &Target, monitor: &mut dyn Monitor) -> Result<Step> {
-        target.validate()?;
+        let target = self.read(target)?;
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
         let within = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
         let slow_enough = self.limits.brake(&self.q, &self.qd, [from, to], self.dt, &mut self.tick_box);
         let tick = Tick {
             robot: &self.robot,
-            target,
-            tolerance: self.tolerance,
+            target: &target,
+            criterion: &self.criterion,
+            goals: (!self.goals.is_empty()).then(|| Goals::new(&self.goals, &self.robot, &self.ranges)),
+            dt: self.dt,
             tick_box: &self.tick_box.bounds,
             last_value: self.last_value,
             rng: &mut self.rng,
             monitor,
         };
         let found = self.running.advance(&self.q, tick);
-        let value = found.error.sum();
+        let Assessment { score: Score { value, solved }, error } = found.assessment;
         let status = match self.last_value {
-            _ if found.error.within(&self.tolerance) => Status::Solved,
+            _ if solved => Status::Solved,
             Some(last) if value >= last => Status::Capped,
             _ => Status::Improved,
         };
@@ -178,16 +197,9 @@ impl Session {
             self.q.copy_from_slice(&found.q);
             (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
         }
-        let Found { error, position, evaluations, iterations, interrupted, .. } = found;
-        Ok(Step {
-            status,
-            error: error.into(),
-            position,
-            evaluations,
-            iterations,
-            inside_limits: within && slow_enough,
-            interrupted,
-        })
+        let Found { position, evaluations, iterations, interrupted, .. } = found;
+        let inside_limits = within && slow_enough;
+        Ok(Step { status, error: error.into(), position, evaluations, iterations, inside_limits, interrupted })
     }
 
     /// Back to rest in `start` (n,), at t = 0.

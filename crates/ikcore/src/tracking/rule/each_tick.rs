@@ -6,14 +6,14 @@ use crate::problem::Problem;
 use crate::solver::{AnySolver, Evaluator, Halt, Stop};
 
 pub fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> Found {
-    let Tick { robot, target, tolerance, tick_box, last_value, rng, monitor } = tick;
-    let mut problem = Problem::new(robot, target, tolerance);
+    let Tick { robot, target, criterion, tick_box, last_value, rng, monitor, .. } = tick;
+    let mut problem = Problem::new(robot, target, *criterion);
     let objective: &mut dyn LeastSquares = &mut problem;
     let mut evaluator = Evaluator::new(objective, tick_box, stop(solver, last_value), rng, monitor);
     let outcome = solver.run(&mut evaluator, q);
     let best = evaluator.best().x.clone();
     Found {
-        error: target.error(robot, &best),
+        assessment: target.assess(robot, &best, criterion),
         position: robot.tip_position(&best),
         q: best,
         evaluations: evaluator.evaluations(),

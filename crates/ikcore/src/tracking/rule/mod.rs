@@ -5,11 +5,11 @@ mod mid_step;
 
 use crate::error::Result;
 use crate::math::Frame;
-use crate::objective::{Bounds, Point};
+use crate::objective::{Bounds, Point, Score};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Monitor};
-use crate::task::{SquaredError, Target, Tolerance};
+use crate::task::{Assessment, Criterion, Goals, SquaredError, Target};
 
 /// What runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -25,7 +25,11 @@ pub enum TickRule {
 pub(super) struct Tick<'a> {
     pub robot: &'a Robot,
     pub target: &'a Target,
-    pub tolerance: Tolerance,
+    pub criterion: &'a Criterion,
+    /// What to do with the freedom that the target leaves, if anything.
+    pub goals: Option<Goals<'a>>,
+    /// Length of the tick (s).
+    pub dt: f64,
     /// Where the tick may end.
     pub tick_box: &'a Bounds,
     /// The value accepted in the tick before, if any.
@@ -35,10 +39,10 @@ pub(super) struct Tick<'a> {
 }
 
 /// Where a rule would end the tick.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Found {
     pub q: Point,
-    pub error: SquaredError,
+    pub assessment: Assessment,
     /// Position of the tip there (m).
     pub position: [f64; 3],
     pub evaluations: usize,
@@ -50,13 +54,22 @@ pub(super) struct Found {
 impl Found {
     /// At `q`, with nothing known of it yet.
     fn at(q: Point) -> Self {
-        let error = SquaredError { position: f64::INFINITY, rotation: None };
-        Self { q, error, position: [f64::NAN; 3], evaluations: 0, iterations: 0, interrupted: false }
+        let score = Score { value: f64::INFINITY, solved: false };
+        let assessment = Assessment { score, error: SquaredError { position: None, rotation: None } };
+        Self { q, assessment, position: [f64::NAN; 3], evaluations: 0, iterations: 0, interrupted: false }
     }
 
     /// The tip is there.
-    fn arrive(&mut self, tip: &Frame, target: &Target) {
-        (self.error, self.position) = (target.error_of(tip), tip.origin);
+    fn arrive(&mut self, tip: &Frame, tick: &Tick<'_>) {
+        (self.assessment, self.position) = (tick.target.assess_tip(tip, tick.criterion), tip.origin);
+    }
+
+    fn value(&self) -> f64 {
+        self.assessment.score.value
+    }
+
+    fn is_solved(&self) -> bool {
+        self.assessment.score.solved
     }
 }
 
