@@ -11,7 +11,7 @@ mod rule;
 mod session;
 
 pub use record::Record;
-pub use rule::TickRule;
+pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
 pub use session::{Session, Step};
 
 use crate::error::{Error, Result};
@@ -53,8 +53,8 @@ impl TrackOptions {
 
     /// Checks that the rule serves the goals, and the goals the robot.
     fn check_goals(&self, robot: &Robot) -> Result<()> {
-        if !self.goals.is_empty() && self.rule != TickRule::MidStep {
-            let problem = "goals beside the path are served by the library's own rule: leave solver out";
+        if !self.goals.is_empty() && !self.rule.serves_goals() {
+            let problem = "goals beside the path are served by the library's own rule and by WeightedPseudoInverse: leave solver out";
             return Err(Error::Contradiction { problem: problem.into() });
         }
         self.goals.iter().try_for_each(|goal| goal.validate(robot))
@@ -87,7 +87,7 @@ pub fn track(
     };
     let mut session = Session::new(robot, &start, reference.dt(), options)?;
     let mut record = Record::new(&session, reference.len());
-    let beginning = session.begin(&target(reference, 0))?;
+    let beginning = session.begin(&target(reference, 0), reference.velocity(0))?;
     record.push(&session, reference.position(0), &beginning);
     let finished = follow(reference, &mut session, &mut record, monitor)?;
     record.finish(!finished, stopwatch.elapsed());
@@ -107,7 +107,7 @@ fn follow(
         if !monitor.keep_going() {
             return Ok(false);
         }
-        let step = session.step(&target(reference, i), monitor)?;
+        let step = session.step_moving(&target(reference, i), reference.velocity(i), monitor)?;
         if step.interrupted {
             return Ok(false);
         }

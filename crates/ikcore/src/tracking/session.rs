@@ -2,13 +2,13 @@
 
 use super::TrackOptions;
 use super::rule::{Found, Running, Tick, TickRule};
-use crate::error::{Result, require_positive};
+use crate::error::{Result, require_finite, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point, Score};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::{Assessment, Criterion, Goal, Goals, Target, Task, TipError};
+use crate::task::{Assessment, Criterion, Goal, Goals, Target, TargetMotion, Task, TipError, Twist};
 
 /// What became of one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,6 +61,8 @@ pub struct Session {
     qd: Point,
     /// The value accepted in the tick before: what a random search has to beat.
     last_value: Option<f64>,
+    /// Where the target was at the end of that tick, and its velocity (m/s) if known.
+    last_target: Option<(Target, Option<[f64; 3]>)>,
     tick_box: TickBox,
     seed: u64,
     rng: LazyRng,
@@ -76,6 +78,7 @@ impl Session {
         let limits = options.limits_for(robot);
         require_positive("dt", dt)?;
         options.rule.validate()?;
+        options.rule.validate_for(robot, dt)?;
         let criterion = options.criterion()?;
         options.check_goals(robot)?;
         limits.require_for(robot)?;
@@ -99,6 +102,7 @@ impl Session {
             q: Point::from_slice(start),
             qd: Point::from_elem(0.0, start.len()),
             last_value: None,
+            last_target: None,
             tick_box: TickBox::around(start),
             seed: options.seed,
             rng: rng::stream(options.seed, 0),
@@ -150,12 +154,14 @@ impl Session {
         &self.robot
     }
 
-    /// Stands still and takes the error to `target` as what the first tick has to beat.
+    /// Stands still and takes the error to `target`, which moves at `velocity` (m/s), as what the first tick has to beat.
     ///
     /// # Errors
     /// As [`step`](Self::step).
-    pub fn begin(&mut self, target: &Target) -> Result<Step> {
-        let Assessment { score, error } = self.read(target)?.assess(&self.robot, &self.q, &self.criterion);
+    pub fn begin(&mut self, target: &Target, velocity: Option<[f64; 3]>) -> Result<Step> {
+        let target = self.read(target)?;
+        self.last_target = Some((target, velocity));
+        let Assessment { score, error } = target.assess(&self.robot, &self.q, &self.criterion);
         self.last_value = Some(score.value);
         let status = if score.solved { Status::Solved } else { Status::Improved };
         let (position, error) = (self.robot.tip_position(&self.q), error.into());
@@ -168,7 +174,25 @@ impl Session {
     /// [`Error::NotFinite`](crate::Error::NotFinite) for a target that is not finite,
     /// [`Error::WrongTarget`](crate::Error::WrongTarget) for one that says too little for the task.
     pub fn step(&mut self, target: &Target, monitor: &mut dyn Monitor) -> Result<Step> {
+        self.step_moving(target, None, monitor)
+    }
+
+    /// The same with the velocity (m/s) that the target has at the end of the tick, for rules that work with velocities;
+    /// None: they take the way from where it was.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn step_moving(
+        &mut self,
+        target: &Target,
+        velocity: Option<[f64; 3]>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Step> {
         let target = self.read(target)?;
+        if let Some(velocity) = &velocity {
+            require_finite("velocity of the target", velocity, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
+        }
+        let motion = self.motion(&target, velocity);
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
         let within = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
         let slow_enough = self.limits.brake(&self.q, &self.qd, [from, to], self.dt, &mut self.tick_box);
@@ -177,7 +201,10 @@ impl Session {
             target: &target,
             criterion: &self.criterion,
             goals: (!self.goals.is_empty()).then(|| Goals::new(&self.goals, &self.robot, &self.ranges)),
+            motion,
+            time: from,
             dt: self.dt,
+            velocity_limit: &self.tick_box.velocity,
             tick_box: &self.tick_box.bounds,
             last_value: self.last_value,
             rng: &mut self.rng,
@@ -196,10 +223,28 @@ impl Session {
             }
             self.q.copy_from_slice(&found.q);
             (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
+            self.last_target = Some((target, velocity));
         }
         let Found { position, evaluations, iterations, interrupted, .. } = found;
         let inside_limits = within && slow_enough;
         Ok(Step { status, error: error.into(), position, evaluations, iterations, inside_limits, interrupted })
+    }
+
+    /// How `target`, which has this `velocity` at the end of the tick, comes there. Where nothing is known of the tick
+    /// before, it has moved with that velocity, or stood still.
+    fn motion(&self, target: &Target, velocity: Option<[f64; 3]>) -> TargetMotion {
+        let dt = self.dt;
+        match (self.last_target, velocity) {
+            (Some((begin, before)), _) => {
+                let velocities = before.zip(velocity).map(|(before, velocity)| [before, velocity]);
+                TargetMotion { begin, end: *target, velocities, dt }
+            }
+            (None, None) => TargetMotion { begin: *target, end: *target, velocities: None, dt },
+            (None, Some(linear)) => {
+                let begin = target.moved(&Twist { linear, angular: [0.0; 3] }, -dt);
+                TargetMotion { begin, end: *target, velocities: Some([linear; 2]), dt }
+            }
+        }
     }
 
     /// Back to rest in `start` (n,), at t = 0.
@@ -211,7 +256,7 @@ impl Session {
         self.limits.require_inside("start", 0.0, start)?;
         self.q.copy_from_slice(start);
         self.qd.fill(0.0);
-        (self.ticks, self.last_value, self.running) = (0, None, self.rule.start());
+        (self.ticks, self.last_value, self.last_target, self.running) = (0, None, None, self.rule.start());
         self.rng = rng::stream(self.seed, 0);
         Ok(())
     }
