@@ -60,7 +60,7 @@ fn each_tick(algorithm: Algorithm) -> TickRule {
 }
 
 fn beetle(variant: Variant, c1: f64, explorations: usize) -> TickRule {
-    each_tick(Algorithm::Bas(Bas { variant, c1, explorations, ..Bas::default() }))
+    each_tick(Algorithm::from(Bas { variant, c1, explorations, ..Bas::default() }))
 }
 
 fn circles(c: &mut Criterion) {

@@ -90,7 +90,7 @@ fn the_first_item_is_what_solve_finds() {
 #[test]
 fn items_draw_from_streams_of_their_own() {
     let robot = robot("iiwa14");
-    let solver = AnySolver::Single(Algorithm::Bas(Bas::of(Variant::Greedy)));
+    let solver = AnySolver::Single(Algorithm::from(Bas::of(Variant::Greedy)));
     let each = SolveOptions { solver, start: Some(vec![0.3; 7]), ..SolveOptions::default() };
     let options = BatchOptions { each, ..on_threads(2) };
     let [first, second] = [[0.4, 0.3, 0.9], [0.5, 0.1, 0.8]];

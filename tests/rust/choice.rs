@@ -9,6 +9,7 @@ use std::f64::consts::{PI, TAU};
 use common::{bits, configurations, message, pose_at, robot};
 use ikcore::ik::{AllOptions, Prefer, Solution, SolveOptions, solve, solve_all};
 use ikcore::limits::LimitAt;
+use ikcore::manipulability::{self, Motion};
 use ikcore::math::pose;
 use ikcore::path::{Path, Reference};
 use ikcore::robot::{JointKind, Robot};
@@ -91,13 +92,13 @@ fn goals_move_along_the_self_motion_to_where_they_are_best() {
         let off = |(j, q): (usize, &f64)| ((q - 0.5 * (range(j).0 + range(j).1)) / (range(j).1 - range(j).0)).powi(2);
         q.iter().enumerate().map(off).sum()
     };
-    let manipulability = |q: &[f64]| -ikcore::manipulability::manipulability(&robot, q).unwrap();
+    let singularity = |q: &[f64]| -manipulability::manipulability(&robot, Motion::Pose, q).unwrap().ln();
     let posture = [0.0, -0.5, 0.0, -2.0, 0.0, 1.6, 0.8];
     let to_posture = |q: &[f64]| distance(q, &posture).powi(2);
     type Cost<'a> = &'a dyn Fn(&[f64]) -> f64;
     let goals: [(Goal, Cost<'_>); 3] = [
         (Goal::Centring { weight: 1.0 }, &centring),
-        (Goal::Manipulability { weight: 1.0 }, &manipulability),
+        (Goal::Manipulability { motion: Motion::Pose, weight: 1.0 }, &singularity),
         (Goal::Posture { posture: posture.to_vec(), weight: 2.0 }, &to_posture),
     ];
     for (goal, cost) in goals {
@@ -269,7 +270,8 @@ fn a_path_may_ask_for_less_than_it_says() {
     let robot = robot("iiwa14");
     let start = [0.3, 0.8, -0.4, -1.2, 0.3, 0.9, 0.1];
     let tip = robot.fk(&start).unwrap();
-    let circle = ikcore::path::Circle::new([0.4, 0.2, 0.7], 0.2, 5.0, ikcore::path::Plane::XY).unwrap();
+    let plane = ikcore::path::Plane::xy([0.4, 0.2, 0.7]).unwrap();
+    let circle = ikcore::path::Circle::new(plane, 0.2, 5.0).unwrap();
     let path = Path::new(circle).with_orientation(tip.rotation.into_inner()).unwrap();
     for kind in [Kind::Position, Kind::Pointing { axis: [0.0, 0.0, 1.0] }, Kind::Pose] {
         let options = TrackOptions { task: Some(kind.into()), ..TrackOptions::default() };

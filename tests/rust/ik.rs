@@ -149,7 +149,7 @@ fn the_same_seed_gives_the_same_bits() {
     let target = pose_at(&ur, &[0.4, -1.0, 1.2, -0.5, 0.9, 0.2]);
     // The default solver seldom comes to a draw; a beetle draws at every step.
     for (solver, draws) in
-        [(AnySolver::default(), false), (AnySolver::Single(Algorithm::Bas(Bas::of(Variant::Star))), true)]
+        [(AnySolver::default(), false), (AnySolver::Single(Algorithm::from(Bas::of(Variant::Star))), true)]
     {
         let q = |seed| {
             bits(&solved(&ur, &target, &SolveOptions { solver: solver.clone(), seed, ..SolveOptions::default() }).q)
@@ -164,7 +164,7 @@ fn beetles_solve_positions() {
     let iiwa = robot("iiwa14");
     for variant in [Variant::Star, Variant::Chain, Variant::Greedy] {
         // A beetle gains unevenly from pass to pass: it is given more patience than a descent.
-        let solver = AnySolver::MultiStart(Algorithm::Bas(Bas::of(variant)).into_multi_start());
+        let solver = AnySolver::MultiStart(Algorithm::from(Bas::of(variant)).into_multi_start());
         let mut reached = 0;
         for (i, q) in configurations(&iiwa, 50).iter().enumerate() {
             let options = SolveOptions { solver: solver.clone(), seed: i as u64, ..SolveOptions::default() };

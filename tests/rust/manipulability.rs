@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use common::chains::RandomChain;
 use common::{message, robot};
-use ikcore::manipulability::{Manipulability, Motion, add_log_gradient, manipulability, manipulability_all};
+use ikcore::manipulability::{Manipulability, Motion, manipulability, manipulability_all};
 use ikcore::math::pose;
 use ikcore::nalgebra::Vector6;
 use ikcore::rng;
@@ -64,20 +64,6 @@ fn the_gradient_is_that_of_finite_differences() {
             assert_near(&gradient, &expected, index, &format!("{} {motion}", robot.name()));
         }
     }
-}
-
-#[test]
-fn the_gradient_of_the_logarithm_is_added_with_its_factor() {
-    let arm = robot("iiwa14");
-    let q = [0.3, 0.5, -0.2, -1.1, 0.4, 0.9, 0.1];
-    let measure = Manipulability::of(&arm, Motion::Pose);
-    let mut gradient = [1.0; 7];
-    let cost = add_log_gradient(&arm, &q, -2.0, &mut gradient);
-    assert!((cost + 2.0 * measure.index(&arm, &q).ln()).abs() < 1e-12);
-    let expected: Vec<f64> =
-        differences(&q, |q| -2.0 * measure.index(&arm, q).ln()).iter().map(|slope| 1.0 + slope).collect();
-    assert_near(&gradient, &expected, 1.0, "logarithm");
-    assert_eq!(add_log_gradient(&arm, &[0.0; 7], -1.0, &mut [0.0; 7]), f64::INFINITY);
 }
 
 #[test]

@@ -187,7 +187,7 @@ fn targets_that_are_nowhere() {
 
 #[test]
 fn options_of_solvers_out_of_range() {
-    let bas = |bas| AnySolver::Single(Algorithm::Bas(bas));
+    let bas = |bas| AnySolver::Single(Algorithm::from(bas));
     let lm = |lm| AnySolver::Single(Algorithm::LevenbergMarquardt(lm));
     let again = |rule| {
         let solver = Algorithm::LevenbergMarquardt(LevenbergMarquardt::default());

@@ -28,7 +28,8 @@ impl Prepared<'_> {
         rng: &mut LazyRng,
         monitor: &mut dyn Monitor,
     ) -> Solution {
-        let goal = [Goal::Posture { posture: start.to_vec(), weight: 1.0 }];
+        let goal = Goal::Posture { posture: start.to_vec(), weight: 1.0 };
+        let mut goals = Goals::new(&[goal], self.robot(), self.bounds());
         let mut problem = self.problem(target);
         let mut run = Run::new(self.options().stop);
         let mut nearest: Option<(f64, Point)> = None;
@@ -39,7 +40,7 @@ impl Prepared<'_> {
                 break solution;
             }
             bring_near(self.robot(), self.bounds(), start, &mut solution.q);
-            self.descend_to(&mut problem, &goal, &mut run, &mut solution.q);
+            self.descend_to(&mut problem, &mut goals, &mut run, &mut solution.q);
             let distance = distance(&solution.q, start);
             if nearest.as_ref().is_none_or(|(least, _)| distance < least - SAME) {
                 (nearest, no_nearer) = (Some((distance, solution.q.clone())), 0);
@@ -58,10 +59,9 @@ impl Prepared<'_> {
     }
 
     /// Moves `q` along its self-motion to where `goals` are best.
-    pub(super) fn descend_to(&self, problem: &mut Problem<'_>, goals: &[Goal], run: &mut Run, q: &mut Point) {
-        let goals = Goals::new(goals, self.robot(), self.bounds());
-        let max_evaluations = run.left();
-        let mut motion = SelfMotion { problem, goals, bounds: self.bounds(), evaluations: 0, max_evaluations };
+    pub(super) fn descend_to(&self, problem: &mut Problem<'_>, goals: &mut Goals, run: &mut Run, q: &mut Point) {
+        let (robot, max_evaluations) = (self.robot(), run.left());
+        let mut motion = SelfMotion { robot, problem, goals, bounds: self.bounds(), evaluations: 0, max_evaluations };
         motion.descend(q);
         run.count(motion.evaluations);
     }

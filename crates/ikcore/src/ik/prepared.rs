@@ -15,7 +15,7 @@ use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::stop::Stopwatch;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, Status, Stop, run};
-use crate::task::{Criterion, Target, Task};
+use crate::task::{Criterion, Goals, Target, Task};
 
 /// Evaluations kept back for going on from the best miss: attempts are abandoned long before they are as near as they get.
 const RESERVE: usize = 200;
@@ -29,6 +29,7 @@ pub(crate) struct Prepared<'a> {
     robot: Cow<'a, Robot>,
     options: &'a SolveOptions,
     criterion: Criterion,
+    goals: Goals,
     bounds: Bounds,
 }
 
@@ -52,7 +53,9 @@ impl<'a> Prepared<'a> {
         }
         let bounds = position_box(robot, options.limits.as_ref())?;
         let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;
-        Ok(Self { robot: with_tool.map_or(Cow::Borrowed(robot), Cow::Owned), options, criterion, bounds })
+        let robot = with_tool.map_or(Cow::Borrowed(robot), Cow::Owned);
+        let goals = Goals::new(&options.goals, &robot, &bounds);
+        Ok(Self { robot, options, criterion, goals, bounds })
     }
 
     pub(super) fn robot(&self) -> &Robot {
@@ -123,12 +126,12 @@ impl<'a> Prepared<'a> {
         }
         let mut run = Run::new(self.options.stop);
         let mut solution = run.attempt(self, &mut problem, x0, &mut rng, monitor);
-        if solution.status == Status::Solved && !self.options.goals.is_empty() {
+        if solution.status == Status::Solved && !self.goals.is_empty() {
             let q = &mut solution.q;
             if let Some(start) = start {
                 bring_near(&self.robot, &self.bounds, start, q);
             }
-            self.descend_to(&mut problem, &self.options.goals, &mut run, q);
+            self.descend_to(&mut problem, &mut self.goals.clone(), &mut run, q);
             return run.solution(Status::Solved, solution.q, &problem);
         }
         solution

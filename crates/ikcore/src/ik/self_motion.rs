@@ -7,6 +7,7 @@
 use crate::math::box_step::{box_step, box_step_near, least_damping};
 use crate::objective::{Bounds, LeastSquares, Linearization, Point};
 use crate::problem::Problem;
+use crate::robot::Robot;
 use crate::task::Goals;
 
 /// Longest wish of a joint in one step (rad, m): beyond, the linearised task says little.
@@ -22,8 +23,9 @@ const SHORTEN: f64 = 0.3;
 
 /// A problem, the goals beside it, and what has been spent on them.
 pub(super) struct SelfMotion<'a, 'p> {
+    pub robot: &'a Robot,
     pub problem: &'a mut Problem<'p>,
-    pub goals: Goals<'a>,
+    pub goals: &'a mut Goals,
     pub bounds: &'a Bounds,
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
@@ -126,9 +128,9 @@ impl SelfMotion<'_, '_> {
         self.problem.linearize(q, out).solved
     }
 
-    fn place(&self, q: Point) -> Place {
+    fn place(&mut self, q: Point) -> Place {
         let mut gradient = q.clone();
-        let cost = self.goals.cost(&q, &mut gradient);
+        let cost = self.goals.cost(self.robot, &q, &mut gradient);
         Place { q, cost, gradient }
     }
 }

@@ -153,15 +153,3 @@ pub fn manipulability_all(robot: &Robot, motion: Motion, qs: &[f64]) -> Result<V
     let measure = Manipulability::of(robot, motion);
     Ok(rows.map(|q| measure.index(robot, q)).collect())
 }
-
-/// Adds `factor` times the gradient of ln w at `q` to `gradient`, w the index of [`Motion::Pose`]; `factor` ln w. In a
-/// singular posture, where ln w is minus infinity, nothing is added. `q` and `gradient` have one entry per joint.
-pub fn add_log_gradient(robot: &Robot, q: &[f64], factor: f64, gradient: &mut [f64]) -> f64 {
-    let mut buffer = [0.0; MAX_DOF];
-    let slopes = &mut buffer[..q.len()];
-    let index = Manipulability::of(robot, Motion::Pose).gradient(robot, q, slopes);
-    if index > 0.0 {
-        gradient.iter_mut().zip(slopes).for_each(|(gradient, slope)| *gradient += factor / index * *slope);
-    }
-    factor * index.ln()
-}

@@ -1,5 +1,7 @@
 //! Between solver and objective: counts, clips, checks, and keeps the best.
 
+use std::mem;
+
 use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Point, Score};
 use crate::rng::LazyRng;
 
@@ -31,6 +33,13 @@ pub struct Best {
     pub value: f64,
     /// Whether it passes the problem's own test.
     pub solved: bool,
+}
+
+impl Default for Best {
+    /// Nothing met yet.
+    fn default() -> Self {
+        Self { x: Point::new(), value: f64::INFINITY, solved: false }
+    }
 }
 
 impl Best {
@@ -83,7 +92,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             stopwatch: stop.max_time.map(|_| Stopwatch::start()),
             evaluations: 0,
             next_poll: POLL_EVERY,
-            best: Best { x: Point::new(), value: f64::INFINITY, solved: false },
+            best: Best::default(),
             attempt_value: f64::INFINITY,
             attempts: 1,
         }
@@ -236,6 +245,35 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             self.best.replace(x, value, solved);
         }
         value
+    }
+}
+
+impl Evaluator<'_, dyn LeastSquares + '_> {
+    /// Lends the run to a solver that asks for values alone, so that there is one compiled copy of such a solver whatever
+    /// the objective offers beyond.
+    pub fn with_values_only<R>(&mut self, work: impl FnOnce(&mut Evaluator<'_, dyn Objective + '_>) -> R) -> R {
+        let mut narrowed = Evaluator {
+            objective: &mut *self.objective as &mut dyn Objective,
+            bounds: self.bounds,
+            stop: self.stop,
+            rng: &mut *self.rng,
+            monitor: &mut *self.monitor,
+            stopwatch: self.stopwatch,
+            evaluations: self.evaluations,
+            next_poll: self.next_poll,
+            best: mem::take(&mut self.best),
+            attempt_value: self.attempt_value,
+            attempts: self.attempts,
+            dimension: self.dimension,
+        };
+        let result = work(&mut narrowed);
+        let Evaluator { evaluations, next_poll, best, attempt_value, attempts, .. } = narrowed;
+        self.evaluations = evaluations;
+        self.next_poll = next_poll;
+        self.best = best;
+        self.attempt_value = attempt_value;
+        self.attempts = attempts;
+        result
     }
 }
 

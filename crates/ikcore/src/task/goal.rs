@@ -1,8 +1,8 @@
 //! Goals beside the task: what the joints should do where the task leaves them free.
 
 use crate::error::{Error, Result};
-use crate::manipulability;
-use crate::objective::Bounds;
+use crate::manipulability::{Manipulability, Motion};
+use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
 /// One goal, as a cost to be lowered along the self-motion. Weights (positive) compare goals with each other.
@@ -20,20 +20,33 @@ pub enum Goal {
         /// Share among several goals.
         weight: f64,
     },
-    /// Far from singularities: -ln w, with w Yoshikawa's manipulability.
+    /// Far from singularities: -ln w, with w Yoshikawa's index.
     Manipulability {
+        /// Which motion of the tip counts.
+        motion: Motion,
         /// Share among several goals.
         weight: f64,
     },
 }
 
-/// Goals for one robot between its limits.
-#[derive(Debug, Clone, Copy)]
-pub struct Goals<'a> {
-    goals: &'a [Goal],
-    robot: &'a Robot,
-    bounds: &'a Bounds,
+/// Goals made ready for one robot between its limits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Goals {
+    terms: Vec<Term>,
+    gradient: Point,
 }
+
+/// A goal as it is computed.
+#[derive(Debug, Clone, PartialEq)]
+enum Term {
+    /// The sum of stiffness * (q - rest)^2.
+    Springs { stiffness: Point, rest: Point },
+    /// -weight * ln w.
+    Manipulability { measure: Manipulability, weight: f64 },
+}
+
+/// An index below this counts as this: a singular posture has no logarithm.
+const SINGULAR: f64 = 1e-12;
 
 impl Goal {
     /// Checks the goal against the robot.
@@ -41,9 +54,9 @@ impl Goal {
     /// # Errors
     /// [`Error::OutOfRange`] for a weight that is not positive; as [`Robot::check`] for the posture.
     pub fn validate(&self, robot: &Robot) -> Result<()> {
-        let weight = self.weight();
-        if !(weight > 0.0 && weight.is_finite()) {
-            return Err(Error::out_of_range("weight of a goal", "positive and finite", weight));
+        let (Self::Posture { weight, .. } | Self::Centring { weight } | Self::Manipulability { weight, .. }) = self;
+        if !(*weight > 0.0 && weight.is_finite()) {
+            return Err(Error::out_of_range("weight of a goal", "positive and finite", *weight));
         }
         match self {
             Self::Posture { posture, .. } => robot.check("posture", posture),
@@ -51,54 +64,68 @@ impl Goal {
         }
     }
 
-    /// Share among several goals.
-    pub fn weight(&self) -> f64 {
+    fn term(&self, robot: &Robot, bounds: &Bounds) -> Term {
         match self {
-            Self::Posture { weight, .. } | Self::Centring { weight } | Self::Manipulability { weight } => *weight,
-        }
-    }
-
-    /// Adds the weighted gradient at `q` to `gradient`; the weighted cost.
-    fn add(&self, robot: &Robot, bounds: &Bounds, q: &[f64], gradient: &mut [f64]) -> f64 {
-        let weight = self.weight();
-        match self {
-            Self::Posture { posture, .. } => spring(gradient, q.iter().zip(posture).map(|(q, to)| (weight, q - to))),
-            Self::Centring { .. } => {
-                let ranges = bounds.lower().iter().zip(bounds.upper());
-                spring(
-                    gradient,
-                    q.iter().zip(ranges).map(|(q, (lower, upper))| {
-                        let range = upper - lower;
-                        // A joint without an end, or without room, has no middle to go to.
-                        let stiffness = if range.is_finite() && range > 0.0 { weight / (range * range) } else { 0.0 };
-                        (stiffness, if stiffness > 0.0 { q - 0.5 * (lower + upper) } else { 0.0 })
-                    }),
-                )
+            Self::Posture { posture, weight } => {
+                Term::Springs { stiffness: Point::from_elem(*weight, posture.len()), rest: posture.as_slice().into() }
             }
-            Self::Manipulability { .. } => manipulability::add_log_gradient(robot, q, -weight, gradient),
+            Self::Centring { weight } => {
+                let ranges = bounds.lower().iter().zip(bounds.upper());
+                // A joint without an end, or without room, has no middle to go to.
+                let springs = ranges.map(|(lower, upper)| match upper - lower {
+                    range if range.is_finite() && range > 0.0 => (weight / (range * range), 0.5 * (lower + upper)),
+                    _ => (0.0, 0.0),
+                });
+                let (stiffness, rest) = springs.unzip();
+                Term::Springs { stiffness, rest }
+            }
+            Self::Manipulability { motion, weight } => {
+                Term::Manipulability { measure: Manipulability::of(robot, *motion), weight: *weight }
+            }
         }
     }
 }
 
-/// Adds the gradient of the sum of stiffness * offset^2 to `gradient`; that sum.
-fn spring(gradient: &mut [f64], springs: impl Iterator<Item = (f64, f64)>) -> f64 {
-    let mut cost = 0.0;
-    for (gradient, (stiffness, offset)) in gradient.iter_mut().zip(springs) {
-        *gradient += 2.0 * stiffness * offset;
-        cost += stiffness * offset * offset;
-    }
-    cost
-}
-
-impl<'a> Goals<'a> {
+impl Goals {
     /// `goals`, which were found in order, for `robot` within `bounds`.
-    pub fn new(goals: &'a [Goal], robot: &'a Robot, bounds: &'a Bounds) -> Self {
-        Self { goals, robot, bounds }
+    pub fn new(goals: &[Goal], robot: &Robot, bounds: &Bounds) -> Self {
+        let terms = goals.iter().map(|goal| goal.term(robot, bounds)).collect();
+        Self { terms, gradient: Point::from_elem(0.0, robot.dof()) }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.terms.is_empty()
     }
 
     /// Writes the gradient at `q` into `gradient` and returns the cost.
-    pub fn cost(&self, q: &[f64], gradient: &mut [f64]) -> f64 {
+    pub fn cost(&mut self, robot: &Robot, q: &[f64], gradient: &mut [f64]) -> f64 {
         gradient.fill(0.0);
-        self.goals.iter().map(|goal| goal.add(self.robot, self.bounds, q, gradient)).sum()
+        let one = &mut self.gradient;
+        self.terms.iter().map(|term| term.add(robot, q, one, gradient)).sum()
+    }
+}
+
+impl Term {
+    /// Adds the gradient at `q` to `gradient`; the cost. `one` is scratch.
+    fn add(&self, robot: &Robot, q: &[f64], one: &mut [f64], gradient: &mut [f64]) -> f64 {
+        match self {
+            Self::Springs { stiffness, rest } => {
+                let mut cost = 0.0;
+                for (j, slope) in gradient.iter_mut().enumerate() {
+                    let offset = q[j] - rest[j];
+                    *slope += 2.0 * stiffness[j] * offset;
+                    cost += stiffness[j] * offset * offset;
+                }
+                cost
+            }
+            Self::Manipulability { measure, weight } => {
+                let index = measure.gradient(robot, q, one).max(SINGULAR);
+                for (slope, one) in gradient.iter_mut().zip(one) {
+                    *slope -= weight * *one / index;
+                }
+                -weight * index.ln()
+            }
+        }
     }
 }

@@ -8,7 +8,7 @@ use crate::objective::{Bounds, Point, Score};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::{Assessment, Criterion, Goal, Goals, Target, TargetMotion, Task, TipError, Twist};
+use crate::task::{Assessment, Criterion, Goals, Target, TargetMotion, Task, TipError, Twist};
 
 /// What became of one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,9 +52,7 @@ pub struct Session {
     running: Running,
     task: Option<Task>,
     criterion: Criterion,
-    goals: Vec<Goal>,
-    /// The position limits at the start: what goals take for the joints' ranges.
-    ranges: Bounds,
+    goals: Goals,
     dt: f64,
     ticks: usize,
     q: Point,
@@ -87,16 +85,19 @@ impl Session {
         limits.require_none(&[Field::Jerk], "track", remedy)?;
         robot.check("start", start)?;
         limits.require_inside("start", 0.0, start)?;
+        let robot = options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone());
+        // Where limits vary, what goals take for a joint's range is that at the start.
+        let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
+        let goals = Goals::new(&options.goals, &robot, &ranges);
         Ok(Self {
-            ranges: Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into())),
-            robot: options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone()),
+            robot,
             limits,
             limit_at: options.limit_at,
             rule: options.rule.clone(),
             running: options.rule.start(),
             task: options.task,
             criterion,
-            goals: options.goals.clone(),
+            goals,
             dt,
             ticks: 0,
             q: Point::from_slice(start),
@@ -200,7 +201,7 @@ impl Session {
             robot: &self.robot,
             target: &target,
             criterion: &self.criterion,
-            goals: (!self.goals.is_empty()).then(|| Goals::new(&self.goals, &self.robot, &self.ranges)),
+            goals: &mut self.goals,
             motion,
             time: from,
             dt: self.dt,

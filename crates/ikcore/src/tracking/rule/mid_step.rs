@@ -52,7 +52,7 @@ impl Kinematics {
     }
 }
 
-pub fn advance(memory: &mut Memory, q: &[f64], tick: Tick<'_>) -> Found {
+pub fn advance(memory: &mut Memory, q: &[f64], mut tick: Tick<'_>) -> Found {
     let mut x = Point::from_slice(q);
     tick.tick_box.clip(&mut x);
     let mut found = Found::at(x);
@@ -63,7 +63,7 @@ pub fn advance(memory: &mut Memory, q: &[f64], tick: Tick<'_>) -> Found {
         found.evaluations += 1;
     }
     found.arrive(&memory.begin.tip, &tick);
-    let mut moved = memory.towards_goals(&mut found, &tick) || memory.gauss_newton(&mut found, &tick);
+    let mut moved = memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick);
     if !found.is_solved() {
         moved = true;
         memory.levenberg_marquardt(&mut found, tick);
@@ -75,11 +75,13 @@ pub fn advance(memory: &mut Memory, q: &[f64], tick: Tick<'_>) -> Found {
 impl Memory {
     /// A step on which the freedom that the target leaves goes down the gradient of the goals, for the length of the tick,
     /// and steps by the model from there. Whether that ended in the band; if not, nothing was done.
-    fn towards_goals(&mut self, found: &mut Found, tick: &Tick<'_>) -> bool {
-        let Some(goals) = &tick.goals else { return false };
+    fn towards_goals(&mut self, found: &mut Found, tick: &mut Tick<'_>) -> bool {
+        if tick.goals.is_empty() {
+            return false;
+        }
         let mut trial = found.clone();
         let mut wished = found.q.clone();
-        goals.cost(&found.q, &mut wished);
+        tick.goals.cost(tick.robot, &found.q, &mut wished);
         for (wished, q) in wished.iter_mut().zip(&found.q) {
             *wished = q - tick.dt * *wished;
         }

@@ -31,8 +31,8 @@ pub(super) struct Tick<'a> {
     pub robot: &'a Robot,
     pub target: &'a Target,
     pub criterion: &'a Criterion,
-    /// What to do with the freedom that the target leaves, if anything.
-    pub goals: Option<Goals<'a>>,
+    /// What to do with the freedom that the target leaves.
+    pub goals: &'a mut Goals,
     /// How the target comes to where it is to be met, for rules that work with velocities.
     pub motion: TargetMotion,
     /// When the tick begins (s).
@@ -140,7 +140,7 @@ impl Running {
         match self {
             Self::MidStep(memory) => mid_step::advance(memory, q, tick),
             Self::EachTick(solver) => each_tick::advance(solver, q, tick),
-            Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, q, &tick),
+            Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, q, tick),
         }
     }
 }

@@ -130,11 +130,11 @@ pub struct Scratch {
     neighbours: [Box<Linearization>; 2],
 }
 
-pub fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, q: &[f64], tick: &Tick<'_>) -> Found {
+pub fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, q: &[f64], mut tick: Tick<'_>) -> Found {
     let mut found = Found::at(Point::from_slice(q));
     let mut stage = |from: &[f64], share: f64| {
         found.evaluations += 1;
-        displacement(rule, scratch, q, from, share, tick)
+        displacement(rule, scratch, q, from, share, &mut tick)
     };
     match rule.integrator {
         Integrator::Euler => {
@@ -152,7 +152,7 @@ pub fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, q: &[f64], t
         }
     }
     tick.tick_box.clip(&mut found.q);
-    found.arrive(&tick.robot.tip(&found.q), tick);
+    found.arrive(&tick.robot.tip(&found.q), &tick);
     found.evaluations += 1;
     found.iterations = 1;
     found
@@ -165,7 +165,7 @@ fn displacement(
     q: &[f64],
     from: &[f64],
     share: f64,
-    tick: &Tick<'_>,
+    tick: &mut Tick<'_>,
 ) -> Point {
     let n = q.len();
     let gain = rule.gain.unwrap_or(SHARE_A_TICK / tick.dt);
@@ -206,11 +206,11 @@ fn linearize(scratch: &mut Scratch, from: &[f64], share: f64, tick: &Tick<'_>) -
 }
 
 /// dt q0': what the joints would do if no tip had to be anywhere.
-fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], share: f64, tick: &Tick<'_>) -> Point {
+fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], share: f64, tick: &mut Tick<'_>) -> Point {
     let n = from.len();
     let mut step = Point::from_elem(0.0, n);
-    if let Some(goals) = &tick.goals {
-        goals.cost(from, &mut step);
+    if !tick.goals.is_empty() {
+        tick.goals.cost(tick.robot, from, &mut step);
         step.iter_mut().for_each(|slope| *slope *= -tick.dt);
     }
     if let Some(posture) = &rule.posture {

@@ -1,0 +1,92 @@
+//! What a caller chooses: an algorithm from one start, or from many.
+
+use super::algorithm::{Algorithm, DerivativeFree};
+use super::driver::Outcome;
+use super::evaluator::Evaluator;
+use super::levenberg_marquardt::LevenbergMarquardt;
+use super::multi_start::{MultiStart, RestartRule};
+use crate::error::Result;
+use crate::objective::{LeastSquares, Objective};
+
+/// An algorithm of list `A`: [`Algorithm`] for robots, [`DerivativeFree`] for functions of which only values are known.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AnySolver<A = Algorithm> {
+    /// From the start alone.
+    Single(A),
+    /// Again from other starts, until solved or the budget is spent.
+    MultiStart(MultiStart<A>),
+}
+
+impl Default for AnySolver {
+    /// Levenberg-Marquardt from many starts.
+    fn default() -> Self {
+        Self::MultiStart(Algorithm::from(LevenbergMarquardt::default()).into_multi_start())
+    }
+}
+
+impl<A> AnySolver<A> {
+    /// The algorithm.
+    pub fn algorithm(&self) -> &A {
+        let (Self::Single(algorithm) | Self::MultiStart(MultiStart { solver: algorithm, .. })) = self;
+        algorithm
+    }
+
+    /// When to begin again, if at all.
+    fn restarts(&self) -> Option<RestartRule> {
+        match self {
+            Self::Single(_) => None,
+            Self::MultiStart(multi_start) => Some(multi_start.rule),
+        }
+    }
+
+    fn validate_restarts(&self) -> Result<()> {
+        match self {
+            Self::Single(_) => Ok(()),
+            Self::MultiStart(multi_start) => multi_start.validate(),
+        }
+    }
+}
+
+impl AnySolver {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        self.validate_restarts().and(self.algorithm().validate())
+    }
+
+    /// Whether, along a path, a step that beats the last one is enough (line 16 of Algorithm 1 in Cheng et al. 2020). A
+    /// random search could otherwise go on for long; a descent reaches its end in a few iterations.
+    pub fn settles_for_improvement(&self) -> bool {
+        matches!(self.algorithm(), Algorithm::DerivativeFree(_))
+    }
+
+    /// The descent that is begun again and again, where this is one.
+    pub fn restarted_descent(&self) -> Option<&LevenbergMarquardt> {
+        match self {
+            Self::MultiStart(MultiStart { solver: Algorithm::LevenbergMarquardt(descent), .. }) => Some(descent),
+            _ => None,
+        }
+    }
+
+    /// Runs from `x0` until solved, stopped or given up.
+    pub fn run(&self, evaluator: &mut Evaluator<'_, dyn LeastSquares + '_>, x0: &[f64]) -> Outcome {
+        self.algorithm().run(self.restarts(), evaluator, x0)
+    }
+}
+
+impl AnySolver<DerivativeFree> {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        self.validate_restarts().and(self.algorithm().validate())
+    }
+
+    /// Runs from `x0` until solved, stopped or given up.
+    pub fn run(&self, evaluator: &mut Evaluator<'_, dyn Objective + '_>, x0: &[f64]) -> Outcome {
+        self.algorithm().run(self.restarts(), evaluator, x0)
+    }
+}

@@ -1,0 +1,93 @@
+//! `BAS`.
+
+use ikcore::solver::{Bas, Variant};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::convert::{count, optional_count};
+use crate::error::raise;
+
+/// Beetle antennae search (Cheng et al. 2020, Algorithm 1): uses values of the error alone, no derivative.
+///
+/// Args:
+///     variant: "star", each exploration of a pass from the same point (eq. 8-11 to the letter); "chain", from where
+///         the beetle went (the original beetle search, faster); "greedy", from the better of the two, the antennae
+///         following the error at once (fastest for small tolerances).
+///     c1: antenna length over error, eq. (12) (rad per m); None: what suits the variant (3, 1 and 3).
+///     c2: step length over antenna length, eq. (13); None: 1.
+///     explorations: per pass, the paper's n; None: what suits the variant (50, 30 and 5).
+///     max_passes: after so many it gives up; the paper would go on for ever.
+///
+/// The error band of the paper is the tolerance of the call.
+#[pyclass(name = "BAS", module = "beetle_ik", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub struct PyBas(pub Bas);
+
+#[pymethods]
+impl PyBas {
+    #[new]
+    #[pyo3(signature = (*, variant="star", c1=None, c2=None, explorations=None, max_passes=200))]
+    fn new(
+        variant: &str,
+        c1: Option<f64>,
+        c2: Option<f64>,
+        explorations: Option<i128>,
+        max_passes: i128,
+    ) -> PyResult<Self> {
+        let standard = Bas::of(variant.parse::<Variant>().map_err(raise)?);
+        let bas = Bas {
+            c1: c1.unwrap_or(standard.c1),
+            c2: c2.unwrap_or(standard.c2),
+            explorations: optional_count("explorations", explorations)?.unwrap_or(standard.explorations),
+            max_passes: count("max_passes", max_passes)?,
+            ..standard
+        };
+        bas.validate().map_err(raise)?;
+        Ok(Self(bas))
+    }
+
+    /// "star", "chain" or "greedy".
+    #[getter]
+    fn variant(&self) -> String {
+        self.0.variant.to_string()
+    }
+
+    /// Antenna length over error (rad per m).
+    #[getter]
+    fn c1(&self) -> f64 {
+        self.0.c1
+    }
+
+    /// Step length over antenna length.
+    #[getter]
+    fn c2(&self) -> f64 {
+        self.0.c2
+    }
+
+    /// Explorations per pass.
+    #[getter]
+    fn explorations(&self) -> usize {
+        self.0.explorations
+    }
+
+    /// Passes after which it gives up.
+    #[getter]
+    fn max_passes(&self) -> usize {
+        self.0.max_passes
+    }
+
+    fn __repr__(&self) -> String {
+        let Bas { variant, c1, c2, explorations, max_passes } = self.0;
+        format!("BAS(variant='{variant}', c1={c1}, c2={c2}, explorations={explorations}, max_passes={max_passes})")
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let options = PyDict::new(py);
+        options.set_item("variant", self.variant())?;
+        options.set_item("c1", self.0.c1)?;
+        options.set_item("c2", self.0.c2)?;
+        options.set_item("explorations", self.0.explorations)?;
+        options.set_item("max_passes", self.0.max_passes)?;
+        Ok((PyTuple::empty(py), options))
+    }
+}

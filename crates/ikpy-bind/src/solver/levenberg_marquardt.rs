@@ -1,0 +1,41 @@
+//! `LevenbergMarquardt`.
+
+use ikcore::solver::LevenbergMarquardt;
+use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
+
+use crate::error::raise;
+
+/// Levenberg-Marquardt on the box of the limits, by the analytic Jacobian: joints at a bound are held and the step is
+/// solved again for the others.
+///
+/// Args:
+///     initial_damping: damping over squared error at the start; larger is more careful far from the target.
+#[pyclass(name = "LevenbergMarquardt", module = "beetle_ik", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub struct PyLevenbergMarquardt(pub LevenbergMarquardt);
+
+#[pymethods]
+impl PyLevenbergMarquardt {
+    #[new]
+    #[pyo3(signature = (*, initial_damping=LevenbergMarquardt::default().initial_damping))]
+    fn new(initial_damping: f64) -> PyResult<Self> {
+        let solver = LevenbergMarquardt { initial_damping, ..LevenbergMarquardt::default() };
+        solver.validate().map_err(raise)?;
+        Ok(Self(solver))
+    }
+
+    /// Damping over squared error at the start.
+    #[getter]
+    fn initial_damping(&self) -> f64 {
+        self.0.initial_damping
+    }
+
+    fn __repr__(&self) -> String {
+        format!("LevenbergMarquardt(initial_damping={})", self.0.initial_damping)
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        Ok((PyTuple::empty(py), [("initial_damping", self.0.initial_damping)].into_py_dict(py)?))
+    }
+}

@@ -1,0 +1,59 @@
+//! `MultiStart`.
+
+use ikcore::solver::{Algorithm, AnySolver, MultiStart};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use super::{any_solver, to_python};
+use crate::convert::count;
+use crate::error::{invalid, raise};
+
+/// A solver begun again from random starts when it stalls, or when its attempt is hopeless: a few steps that bring
+/// little.
+///
+/// Args:
+///     solver: `BAS` or `LevenbergMarquardt`.
+///     max_starts: starts in all; None: as many as the evaluation budget allows.
+#[pyclass(name = "MultiStart", module = "beetle_ik", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub struct PyMultiStart(pub MultiStart<Algorithm>);
+
+#[pymethods]
+impl PyMultiStart {
+    #[new]
+    #[pyo3(signature = (solver, *, max_starts=None))]
+    fn new(solver: &Bound<'_, PyAny>, max_starts: Option<i128>) -> PyResult<Self> {
+        let AnySolver::Single(algorithm) = any_solver(solver)? else {
+            return Err(invalid("MultiStart takes a single solver, not another MultiStart".into()));
+        };
+        let mut multi_start = algorithm.into_multi_start();
+        if let Some(starts) = max_starts {
+            multi_start.rule.max_starts = count("max_starts", starts)?;
+        }
+        multi_start.validate().map_err(raise)?;
+        Ok(Self(multi_start))
+    }
+
+    /// The solver that is begun again.
+    #[getter]
+    fn solver<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.0.solver)
+    }
+
+    /// Starts in all; None: as many as the evaluation budget allows.
+    #[getter]
+    fn max_starts(&self) -> Option<usize> {
+        Some(self.0.rule.max_starts).filter(|starts| *starts != usize::MAX)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let starts = self.max_starts().map_or_else(String::new, |count| format!(", max_starts={count}"));
+        Ok(format!("MultiStart({}{starts})", self.solver(py)?.repr()?))
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let options = PyDict::new(py);
+        options.set_item("max_starts", self.max_starts())?;
+        Ok((PyTuple::new(py, [self.solver(py)?])?, options))
+    }
+}

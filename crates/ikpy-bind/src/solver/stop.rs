@@ -1,0 +1,110 @@
+//! `Stop` and `Status`.
+
+use std::time::Duration;
+
+use ikcore::solver::{Status, Stop};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
+
+use crate::convert::optional_count;
+use crate::error::{invalid, raise};
+
+static STATUS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+
+/// `beetle_ik.Status`, an IntEnum with the names and numbers of the core.
+pub fn status_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
+    let class = STATUS.get_or_try_init(py, || {
+        let members: Vec<(&str, u8)> = Status::ALL.iter().map(|status| (status.name(), *status as u8)).collect();
+        let options = [("module", "beetle_ik")].into_py_dict(py)?;
+        let class = py.import("enum")?.getattr("IntEnum")?.call(("Status", members), Some(&options))?;
+        class.setattr(
+            "__doc__",
+            "How a solve, one item of a batch or one step of a track ended. `SOLVED` alone is success.",
+        )?;
+        Ok::<_, PyErr>(class.unbind())
+    })?;
+    Ok(class.bind(py))
+}
+
+/// The member of `Status`.
+pub fn status(py: Python<'_>, status: Status) -> PyResult<Bound<'_, PyAny>> {
+    status_class(py)?.call1((status as u8,))
+}
+
+/// When to stop; whichever comes first. None leaves the default, a count of evaluations that keeps a 7-joint arm under
+/// about 10 ms.
+///
+/// Args:
+///     max_evaluations: evaluations of the forward kinematics, the start included.
+///     max_iterations: iterations of the solver; passes of BAS.
+///     max_time: seconds. Setting it gives up repeatability.
+#[pyclass(name = "Stop", module = "beetle_ik", frozen, eq)]
+#[derive(PartialEq)]
+pub struct PyStop {
+    /// See the class.
+    #[pyo3(get)]
+    max_evaluations: Option<usize>,
+    /// See the class.
+    #[pyo3(get)]
+    max_iterations: Option<usize>,
+    /// See the class (s).
+    #[pyo3(get)]
+    max_time: Option<f64>,
+}
+
+#[pymethods]
+impl PyStop {
+    #[new]
+    #[pyo3(signature = (*, max_evaluations=None, max_iterations=None, max_time=None))]
+    fn new(max_evaluations: Option<i128>, max_iterations: Option<i128>, max_time: Option<f64>) -> PyResult<Self> {
+        if let Some(seconds) = max_time
+            && Duration::try_from_secs_f64(seconds).is_err()
+        {
+            return Err(invalid(format!("max_time must be zero or more seconds, got {seconds}")));
+        }
+        let stop = Self {
+            max_evaluations: optional_count("max_evaluations", max_evaluations)?,
+            max_iterations: optional_count("max_iterations", max_iterations)?,
+            max_time,
+        };
+        stop.core().validate().map_err(raise)?;
+        Ok(stop)
+    }
+
+    fn __repr__(&self) -> String {
+        let shown = |value: Option<String>| value.unwrap_or_else(|| "None".into());
+        format!(
+            "Stop(max_evaluations={}, max_iterations={}, max_time={})",
+            shown(self.max_evaluations.map(|v| v.to_string())),
+            shown(self.max_iterations.map(|v| v.to_string())),
+            shown(self.max_time.map(|v| v.to_string())),
+        )
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let options = PyDict::new(py);
+        options.set_item("max_evaluations", self.max_evaluations)?;
+        options.set_item("max_iterations", self.max_iterations)?;
+        options.set_item("max_time", self.max_time)?;
+        Ok((PyTuple::empty(py), options))
+    }
+}
+
+impl PyStop {
+    /// With the defaults filled in.
+    pub fn core(&self) -> Stop {
+        let standard = Stop::default();
+        Stop {
+            max_evaluations: match (self.max_evaluations, self.max_time) {
+                (Some(count), _) => count,
+                // Who gives a time and no count means the time.
+                (None, Some(_)) => usize::MAX,
+                (None, None) => standard.max_evaluations,
+            },
+            max_iterations: self.max_iterations.unwrap_or(standard.max_iterations),
+            max_time: self.max_time.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
+            ..standard
+        }
+    }
+}
