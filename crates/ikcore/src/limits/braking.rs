@@ -5,6 +5,12 @@
 
 use super::{Limits, TickBox};
 
+/// Bounds that cross by less than this (rad, m; relative beyond 1) do so by rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// The share of its acceleration with which a joint plans to brake: with all of it, rounding could make it late.
+const PLANNED: f64 = 1.0 - 1e-6;
+
 impl Limits {
     /// Narrows `tick`, the box of the positions and velocities at `q`, to what the acceleration limits allow an arm that
     /// moves at `qd` (rad/s, m/s) in the tick of `dt` from `from` to `to` (s). Returns whether that leaves every joint
@@ -21,9 +27,10 @@ impl Limits {
             let [floor, ceiling] = self.position_range(j, from, to);
             let change = acceleration.max(0.0) * dt * dt;
             let (slowest, fastest) = (q[j] + qd[j] * dt - change, q[j] + qd[j] * dt + change);
-            let from_below = lower[j].max(q[j] - longest_step(q[j] - floor, change));
-            let from_above = upper[j].min(q[j] + longest_step(ceiling - q[j], change)).max(from_below);
-            feasible &= from_below <= fastest && slowest <= from_above;
+            let from_below = lower[j].max(q[j] - longest_step(q[j] - floor, PLANNED * change));
+            let from_above = upper[j].min(q[j] + longest_step(ceiling - q[j], PLANNED * change)).max(from_below);
+            let rounding = ROUNDING * q[j].abs().max(1.0);
+            feasible &= from_below <= fastest + rounding && slowest <= from_above + rounding;
             lower[j] = from_below.clamp(slowest, fastest);
             upper[j] = from_above.clamp(slowest, fastest);
         }

@@ -167,28 +167,87 @@ fn displacement(
     share: f64,
     tick: &mut Tick<'_>,
 ) -> Point {
-    let n = q.len();
     let gain = rule.gain.unwrap_or(SHARE_A_TICK / tick.dt);
     let drift = linearize(scratch, from, share, tick);
-    let Linearization { columns, residual } = &mut *scratch.linearization;
-    // J q' = -K r - dr/dt, times dt, seen from where the null space would go.
     let wished = null_space_step(rule, from, share, tick);
-    let mut demanded: [f64; 6] = std::array::from_fn(|i| tick.dt * (gain * residual[i] + drift[i]));
-    for (column, step) in columns.iter().zip(&wished) {
-        demanded.iter_mut().zip(column).for_each(|(sum, entry)| *sum += entry * step);
-    }
+    let Linearization { columns, residual } = &mut *scratch.linearization;
+    let columns = &mut columns[..q.len()];
     // In units in which the norm of W is the length: y = W^(1/2) q.
     let units = units(rule, tick.velocity_limit);
     for (column, unit) in columns.iter_mut().zip(&units) {
         column.iter_mut().for_each(|entry| *entry *= unit);
     }
     let scaled = |values: &[f64]| -> Point { values.iter().zip(&units).map(|(value, unit)| value / unit).collect() };
-    let (lower, upper) = (scaled(tick.tick_box.lower()), scaled(tick.tick_box.upper()));
-    let begin = scaled(&moved(q, &wished, 1.0));
-    let lambda = rule.damping * columns[..n].as_flattened().iter().map(|entry| entry * entry).sum::<f64>();
-    let mut y = begin.clone();
-    box_step(&columns[..n], &demanded, lambda, &begin, &lower, &upper, &mut y);
+    let demand = Demand {
+        // J q' = -K r - dr/dt, times dt.
+        residual: std::array::from_fn(|i| tick.dt * (gain * residual[i] + drift[i])),
+        lambda: rule.damping * columns.as_flattened().iter().map(|entry| entry * entry).sum::<f64>(),
+        columns,
+        y: scaled(q),
+        lower: scaled(tick.tick_box.lower()),
+        upper: scaled(tick.tick_box.upper()),
+    };
+    let y = demand.meet(&scaled(&wished));
     y.iter().zip(&units).zip(q).map(|((y, unit), q)| y * unit - q).collect()
+}
+
+/// What a tick asks of the joints: J (y' - y) = -residual, y' in the box.
+struct Demand<'a> {
+    columns: &'a [[f64; 6]],
+    residual: [f64; 6],
+    lambda: f64,
+    y: Point,
+    lower: Point,
+    upper: Point,
+}
+
+/// How much of a wish is tried, one after the other, until the tip moves as it is to.
+const SHARES_OF_WISH: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0];
+
+/// Of the demanded motion, what counts as met.
+const MET: f64 = 1e-9;
+
+impl Demand<'_> {
+    /// The y' nearest to y + `wish` in which all is met; less of the wish where it would drive joints to their bounds
+    /// that the tip needs; what misses least where nothing meets all.
+    fn meet(&self, wish: &[f64]) -> Point {
+        let enough = MET * norm(&self.residual);
+        let mut best = (f64::INFINITY, Point::new());
+        for share in SHARES_OF_WISH {
+            let (missed, there) = self.near(wish, share);
+            if missed <= enough {
+                return there;
+            }
+            if missed < best.0 {
+                best = (missed, there);
+            }
+        }
+        best.1
+    }
+
+    /// The y' nearest to y + share * `wish`, and what it misses.
+    fn near(&self, wish: &[f64], share: f64) -> (f64, Point) {
+        let bounds = self.lower.iter().zip(&self.upper);
+        let wished = self.y.iter().zip(wish).zip(bounds);
+        let begin: Point =
+            wished.map(|((y, wish), (lower, upper))| (y + share * wish).max(*lower).min(*upper)).collect();
+        let mut there = begin.clone();
+        box_step(self.columns, &self.left_at(&begin), self.lambda, &begin, &self.lower, &self.upper, &mut there);
+        (norm(&self.left_at(&there)), there)
+    }
+
+    /// residual + J (there - y).
+    fn left_at(&self, there: &[f64]) -> [f64; 6] {
+        let mut left = self.residual;
+        for ((column, there), y) in self.columns.iter().zip(there).zip(&self.y) {
+            left.iter_mut().zip(column).for_each(|(sum, entry)| *sum += entry * (there - y));
+        }
+        left
+    }
+}
+
+fn norm(rows: &[f64; 6]) -> f64 {
+    rows.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
 }
 
 /// Residual and Jacobian at `from` into the scratch; how the residual changes per second by the target's own motion.
