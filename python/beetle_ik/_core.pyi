@@ -212,6 +212,32 @@ class MultiStart:
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
+class WeightedPseudoInverse:
+    def __new__(
+        cls,
+        *,
+        gain: float | None = None,  # 1/s
+        integrator: Literal["euler", "rk4"] = "euler",
+        weights: ArrayLike | None = None,  # (n,)
+        posture: Trajectory | None = None,
+        posture_gain: float = ...,  # 1/s
+        damping: float = 0.0,
+    ) -> WeightedPseudoInverse: ...
+    @property
+    def gain(self) -> float | None: ...
+    @property
+    def integrator(self) -> str: ...
+    @property
+    def weights(self) -> _Array | None: ...
+    @property
+    def posture(self) -> Trajectory | None: ...
+    @property
+    def posture_gain(self) -> float: ...
+    @property
+    def damping(self) -> float: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class Stop:
     def __new__(
         cls, *, max_evaluations: int | None = None, max_iterations: int | None = None, max_time: float | None = None
@@ -365,7 +391,7 @@ def track(
     start: ArrayLike | None = None,  # None solves for the path's first point
     *,
     dt: float,
-    solver: _Solver | None = None,
+    solver: _Solver | WeightedPseudoInverse | None = None,
     limits: Limits | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
@@ -432,14 +458,14 @@ class Tracker:
         start: ArrayLike,
         *,
         dt: float,
-        solver: _Solver | None = None,
+        solver: _Solver | WeightedPseudoInverse | None = None,
         limits: Limits | None = None,
         position_tolerance: float = 1e-6,
         rotation_tolerance: float = 1e-6,
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
     ) -> Tracker: ...
-    def step(self, target: ArrayLike) -> Step: ...  # (4, 4) pose or (3,) position
+    def step(self, target: ArrayLike, *, velocity: ArrayLike | None = None) -> Step: ...  # (4, 4) or (3,); m/s
     def reset(self, q: ArrayLike) -> None: ...
     @property
     def q(self) -> _Array: ...  # (n,)

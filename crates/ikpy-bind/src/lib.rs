@@ -16,6 +16,7 @@ mod tracker;
 mod tracking;
 mod trajectory;
 mod upward;
+mod weighted_pseudo_inverse;
 
 use pyo3::prelude::*;
 
@@ -34,6 +35,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
     path::register(module)?;
+    module.add_class::<weighted_pseudo_inverse::PyWeightedPseudoInverse>()?;
     module.add_class::<tracking::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(tracking::track, module)?)?;
     module.add_class::<tracker::PyStep>()?;

@@ -25,6 +25,12 @@ impl From<Trajectory> for PyTrajectory {
     }
 }
 
+impl PyTrajectory {
+    pub fn core(&self) -> &Trajectory {
+        &self.0
+    }
+}
+
 /// Powers that coefficients have in the core.
 const POWERS: usize = 6;
 
