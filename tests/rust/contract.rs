@@ -13,7 +13,9 @@ use ikcore::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
 use ikcore::problem::Problem;
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
-use ikcore::solver::{Algorithm, AnySolver, Best, Evaluator, Halt, Monitor, Outcome, Status, Stop, Unattended};
+use ikcore::solver::{
+    Algorithm, AnySolver, Best, Evaluator, Halt, LevenbergMarquardt, Monitor, Outcome, Status, Stop, Unattended,
+};
 use ikcore::task::{Target, Tolerance};
 
 /// Evaluations between two looks at monitor and clock, and the largest group handed in at once.
@@ -160,7 +162,7 @@ fn solvers() -> Vec<AnySolver> {
 
 /// Whether the solver's path depends on its seed even without a restart.
 fn is_random(solver: &AnySolver) -> bool {
-    *solver != AnySolver::Single(Algorithm::LevenbergMarquardt(Default::default()))
+    *solver != AnySolver::Single(LevenbergMarquardt::default().into())
 }
 
 struct Run {

@@ -25,7 +25,10 @@ fn with(task: Task) -> SolveOptions {
 
 /// Distance and angle between poses.
 fn apart(a: &Pose, b: &Pose) -> (f64, f64) {
-    ((a.translation.vector - b.translation.vector).norm(), a.rotation.angle_to(&b.rotation))
+    (
+        (a.translation.vector - b.translation.vector).norm(),
+        2.0 * ((a.rotation.matrix() - b.rotation.matrix()).norm() / 8.0_f64.sqrt()).asin(),
+    )
 }
 
 #[test]

@@ -19,6 +19,22 @@ pub struct Score {
     pub solved: bool,
 }
 
+/// How an objective likes to be asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pace {
+    /// Points handed over at once, where a solver has that many.
+    pub at_once: usize,
+    /// Evaluations between two looks at the monitor and the clock.
+    pub between_looks: usize,
+}
+
+impl Default for Pace {
+    /// For what takes tens of nanoseconds: a look every ten microseconds.
+    fn default() -> Self {
+        Self { at_once: 8, between_looks: 256 }
+    }
+}
+
 /// Something to minimise. It owns its scratch and is cloned per thread.
 pub trait Objective {
     /// Number of entries of a point.
@@ -32,6 +48,11 @@ pub trait Objective {
         for (x, score) in xs.chunks_exact(self.dimension()).zip(out) {
             *score = self.evaluate(x);
         }
+    }
+
+    /// Asked once a run.
+    fn pace(&self) -> Pace {
+        Pace::default()
     }
 
     /// The start of attempt number `attempt` (from 1; attempt 0 is the caller's start). By default uniform in the box.
@@ -124,10 +145,14 @@ impl Bounds {
         x.iter().zip(&self.lower).zip(&self.upper).all(|((x, lower), upper)| lower <= x && x <= upper)
     }
 
-    /// A uniform draw; an open side reaches one turn from the other bound, or half a turn from zero.
+    /// The ranges to draw from; an open side reaches one turn from the other bound, or half a turn from zero.
+    pub fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.lower.iter().zip(&self.upper).map(|(lower, upper)| interval::finite(*lower, *upper, HALF_TURN))
+    }
+
+    /// A uniform draw from the [`ranges`](Self::ranges).
     pub fn sample(&self, rng: &mut LazyRng, x: &mut [f64]) {
-        for ((x, lower), upper) in x.iter_mut().zip(&self.lower).zip(&self.upper) {
-            let (from, to) = interval::finite(*lower, *upper, HALF_TURN);
+        for (x, (from, to)) in x.iter_mut().zip(self.ranges()) {
             *x = rng.uniform_in(from, to);
         }
     }

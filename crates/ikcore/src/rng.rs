@@ -62,6 +62,31 @@ impl LazyRng {
         lower + (upper - lower) * self.uniform()
     }
 
+    /// Two independent uniforms in [0, 1) from one draw: 26 bits for the first, 27 for the second. Enough for weights, at
+    /// half the cost.
+    #[inline]
+    pub fn uniform_pair(&mut self) -> [f64; 2] {
+        const HALF: f64 = (1_u64 << 26) as f64;
+        let scaled = HALF * self.uniform();
+        let whole = scaled.trunc();
+        [whole / HALF, scaled - whole]
+    }
+
+    /// A whole number below `count`, which is not zero.
+    #[inline]
+    pub fn below(&mut self, count: usize) -> usize {
+        // The product may round up to `count` itself where that is beyond 2^53: no population is.
+        (count as f64 * self.uniform()) as usize
+    }
+
+    /// Two independent draws of a normal distribution with mean 0 and standard deviation 1 (Box and Muller 1958).
+    pub fn normal_pair(&mut self) -> [f64; 2] {
+        // 1 - u is in (0, 1]: its logarithm is finite.
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        let (sine, cosine) = (std::f64::consts::TAU * self.uniform()).sin_cos();
+        [radius * cosine, radius * sine]
+    }
+
     /// A vector of unit length: entries uniform in [-1, 1), then normalised.
     pub fn direction(&mut self, b: &mut [f64]) {
         let mut squared = 0.0;
@@ -108,6 +133,27 @@ mod tests {
         assert_eq!(draw(1, 2), draw(1, 2));
         assert_ne!(draw(1, 2), draw(1, 3));
         assert_ne!(draw(1, 2), draw(2, 2));
+    }
+
+    #[test]
+    fn pairs_are_uniform_and_independent() {
+        let mut rng = stream(1, 0);
+        let pairs: Vec<_> = (0..4000).map(|_| rng.uniform_pair()).collect();
+        let mean = |value: fn(&[f64; 2]) -> f64| pairs.iter().map(value).sum::<f64>() / pairs.len() as f64;
+        assert!(pairs.iter().flatten().all(|u| (0.0..1.0).contains(u)));
+        // Four standard deviations of a mean of 4000: of a uniform 0.018, of the product of two 0.014.
+        assert!((mean(|pair| pair[0]) - 0.5).abs() < 0.018 && (mean(|pair| pair[1]) - 0.5).abs() < 0.018);
+        assert!((mean(|pair| pair[0] * pair[1]) - 0.25).abs() < 0.014);
+    }
+
+    #[test]
+    fn normal_draws_have_their_moments() {
+        let mut rng = stream(2, 0);
+        let draws: Vec<f64> = (0..2000).flat_map(|_| rng.normal_pair()).collect();
+        let moment = |power| draws.iter().map(|z: &f64| z.powi(power)).sum::<f64>() / draws.len() as f64;
+        // Four standard deviations: sqrt(1, 2, 15, 96) / sqrt(4000) each.
+        assert!(moment(1).abs() < 0.064 && (moment(2) - 1.0).abs() < 0.09, "{} {}", moment(1), moment(2));
+        assert!(moment(3).abs() < 0.25 && (moment(4) - 3.0).abs() < 0.62, "{} {}", moment(3), moment(4));
     }
 
     #[test]

@@ -47,6 +47,12 @@ pub fn optional_count<T: TryFrom<i128>>(what: &str, value: Option<i128>) -> PyRe
     value.map(|value| count(what, value)).transpose()
 }
 
+/// An index as Python counts, from the end where negative; None outside `len` items.
+pub fn position_in(index: isize, len: usize) -> Option<usize> {
+    let from_start = if index < 0 { index.checked_add_unsigned(len) } else { Some(index) };
+    from_start.and_then(|i| usize::try_from(i).ok()).filter(|i| *i < len)
+}
+
 /// The repr of a value, cut to a readable length.
 pub fn summary(value: &Bound<'_, PyAny>) -> String {
     let repr = value.repr().map_or_else(|_| "an object without a repr".into(), |text| text.to_string());

@@ -1,8 +1,10 @@
 //! The native module `beetle_ik._core`: registration only. Each file converts for one module of the core.
 
+mod all;
 mod batch;
 mod convert;
 mod error;
+mod goal;
 mod ik;
 mod limits;
 mod manipulability;
@@ -12,6 +14,7 @@ mod pose;
 mod robot;
 mod sinusoid;
 mod solver;
+mod task;
 mod tracker;
 mod tracking;
 mod trajectory;
@@ -32,6 +35,10 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<limits::PyLimits>()?;
     module.add_class::<ik::PySolution>()?;
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;
+    module.add_class::<all::PySolutionSet>()?;
+    module.add_function(wrap_pyfunction!(all::solve_all, module)?)?;
+    task::register(module)?;
+    goal::register(module)?;
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
     path::register(module)?;

@@ -11,10 +11,12 @@ use pyo3::prelude::*;
 
 use crate::convert::{count, point, row, vector};
 use crate::error::raise;
+use crate::goal::read_goals;
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::robot::PyRobot;
 use crate::solver::status;
+use crate::task::read_task;
 use crate::tracking::tick_rule;
 
 /// What became of one step of a `Tracker`.
@@ -84,6 +86,7 @@ impl PyStep {
 ///     robot: the arm.
 ///     start: (n,), configuration at t = 0.
 ///     dt: time step (s).
+///     task, goals: as in `track`.
 ///     solver: what runs in every step: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule.
 ///     limits: None: the robot's. Numbers and `Sinusoid`s; a callable has no end to be sampled to.
 ///     position_tolerance: m.
@@ -104,15 +107,17 @@ pub struct PyTracker {
 #[pymethods]
 impl PyTracker {
     #[new]
-    #[pyo3(signature = (robot, start, *, dt, solver=None, limits=None, position_tolerance=1e-6,
-                        rotation_tolerance=1e-6, seed=0, limit_at="interval"))]
+    #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
+                        position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval"))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
         start: &Bound<'_, PyAny>,
         dt: f64,
+        task: Option<&Bound<'_, PyAny>>,
         solver: Option<&Bound<'_, PyAny>>,
         limits: Option<&PyLimits>,
+        goals: Option<&Bound<'_, PyAny>>,
         position_tolerance: f64,
         rotation_tolerance: f64,
         seed: i128,
@@ -123,6 +128,8 @@ impl PyTracker {
         let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
         let options = TrackOptions {
             rule: tick_rule(solver)?,
+            task: read_task(task)?,
+            goals: read_goals(goals)?,
             tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
             limits: resolved,
             limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,

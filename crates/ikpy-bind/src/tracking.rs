@@ -10,11 +10,13 @@ use pyo3::prelude::*;
 
 use crate::convert::{count, row, table, vector};
 use crate::error::raise;
+use crate::goal::read_goals;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::{Progress, Watcher};
 use crate::path::PyPath;
 use crate::robot::PyRobot;
 use crate::solver::{any_solver, status};
+use crate::task::read_task;
 use crate::trajectory::PyTrajectory;
 use crate::upward;
 use crate::weighted_pseudo_inverse::PyWeightedPseudoInverse;
@@ -120,13 +122,13 @@ impl PyTrackResult {
     /// The error band (m), as asked.
     #[getter]
     fn position_tolerance(&self) -> f64 {
-        self.core.tolerance.position
+        self.core.criterion.tolerance.position
     }
 
     /// The same for orientations (rad), as asked.
     #[getter]
     fn rotation_tolerance(&self) -> f64 {
-        self.core.tolerance.rotation
+        self.core.criterion.tolerance.rotation
     }
 
     /// How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED
@@ -225,9 +227,12 @@ impl PyTrackResult {
 ///     path: positions or poses over time.
 ///     start: (n,), configuration at t = 0; None solves for the path's first point.
 ///     dt: time step (s).
+///     task: of `tasks`, what of the path matters; None: all that it says.
 ///     solver: what runs in every tick: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule, which
 ///         needs one or two evaluations a step.
 ///     limits: None: the robot's.
+///     goals: of `goals`, one or several: in every tick the freedom that the task leaves goes down their gradient by weight times
+///         dt. They need the library's own rule, or `WeightedPseudoInverse`.
 ///     position_tolerance: the error band (m).
 ///     rotation_tolerance: the same for orientations (rad).
 ///     seed: of the random draws: the same seed, the same bits.
@@ -242,8 +247,8 @@ impl PyTrackResult {
 ///     LimitError: a start outside its limits, a limit below zero.
 ///     UnsupportedLimit: jerk limits, which this tracker does not keep.
 #[pyfunction]
-#[pyo3(signature = (robot, path, start=None, *, dt, solver=None, limits=None, position_tolerance=1e-6,
-                    rotation_tolerance=1e-6, seed=0, limit_at="interval", progress=None))]
+#[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
+                    position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval", progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn track(
     py: Python<'_>,
@@ -251,8 +256,10 @@ pub fn track(
     path: &PyPath,
     start: Option<&Bound<'_, PyAny>>,
     dt: f64,
+    task: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
+    goals: Option<&Bound<'_, PyAny>>,
     position_tolerance: f64,
     rotation_tolerance: f64,
     seed: i128,
@@ -267,6 +274,8 @@ pub fn track(
     let start = start.map(|start| vector("start", start)).transpose()?;
     let options = TrackOptions {
         rule,
+        task: read_task(task)?,
+        goals: read_goals(goals)?,
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
         limits: resolved,
         limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,

@@ -1,10 +1,17 @@
 //! The one list of algorithms: the binding and the contract test read it.
 
 use super::bas::{Bas, Variant};
+use super::bee_colony::BeeColony;
+use super::beetle_swarm::BeetleSwarm;
+use super::differential_evolution::DifferentialEvolution;
 use super::driver::{Outcome, Solver, run};
 use super::evaluator::Evaluator;
+use super::firefly::Firefly;
+use super::genetic::Genetic;
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::multi_start::{MultiStart, RestartRule};
+use super::pso::{Form, Pso};
+use super::qpso::Qpso;
 use crate::error::Result;
 use crate::objective::{LeastSquares, Objective};
 
@@ -13,6 +20,20 @@ use crate::objective::{LeastSquares, Objective};
 pub enum DerivativeFree {
     /// Beetle antennae search.
     Bas(Bas),
+    /// Artificial bee colony.
+    BeeColony(BeeColony),
+    /// Beetle swarm.
+    BeetleSwarm(BeetleSwarm),
+    /// Differential evolution.
+    DifferentialEvolution(DifferentialEvolution),
+    /// Firefly algorithm.
+    Firefly(Firefly),
+    /// Genetic algorithm.
+    Genetic(Genetic),
+    /// Particle swarm.
+    Pso(Pso),
+    /// Quantum-behaved particle swarm.
+    Qpso(Qpso),
 }
 
 /// Every algorithm.
@@ -29,6 +50,13 @@ macro_rules! whichever {
     ($algorithm:expr, $solver:ident => $body:expr) => {
         match $algorithm {
             DerivativeFree::Bas($solver) => $body,
+            DerivativeFree::BeeColony($solver) => $body,
+            DerivativeFree::BeetleSwarm($solver) => $body,
+            DerivativeFree::DifferentialEvolution($solver) => $body,
+            DerivativeFree::Firefly($solver) => $body,
+            DerivativeFree::Genetic($solver) => $body,
+            DerivativeFree::Pso($solver) => $body,
+            DerivativeFree::Qpso($solver) => $body,
         }
     };
 }
@@ -49,7 +77,7 @@ macro_rules! listed {
         }
     )*};
 }
-listed!(Bas);
+listed!(Bas, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, Qpso);
 
 impl From<LevenbergMarquardt> for Algorithm {
     fn from(solver: LevenbergMarquardt) -> Self {
@@ -60,7 +88,19 @@ impl From<LevenbergMarquardt> for Algorithm {
 impl DerivativeFree {
     /// Every one with its default options.
     pub fn all() -> Vec<Self> {
-        vec![Bas::of(Variant::Star).into(), Bas::of(Variant::Chain).into(), Bas::of(Variant::Greedy).into()]
+        vec![
+            Bas::of(Variant::Star).into(),
+            Bas::of(Variant::Chain).into(),
+            Bas::of(Variant::Greedy).into(),
+            BeeColony::default().into(),
+            BeetleSwarm::default().into(),
+            DifferentialEvolution::default().into(),
+            Firefly::default().into(),
+            Genetic::default().into(),
+            Pso::of(Form::Constriction).into(),
+            Pso::of(Form::Inertia(0.729)).into(),
+            Qpso::default().into(),
+        ]
     }
 
     /// Checks the options.
@@ -77,6 +117,14 @@ impl DerivativeFree {
     fn patience(&self) -> usize {
         match self {
             Self::Bas(_) => 20,
+            // A turn of every firefly is a generation.
+            Self::Firefly(firefly) => firefly.schedule.stall_generations.saturating_mul(firefly.schedule.population),
+            Self::BeeColony(BeeColony { schedule, .. })
+            | Self::BeetleSwarm(BeetleSwarm { schedule, .. })
+            | Self::DifferentialEvolution(DifferentialEvolution { schedule, .. })
+            | Self::Genetic(Genetic { schedule, .. })
+            | Self::Pso(Pso { schedule, .. })
+            | Self::Qpso(Qpso { schedule, .. }) => schedule.stall_generations,
         }
     }
 

@@ -261,6 +261,6 @@ fn place(out: &mut [f64], x: &[f64], distance: f64, b: &[f64]) {
 }
 
 /// The plain sign of eq. (11): zero at zero, and for antennae that both smell nothing finite.
-fn sign(z: f64) -> f64 {
+pub(super) fn sign(z: f64) -> f64 {
     f64::from(i8::from(z > 0.0) - i8::from(z < 0.0))
 }

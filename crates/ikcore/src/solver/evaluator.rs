@@ -2,7 +2,9 @@
 
 use std::mem;
 
-use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Point, Score};
+use smallvec::SmallVec;
+
+use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Pace, Point, Score};
 use crate::rng::LazyRng;
 
 use super::stop::{Monitor, Stop, Stopwatch};
@@ -51,10 +53,7 @@ impl Best {
     }
 }
 
-/// Evaluations between two looks at the monitor and the clock: some ten microseconds of forward kinematics.
-const POLL_EVERY: usize = 256;
-
-/// Points handed to the objective at once.
+/// Points whose scores are kept on the stack.
 const CHUNK: usize = 8;
 
 /// A budgeted view of an objective in a box.
@@ -71,6 +70,7 @@ pub struct Evaluator<'a, O: ?Sized> {
     attempt_value: f64,
     attempts: usize,
     dimension: usize,
+    pace: Pace,
 }
 
 impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
@@ -82,6 +82,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         rng: &'a mut LazyRng,
         monitor: &'a mut dyn Monitor,
     ) -> Self {
+        let pace = objective.pace();
         Self {
             dimension: objective.dimension(),
             objective,
@@ -91,10 +92,11 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             monitor,
             stopwatch: stop.max_time.map(|_| Stopwatch::start()),
             evaluations: 0,
-            next_poll: POLL_EVERY,
+            next_poll: pace.between_looks,
             best: Best::default(),
             attempt_value: f64::INFINITY,
             attempts: 1,
+            pace,
         }
     }
 
@@ -157,24 +159,27 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     /// # Errors
     /// As for one point; with a budget for some of them only, the first ones are evaluated before the halt.
     pub fn evaluate_all(&mut self, mut xs: &mut [f64], values: &mut [f64]) -> Result<(), Halt> {
-        let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
-        self.spend(affordable)?;
-        for values in values[..affordable].chunks_mut(CHUNK) {
-            let (chunk, rest) = xs.split_at_mut(values.len() * self.dimension);
-            self.evaluate_chunk(chunk, values);
+        for values in values.chunks_mut(self.pace.at_once) {
+            let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
+            self.spend(affordable)?;
+            let (chunk, rest) = xs.split_at_mut(affordable * self.dimension);
+            self.evaluate_chunk(chunk, &mut values[..affordable]);
+            if affordable < values.len() {
+                return Err(Halt::Budget);
+            }
             xs = rest;
         }
-        if affordable < values.len() { Err(Halt::Budget) } else { Ok(()) }
+        Ok(())
     }
 
     #[inline]
     fn evaluate_chunk(&mut self, xs: &mut [f64], values: &mut [f64]) {
-        let mut scores = [Score { value: f64::INFINITY, solved: false }; CHUNK];
-        let scores = &mut scores[..values.len()];
-        xs.chunks_mut(self.dimension).for_each(|x| self.bounds.clip(x));
-        self.objective.evaluate_all(xs, scores);
-        for (i, (score, value)) in scores.iter().zip(values).enumerate() {
-            *value = self.record(&xs[i * self.dimension..(i + 1) * self.dimension], *score);
+        let unknown = Score { value: f64::INFINITY, solved: false };
+        let mut scores: SmallVec<[Score; CHUNK]> = SmallVec::from_elem(unknown, values.len());
+        xs.chunks_exact_mut(self.dimension).for_each(|x| self.bounds.clip(x));
+        self.objective.evaluate_all(xs, &mut scores);
+        for ((x, score), value) in xs.chunks_exact(self.dimension).zip(&scores).zip(values) {
+            *value = self.record(x, *score);
         }
     }
 
@@ -224,7 +229,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
 
     #[cold]
     fn poll(&mut self) -> Result<(), Halt> {
-        self.next_poll = self.evaluations + POLL_EVERY;
+        self.next_poll = self.evaluations + self.pace.between_looks;
         if !self.monitor.keep_going() {
             return Err(Halt::Interrupted);
         }
@@ -265,6 +270,7 @@ impl Evaluator<'_, dyn LeastSquares + '_> {
             attempt_value: self.attempt_value,
             attempts: self.attempts,
             dimension: self.dimension,
+            pace: self.pace,
         };
         let result = work(&mut narrowed);
         let Evaluator { evaluations, next_poll, best, attempt_value, attempts, .. } = narrowed;

@@ -8,23 +8,43 @@
 //! | file | algorithm | needs |
 //! |---|---|---|
 //! | [`bas`] | beetle antennae search (Cheng et al. 2020): star, chain, greedy | values |
+//! | [`beetle_swarm`] | beetle swarm (Wang et al. 2019): particles with antennae | values |
+//! | [`pso`], [`qpso`] | particle swarms, with velocities and quantum-behaved | values |
+//! | [`firefly`], [`bee_colony`] | firefly algorithm, artificial bee colony | values |
+//! | [`genetic`], [`differential_evolution`] | evolution by crossover and mutation, and by differences | values |
 //! | [`levenberg_marquardt`] | Levenberg-Marquardt on the box | residual and Jacobian |
 //! | [`multi_start`] | any of them, from many starts | what the wrapped solver needs |
 
 pub mod algorithm;
 pub mod any_solver;
 pub mod bas;
+pub mod bee_colony;
+pub mod beetle_swarm;
+pub mod differential_evolution;
 pub mod driver;
 pub mod evaluator;
+pub mod firefly;
+pub mod genetic;
 pub mod levenberg_marquardt;
 pub mod multi_start;
+pub mod population;
+pub mod pso;
+pub mod qpso;
 pub mod stop;
 
 pub use algorithm::{Algorithm, DerivativeFree};
 pub use any_solver::AnySolver;
 pub use bas::{Bas, Variant};
+pub use bee_colony::BeeColony;
+pub use beetle_swarm::BeetleSwarm;
+pub use differential_evolution::DifferentialEvolution;
 pub use driver::{Outcome, Solver, run};
 pub use evaluator::{Best, Evaluator, Halt};
+pub use firefly::Firefly;
+pub use genetic::Genetic;
 pub use levenberg_marquardt::LevenbergMarquardt;
 pub use multi_start::{MultiStart, RestartRule};
+pub use population::Schedule;
+pub use pso::Pso;
+pub use qpso::Qpso;
 pub use stop::{Monitor, Status, Stop, Unattended};

@@ -77,10 +77,10 @@ impl Criterion {
         self.components.as_ref().map_or(Ok(()), Components::validate)
     }
 
-    /// What `error` comes to where components are not told apart.
+    /// What `error`, with the sum of squares `value`, comes to where components are not told apart.
     #[inline(always)]
-    pub(super) fn of_whole(&self, error: SquaredError) -> Assessment {
-        Assessment { score: Score { value: error.sum(), solved: error.within(&self.tolerance) }, error }
+    pub(super) fn of_whole(&self, error: SquaredError, value: f64) -> Assessment {
+        Assessment { score: Score { value, solved: error.within(&self.tolerance) }, error }
     }
 
     /// What the residual of `target`, in base coordinates, comes to by `components`.

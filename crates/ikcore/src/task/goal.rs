@@ -1,6 +1,6 @@
 //! Goals beside the task: what the joints should do where the task leaves them free.
 
-use crate::error::{Error, Result};
+use crate::error::{Result, require_positive};
 use crate::manipulability::{Manipulability, Motion};
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
@@ -49,15 +49,26 @@ enum Term {
 const SINGULAR: f64 = 1e-12;
 
 impl Goal {
+    /// Share among several goals.
+    pub fn weight(&self) -> f64 {
+        let (Self::Posture { weight, .. } | Self::Centring { weight } | Self::Manipulability { weight, .. }) = self;
+        *weight
+    }
+
+    /// Checks the weight.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a weight that is not positive.
+    pub fn validate_weight(&self) -> Result<()> {
+        require_positive("weight of a goal", self.weight())
+    }
+
     /// Checks the goal against the robot.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a weight that is not positive; as [`Robot::check`] for the posture.
+    /// As [`validate_weight`](Self::validate_weight) and, for the posture, [`Robot::check`].
     pub fn validate(&self, robot: &Robot) -> Result<()> {
-        let (Self::Posture { weight, .. } | Self::Centring { weight } | Self::Manipulability { weight, .. }) = self;
-        if !(*weight > 0.0 && weight.is_finite()) {
-            return Err(Error::out_of_range("weight of a goal", "positive and finite", *weight));
-        }
+        self.validate_weight()?;
         match self {
             Self::Posture { posture, .. } => robot.check("posture", posture),
             Self::Centring { .. } | Self::Manipulability { .. } => Ok(()),

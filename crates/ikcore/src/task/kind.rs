@@ -1,8 +1,11 @@
 //! What a caller asks of the tip, apart from where: the kind of task, its components, the tool that it is for.
 
+use std::ops::Range;
+
 use super::{Components, Target};
 use crate::error::{Error, Result, require_finite};
 use crate::math::Pose;
+use crate::math::box_step::ROWS;
 use crate::math::so3::norm;
 use crate::robot::Robot;
 
@@ -45,6 +48,40 @@ impl Kind {
     }
 }
 
+impl Kind {
+    /// Where the entries of its weights and tolerances stand among the six components; the angle of a pointing task stands
+    /// for three.
+    fn rows(&self) -> &'static [Range<usize>] {
+        match self {
+            Self::Pose => &[0..1, 1..2, 2..3, 3..4, 4..5, 5..6],
+            Self::Position => &[0..1, 1..2, 2..3],
+            Self::Orientation => &[3..4, 4..5, 5..6],
+            Self::Pointing { .. } => &[0..1, 1..2, 2..3, 3..6],
+        }
+    }
+
+    /// The six components from one entry for each that this kind has; `rest` for the others.
+    fn expand(&self, what: &str, entries: &[f64], rest: f64) -> Result<[f64; ROWS]> {
+        let rows = self.rows();
+        if entries.len() != rows.len() {
+            let meaning = match self {
+                Self::Pose => "x, y, z and the rotation's three",
+                Self::Position => "x, y, z",
+                Self::Orientation => "the rotation's three",
+                Self::Pointing { .. } => "x, y, z and the angle",
+            };
+            let expected = format!("{} entries ({meaning})", rows.len());
+            let what = format!("{what} of task {}", self.name());
+            return Err(Error::WrongLength { what, expected, got: entries.len() });
+        }
+        let mut all = [rest; ROWS];
+        for (rows, entry) in rows.iter().zip(entries) {
+            all[rows.clone()].fill(*entry);
+        }
+        Ok(all)
+    }
+}
+
 impl From<Kind> for Task {
     fn from(kind: Kind) -> Self {
         Self { kind, components: None, tool: None }
@@ -52,6 +89,39 @@ impl From<Kind> for Task {
 }
 
 impl Task {
+    /// The task with weights and tolerances (m, rad), one entry for each component that its kind has: six for a pose, three
+    /// for a position or an orientation, x, y, z and the angle for pointing. None leaves weights of one, and the tolerances
+    /// of the call.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; as [`validate`](Self::validate).
+    pub fn new(kind: Kind, weights: Option<&[f64]>, tolerance: Option<&[f64]>, tool: Option<Pose>) -> Result<Self> {
+        let ones = vec![1.0; kind.rows().len()];
+        let components = match (weights, tolerance) {
+            (None, None) => None,
+            (weights, tolerance) => Some(Components {
+                weights: kind.expand("weights", weights.unwrap_or(&ones), 0.0)?,
+                tolerance: tolerance.map(|entries| kind.expand("tolerance", entries, f64::INFINITY)).transpose()?,
+            }),
+        };
+        let task = Self { kind, components, tool };
+        task.validate().map(|()| task)
+    }
+
+    /// The weights, one for each component that the kind has; None where they are all one by default.
+    pub fn weights(&self) -> Option<Vec<f64>> {
+        self.components.map(|components| self.contract(&components.weights))
+    }
+
+    /// The tolerances (m, rad), one for each component that the kind has.
+    pub fn tolerance(&self) -> Option<Vec<f64>> {
+        self.components.and_then(|components| components.tolerance).map(|tolerance| self.contract(&tolerance))
+    }
+
+    fn contract(&self, all: &[f64; ROWS]) -> Vec<f64> {
+        self.kind.rows().iter().map(|rows| all[rows.start]).collect()
+    }
+
     /// Checks axis, weights, tolerances and tool.
     ///
     /// # Errors

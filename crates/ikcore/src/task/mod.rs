@@ -93,9 +93,9 @@ impl Target {
     /// How far a tip is from here, by `criterion`.
     #[inline]
     pub fn assess_tip(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
-        let error = self.error(tip);
+        let (error, value) = self.error(tip);
         match &criterion.components {
-            None => criterion.of_whole(error),
+            None => criterion.of_whole(error, value),
             Some(components) => criterion.of_components(components, self, &self.residual(tip), error),
         }
     }
@@ -110,18 +110,18 @@ impl Target {
     /// The same from a tip and its geometric Jacobian, which stands in the first `dof` columns of `out`.
     #[inline]
     pub fn complete(&self, tip: &Frame, dof: usize, criterion: &Criterion, out: &mut Linearization) -> Assessment {
-        let error = self.complete_whole(tip, dof, out);
-        let Some(components) = &criterion.components else { return criterion.of_whole(error) };
+        let (error, value) = self.complete_whole(tip, dof, out);
+        let Some(components) = &criterion.components else { return criterion.of_whole(error, value) };
         let assessment = criterion.of_components(components, self, &out.residual, error);
         components.apply(self, dof, out);
         assessment
     }
 
-    /// Unweighted residual and Jacobian, in base coordinates.
+    /// Unweighted residual and Jacobian, in base coordinates; the errors and r'r.
     #[inline]
-    fn complete_whole(&self, tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
+    fn complete_whole(&self, tip: &Frame, dof: usize, out: &mut Linearization) -> (SquaredError, f64) {
         match self {
-            Self::Pose(target) => pose::linearize(target, tip, dof, out),
+            Self::Pose(target) => summed(pose::linearize(target, tip, dof, out)),
             Self::Position(target) => {
                 position::linearize(target, &tip.origin, dof, out);
                 self.error(tip)
@@ -130,21 +130,23 @@ impl Target {
             Self::Orientation(target) => {
                 out.residual[..3].fill(0.0);
                 out.columns[..dof].iter_mut().for_each(|column| column[..3].fill(0.0));
-                SquaredError { position: None, rotation: Some(orientation::linearize(target, tip, dof, out)) }
+                let rotation = orientation::linearize(target, tip, dof, out);
+                summed(SquaredError { position: None, rotation: Some(rotation) })
             }
         }
     }
 
+    /// The errors and r'r.
     #[inline]
-    fn error(&self, tip: &Frame) -> SquaredError {
+    fn error(&self, tip: &Frame) -> (SquaredError, f64) {
         match self {
-            Self::Pose(target) => pose::error(target, tip),
+            Self::Pose(target) => summed(pose::error(target, tip)),
             Self::Position(target) => {
-                SquaredError { position: Some(position::error(target, &tip.origin)), rotation: None }
+                summed(SquaredError { position: Some(position::error(target, &tip.origin)), rotation: None })
             }
             Self::Pointing { frame, axis } => pointing::error(frame, axis, tip),
             Self::Orientation(target) => {
-                SquaredError { position: None, rotation: Some(orientation::error(target, tip)) }
+                summed(SquaredError { position: None, rotation: Some(orientation::error(target, tip)) })
             }
         }
     }
@@ -158,7 +160,14 @@ impl Target {
 
 #[inline(always)]
 fn position_alone(target: &[f64; 3], tip: &[f64; 3], criterion: &Criterion) -> Assessment {
-    criterion.of_whole(SquaredError { position: Some(position::error(target, tip)), rotation: None })
+    let squared = position::error(target, tip);
+    criterion.of_whole(SquaredError { position: Some(squared), rotation: None }, squared)
+}
+
+/// Errors whose squares are those of the residual.
+#[inline(always)]
+fn summed(error: SquaredError) -> (SquaredError, f64) {
+    (error, error.position.unwrap_or(0.0) + error.rotation.unwrap_or(0.0))
 }
 
 fn check_point(point: &[f64; 3]) -> Result<()> {

@@ -10,15 +10,21 @@ use crate::math::arithmetic::Separate;
 use crate::math::so3::{cross, norm};
 use crate::objective::Linearization;
 
-/// Squared distance and squared angle between the axes.
+/// Squared distance and squared angle between the axes, and the sum of squares r'r.
 #[inline]
-pub fn error(target: &Frame, axis: &[f64; 3], tip: &Frame) -> SquaredError {
+pub fn error(target: &Frame, axis: &[f64; 3], tip: &Frame) -> (SquaredError, f64) {
     errors(target, tip, &difference(target, axis, tip))
 }
 
 /// Residual and derivative from the tip's geometric Jacobian, which stands in `out`.
 #[inline]
-pub fn linearize(target: &Frame, axis: &[f64; 3], tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
+pub fn linearize(
+    target: &Frame,
+    axis: &[f64; 3],
+    tip: &Frame,
+    dof: usize,
+    out: &mut Linearization,
+) -> (SquaredError, f64) {
     let a = tip.turn::<Separate>(axis);
     for column in &mut out.columns[..dof] {
         let moved = cross(&[column[3], column[4], column[5]], &a);
@@ -36,7 +42,8 @@ fn difference(target: &Frame, axis: &[f64; 3], tip: &Frame) -> [f64; 3] {
     position::residual(&target.turn::<Separate>(axis), &tip.turn::<Separate>(axis))
 }
 
-fn errors(target: &Frame, tip: &Frame, difference: &[f64; 3]) -> SquaredError {
-    let angle = 2.0 * (0.5 * norm(difference)).min(1.0).asin();
-    SquaredError { position: Some(position::error(&target.origin, &tip.origin)), rotation: Some(angle * angle) }
+fn errors(target: &Frame, tip: &Frame, difference: &[f64; 3]) -> (SquaredError, f64) {
+    let (distance, chord) = (position::error(&target.origin, &tip.origin), norm(difference));
+    let angle = 2.0 * (0.5 * chord).min(1.0).asin();
+    (SquaredError { position: Some(distance), rotation: Some(angle * angle) }, distance + chord * chord)
 }

@@ -1,0 +1,137 @@
+//! Firefly algorithm (Yang 2009): fireflies fly towards brighter ones, less so over a distance, and a little at random.
+//!
+//! The published loop runs over fireflies i and j, moves i towards j where j is brighter, and evaluates i at once. Here the
+//! loop over j is the outer one: every firefly has its turn to attract all that are less bright, and these are evaluated
+//! together. A step is one turn; a generation is a turn of each.
+
+use super::driver::Solver;
+use super::evaluator::{Evaluator, Halt};
+use super::population::{Members, Population, Schedule};
+use crate::error::{Error, Result, require_positive};
+use crate::objective::Objective;
+use crate::rng::LazyRng;
+
+/// Firefly algorithm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Firefly {
+    /// Fireflies and generations.
+    pub schedule: Schedule,
+    /// beta_0: attractiveness at no distance.
+    pub attractiveness: f64,
+    /// gamma: absorption of light, with distances measured in widths of the box.
+    pub absorption: f64,
+    /// alpha: size of the random part, as a share of the box's width.
+    pub randomness: f64,
+    /// What alpha is multiplied by with every turn.
+    pub randomness_decay: f64,
+}
+
+impl Default for Firefly {
+    /// beta_0 = 1, gamma = 1, alpha = 0.2 and 25 fireflies (Yang 2009, 2010); the decay is Yang's (2014) 0.97.
+    fn default() -> Self {
+        Self {
+            schedule: Schedule::of(25),
+            attractiveness: 1.0,
+            absorption: 1.0,
+            randomness: 0.2,
+            randomness_decay: 0.97,
+        }
+    }
+}
+
+impl Firefly {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        self.schedule.validate(2)?;
+        require_positive("attractiveness", self.attractiveness)?;
+        require_positive("randomness", self.randomness)?;
+        if !(self.absorption >= 0.0 && self.absorption.is_finite()) {
+            return Err(Error::out_of_range("absorption", "zero or more and finite", self.absorption));
+        }
+        if !(self.randomness_decay > 0.0 && self.randomness_decay <= 1.0) {
+            return Err(Error::out_of_range("randomness_decay", "above 0 and at most 1", self.randomness_decay));
+        }
+        Ok(())
+    }
+
+    /// The schedule in turns.
+    fn turns(&self) -> Schedule {
+        let Schedule { population, max_generations, stall_generations } = self.schedule;
+        Schedule {
+            population,
+            max_generations: max_generations.saturating_mul(population),
+            stall_generations: stall_generations.saturating_mul(population),
+        }
+    }
+}
+
+/// The swarm between turns.
+#[derive(Debug, Clone)]
+pub struct State {
+    population: Population,
+    /// Those who move in a turn, and where to.
+    moving: Vec<usize>,
+    moved: Members,
+    /// Whose turn it is.
+    attractor: usize,
+    /// alpha of this turn.
+    randomness: f64,
+}
+
+impl<O: Objective + ?Sized> Solver<O> for Firefly {
+    type State = State;
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+        let fireflies = self.schedule.population;
+        Ok(State {
+            population: Population::start(&self.schedule, evaluator, x0)?,
+            moving: Vec::with_capacity(fireflies),
+            moved: Members::new(fireflies, x0.len()),
+            attractor: 0,
+            randomness: self.randomness,
+        })
+    }
+
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+        let State { population, moving, moved, attractor, randomness } = state;
+        if population.is_drawn(&self.turns(), evaluator)? {
+            return Ok(());
+        }
+        let Population { members, widths, .. } = population;
+        let light = members.values[*attractor];
+        moving.clear();
+        moving.extend((0..members.values.len()).filter(|i| members.values[*i] > light));
+        for (place, i) in moving.iter().enumerate() {
+            let x = moved.point_mut(place);
+            x.copy_from_slice(members.point(*i));
+            self.attract(x, members.point(*attractor), widths, *randomness, evaluator.rng());
+        }
+        moved.evaluate_first(moving.len(), evaluator)?;
+        for (place, i) in moving.iter().enumerate() {
+            members.take(*i, moved, place);
+        }
+        *attractor = (*attractor + 1) % members.values.len();
+        *randomness *= self.randomness_decay;
+        Ok(())
+    }
+}
+
+impl Firefly {
+    /// x = x + beta_0 exp(-gamma r^2) (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009).
+    #[inline]
+    fn attract(&self, x: &mut [f64], x_j: &[f64], widths: &[f64], randomness: f64, rng: &mut LazyRng) {
+        let mut squared = 0.0;
+        for ((x, x_j), width) in x.iter().zip(x_j).zip(widths) {
+            // A locked coordinate has no width, and no distance either.
+            let apart = if *width > 0.0 { (x_j - x) / width } else { 0.0 };
+            squared += apart * apart;
+        }
+        let beta = self.attractiveness * (-self.absorption * squared).exp();
+        for ((x, x_j), width) in x.iter_mut().zip(x_j).zip(widths) {
+            *x += beta * (x_j - *x) + randomness * width * (rng.uniform() - 0.5);
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! Particle swarm optimisation, with a constriction factor (Clerc and Kennedy 2002) or an inertia weight (Shi and
+//! Eberhart 1998).
+//!
+//! The global-best swarm; velocities are clamped to a share of the box as Eberhart and Shi (2000) advise for both forms,
+//! and a particle that meets a wall stops there.
+
+use std::fmt;
+
+use super::driver::Solver;
+use super::evaluator::{Evaluator, Halt};
+use super::population::{Memory, Population, Schedule, fly};
+use crate::error::{Error, Result, require_positive};
+use crate::objective::Objective;
+use crate::rng::LazyRng;
+
+/// What keeps velocities from growing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Form {
+    /// The whole new velocity is multiplied by chi, which follows from the attractions.
+    Constriction,
+    /// The old velocity is multiplied by this weight.
+    Inertia(f64),
+}
+
+impl fmt::Display for Form {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Constriction => "constriction",
+            Self::Inertia(_) => "inertia",
+        })
+    }
+}
+
+impl Form {
+    /// The form of this name; `inertia` is the weight of "inertia", 0.729 if left out (Eberhart and Shi 2000).
+    ///
+    /// # Errors
+    /// [`Error::UnknownOption`] lists the names; [`Error::OutOfRange`] for an inertia that the form does not have.
+    pub fn named(name: &str, inertia: Option<f64>) -> Result<Self> {
+        match (name, inertia) {
+            ("constriction", None) => Ok(Self::Constriction),
+            ("constriction", Some(weight)) => {
+                Err(Error::out_of_range("inertia", "left out with form 'constriction'", weight))
+            }
+            ("inertia", weight) => Ok(Self::Inertia(weight.unwrap_or(0.729))),
+            _ => Err(Error::unknown_option("form", name, &["constriction", "inertia"])),
+        }
+    }
+
+    /// The published attraction to either place: phi = c1 + c2 = 4.1 of Clerc and Kennedy (2002), 1.49445 of Eberhart and
+    /// Shi (2000).
+    pub fn attraction(self) -> f64 {
+        match self {
+            Self::Constriction => 2.05,
+            Self::Inertia(_) => 1.49445,
+        }
+    }
+}
+
+/// Particle swarm optimisation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pso {
+    /// Particles and generations.
+    pub schedule: Schedule,
+    /// What keeps velocities from growing.
+    pub form: Form,
+    /// Attraction to the particle's own best place.
+    pub c1: f64,
+    /// Attraction to the swarm's best place.
+    pub c2: f64,
+    /// Largest velocity, as a share of the box's width a generation.
+    pub velocity_limit: f64,
+}
+
+impl Default for Pso {
+    fn default() -> Self {
+        Self::of(Form::Constriction)
+    }
+}
+
+impl Pso {
+    /// A form with its published attractions. Half the width is the dynamic range X_max of Eberhart and Shi (2000).
+    pub fn of(form: Form) -> Self {
+        let attraction = form.attraction();
+        Self { schedule: Schedule::of(40), form, c1: attraction, c2: attraction, velocity_limit: 0.5 }
+    }
+
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        self.schedule.validate(2)?;
+        require_positive("c1", self.c1)?;
+        require_positive("c2", self.c2)?;
+        require_positive("velocity_limit", self.velocity_limit)?;
+        match self.form {
+            Form::Inertia(weight) if !(0.0..1.0).contains(&weight) => {
+                Err(Error::out_of_range("inertia", "at least 0 and below 1", weight))
+            }
+            Form::Constriction if !(self.c1 + self.c2 > 4.0) => {
+                Err(Error::out_of_range("c1 + c2", "above 4 with form 'constriction'", self.c1 + self.c2))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The weights (w, c1, c2) of v = w v + c1 r1 (p - x) + c2 r2 (g - x).
+    fn weights(&self) -> [f64; 3] {
+        match self.form {
+            Form::Inertia(weight) => [weight, self.c1, self.c2],
+            Form::Constriction => {
+                // chi = 2 / |2 - phi - sqrt(phi^2 - 4 phi)|, eq. (4) of Eberhart and Shi (2000)
+                let phi = self.c1 + self.c2;
+                let chi = 2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs();
+                [chi, chi * self.c1, chi * self.c2]
+            }
+        }
+    }
+}
+
+/// The swarm between generations.
+#[derive(Debug, Clone)]
+pub struct State {
+    population: Population,
+    memory: Memory,
+    velocities: Vec<f64>,
+}
+
+impl<O: Objective + ?Sized> Solver<O> for Pso {
+    type State = State;
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+        let population = Population::start(&self.schedule, evaluator, x0)?;
+        let memory = Memory::new(self.schedule.population, x0.len());
+        Ok(State { velocities: vec![0.0; population.members.points.len()], population, memory })
+    }
+
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+        let State { population, memory, velocities } = state;
+        if population.is_drawn(&self.schedule, evaluator)? {
+            draw_velocities(population, velocities, evaluator.rng());
+        } else {
+            move_particles(self.weights(), self.velocity_limit, population, memory, velocities, evaluator);
+            population.members.evaluate_from(0, evaluator)?;
+        }
+        memory.update(population);
+        Ok(())
+    }
+}
+
+/// Half way from each particle to a uniform draw around it: at most half the width (standard PSO 2007).
+pub fn draw_velocities(population: &Population, velocities: &mut [f64], rng: &mut LazyRng) {
+    for v in velocities.chunks_exact_mut(population.widths.len()) {
+        for (v, width) in v.iter_mut().zip(&population.widths) {
+            *v = 0.5 * width * (2.0 * rng.uniform() - 1.0);
+        }
+    }
+}
+
+/// v = w v + c1 r1 (p - x) + c2 r2 (g - x), r1 and r2 anew for each coordinate; then x = x + v.
+fn move_particles<O: Objective + ?Sized>(
+    [w, c1, c2]: [f64; 3],
+    velocity_limit: f64,
+    population: &mut Population,
+    memory: &Memory,
+    velocities: &mut [f64],
+    evaluator: &mut Evaluator<'_, O>,
+) {
+    let Population { members, widths, .. } = population;
+    let (bounds, n) = (evaluator.bounds(), widths.len());
+    let g = memory.members.point(memory.leader);
+    let particles = members.points.chunks_exact_mut(n).zip(velocities.chunks_exact_mut(n)).zip(memory.members.points());
+    for ((x, v), p) in particles {
+        for k in 0..n {
+            let [r1, r2] = evaluator.rng().uniform_pair();
+            let wanted = w * v[k] + c1 * r1 * (p[k] - x[k]) + c2 * r2 * (g[k] - x[k]);
+            let most = velocity_limit * widths[k];
+            v[k] = wanted.clamp(-most, most);
+            fly(&mut x[k], &mut v[k], bounds.lower()[k], bounds.upper()[k]);
+        }
+    }
+}
