@@ -12,7 +12,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
     result.trajectory.to_csv("trajectory.csv")
 """
 
-from . import paths, plot
+from . import goals, paths, plot, tasks
 from ._core import (
     BAS,
     BatchSolution,
@@ -26,6 +26,7 @@ from ._core import (
     Robot,
     Sinusoid,
     Solution,
+    SolutionSet,
     Status,
     Step,
     Stop,
@@ -40,6 +41,7 @@ from ._core import (
     __version__,
     pose,
     solve,
+    solve_all,
     solve_batch,
     track,
 )
@@ -57,6 +59,7 @@ __all__ = [
     "Robot",
     "Sinusoid",
     "Solution",
+    "SolutionSet",
     "Status",
     "Step",
     "Stop",
@@ -69,10 +72,13 @@ __all__ = [
     "VelocityEllipsoid",
     "WeightedPseudoInverse",
     "__version__",
+    "goals",
     "paths",
     "plot",
     "pose",
     "solve",
+    "solve_all",
     "solve_batch",
+    "tasks",
     "track",
 ]

@@ -4,7 +4,7 @@
 # SI units and radians throughout; results are read-only.
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from enum import IntEnum
 from typing import Any, Literal, TypeAlias, final
 
@@ -19,6 +19,7 @@ _Solver: TypeAlias = BAS | LevenbergMarquardt | MultiStart
 _LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
 _LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] | None
 _Motion: TypeAlias = Literal["pose", "position", "rotation"]
+_Goals: TypeAlias = Goal | Iterable[Goal] | None
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
 # --- errors -------------------------------------------------------------------------------------
@@ -88,6 +89,7 @@ class Robot:
         self, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None, velocity: ArrayLike | None = None
     ) -> Robot: ...
     def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
+    def clip(self, q: ArrayLike) -> _Array: ...  # (n,) or (m, n)
     def link_poses(self, q: ArrayLike) -> _Array: ...  # (links, 4, 4), in the order of link_names
     def jacobian(self, q: ArrayLike) -> _Array: ...  # (n,) -> (6, n); (m, n) -> (m, 6, n)
     def random_configurations(self, m: int, seed: int = 0) -> _Array: ...  # (m, n)
@@ -250,16 +252,73 @@ class Stop:
     def max_time(self) -> float | None: ...  # s
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
+# --- tasks and goals ----------------------------------------------------------------------------
+
+class Task:
+    @property
+    def weights(self) -> _Array | None: ...
+    @property
+    def tolerance(self) -> _Array | None: ...  # m, rad
+    @property
+    def tool(self) -> _Array | None: ...  # (4, 4)
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+class Pose(Task):
+    def __new__(
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+    ) -> Pose: ...
+
+class Position(Task):
+    def __new__(
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+    ) -> Position: ...
+
+class Orientation(Task):
+    def __new__(
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+    ) -> Orientation: ...
+
+class Pointing(Task):
+    def __new__(
+        cls,
+        *,
+        axis: ArrayLike | None = None,  # None: (0, 0, 1)
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: ArrayLike | None = None,
+    ) -> Pointing: ...
+    @property
+    def axis(self) -> _Array: ...  # (3,)
+
+class Goal:
+    @property
+    def weight(self) -> float: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+class Posture(Goal):
+    def __new__(cls, posture: ArrayLike, *, weight: float = 1.0) -> Posture: ...
+    @property
+    def posture(self) -> _Array: ...  # (n,)
+
+class Centring(Goal):
+    def __new__(cls, *, weight: float = 1.0) -> Centring: ...
+
+class Manipulability(Goal):
+    def __new__(cls, *, motion: _Motion = "pose", weight: float = 1.0) -> Manipulability: ...
+
 # --- inverse kinematics -------------------------------------------------------------------------
 
 def solve(
     robot: Robot,
     target: ArrayLike,  # (4, 4) pose or (3,) position
     *,
+    task: Task | None = None,
     start: ArrayLike | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
+    goals: _Goals = None,
+    prefer: Literal["any", "nearest"] = "any",
     limits: Limits | None = None,
     stop: Stop | None = None,
     seed: int = 0,
@@ -290,6 +349,43 @@ class Solution:
     @property
     def limits(self) -> Limits: ...  # those in force
 
+def solve_all(
+    robot: Robot,
+    target: ArrayLike,  # (4, 4) pose or (3,) position
+    *,
+    start: ArrayLike | None = None,
+    limit: int = 16,
+    separation: float = 0.1,  # rad, m
+    task: Task | None = None,
+    solver: _Solver | None = None,
+    position_tolerance: float = 1e-6,
+    rotation_tolerance: float = 1e-6,
+    limits: Limits | None = None,
+    stop: Stop | None = None,  # budgets of the whole search
+    seed: int = 0,
+) -> SolutionSet: ...
+
+@final
+class SolutionSet:
+    @property
+    def q(self) -> _Array: ...  # (k, n)
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def miss(self) -> Solution | None: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int) -> Solution: ...
+
 def solve_batch(
     robot: Robot,
     targets: ArrayLike,  # (m, 4, 4) poses or (m, 3) positions
@@ -298,9 +394,12 @@ def solve_batch(
     threads: int | None = None,  # None: one per core
     on_invalid: Literal["raise", "skip"] = "raise",
     progress: _Progress = None,
+    task: Task | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
+    goals: _Goals = None,
+    prefer: Literal["any", "nearest"] = "any",
     limits: Limits | None = None,
     stop: Stop | None = None,  # budgets of each target
     seed: int = 0,
@@ -391,8 +490,10 @@ def track(
     start: ArrayLike | None = None,  # None solves for the path's first point
     *,
     dt: float,
+    task: Task | None = None,
     solver: _Solver | WeightedPseudoInverse | None = None,
     limits: Limits | None = None,
+    goals: _Goals = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
     seed: int = 0,
@@ -458,8 +559,10 @@ class Tracker:
         start: ArrayLike,
         *,
         dt: float,
+        task: Task | None = None,
         solver: _Solver | WeightedPseudoInverse | None = None,
         limits: Limits | None = None,
+        goals: _Goals = None,
         position_tolerance: float = 1e-6,
         rotation_tolerance: float = 1e-6,
         seed: int = 0,

@@ -259,6 +259,19 @@ impl PyRobot {
         }
     }
 
+    /// The nearest configuration inside the position limits: each joint brought to the limit that it is beyond. (n,) for q (n,),
+    /// (m, n) for q (m, n).
+    fn clip<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let n = self.core.dof();
+        match rows("joint angles", self.core.name(), n, q)? {
+            Rows::One(q) => {
+                self.core.check("joint angles", q.as_slice()?).map_err(raise)?;
+                table(py, self.core.clip_all(q.as_slice()?).map_err(raise)?, &[n])
+            }
+            Rows::Many(q, m) => table(py, self.core.clip_all(q.as_slice()?).map_err(raise)?, &[m, n]),
+        }
+    }
+
     /// Poses of all links at q (n,), in the order of `link_names`: (links, 4, 4).
     fn link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let poses = self.core.link_poses(&vector("joint angles", q)?).map_err(raise)?;

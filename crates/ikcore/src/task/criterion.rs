@@ -41,29 +41,32 @@ pub struct Assessment {
 }
 
 impl Components {
-    /// Checks that weights are not negative, some are positive, and tolerances are positive.
+    /// Checks weights and tolerances.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] names the entry.
     pub fn validate(&self) -> Result<()> {
-        for (i, weight) in self.weights.iter().enumerate() {
-            if !(*weight >= 0.0 && weight.is_finite()) {
-                return Err(Error::out_of_range(format!("weights[{i}]"), "zero or more, and finite", *weight));
-            }
+        check_weights(&self.weights)?;
+        self.tolerance.as_ref().map_or(Ok(()), |tolerance| check_tolerances(tolerance))
+    }
+}
+
+/// Checks that weights are not negative, and one is positive.
+pub(super) fn check_weights(weights: &[f64]) -> Result<()> {
+    match weights.iter().position(|weight| !(*weight >= 0.0 && weight.is_finite())) {
+        Some(i) => Err(Error::out_of_range(format!("weights[{i}]"), "zero or more, and finite", weights[i])),
+        None if weights.iter().all(|weight| *weight == 0.0) => {
+            Err(Error::out_of_range("the largest of weights", "positive", 0.0))
         }
-        if self.weights.iter().all(|weight| *weight == 0.0) {
-            return Err(Error::out_of_range("the largest of weights", "positive", 0.0));
-        }
-        match self
-            .tolerance
-            .iter()
-            .flatten()
-            .enumerate()
-            .find(|(_, tolerance)| tolerance.is_nan() || **tolerance <= 0.0)
-        {
-            None => Ok(()),
-            Some((i, tolerance)) => Err(Error::out_of_range(format!("tolerance[{i}]"), "positive", *tolerance)),
-        }
+        None => Ok(()),
+    }
+}
+
+/// Checks that tolerances are positive; infinite ones are.
+pub(super) fn check_tolerances(tolerances: &[f64]) -> Result<()> {
+    match tolerances.iter().position(|tolerance| !(*tolerance > 0.0)) {
+        Some(i) => Err(Error::out_of_range(format!("tolerance[{i}]"), "positive", tolerances[i])),
+        None => Ok(()),
     }
 }
 

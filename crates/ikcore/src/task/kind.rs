@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::criterion::{check_tolerances, check_weights};
 use super::{Components, Target};
 use crate::error::{Error, Result, require_finite};
 use crate::math::Pose;
@@ -96,6 +97,8 @@ impl Task {
     /// # Errors
     /// [`Error::WrongLength`]; as [`validate`](Self::validate).
     pub fn new(kind: Kind, weights: Option<&[f64]>, tolerance: Option<&[f64]>, tool: Option<Pose>) -> Result<Self> {
+        weights.map_or(Ok(()), check_weights)?;
+        tolerance.map_or(Ok(()), check_tolerances)?;
         let ones = vec![1.0; kind.rows().len()];
         let components = match (weights, tolerance) {
             (None, None) => None,
