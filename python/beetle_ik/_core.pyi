@@ -318,11 +318,15 @@ def solve(
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
     goals: _Goals = None,
-    prefer: Literal["any", "nearest"] = "any",
+    prefer: Literal["any", "nearest", "best"] = "any",
     limits: Limits | None = None,
     stop: Stop | None = None,
     seed: int = 0,
 ) -> Solution: ...
+
+@final
+class LinkManipulability(Goal):
+    def __new__(cls, *, motion: _Motion = "position", weight: float = 1.0) -> LinkManipulability: ...
 
 @final
 class Solution:
@@ -399,7 +403,7 @@ def solve_batch(
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
     goals: _Goals = None,
-    prefer: Literal["any", "nearest"] = "any",
+    prefer: Literal["any", "nearest", "best"] = "any",
     limits: Limits | None = None,
     stop: Stop | None = None,  # budgets of each target
     seed: int = 0,
@@ -431,6 +435,65 @@ class BatchSolution:
     def limits(self) -> Limits: ...  # those in force
     def __len__(self) -> int: ...
     def __getitem__(self, index: int, /) -> Solution: ...
+
+@final
+class CircleSwarm:
+    def __new__(
+        cls,
+        *,
+        population: int = 5,
+        generations: int = 10,
+        c1: float = 2.05,
+        c2: float = 2.05,
+        velocity_limit: float = 0.2,  # m a generation
+        signed: bool = False,
+    ) -> CircleSwarm: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def generations(self) -> int: ...
+    @property
+    def c1(self) -> float: ...
+    @property
+    def c2(self) -> float: ...
+    @property
+    def velocity_limit(self) -> float: ...
+    @property
+    def signed(self) -> bool: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+def planar_posture(
+    robot: Robot,
+    target: ArrayLike,  # (3,)
+    *,
+    measure: Literal["tip", "overall"] = "tip",
+    region: ArrayLike | None = None,  # (2, 2): least and largest x, y (m)
+    swarm: CircleSwarm | None = None,
+    seed: int = 0,
+) -> PlanarPosture: ...
+
+@final
+class PlanarPosture:
+    @property
+    def q(self) -> _Array: ...  # (n,)
+    @property
+    def index(self) -> float: ...
+    @property
+    def history(self) -> _Array: ...  # (generations,), or empty
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def position_error(self) -> float: ...  # m
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...
 
 # --- reference paths (public as beetle_ik.paths) ------------------------------------------------
 

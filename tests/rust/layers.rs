@@ -23,6 +23,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("problem", &["robot", "task", "limits", "objective"]),
     ("ik", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem"]),
     ("batch", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"]),
+    ("posture", &["robot", "objective", "manipulability", "task", "solver", "ik"]),
     (
         "tracking",
         &["robot", "path", "trajectory", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"],

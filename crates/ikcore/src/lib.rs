@@ -51,7 +51,7 @@
 //! | 3 | [`task`], [`solver`] |
 //! | 4 | [`problem`] |
 //! | 5 | [`ik`] |
-//! | 6 | [`tracking`], [`batch`] |
+//! | 6 | [`tracking`], [`posture`], [`batch`] |
 
 pub mod batch;
 pub mod error;
@@ -61,6 +61,7 @@ pub mod manipulability;
 pub mod math;
 pub mod objective;
 pub mod path;
+pub mod posture;
 pub mod problem;
 pub mod rng;
 pub mod robot;

@@ -11,6 +11,7 @@ mod manipulability;
 mod monitor;
 mod path;
 mod pose;
+mod posture;
 mod robot;
 mod sinusoid;
 mod solver;
@@ -41,6 +42,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     goal::register(module)?;
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
+    module.add_class::<posture::PyCircleSwarm>()?;
+    module.add_class::<posture::PyPlanarPosture>()?;
+    module.add_function(wrap_pyfunction!(posture::planar_posture, module)?)?;
     path::register(module)?;
     module.add_class::<weighted_pseudo_inverse::PyWeightedPseudoInverse>()?;
     module.add_class::<tracking::PyTrackResult>()?;
