@@ -15,7 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 _Array: TypeAlias = NDArray[np.float64]
-_Solver: TypeAlias = BAS | LevenbergMarquardt | MultiStart
+_DerivativeFree: TypeAlias = BAS | BeeColony | BeetleSwarm | DifferentialEvolution | Firefly | Genetic | PSO | QPSO
+_Single: TypeAlias = _DerivativeFree | LevenbergMarquardt
+_Solver: TypeAlias = _Single | MultiStart
 _LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
 _LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] | None
 _Motion: TypeAlias = Literal["pose", "position", "rotation"]
@@ -198,6 +200,206 @@ class BAS:
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
+class BeeColony:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        limit: int | None = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> BeeColony: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def limit(self) -> int | None: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class BeetleSwarm:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        inertia: float = ...,
+        c1: float = ...,
+        c2: float = ...,
+        velocity_limit: float = ...,
+        velocity_share: float = ...,
+        step: float = ...,
+        step_decay: float = ...,
+        step_over_antennae: float = ...,
+        direction: Literal["printed", "downhill"] = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> BeetleSwarm: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def inertia(self) -> float: ...
+    @property
+    def c1(self) -> float: ...
+    @property
+    def c2(self) -> float: ...
+    @property
+    def velocity_limit(self) -> float: ...
+    @property
+    def velocity_share(self) -> float: ...
+    @property
+    def step(self) -> float: ...
+    @property
+    def step_decay(self) -> float: ...
+    @property
+    def step_over_antennae(self) -> float: ...
+    @property
+    def direction(self) -> str: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class DifferentialEvolution:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        weight: float = ...,
+        crossover_rate: float = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> DifferentialEvolution: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def weight(self) -> float: ...
+    @property
+    def crossover_rate(self) -> float: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class Firefly:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        attractiveness: float = ...,
+        absorption: float = ...,
+        randomness: float = ...,
+        randomness_decay: float = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> Firefly: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def attractiveness(self) -> float: ...
+    @property
+    def absorption(self) -> float: ...
+    @property
+    def randomness(self) -> float: ...
+    @property
+    def randomness_decay(self) -> float: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class Genetic:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        elite_share: float = ...,
+        crossover_share: float = ...,
+        tournament: int = ...,
+        mutation_scale: float = ...,
+        mutation_decay: float = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> Genetic: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def elite_share(self) -> float: ...
+    @property
+    def crossover_share(self) -> float: ...
+    @property
+    def tournament(self) -> int: ...
+    @property
+    def mutation_scale(self) -> float: ...
+    @property
+    def mutation_decay(self) -> float: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class PSO:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        form: Literal["constriction", "inertia"] = "constriction",
+        inertia: float | None = None,  # 0.729 with form "inertia"
+        c1: float | None = None,
+        c2: float | None = None,
+        velocity_limit: float = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> PSO: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def form(self) -> str: ...
+    @property
+    def inertia(self) -> float | None: ...
+    @property
+    def c1(self) -> float: ...
+    @property
+    def c2(self) -> float: ...
+    @property
+    def velocity_limit(self) -> float: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class QPSO:
+    def __new__(
+        cls,
+        *,
+        population: int = ...,
+        expansion: float = ...,
+        max_generations: int | None = ...,
+        stall_generations: int | None = ...,
+    ) -> QPSO: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def expansion(self) -> float: ...
+    @property
+    def max_generations(self) -> int | None: ...
+    @property
+    def stall_generations(self) -> int | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class LevenbergMarquardt:
     def __new__(cls, *, initial_damping: float = ...) -> LevenbergMarquardt: ...
     @property
@@ -206,9 +408,9 @@ class LevenbergMarquardt:
 
 @final
 class MultiStart:
-    def __new__(cls, solver: BAS | LevenbergMarquardt, *, max_starts: int | None = None) -> MultiStart: ...
+    def __new__(cls, solver: _Single, *, max_starts: int | None = None) -> MultiStart: ...
     @property
-    def solver(self) -> BAS | LevenbergMarquardt: ...
+    def solver(self) -> _Single: ...
     @property
     def max_starts(self) -> int | None: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
@@ -242,7 +444,12 @@ class WeightedPseudoInverse:
 @final
 class Stop:
     def __new__(
-        cls, *, max_evaluations: int | None = None, max_iterations: int | None = None, max_time: float | None = None
+        cls,
+        *,
+        max_evaluations: int | None = None,
+        max_iterations: int | None = None,
+        max_time: float | None = None,
+        value_below: float | None = None,
     ) -> Stop: ...
     @property
     def max_evaluations(self) -> int | None: ...
@@ -250,6 +457,8 @@ class Stop:
     def max_iterations(self) -> int | None: ...
     @property
     def max_time(self) -> float | None: ...  # s
+    @property
+    def value_below(self) -> float | None: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- tasks and goals ----------------------------------------------------------------------------
@@ -435,6 +644,45 @@ class BatchSolution:
     def limits(self) -> Limits: ...  # those in force
     def __len__(self) -> int: ...
     def __getitem__(self, index: int, /) -> Solution: ...
+
+# --- minimisation of any function ----------------------------------------------------------------
+
+def minimize(
+    function: Callable[[_Array], Any],  # (n,) -> a number; vectorized: (m, n) -> (m,)
+    lower: ArrayLike,
+    upper: ArrayLike,
+    *,
+    solver: _DerivativeFree | MultiStart,
+    start: ArrayLike | None = None,
+    stop: Stop | None = None,
+    seed: int = 0,
+    vectorized: bool = False,
+) -> Minimum: ...
+
+@final
+class Minimum:
+    @property
+    def x(self) -> _Array: ...  # (n,)
+    @property
+    def value(self) -> float: ...
+    @property
+    def history(self) -> _Array: ...  # (k, 2): evaluations, best value
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def restarts(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...
+
+# --- postures -----------------------------------------------------------------------------------
 
 @final
 class CircleSwarm:

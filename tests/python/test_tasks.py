@@ -174,7 +174,11 @@ def solve(**options: object) -> bik.Solution:
             "task Pose needs a target pose (4, 4), got a position (3,)",
         ),
         (lambda: solve(task="Pose"), Invalid, "task must be of beetle_ik.tasks, got 'Pose'"),
-        (lambda: solve(task=tasks.Pose), Invalid, "task must be of beetle_ik.tasks, got <class 'beetle_ik.tasks.Pose'>"),
+        (
+            lambda: solve(task=tasks.Pose),
+            Invalid,
+            "task must be of beetle_ik.tasks, got <class 'beetle_ik.tasks.Pose'>",
+        ),
         (
             lambda: tasks.Pose(weights=[1, 1, 1]),
             Invalid,

@@ -21,6 +21,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("task", &["robot", "manipulability", "objective"]),
     ("solver", &["objective"]),
     ("problem", &["robot", "task", "limits", "objective"]),
+    ("minimize", &["objective", "solver"]),
     ("ik", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem"]),
     ("batch", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"]),
     ("posture", &["robot", "objective", "manipulability", "task", "solver", "ik"]),

@@ -50,7 +50,7 @@
 //! | 2 | [`limits`], [`manipulability`] |
 //! | 3 | [`task`], [`solver`] |
 //! | 4 | [`problem`] |
-//! | 5 | [`ik`] |
+//! | 5 | [`ik`], [`minimize`](mod@minimize) |
 //! | 6 | [`tracking`], [`posture`], [`batch`] |
 
 pub mod batch;
@@ -59,6 +59,7 @@ pub mod ik;
 pub mod limits;
 pub mod manipulability;
 pub mod math;
+pub mod minimize;
 pub mod objective;
 pub mod path;
 pub mod posture;

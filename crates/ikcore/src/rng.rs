@@ -27,6 +27,15 @@ pub fn stream(seed: u64, index: u64) -> LazyRng {
     LazyRng { seed, stream: index, source: None }
 }
 
+/// The two halves of a draw: independent uniforms in [0, 1), of 26 and 27 bits.
+#[inline]
+pub fn split(uniform: f64) -> [f64; 2] {
+    const HALF: f64 = (1_u64 << 26) as f64;
+    let scaled = HALF * uniform;
+    let whole = f64::from(scaled as i32);
+    [whole * (1.0 / HALF), scaled - whole]
+}
+
 impl LazyRng {
     /// Uniform in [0, 1).
     #[inline]
@@ -66,17 +75,24 @@ impl LazyRng {
     /// half the cost.
     #[inline]
     pub fn uniform_pair(&mut self) -> [f64; 2] {
-        const HALF: f64 = (1_u64 << 26) as f64;
-        let scaled = HALF * self.uniform();
-        let whole = scaled.trunc();
-        [whole / HALF, scaled - whole]
+        split(self.uniform())
     }
 
-    /// A whole number below `count`, which is not zero.
+    /// A whole number below `count`, which is at least 1 and fits into 32 bits.
     #[inline]
     pub fn below(&mut self, count: usize) -> usize {
-        // The product may round up to `count` itself where that is beyond 2^53: no population is.
-        (count as f64 * self.uniform()) as usize
+        (count as f64 * self.uniform()) as i64 as usize
+    }
+
+    /// Two of them from one draw.
+    #[inline]
+    pub fn pair_below(&mut self, count: usize) -> [usize; 2] {
+        self.uniform_pair().map(|u| (count as f64 * u) as i64 as usize)
+    }
+
+    /// A draw for each entry, in order.
+    pub fn fill(&mut self, out: &mut [f64]) {
+        self.draw(out, |v, uniform| *v = uniform);
     }
 
     /// Two independent draws of a normal distribution with mean 0 and standard deviation 1 (Box and Muller 1958).

@@ -8,6 +8,7 @@ mod goal;
 mod ik;
 mod limits;
 mod manipulability;
+mod minimize;
 mod monitor;
 mod path;
 mod pose;
@@ -45,6 +46,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<posture::PyCircleSwarm>()?;
     module.add_class::<posture::PyPlanarPosture>()?;
     module.add_function(wrap_pyfunction!(posture::planar_posture, module)?)?;
+    module.add_class::<minimize::PyMinimum>()?;
+    module.add_function(wrap_pyfunction!(minimize::minimize_function, module)?)?;
     path::register(module)?;
     module.add_class::<weighted_pseudo_inverse::PyWeightedPseudoInverse>()?;
     module.add_class::<tracking::PyTrackResult>()?;

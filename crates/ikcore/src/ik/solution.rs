@@ -36,6 +36,7 @@ impl Solution {
         }
         let ended = match status {
             Status::Solved => return format!("solved to {error}"),
+            Status::Improved => return format!("below the value asked for, {error} away"),
             Status::OutOfReach => "as near as it gets",
             Status::Stalled => "no further progress",
             Status::BudgetSpent => "budget spent",

@@ -10,6 +10,7 @@ use super::firefly::Firefly;
 use super::genetic::Genetic;
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::multi_start::{MultiStart, RestartRule};
+use super::population::Schedule;
 use super::pso::{Form, Pso};
 use super::qpso::Qpso;
 use crate::error::Result;
@@ -111,20 +112,35 @@ impl DerivativeFree {
         whichever!(self, solver => solver.validate())
     }
 
+    /// Members and generations; a single beetle has none.
+    fn schedule(&self) -> Option<Schedule> {
+        match self {
+            Self::Bas(_) => None,
+            Self::BeeColony(BeeColony { schedule, .. })
+            | Self::BeetleSwarm(BeetleSwarm { schedule, .. })
+            | Self::DifferentialEvolution(DifferentialEvolution { schedule, .. })
+            | Self::Firefly(Firefly { schedule, .. })
+            | Self::Genetic(Genetic { schedule, .. })
+            | Self::Pso(Pso { schedule, .. })
+            | Self::Qpso(Qpso { schedule, .. }) => Some(*schedule),
+        }
+    }
+
+    /// Members of a generation; a single beetle has none.
+    pub fn population(&self) -> Option<usize> {
+        self.schedule().map(|schedule| schedule.population)
+    }
+
     /// Steps without much gain after which an attempt is given up (see [`RestartRule::patience`]): a beetle needs passes to
     /// shrink its antennae (of 100 positions for a 7-joint arm, patience 4 and 20 solved 90 and 99 by the star, 83 and 94
     /// by the greedy variant).
     fn patience(&self) -> usize {
+        const BEETLE: usize = 20;
+        let generations = self.schedule().map_or(BEETLE, |schedule| schedule.stall_generations);
         match self {
-            Self::Bas(_) => 20,
-            // A turn of every firefly is a generation.
-            Self::Firefly(firefly) => firefly.schedule.stall_generations.saturating_mul(firefly.schedule.population),
-            Self::BeeColony(BeeColony { schedule, .. })
-            | Self::BeetleSwarm(BeetleSwarm { schedule, .. })
-            | Self::DifferentialEvolution(DifferentialEvolution { schedule, .. })
-            | Self::Genetic(Genetic { schedule, .. })
-            | Self::Pso(Pso { schedule, .. })
-            | Self::Qpso(Qpso { schedule, .. }) => schedule.stall_generations,
+            // A step is one firefly's turn, a generation a turn of each.
+            Self::Firefly(firefly) => generations.saturating_mul(firefly.schedule.population),
+            _ => generations,
         }
     }
 

@@ -5,7 +5,8 @@ use super::driver::Outcome;
 use super::evaluator::Evaluator;
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::multi_start::{MultiStart, RestartRule};
-use crate::error::Result;
+use super::stop::Stop;
+use crate::error::{Error, Result};
 use crate::objective::{LeastSquares, Objective};
 
 /// An algorithm of list `A`: [`Algorithm`] for robots, [`DerivativeFree`] for functions of which only values are known.
@@ -48,10 +49,21 @@ impl<A> AnySolver<A> {
 }
 
 impl AnySolver {
+    /// The same, where the algorithm needs values alone.
+    pub fn into_derivative_free(self) -> Option<AnySolver<DerivativeFree>> {
+        match self {
+            Self::Single(Algorithm::DerivativeFree(solver)) => Some(AnySolver::Single(solver)),
+            Self::MultiStart(MultiStart { solver: Algorithm::DerivativeFree(solver), rule }) => {
+                Some(AnySolver::MultiStart(MultiStart { solver, rule }))
+            }
+            _ => None,
+        }
+    }
+
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
+    /// [`Error::OutOfRange`] names the option and its range.
     pub fn validate(&self) -> Result<()> {
         self.validate_restarts().and(self.algorithm().validate())
     }
@@ -77,10 +89,24 @@ impl AnySolver {
 }
 
 impl AnySolver<DerivativeFree> {
+    /// Checks that the budget pays for one generation at least.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the population and the budget.
+    pub fn require_affordable(&self, stop: &Stop) -> Result<()> {
+        match self.algorithm().population() {
+            Some(population) if population > stop.max_evaluations => {
+                let requirement = format!("at most max_evaluations = {}", stop.max_evaluations);
+                Err(Error::out_of_range("population", &requirement, population as f64))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
+    /// [`Error::OutOfRange`] names the option and its range.
     pub fn validate(&self) -> Result<()> {
         self.validate_restarts().and(self.algorithm().validate())
     }

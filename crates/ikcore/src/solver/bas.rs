@@ -186,9 +186,11 @@ impl Bas {
         if self.variant == Variant::Star { LARGEST_GROUP } else { 1 }
     }
 
-    /// lambda = c1 sqrt(o), eq. (12); where the start has no finite value, a unit antenna.
+    /// lambda = c1 sqrt(o), eq. (12); where the start has no finite value, a unit antenna. The rule supposes that the least
+    /// value is zero, as that of an error is: a function with another one is to be shifted by what its least value may be,
+    /// or antennae do not shrink as they approach it.
     fn antenna_length(&self, value: f64) -> f64 {
-        self.c1 * if value.is_finite() { value.sqrt() } else { 1.0 }
+        self.c1 * if value.is_finite() { value.abs().sqrt() } else { 1.0 }
     }
 
     /// Steps i) to v) of `count` explorations from one point: leaves in `group` where the beetles go, and returns o there.

@@ -5,11 +5,14 @@
 //! which the swarm diverges; the antennae of eq. (28) to (30) stand at x +- V d/2 (the paper prints one name for both)
 //! with the velocity just updated, as line 7 of its Algorithm 1 has it. [`BeetleSwarm::literal`] has no inertia weight.
 
+use std::fmt;
+use std::str::FromStr;
+
 use super::bas::sign;
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use super::population::{Members, Memory, Population, Schedule};
-use super::pso::draw_velocities;
+use super::pso::{draw_velocities, turn_particles};
 use crate::error::{Error, Result, require_positive};
 use crate::objective::Objective;
 
@@ -21,6 +24,27 @@ pub enum Direction {
     Printed,
     /// To the antenna with the lower value.
     Downhill,
+}
+
+impl fmt::Display for Direction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Printed => "printed",
+            Self::Downhill => "downhill",
+        })
+    }
+}
+
+impl FromStr for Direction {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "printed" => Ok(Self::Printed),
+            "downhill" => Ok(Self::Downhill),
+            _ => Err(Error::unknown_option("direction", name, &["printed", "downhill"])),
+        }
+    }
 }
 
 /// Beetle swarm optimisation.
@@ -135,7 +159,9 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
             // The draw spans half the width; the limit is on all velocities.
             velocities.iter_mut().for_each(|v| *v *= (2.0 * self.velocity_limit).min(1.0));
         } else {
-            self.turn(population, memory, velocities, evaluator);
+            // eq. (27), with inertia and limit
+            let weights = [self.inertia, self.c1, self.c2];
+            turn_particles(weights, self.velocity_limit, population, memory, velocities, evaluator.rng());
             self.feel(&population.members, velocities, *step, antennae, evaluator)?;
             self.advance(&mut population.members, velocities, antennae, *step);
             population.members.evaluate_from(0, evaluator)?;
@@ -147,27 +173,6 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
 }
 
 impl BeetleSwarm {
-    /// V = w V + c1 r1 (p - x) + c2 r2 (g - x), eq. (27) with inertia, clamped.
-    fn turn<O: Objective + ?Sized>(
-        &self,
-        population: &Population,
-        memory: &Memory,
-        velocities: &mut [f64],
-        evaluator: &mut Evaluator<'_, O>,
-    ) {
-        let Population { members, widths, .. } = population;
-        let g = memory.members.point(memory.leader);
-        let beetles = members.points().zip(memory.members.points()).zip(velocities.chunks_exact_mut(widths.len()));
-        for ((x, p), v) in beetles {
-            for k in 0..v.len() {
-                let [r1, r2] = evaluator.rng().uniform_pair();
-                let wanted = self.inertia * v[k] + self.c1 * r1 * (p[k] - x[k]) + self.c2 * r2 * (g[k] - x[k]);
-                let most = self.velocity_limit * widths[k];
-                v[k] = wanted.clamp(-most, most);
-            }
-        }
-    }
-
     /// Smells at x + V d/2 and x - V d/2, eq. (29) and (30), with d = delta / c, eq. (31).
     fn feel<O: Objective + ?Sized>(
         &self,

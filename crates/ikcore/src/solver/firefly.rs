@@ -130,8 +130,11 @@ impl Firefly {
             squared += apart * apart;
         }
         let beta = self.attractiveness * (-self.absorption * squared).exp();
-        for ((x, x_j), width) in x.iter_mut().zip(x_j).zip(widths) {
-            *x += beta * (x_j - *x) + randomness * width * (rng.uniform() - 0.5);
+        let pairs = x.chunks_mut(2).zip(x_j.chunks(2)).zip(widths.chunks(2));
+        for ((x, x_j), widths) in pairs {
+            for (((x, x_j), width), u) in x.iter_mut().zip(x_j).zip(widths).zip(rng.uniform_pair()) {
+                *x += beta * (x_j - *x) + randomness * width * (u - 0.5);
+            }
         }
     }
 }

@@ -56,8 +56,9 @@ impl Genetic {
         if !(0.0..=1.0).contains(&self.crossover_share) {
             return Err(Error::out_of_range("crossover_share", "between 0 and 1", self.crossover_share));
         }
-        if self.tournament == 0 {
-            return Err(Error::out_of_range("tournament", "at least 1", 0.0));
+        if !(1..=self.schedule.population).contains(&self.tournament) {
+            let requirement = format!("between 1 and the population of {}", self.schedule.population);
+            return Err(Error::out_of_range("tournament", &requirement, self.tournament as f64));
         }
         require_positive("mutation_scale", self.mutation_scale)?;
         if !(self.mutation_decay > 0.0 && self.mutation_decay <= 1.0) {
@@ -135,15 +136,13 @@ fn keep_elite(parents: &Members, elite: usize, ranking: &mut [usize], children: 
 }
 
 impl Genetic {
-    /// The best of a tournament.
+    /// The best of a tournament, drawn two at a time.
     fn parent<'a>(&self, parents: &'a Members, rng: &mut LazyRng) -> &'a [f64] {
         let count = parents.values.len();
-        let mut winner = rng.below(count);
-        for _ in 1..self.tournament {
-            let rival = rng.below(count);
-            if parents.values[rival] < parents.values[winner] {
-                winner = rival;
-            }
+        let better = |i: usize, j: usize| if parents.values[j] < parents.values[i] { j } else { i };
+        let mut winner = if self.tournament % 2 == 1 { rng.below(count) } else { better_of_two(parents, rng) };
+        for _ in 0..(self.tournament - 1) / 2 {
+            winner = better(winner, better_of_two(parents, rng));
         }
         parents.point(winner)
     }
@@ -156,6 +155,12 @@ impl Genetic {
             *x = if coins.toss(rng) { *mother } else { *father };
         }
     }
+}
+
+/// The better of two members.
+fn better_of_two(parents: &Members, rng: &mut LazyRng) -> usize {
+    let [one, other] = rng.pair_below(parents.values.len());
+    if parents.values[other] < parents.values[one] { other } else { one }
 }
 
 /// Gaussian mutation of all coordinates.

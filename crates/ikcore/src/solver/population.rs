@@ -21,6 +21,9 @@ pub struct Schedule {
 /// The share of the best value that counts as a gain: the function tolerance of the MATLAB solvers.
 const GAIN: f64 = 1e-6;
 
+/// The largest population: it must fit into memory, and more help nobody.
+const MOST: usize = 1_000_000;
+
 impl Schedule {
     /// Members of a generation; as many generations as the budget allows, but no more than 50 without a gain (the MATLAB
     /// genetic algorithm's default).
@@ -34,13 +37,13 @@ impl Schedule {
     /// [`Error::OutOfRange`] names the option and its range.
     pub fn validate(&self, fewest: usize) -> Result<()> {
         let Self { population, max_generations, stall_generations } = *self;
-        for (name, count, least) in [
-            ("population", population, fewest),
-            ("max_generations", max_generations, 1),
-            ("stall_generations", stall_generations, 1),
-        ] {
-            if count < least {
-                return Err(Error::out_of_range(name, &format!("at least {least}"), count as f64));
+        if !(fewest..=MOST).contains(&population) {
+            let requirement = format!("between {fewest} and {MOST}");
+            return Err(Error::out_of_range("population", &requirement, population as f64));
+        }
+        for (name, count) in [("max_generations", max_generations), ("stall_generations", stall_generations)] {
+            if count == 0 {
+                return Err(Error::out_of_range(name, "at least 1", 0.0));
             }
         }
         Ok(())
@@ -212,13 +215,4 @@ impl Memory {
         }
         self.leader = self.members.best();
     }
-}
-
-/// Moves x by v, and stops it at the walls: a coordinate that met its bound has no velocity left.
-#[inline]
-pub fn fly(x: &mut f64, v: &mut f64, lower: f64, upper: f64) {
-    let wanted = *x + *v;
-    let raised = if wanted > lower { wanted } else { lower };
-    *x = if raised < upper { raised } else { upper };
-    *v = if *x == wanted { *v } else { 0.0 };
 }

@@ -8,10 +8,10 @@ use std::fmt;
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
-use super::population::{Memory, Population, Schedule, fly};
+use super::population::{Memory, Population, Schedule};
 use crate::error::{Error, Result, require_positive};
-use crate::objective::Objective;
-use crate::rng::LazyRng;
+use crate::objective::{Bounds, Objective, Point};
+use crate::rng::{LazyRng, split};
 
 /// What keeps velocities from growing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -141,7 +141,8 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
         if population.is_drawn(&self.schedule, evaluator)? {
             draw_velocities(population, velocities, evaluator.rng());
         } else {
-            move_particles(self.weights(), self.velocity_limit, population, memory, velocities, evaluator);
+            turn_particles(self.weights(), self.velocity_limit, population, memory, velocities, evaluator.rng());
+            move_particles(population, velocities, evaluator.bounds());
             population.members.evaluate_from(0, evaluator)?;
         }
         memory.update(population);
@@ -158,26 +159,49 @@ pub fn draw_velocities(population: &Population, velocities: &mut [f64], rng: &mu
     }
 }
 
-/// v = w v + c1 r1 (p - x) + c2 r2 (g - x), r1 and r2 anew for each coordinate; then x = x + v.
-fn move_particles<O: Objective + ?Sized>(
+/// v = w v + c1 r1 (p - x) + c2 r2 (g - x), r1 and r2 anew for each coordinate, clamped to a share of the widths.
+pub fn turn_particles(
     [w, c1, c2]: [f64; 3],
     velocity_limit: f64,
-    population: &mut Population,
+    population: &Population,
     memory: &Memory,
     velocities: &mut [f64],
-    evaluator: &mut Evaluator<'_, O>,
+    rng: &mut LazyRng,
 ) {
-    let Population { members, widths, .. } = population;
-    let (bounds, n) = (evaluator.bounds(), widths.len());
+    let widths = &population.widths[..];
+    let n = widths.len();
     let g = memory.members.point(memory.leader);
-    let particles = members.points.chunks_exact_mut(n).zip(velocities.chunks_exact_mut(n)).zip(memory.members.points());
-    for ((x, v), p) in particles {
-        for k in 0..n {
-            let [r1, r2] = evaluator.rng().uniform_pair();
-            let wanted = w * v[k] + c1 * r1 * (p[k] - x[k]) + c2 * r2 * (g[k] - x[k]);
-            let most = velocity_limit * widths[k];
-            v[k] = wanted.clamp(-most, most);
-            fly(&mut x[k], &mut v[k], bounds.lower()[k], bounds.upper()[k]);
+    let mut draws = Point::from_elem(0.0, n);
+    let particles = population.members.points().zip(memory.members.points()).zip(velocities.chunks_exact_mut(n));
+    for ((x, p), v) in particles {
+        rng.fill(&mut draws);
+        let places = v.iter_mut().zip(x).zip(p).zip(g).zip(widths).zip(&draws[..]);
+        for (((((v, x), p), g), width), draw) in places {
+            let [r1, r2] = split(*draw);
+            let most = velocity_limit * width;
+            let wanted = w * *v + c1 * r1 * (p - x) + c2 * r2 * (g - x);
+            *v = wanted.max(-most).min(most);
         }
     }
+}
+
+/// x = x + v; a particle stops at the walls.
+fn move_particles(population: &mut Population, velocities: &mut [f64], bounds: &Bounds) {
+    let (lower, upper) = (bounds.lower(), bounds.upper());
+    let particles =
+        population.members.points.chunks_exact_mut(lower.len()).zip(velocities.chunks_exact_mut(lower.len()));
+    for (x, v) in particles {
+        for (((x, v), lower), upper) in x.iter_mut().zip(v).zip(lower).zip(upper) {
+            fly(x, v, *lower, *upper);
+        }
+    }
+}
+
+/// Moves x by v. A coordinate that met its bound has no velocity left.
+#[inline]
+fn fly(x: &mut f64, v: &mut f64, lower: f64, upper: f64) {
+    let wanted = *x + *v;
+    let raised = if wanted > lower { wanted } else { lower };
+    *x = if raised < upper { raised } else { upper };
+    *v = if *x == wanted { *v } else { 0.0 };
 }

@@ -1,12 +1,15 @@
 //! Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): particles have no velocity, but are found around
 //! an attractor with a spread that follows from their distance to the mean best place.
 
+use smallvec::SmallVec;
+
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use super::population::{Memory, Population, Schedule};
 use crate::error::{Result, require_positive};
+use crate::math::MAX_DOF;
 use crate::objective::{Objective, Point};
-use crate::rng::LazyRng;
+use crate::rng::{LazyRng, split};
 
 /// Quantum-behaved particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,14 +80,19 @@ fn find_mean(memory: &Memory, mean: &mut [f64]) {
 impl Qpso {
     /// x = phi p + (1 - phi) g -+ alpha |m - x| ln(1/u), phi, u and the sign anew for each coordinate.
     fn draw_particles(&self, points: &mut [f64], memory: &Memory, mean: &[f64], rng: &mut LazyRng) {
+        let n = mean.len();
         let g = memory.members.point(memory.leader);
-        for (x, p) in points.chunks_exact_mut(mean.len()).zip(memory.members.points()) {
-            for k in 0..mean.len() {
-                let [phi, side] = rng.uniform_pair();
+        let mut draws: SmallVec<[f64; 2 * MAX_DOF]> = SmallVec::from_elem(0.0, 2 * n);
+        for (x, p) in points.chunks_exact_mut(n).zip(memory.members.points()) {
+            rng.fill(&mut draws);
+            let (first, second) = draws.split_at(n);
+            let places = x.iter_mut().zip(p).zip(g).zip(mean).zip(first).zip(second);
+            for (((((x, p), g), mean), first), second) in places {
+                let [phi, side] = split(*first);
                 // In (0, 1]: the logarithm is finite.
-                let u = 1.0 - rng.uniform();
-                let spread = -self.expansion * (mean[k] - x[k]).abs() * u.ln();
-                x[k] = g[k] + phi * (p[k] - g[k]) + if side < 0.5 { -spread } else { spread };
+                let u = 1.0 - second;
+                let spread = self.expansion * (mean - *x).abs() * u.ln();
+                *x = g + phi * (p - g) + if side < 0.5 { -spread } else { spread };
             }
         }
     }

@@ -43,7 +43,10 @@ impl Stop {
                 return Err(Error::out_of_range(name, "at least 1", 0.0));
             }
         }
-        Ok(())
+        match self.value_below {
+            Some(value) if value.is_nan() => Err(Error::out_of_range("value_below", "a number", value)),
+            _ => Ok(()),
+        }
     }
 }
 

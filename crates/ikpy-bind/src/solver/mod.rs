@@ -3,7 +3,10 @@
 mod bas;
 mod levenberg_marquardt;
 mod multi_start;
+mod options;
+mod pso;
 mod stop;
+mod swarm;
 
 use ikcore::solver::{Algorithm, AnySolver, DerivativeFree};
 use pyo3::prelude::*;
@@ -11,21 +14,35 @@ use pyo3::prelude::*;
 use bas::PyBas;
 use levenberg_marquardt::PyLevenbergMarquardt;
 use multi_start::PyMultiStart;
+use pso::PyPso;
 pub use stop::{PyStop, status};
+use swarm::{PyBeeColony, PyBeetleSwarm, PyDifferentialEvolution, PyFirefly, PyGenetic, PyQpso};
 
 use crate::convert::summary;
 use crate::error::invalid;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyBas>()?;
+    module.add_class::<PyBeeColony>()?;
+    module.add_class::<PyBeetleSwarm>()?;
+    module.add_class::<PyDifferentialEvolution>()?;
+    module.add_class::<PyFirefly>()?;
+    module.add_class::<PyGenetic>()?;
     module.add_class::<PyLevenbergMarquardt>()?;
     module.add_class::<PyMultiStart>()?;
+    module.add_class::<PyPso>()?;
+    module.add_class::<PyQpso>()?;
     module.add_class::<PyStop>()?;
     module.add("Status", stop::status_class(module.py())?)
 }
 
-/// Tries the classes one after another.
-macro_rules! first_of {
+/// The names of those that need values alone, for messages.
+const DERIVATIVE_FREE: &str = "BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO";
+/// The names of those that need more.
+const WITH_DERIVATIVES: &str = "LevenbergMarquardt";
+
+/// Returns from the function with the solver if it is of one of these classes.
+macro_rules! return_if_one_of {
     ($value:expr; $($class:ty),*) => {$(
         if let Ok(solver) = $value.cast::<$class>() {
             return Ok(AnySolver::Single(solver.get().0.clone().into()));
@@ -35,17 +52,42 @@ macro_rules! first_of {
 
 /// A solver argument.
 pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
-    first_of!(solver; PyBas, PyLevenbergMarquardt);
+    return_if_one_of!(solver; PyBas, PyBeeColony, PyBeetleSwarm, PyDifferentialEvolution, PyFirefly, PyGenetic);
+    return_if_one_of!(solver; PyPso, PyQpso, PyLevenbergMarquardt);
     if let Ok(multi_start) = solver.cast::<PyMultiStart>() {
         return Ok(AnySolver::MultiStart(multi_start.get().0.clone()));
     }
-    Err(invalid(format!("solver must be BAS, LevenbergMarquardt or MultiStart, got {}", summary(solver))))
+    let got = summary(solver);
+    Err(invalid(format!(
+        "solver must be {DERIVATIVE_FREE}, {WITH_DERIVATIVES} or MultiStart of one of them, got {got}"
+    )))
+}
+
+/// A solver argument of a method that knows values alone.
+pub fn derivative_free_solver(method: &str, solver: &Bound<'_, PyAny>) -> PyResult<AnySolver<DerivativeFree>> {
+    any_solver(solver)?.into_derivative_free().ok_or_else(|| {
+        let got = summary(solver);
+        invalid(format!(
+            "{method} knows no derivative: solver must be {DERIVATIVE_FREE} or MultiStart of one of them, got {got}"
+        ))
+    })
 }
 
 /// The Python value of an algorithm.
 fn to_python<'py>(py: Python<'py>, algorithm: &Algorithm) -> PyResult<Bound<'py, PyAny>> {
-    match algorithm {
-        Algorithm::DerivativeFree(DerivativeFree::Bas(bas)) => Ok(Bound::new(py, PyBas(*bas))?.into_any()),
-        Algorithm::LevenbergMarquardt(solver) => Ok(Bound::new(py, PyLevenbergMarquardt(*solver))?.into_any()),
-    }
+    Ok(match algorithm {
+        Algorithm::DerivativeFree(solver) => match solver {
+            DerivativeFree::Bas(solver) => Bound::new(py, PyBas(*solver))?.into_any(),
+            DerivativeFree::BeeColony(solver) => Bound::new(py, PyBeeColony(*solver))?.into_any(),
+            DerivativeFree::BeetleSwarm(solver) => Bound::new(py, PyBeetleSwarm(*solver))?.into_any(),
+            DerivativeFree::DifferentialEvolution(solver) => {
+                Bound::new(py, PyDifferentialEvolution(*solver))?.into_any()
+            }
+            DerivativeFree::Firefly(solver) => Bound::new(py, PyFirefly(*solver))?.into_any(),
+            DerivativeFree::Genetic(solver) => Bound::new(py, PyGenetic(*solver))?.into_any(),
+            DerivativeFree::Pso(solver) => Bound::new(py, PyPso(*solver))?.into_any(),
+            DerivativeFree::Qpso(solver) => Bound::new(py, PyQpso(*solver))?.into_any(),
+        },
+        Algorithm::LevenbergMarquardt(solver) => Bound::new(py, PyLevenbergMarquardt(*solver))?.into_any(),
+    })
 }

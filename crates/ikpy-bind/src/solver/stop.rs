@@ -39,6 +39,8 @@ pub fn status(py: Python<'_>, status: Status) -> PyResult<Bound<'_, PyAny>> {
 ///     max_evaluations: evaluations of the forward kinematics, the start included.
 ///     max_iterations: iterations of the solver; passes of BAS.
 ///     max_time: seconds. Setting it gives up repeatability.
+///     value_below: a value that is good enough: of the function in `minimize`, where reaching it is success; elsewhere of
+///         the weighted sum of squared errors (m, rad), where a search that stops there ends as IMPROVED.
 #[pyclass(name = "Stop", module = "beetle_ik", frozen, eq)]
 #[derive(PartialEq)]
 pub struct PyStop {
@@ -51,13 +53,21 @@ pub struct PyStop {
     /// See the class (s).
     #[pyo3(get)]
     max_time: Option<f64>,
+    /// See the class.
+    #[pyo3(get)]
+    value_below: Option<f64>,
 }
 
 #[pymethods]
 impl PyStop {
     #[new]
-    #[pyo3(signature = (*, max_evaluations=None, max_iterations=None, max_time=None))]
-    fn new(max_evaluations: Option<i128>, max_iterations: Option<i128>, max_time: Option<f64>) -> PyResult<Self> {
+    #[pyo3(signature = (*, max_evaluations=None, max_iterations=None, max_time=None, value_below=None))]
+    fn new(
+        max_evaluations: Option<i128>,
+        max_iterations: Option<i128>,
+        max_time: Option<f64>,
+        value_below: Option<f64>,
+    ) -> PyResult<Self> {
         if let Some(seconds) = max_time
             && Duration::try_from_secs_f64(seconds).is_err()
         {
@@ -67,6 +77,7 @@ impl PyStop {
             max_evaluations: optional_count("max_evaluations", max_evaluations)?,
             max_iterations: optional_count("max_iterations", max_iterations)?,
             max_time,
+            value_below,
         };
         stop.core().validate().map_err(raise)?;
         Ok(stop)
@@ -75,10 +86,11 @@ impl PyStop {
     fn __repr__(&self) -> String {
         let shown = |value: Option<String>| value.unwrap_or_else(|| "None".into());
         format!(
-            "Stop(max_evaluations={}, max_iterations={}, max_time={})",
+            "Stop(max_evaluations={}, max_iterations={}, max_time={}, value_below={})",
             shown(self.max_evaluations.map(|v| v.to_string())),
             shown(self.max_iterations.map(|v| v.to_string())),
             shown(self.max_time.map(|v| v.to_string())),
+            shown(self.value_below.map(|v| v.to_string())),
         )
     }
 
@@ -87,6 +99,7 @@ impl PyStop {
         options.set_item("max_evaluations", self.max_evaluations)?;
         options.set_item("max_iterations", self.max_iterations)?;
         options.set_item("max_time", self.max_time)?;
+        options.set_item("value_below", self.value_below)?;
         Ok((PyTuple::empty(py), options))
     }
 }
@@ -104,6 +117,7 @@ impl PyStop {
             },
             max_iterations: self.max_iterations.unwrap_or(standard.max_iterations),
             max_time: self.max_time.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
+            value_below: self.value_below,
             ..standard
         }
     }

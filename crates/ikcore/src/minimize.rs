@@ -1,0 +1,190 @@
+//! The least value of any function in a box, by a solver that needs values alone.
+
+use std::time::Duration;
+
+use crate::error::{Error, Result, require_finite};
+use crate::objective::{Bounds, Objective, Pace, Point, Score};
+use crate::rng::{self, LazyRng};
+use crate::solver::stop::Stopwatch;
+use crate::solver::{AnySolver, DerivativeFree, Evaluator, Monitor, Status, Stop};
+
+/// How to minimise.
+#[derive(Debug, Clone)]
+pub struct MinimizeOptions {
+    /// The algorithm.
+    pub solver: AnySolver<DerivativeFree>,
+    /// Where to begin (n,); None draws the start from the box.
+    pub start: Option<Vec<f64>>,
+    /// Budgets. [`Stop::value_below`] says what is good enough: a start that is has nothing left to do.
+    pub stop: Stop,
+    /// Seed of the random draws: the same seed, the same bits.
+    pub seed: u64,
+}
+
+/// The best point found, and what became of the search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Minimum {
+    /// The point (n,), inside the box.
+    pub x: Point,
+    /// Its value; infinite where the function had no finite value anywhere.
+    pub value: f64,
+    /// (evaluations made, best value then): the start, every improvement, and the end.
+    pub history: Vec<[f64; 2]>,
+    /// [`Status::Solved`] below the value asked for. Without one nothing is known to be good enough, so that a search ends
+    /// by its own rule ([`Status::Stalled`]) or with its budget.
+    pub status: Status,
+    /// Iterations over all starts.
+    pub iterations: usize,
+    /// Starts beyond the first.
+    pub restarts: usize,
+    /// Evaluations of the function.
+    pub evaluations: usize,
+    /// Time taken.
+    pub elapsed: Duration,
+}
+
+impl Minimum {
+    /// What happened, and what to try.
+    pub fn message(&self) -> String {
+        let Self { value, evaluations, .. } = self;
+        if value.is_infinite() {
+            return format!("the function had no finite value in {evaluations} evaluations: try another box or start");
+        }
+        let found = format!("best value {value:.6e} after {evaluations} evaluations");
+        match self.status {
+            Status::Solved => format!("{found}, below the value asked for"),
+            Status::Stalled => format!("{found}, and no further gain: try another start or seed, or MultiStart"),
+            Status::BudgetSpent => format!("{found}, all that the budget allows: raise it in stop=Stop(...)"),
+            Status::TimeUp => format!("{found}, when the time was up: raise max_time"),
+            _ => format!("{found}, when it was stopped: run again to finish"),
+        }
+    }
+}
+
+/// Searches the box from `lower` (n,) to `upper` (n,) for the least value of `objective`.
+///
+/// # Errors
+/// Any [`enum@Error`] for wrong input: an open or an empty box, a start outside it, options out of range, a population larger
+/// than the budget. A search without success is a status, not an error.
+pub fn minimize(
+    objective: &mut dyn Objective,
+    lower: &[f64],
+    upper: &[f64],
+    options: &MinimizeOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Minimum> {
+    let MinimizeOptions { solver, start, stop, seed } = options;
+    solver.validate()?;
+    stop.validate()?;
+    solver.require_affordable(stop)?;
+    let bounds = &closed_box(objective.dimension(), lower, upper)?;
+    let stopwatch = Stopwatch::start();
+    let mut rng = rng::stream(*seed, 0);
+    let mut x0 = Point::from_elem(0.0, bounds.lower().len());
+    match start {
+        Some(start) => x0.copy_from_slice(require_inside(bounds, start)?),
+        None => bounds.sample(&mut rng, &mut x0),
+    }
+    let mut recorded = Recorded { objective, enough: stop.value_below, evaluations: 0, history: Vec::new() };
+    let narrowed: &mut dyn Objective = &mut recorded;
+    let stop = Stop { value_below: None, ..*stop };
+    let mut evaluator = Evaluator::new(narrowed, bounds, stop, &mut rng, monitor);
+    let outcome = solver.run(&mut evaluator, &x0);
+    let (best, evaluations, restarts) = (evaluator.best().clone(), evaluator.evaluations(), evaluator.attempts() - 1);
+    Ok(Minimum {
+        x: best.x,
+        value: best.value,
+        history: recorded.finish(evaluations),
+        status: outcome.status(),
+        iterations: outcome.iterations,
+        restarts,
+        evaluations,
+        elapsed: stopwatch.elapsed(),
+    })
+}
+
+/// A box with walls on all sides: a search without derivatives has to know how far it may go.
+fn closed_box(dimension: usize, lower: &[f64], upper: &[f64]) -> Result<Bounds> {
+    if lower.len() != dimension || dimension == 0 {
+        let expected = if dimension == 0 { "at least 1 entry".into() } else { format!("{dimension} entries") };
+        return Err(Error::WrongLength { what: "lower".into(), expected, got: lower.len() });
+    }
+    let entry = |i| format!("entry {i}");
+    require_finite("lower", lower, entry)?;
+    require_finite("upper", upper, entry)?;
+    let bounds = Bounds::new(lower, upper)?;
+    // From -1e308 to 1e308 there is no width to calculate with.
+    let widths: Vec<f64> = lower.iter().zip(upper).map(|(lower, upper)| upper - lower).collect();
+    require_finite("upper - lower", &widths, entry)?;
+    Ok(bounds)
+}
+
+fn require_inside<'a>(bounds: &Bounds, start: &'a [f64]) -> Result<&'a [f64]> {
+    let (lower, upper) = (bounds.lower(), bounds.upper());
+    if start.len() != lower.len() {
+        let expected = format!("{} entries as in lower", lower.len());
+        return Err(Error::WrongLength { what: "start".into(), expected, got: start.len() });
+    }
+    require_finite("start", start, |i| format!("entry {i}"))?;
+    match (0..start.len()).find(|i| start[*i] < lower[*i] || upper[*i] < start[*i]) {
+        None => Ok(start),
+        Some(i) => {
+            let requirement = format!("within [{}, {}]", lower[i], upper[i]);
+            Err(Error::out_of_range(format!("start[{i}]"), &requirement, start[i]))
+        }
+    }
+}
+
+/// Writes down every improvement, and knows which value is enough.
+struct Recorded<'a> {
+    objective: &'a mut dyn Objective,
+    enough: Option<f64>,
+    evaluations: usize,
+    history: Vec<[f64; 2]>,
+}
+
+impl Recorded<'_> {
+    fn note(&mut self, score: &mut Score) {
+        self.evaluations += 1;
+        score.solved = self.enough.is_some_and(|enough| score.value < enough);
+        let value = if score.value.is_finite() { score.value } else { f64::INFINITY };
+        if self.history.last().is_none_or(|[_, best]| value < *best) {
+            self.history.push([self.evaluations as f64, value]);
+        }
+    }
+
+    /// With a last row for the end, unless the last evaluation was an improvement.
+    fn finish(mut self, evaluations: usize) -> Vec<[f64; 2]> {
+        if let Some([at, best]) = self.history.last().copied()
+            && at < evaluations as f64
+        {
+            self.history.push([evaluations as f64, best]);
+        }
+        self.history
+    }
+}
+
+impl Objective for Recorded<'_> {
+    fn dimension(&self) -> usize {
+        self.objective.dimension()
+    }
+
+    fn pace(&self) -> Pace {
+        self.objective.pace()
+    }
+
+    fn evaluate(&mut self, x: &[f64]) -> Score {
+        let mut score = self.objective.evaluate(x);
+        self.note(&mut score);
+        score
+    }
+
+    fn evaluate_all(&mut self, xs: &[f64], out: &mut [Score]) {
+        self.objective.evaluate_all(xs, out);
+        out.iter_mut().for_each(|score| self.note(score));
+    }
+
+    fn propose_start(&mut self, attempt: usize, bounds: &Bounds, rng: &mut LazyRng, x: &mut [f64]) {
+        self.objective.propose_start(attempt, bounds, rng, x);
+    }
+}

@@ -1,0 +1,263 @@
+//! `minimize` and `Minimum`: the user's own function as an objective.
+
+use std::cell::RefCell;
+
+use ikcore::minimize::{self, MinimizeOptions};
+use ikcore::objective::{Objective, Pace, Score};
+use ikcore::solver::{Monitor, Status, Stop};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::intern;
+use pyo3::prelude::*;
+
+use crate::convert::{array, count, row, shape_text, summary, table, vector};
+use crate::error::{invalid, raise};
+use crate::monitor::Watcher;
+use crate::solver::{PyStop, derivative_free_solver, status};
+
+/// The best point found by `minimize`, and what became of the search.
+#[pyclass(name = "Minimum", module = "beetle_ik", frozen)]
+pub struct PyMinimum {
+    core: minimize::Minimum,
+    /// The point (n,), inside the box.
+    #[pyo3(get)]
+    x: Py<PyArray1<f64>>,
+    /// (k, 2): evaluations made, and the best value then. A row for the start, for every improvement and for the end.
+    #[pyo3(get)]
+    history: Py<PyArrayDyn<f64>>,
+}
+
+#[pymethods]
+impl PyMinimum {
+    /// The function's value at `x`; inf where it was finite nowhere.
+    #[getter]
+    fn value(&self) -> f64 {
+        self.core.value
+    }
+
+    /// Whether the value is below the one asked for by `Stop(value_below=...)`; without one, nothing is known to be good
+    /// enough, and this is False.
+    #[getter]
+    fn success(&self) -> bool {
+        self.core.status == Status::Solved
+    }
+
+    /// SOLVED as `success`; STALLED by the solver's own rule; BUDGET_SPENT, TIME_UP or INTERRUPTED.
+    #[getter]
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        status(py, self.core.status)
+    }
+
+    /// What happened, and what to try.
+    #[getter]
+    fn message(&self) -> String {
+        self.core.message()
+    }
+
+    /// Evaluations of the function.
+    #[getter]
+    fn evaluations(&self) -> usize {
+        self.core.evaluations
+    }
+
+    /// Iterations over all starts: generations of swarms, passes of BAS.
+    #[getter]
+    fn iterations(&self) -> usize {
+        self.core.iterations
+    }
+
+    /// Starts beyond the first.
+    #[getter]
+    fn restarts(&self) -> usize {
+        self.core.restarts
+    }
+
+    /// Time taken (s).
+    #[getter]
+    fn elapsed(&self) -> f64 {
+        self.core.elapsed.as_secs_f64()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Minimum {}: {}>", self.core.status.name(), self.core.message())
+    }
+}
+
+impl PyMinimum {
+    fn new(py: Python<'_>, core: minimize::Minimum) -> PyResult<Self> {
+        let history = table(py, core.history.as_flattened().to_vec(), &[core.history.len(), 2])?.unbind();
+        Ok(Self { x: row(py, core.x.to_vec()).unbind(), history, core })
+    }
+}
+
+/// What the function, or a signal, raised; the search ends at the next look at the monitor.
+type Failure = RefCell<Option<PyErr>>;
+
+/// The user's function.
+struct Function<'py, 'f> {
+    function: Bound<'py, PyAny>,
+    dimension: usize,
+    vectorized: bool,
+    failure: &'f Failure,
+}
+
+impl Function<'_, '_> {
+    /// Values of the function that did not raise, else NaN.
+    fn kept<T>(&self, values: PyResult<T>) -> Option<T> {
+        values.map_err(|error| *self.failure.borrow_mut() = Some(error)).ok()
+    }
+
+    fn value_at(&self, x: &[f64]) -> PyResult<f64> {
+        let value = self.function.call1((PyArray1::from_slice(self.function.py(), x),))?;
+        number(&value)
+    }
+
+    fn values_at(&self, xs: &[f64], out: &mut [Score]) -> PyResult<()> {
+        let points = PyArray1::from_slice(self.function.py(), xs).reshape([out.len(), self.dimension])?;
+        let values = self.function.call1((points,))?;
+        if is_complex(&values)? {
+            let got = summary(&values);
+            return Err(invalid(format!("function must return {} real numbers, got {got}", out.len())));
+        }
+        let values = array("the function's values", &values)?;
+        if values.shape() != [out.len()] {
+            let (expected, got) = (shape_text(&[out.len()]), shape_text(values.shape()));
+            return Err(invalid(format!("vectorized function must return shape {expected}, got {got}")));
+        }
+        for (score, value) in out.iter_mut().zip(values.as_slice()?) {
+            score.value = *value;
+        }
+        Ok(())
+    }
+}
+
+impl Objective for Function<'_, '_> {
+    fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// A call of Python takes so long that a look at the monitor after each costs nothing.
+    fn pace(&self) -> Pace {
+        Pace { at_once: if self.vectorized { usize::MAX } else { 1 }, between_looks: 1 }
+    }
+
+    fn evaluate(&mut self, x: &[f64]) -> Score {
+        let mut score = [Score { value: f64::NAN, solved: false }];
+        self.evaluate_all(x, &mut score);
+        score[0]
+    }
+
+    fn evaluate_all(&mut self, xs: &[f64], out: &mut [Score]) {
+        out.fill(Score { value: f64::NAN, solved: false });
+        if self.vectorized {
+            self.kept(self.values_at(xs, out));
+            return;
+        }
+        for (x, score) in xs.chunks_exact(self.dimension).zip(out) {
+            match self.kept(self.value_at(x)) {
+                Some(value) => score.value = value,
+                None => return,
+            }
+        }
+    }
+}
+
+/// Whether this is of numpy's or Python's complex numbers, which would lose their imaginary part.
+fn is_complex(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let py = value.py();
+    let numpy = py.import(intern!(py, "numpy"))?;
+    numpy.call_method1(intern!(py, "iscomplexobj"), (value,))?.extract()
+}
+
+/// A number that the function returned: a float, or whatever has the value of one and no dimension.
+fn number(value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    if let Ok(number) = value.cast_exact::<pyo3::types::PyFloat>() {
+        return Ok(number.value());
+    }
+    let no_number = || invalid(format!("function must return a real number, got {}", summary(value)));
+    let dimensions = value.getattr(intern!(value.py(), "ndim")).and_then(|ndim| ndim.extract::<usize>()).unwrap_or(0);
+    if value.is_none() || dimensions > 0 || is_complex(value)? {
+        return Err(no_number());
+    }
+    value.extract::<f64>().map_err(|_| no_number())
+}
+
+/// Ends the search after a failure, and on Ctrl-C.
+struct Attendant<'f> {
+    watcher: Watcher,
+    failure: &'f Failure,
+}
+
+impl Monitor for Attendant<'_> {
+    fn keep_going(&mut self) -> bool {
+        self.failure.borrow().is_none() && self.watcher.keep_going()
+    }
+}
+
+/// Searches a box for the least value of a function of which nothing but values is known.
+///
+/// Args:
+///     function: takes x (n,) and returns a number; NaN and infinities count as the worst value.
+///     lower: (n,), finite.
+///     upper: (n,), finite.
+///     solver: one that needs values alone, such as `PSO` or `BAS`, or `MultiStart` of one. BAS has antennae as long as
+///         c1 times the root of the value: it suits functions whose least value is zero.
+///     start: (n,), where to begin; None draws it. It is a member of the first generation of swarms.
+///     stop: budgets; None: 30000 evaluations. `Stop(value_below=...)` says what is good enough.
+///     seed: of the random draws: the same seed, the same bits.
+///     vectorized: the function takes (m, n) and returns (m,), whole generations at once.
+///
+/// Returns:
+///     A `Minimum`, its `success` only where a value was asked for and found.
+///
+/// Raises:
+///     InvalidInputError: wrong shape, an open or an empty box, a start outside it, a population larger than the budget, a
+///         function that returns something else than numbers.
+///
+/// What the function raises comes out as it is, and so does KeyboardInterrupt; both have the best point so far, a
+/// `Minimum`, as attribute `best`, and a note that says so.
+#[pyfunction(name = "minimize")]
+#[pyo3(signature = (function, lower, upper, *, solver, start=None, stop=None, seed=0, vectorized=false))]
+#[allow(clippy::too_many_arguments)]
+pub fn minimize_function(
+    py: Python<'_>,
+    function: &Bound<'_, PyAny>,
+    lower: &Bound<'_, PyAny>,
+    upper: &Bound<'_, PyAny>,
+    solver: &Bound<'_, PyAny>,
+    start: Option<&Bound<'_, PyAny>>,
+    stop: Option<&PyStop>,
+    seed: i128,
+    vectorized: bool,
+) -> PyResult<PyMinimum> {
+    if !function.is_callable() {
+        return Err(invalid(format!("function must be a callable of x, got {}", summary(function))));
+    }
+    let (lower, upper) = (vector("lower", lower)?, vector("upper", upper)?);
+    let options = MinimizeOptions {
+        solver: derivative_free_solver("minimize", solver)?,
+        start: start.map(|start| vector("start", start)).transpose()?,
+        stop: stop.map_or(Stop::default(), PyStop::core),
+        seed: count("seed", seed)?,
+    };
+    let failure = Failure::default();
+    let mut objective = Function { function: function.clone(), dimension: lower.len(), vectorized, failure: &failure };
+    let mut attendant = Attendant { watcher: Watcher::new(), failure: &failure };
+    let core = minimize::minimize(&mut objective, &lower, &upper, &options, &mut attendant).map_err(raise)?;
+    let found = PyMinimum::new(py, core)?;
+    match attendant.watcher.finish().err().or(failure.into_inner()) {
+        Some(error) => Err(with_best(py, error, found)?),
+        None => Ok(found),
+    }
+}
+
+/// The error with what was found before it.
+fn with_best(py: Python<'_>, error: PyErr, found: PyMinimum) -> PyResult<PyErr> {
+    let value = error.value(py);
+    let note = format!("minimize: {}; kept as `best` of this exception", found.core.message());
+    // A class may refuse attributes; its exception comes out all the same.
+    let kept = value.setattr("best", Bound::new(py, found)?);
+    if kept.is_ok() {
+        value.call_method1("add_note", (note,))?;
+    }
+    Ok(error)
+}

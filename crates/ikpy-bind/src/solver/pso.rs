@@ -1,0 +1,130 @@
+//! `PSO`.
+
+use ikcore::solver::Pso;
+use ikcore::solver::pso::Form;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use super::options::{SolverOption, limited, schedule, show_schedule};
+use crate::error::raise;
+
+/// Particle swarm optimisation: uses values alone.
+///
+/// Args:
+///     population: particles.
+///     form: "constriction", the whole velocity shrinks by a factor that follows from c1 + c2 > 4 (Clerc and Kennedy
+///         2002); "inertia", the old velocity has a weight (Shi and Eberhart 1998).
+///     inertia: that weight; None: 0.729. Only with form "inertia".
+///     c1: attraction to the particle's own best place; None: 2.05 with constriction, 1.49445 with inertia.
+///     c2: attraction to the swarm's best place; None: as c1's.
+///     velocity_limit: largest velocity, as a share of the box's width a generation.
+///     max_generations: after so many it gives up; None: as many as the budget allows.
+///     stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None: never.
+#[pyclass(name = "PSO", module = "beetle_ik", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub struct PyPso(pub Pso);
+
+#[pymethods]
+impl PyPso {
+    #[new]
+    #[pyo3(signature = (*, population=Pso::default().schedule.population.give(), form="constriction", inertia=None, c1=None,
+                        c2=None, velocity_limit=Pso::default().velocity_limit,
+                        max_generations=limited(Pso::default().schedule.max_generations).give(),
+                        stall_generations=limited(Pso::default().schedule.stall_generations).give()))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        population: i128,
+        form: &str,
+        inertia: Option<f64>,
+        c1: Option<f64>,
+        c2: Option<f64>,
+        velocity_limit: f64,
+        max_generations: Option<i128>,
+        stall_generations: Option<i128>,
+    ) -> PyResult<Self> {
+        let standard = Pso::of(Form::named(form, inertia).map_err(raise)?);
+        let solver = Pso {
+            schedule: schedule(population, max_generations, stall_generations)?,
+            c1: c1.unwrap_or(standard.c1),
+            c2: c2.unwrap_or(standard.c2),
+            velocity_limit,
+            ..standard
+        };
+        solver.validate().map_err(raise)?;
+        Ok(Self(solver))
+    }
+
+    /// Particles.
+    #[getter]
+    fn population(&self) -> usize {
+        self.0.schedule.population
+    }
+
+    /// "constriction" or "inertia".
+    #[getter]
+    fn form(&self) -> String {
+        self.0.form.to_string()
+    }
+
+    /// Weight of the old velocity; None with constriction.
+    #[getter]
+    fn inertia(&self) -> Option<f64> {
+        match self.0.form {
+            Form::Inertia(weight) => Some(weight),
+            Form::Constriction => None,
+        }
+    }
+
+    /// Attraction to the particle's own best place.
+    #[getter]
+    fn c1(&self) -> f64 {
+        self.0.c1
+    }
+
+    /// Attraction to the swarm's best place.
+    #[getter]
+    fn c2(&self) -> f64 {
+        self.0.c2
+    }
+
+    /// Largest velocity, as a share of the box's width a generation.
+    #[getter]
+    fn velocity_limit(&self) -> f64 {
+        self.0.velocity_limit
+    }
+
+    /// Generations after which it gives up; None: as many as the budget allows.
+    #[getter]
+    fn max_generations(&self) -> Option<usize> {
+        limited(self.0.schedule.max_generations)
+    }
+
+    /// Generations without gain after which it gives up; None: never.
+    #[getter]
+    fn stall_generations(&self) -> Option<usize> {
+        limited(self.0.schedule.stall_generations)
+    }
+
+    fn __repr__(&self) -> String {
+        let Pso { schedule, form, c1, c2, velocity_limit } = &self.0;
+        let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={weight}, "));
+        format!(
+            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={velocity_limit}, {})",
+            schedule.population,
+            show_schedule(schedule)
+        )
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let options = PyDict::new(py);
+        options.set_item("population", self.population())?;
+        options.set_item("form", self.form())?;
+        options.set_item("inertia", self.inertia())?;
+        options.set_item("c1", self.0.c1)?;
+        options.set_item("c2", self.0.c2)?;
+        options.set_item("velocity_limit", self.0.velocity_limit)?;
+        options.set_item("max_generations", self.max_generations())?;
+        options.set_item("stall_generations", self.stall_generations())?;
+        Ok((PyTuple::empty(py), options))
+    }
+}

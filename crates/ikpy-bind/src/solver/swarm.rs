@@ -1,0 +1,206 @@
+//! Swarms and evolution: classes that are a population and a list of options.
+
+use ikcore::solver::beetle_swarm::Direction;
+use ikcore::solver::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Qpso};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use super::options::{SolverOption, limited, schedule, show_schedule};
+use crate::error::raise;
+
+/// The class of a solver whose options are a schedule and these.
+macro_rules! swarm {
+    ($(#[$doc:meta])* $class:ident, $name:literal, $core:ident { $($(#[$note:meta])* $option:ident: $kind:ty,)* }) => {
+        $(#[$doc])*
+        ///     max_generations: after so many it gives up; None: as many as the budget allows.
+        ///     stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
+        ///         never.
+        #[pyclass(name = $name, module = "beetle_ik", frozen, eq, from_py_object)]
+        #[derive(Clone, PartialEq)]
+        pub struct $class(pub $core);
+
+        #[pymethods]
+        impl $class {
+            #[new]
+            #[pyo3(signature = (*, population=$core::default().schedule.population.give(),
+                                $($option=$core::default().$option.give(),)*
+                                max_generations=limited($core::default().schedule.max_generations).give(),
+                                stall_generations=limited($core::default().schedule.stall_generations).give()))]
+            #[allow(clippy::too_many_arguments)]
+            fn new(
+                population: i128,
+                $($option: <$kind as SolverOption>::Given,)*
+                max_generations: Option<i128>,
+                stall_generations: Option<i128>,
+            ) -> PyResult<Self> {
+                let solver = $core {
+                    schedule: schedule(population, max_generations, stall_generations)?,
+                    $($option: <$kind as SolverOption>::take(stringify!($option), $option)?,)*
+                };
+                solver.validate().map_err(raise)?;
+                Ok(Self(solver))
+            }
+
+            /// Members of a generation.
+            #[getter]
+            fn population(&self) -> usize {
+                self.0.schedule.population
+            }
+
+            /// Generations after which it gives up; None: as many as the budget allows.
+            #[getter]
+            fn max_generations(&self) -> Option<usize> {
+                limited(self.0.schedule.max_generations)
+            }
+
+            /// Generations without gain after which it gives up; None: never.
+            #[getter]
+            fn stall_generations(&self) -> Option<usize> {
+                limited(self.0.schedule.stall_generations)
+            }
+
+            $($(#[$note])*
+            #[getter]
+            fn $option(&self) -> <$kind as SolverOption>::Given {
+                self.0.$option.give()
+            })*
+
+            fn __repr__(&self) -> String {
+                let options = [$(format!("{}={}, ", stringify!($option), self.0.$option.show())),*].concat();
+                let schedule = &self.0.schedule;
+                format!("{}(population={}, {options}{})", $name, schedule.population, show_schedule(schedule))
+            }
+
+            fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+                let options = PyDict::new(py);
+                options.set_item("population", self.population())?;
+                options.set_item("max_generations", self.max_generations())?;
+                options.set_item("stall_generations", self.stall_generations())?;
+                $(options.set_item(stringify!($option), self.0.$option.give())?;)*
+                Ok((PyTuple::empty(py), options))
+            }
+        }
+    };
+}
+
+swarm! {
+    /// Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): uses values alone.
+    ///
+    /// Args:
+    ///     population: particles.
+    ///     expansion: contraction-expansion coefficient alpha; 0.75 is the fixed value of Sun et al. (2012).
+    PyQpso, "QPSO", Qpso {
+        /// Contraction-expansion coefficient.
+        expansion: f64,
+    }
+}
+
+swarm! {
+    /// Firefly algorithm (Yang 2009): uses values alone. Fireflies have turns to attract all that are less bright.
+    ///
+    /// Args:
+    ///     population: fireflies.
+    ///     attractiveness: beta_0, at no distance.
+    ///     absorption: gamma, with distances in widths of the box.
+    ///     randomness: alpha, size of the random part, as a share of the box's width.
+    ///     randomness_decay: what alpha is multiplied by with every turn.
+    PyFirefly, "Firefly", Firefly {
+        /// Attractiveness at no distance.
+        attractiveness: f64,
+        /// Absorption of light.
+        absorption: f64,
+        /// Size of the random part at first, as a share of the box's width.
+        randomness: f64,
+        /// What it is multiplied by with every turn.
+        randomness_decay: f64,
+    }
+}
+
+swarm! {
+    /// Genetic algorithm with the operators of MATLAB's `ga`: elite, tournaments, scattered crossover, Gaussian mutation.
+    /// Uses values alone.
+    ///
+    /// Args:
+    ///     population: members of a generation.
+    ///     elite_share: share that survives unchanged, rounded up.
+    ///     crossover_share: share of the others that is born by crossover; the rest by mutation.
+    ///     tournament: members of a tournament, the best of which becomes a parent.
+    ///     mutation_scale: standard deviation of mutations at first, as a share of the box's width.
+    ///     mutation_decay: what it is multiplied by in a generation.
+    PyGenetic, "Genetic", Genetic {
+        /// Share that survives unchanged.
+        elite_share: f64,
+        /// Share of the others that is born by crossover.
+        crossover_share: f64,
+        /// Members of a tournament.
+        tournament: usize,
+        /// Standard deviation of mutations at first, as a share of the box's width.
+        mutation_scale: f64,
+        /// What it is multiplied by in a generation.
+        mutation_decay: f64,
+    }
+}
+
+swarm! {
+    /// Artificial bee colony (Karaboga 2005): uses values alone.
+    ///
+    /// Args:
+    ///     population: food sources; there are as many employed bees, and as many onlookers.
+    ///     limit: trials in vain after which a source is abandoned; None: sources times dimensions.
+    PyBeeColony, "BeeColony", BeeColony {
+        /// Trials in vain after which a source is abandoned; None: sources times dimensions.
+        limit: Option<usize>,
+    }
+}
+
+swarm! {
+    /// Beetle swarm optimisation (Wang et al. 2019, eq. 26-32), particles with antennae: uses values alone. The equations
+    /// need an inertia weight and a limit on velocities to converge; with inertia=1 and velocity_limit=1 they are literal.
+    ///
+    /// Args:
+    ///     population: beetles; each takes three evaluations a generation.
+    ///     inertia: weight of the old velocity.
+    ///     c1: attraction to the beetle's own best place, eq. (27).
+    ///     c2: attraction to the swarm's best place.
+    ///     velocity_limit: largest velocity, as a share of the box's width a generation.
+    ///     velocity_share: lambda of eq. (26), the share of the velocity in a move.
+    ///     step: delta at first, eq. (28).
+    ///     step_decay: eta of eq. (32).
+    ///     step_over_antennae: c of eq. (31).
+    ///     direction: the sign of eq. (28), as "printed" or "downhill".
+    PyBeetleSwarm, "BeetleSwarm", BeetleSwarm {
+        /// Weight of the old velocity.
+        inertia: f64,
+        /// Attraction to the beetle's own best place.
+        c1: f64,
+        /// Attraction to the swarm's best place.
+        c2: f64,
+        /// Largest velocity, as a share of the box's width.
+        velocity_limit: f64,
+        /// Share of the velocity in a move.
+        velocity_share: f64,
+        /// delta at first.
+        step: f64,
+        /// What delta is multiplied by in a generation.
+        step_decay: f64,
+        /// delta over the distance of the antennae.
+        step_over_antennae: f64,
+        /// "printed" or "downhill".
+        direction: Direction,
+    }
+}
+
+swarm! {
+    /// Differential evolution, DE/rand/1/bin (Storn and Price 1997): uses values alone.
+    ///
+    /// Args:
+    ///     population: vectors.
+    ///     weight: F, weight of the difference of two vectors.
+    ///     crossover_rate: CR, probability that a coordinate comes from the mutant.
+    PyDifferentialEvolution, "DifferentialEvolution", DifferentialEvolution {
+        /// Weight of the difference of two vectors.
+        weight: f64,
+        /// Probability that a coordinate comes from the mutant.
+        crossover_rate: f64,
+    }
+}
