@@ -1,10 +1,13 @@
-"""Files that are either whole or not there."""
+"""Files and folders that are either whole or not there."""
 
 import os
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
+
+from ._core import InvalidInputError
 
 
 @contextmanager
@@ -19,3 +22,32 @@ def whole_file(file: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     except BaseException:
         unfinished.unlink(missing_ok=True)
         raise
+
+
+@contextmanager
+def whole_folder(folder: Path, *, option: str = "out") -> Iterator[Path]:
+    """Yield a place to write; what is in it moves into `folder` when the block ends well and vanishes otherwise.
+
+    Raises:
+        InvalidInputError: on entering, where `folder` cannot be written: no work is done for nothing. Names `option`.
+    """
+    created = [place for place in (folder, *folder.parents) if not place.exists()]
+    try:
+        with _staging(folder, option) as staging:
+            yield Path(staging)
+            for entry in Path(staging).iterdir():
+                entry.replace(folder / entry.name)
+    except BaseException:
+        for place in created:
+            if place.exists():
+                place.rmdir()
+        raise
+
+
+def _staging(folder: Path, option: str) -> tempfile.TemporaryDirectory[str]:
+    """A temporary folder in `folder`: on the same disk, so that moving its files cannot fail half-way through one."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        return tempfile.TemporaryDirectory(prefix=".beetle-ik-", dir=folder)
+    except OSError as error:
+        raise InvalidInputError(f"{option}: folder '{folder}' cannot be written: {error.strerror}") from error

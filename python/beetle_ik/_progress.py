@@ -7,10 +7,23 @@ class Bar:
     def __init__(self) -> None:
         """Draw the bar, empty until the first `update`."""
         from rich.console import Console
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskProgressColumn, TimeElapsedColumn
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            TaskProgressColumn,
+            TextColumn,
+            TimeElapsedColumn,
+        )
 
         console = Console(stderr=True)
-        columns = BarColumn(), TaskProgressColumn(), MofNCompleteColumn(), TimeElapsedColumn()
+        columns = (
+            BarColumn(),
+            TaskProgressColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("{task.description}"),
+        )
         self._progress = Progress(*columns, console=console, disable=not console.is_terminal)
         self._task = self._progress.add_task("", total=None)
         self._progress.start()
@@ -18,6 +31,10 @@ class Bar:
     def update(self, done: int, total: int) -> None:
         """Show that `done` of `total` steps are done."""
         self._progress.update(self._task, completed=done, total=total)
+
+    def show(self, what: str, done: int, total: int) -> None:
+        """Show what is being done, and that `done` of its `total` items are."""
+        self._progress.update(self._task, description=what, completed=done, total=total)
 
     def close(self) -> None:
         """Leave the bar as it stands and give the terminal back."""

@@ -5,12 +5,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._style import BLUE, FORBIDDEN, GREEN, VERMILION, line, style
 from ._text import counted
 
 if TYPE_CHECKING:
@@ -20,18 +19,6 @@ if TYPE_CHECKING:
 
     from ._core import Robot, TrackResult, Trajectory
 
-# Okabe and Ito's palette, which colour-blind readers can tell apart too; its yellow is too faint for lines on white.
-_BLUE, _VERMILION, _GREEN, _PURPLE, _ORANGE, _SKY, _BLACK = (
-    "#0072B2",
-    "#D55E00",
-    "#009E73",
-    "#CC79A7",
-    "#E69F00",
-    "#56B4E9",
-    "#000000",
-)
-_CYCLE = (_BLUE, _VERMILION, _GREEN, _PURPLE, _ORANGE, _SKY, _BLACK)
-_FORBIDDEN = "#D9D9D9"
 _ROW_HEIGHT = 2.4  # inches, of a panel over time
 _VELOCITY_PANELS_A_ROW = 7
 _VELOCITY_ROW_HEIGHT = 2.0
@@ -42,11 +29,11 @@ _TRAJECTORY_SAMPLES = 2001
 def robot(robot: Robot, q: ArrayLike) -> Figure:
     """The robot as a stick figure at the configuration `q` (n,)."""
     origins = robot.link_poses(q)[:, :3, 3]
-    with _style():
+    with style():
         figure = _new_figure(6.0, 6.0)
         axes = figure.add_subplot(projection="3d")
-        axes.plot(*origins.T, color=_BLUE, linewidth=3, marker="o", markersize=6, label="links")
-        axes.plot(*origins[-1:].T, color=_VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
+        axes.plot(*origins.T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
+        axes.plot(*origins[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
         _equal_axes(axes, origins)
         axes.set_title(f"{robot.name}, {counted(robot.dof, 'joint')}")
         axes.legend(loc="upper left")
@@ -60,7 +47,7 @@ def track(result: TrackResult) -> Figure:
         panels.insert(1, _draw_rotation_error)
     velocity_rows = -(-result.robot.dof // _VELOCITY_PANELS_A_ROW)
     heights = [_ROW_HEIGHT * len(panels), _VELOCITY_ROW_HEIGHT * velocity_rows]
-    with _style():
+    with style():
         figure = _new_figure(13.0, sum(heights) + 0.3)
         figure.suptitle(f"{result.robot.name}, {counted(len(result.time) - 1, 'step')} of {result.time[1]:g} s")
         above, below = np.asarray(figure.subfigures(2, 1, height_ratios=heights))
@@ -82,7 +69,7 @@ def trajectory(trajectory: Trajectory) -> Figure:
     curved = trajectory.coefficients.shape[2] > 2
     labels = ["position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]"][: 3 if curved else 2]
     time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
-    with _style():
+    with style():
         figure = _new_figure(9.0, _ROW_HEIGHT * len(labels) + 0.6)
         panels = figure.subplots(len(labels), 1, sharex=True)
         for axes, label, values in zip(panels, labels, trajectory.at(time), strict=False):
@@ -95,9 +82,9 @@ def trajectory(trajectory: Trajectory) -> Figure:
 
 
 def _draw_space(axes: Any, result: TrackResult) -> None:
-    axes.plot(*result.reference.T, color=_VERMILION, linewidth=4, alpha=0.45, label="target")
-    axes.plot(*result.position.T, color=_BLUE, linewidth=1.2, label="tip")
-    axes.plot(*result.position[:1].T, color=_BLUE, marker="o", linestyle="none", label="start")
+    axes.plot(*result.reference.T, color=VERMILION, linewidth=4, alpha=0.45, label="target")
+    axes.plot(*result.position.T, color=BLUE, linewidth=1.2, label="tip")
+    axes.plot(*result.position[:1].T, color=BLUE, marker="o", linestyle="none", label="start")
     _equal_axes(axes, np.vstack((result.reference, result.position)))
     axes.set_title("path of the tip")
     axes.legend(loc="upper left")
@@ -114,8 +101,8 @@ def _draw_rotation_error(axes: Axes, result: TrackResult) -> None:
 
 
 def _draw_error(axes: Axes, time: NDArray[np.float64], error: NDArray[np.float64], tolerance: float) -> None:
-    axes.semilogy(time, error, color=_BLUE)
-    axes.axhline(tolerance, color=_VERMILION, linestyle="--", label="tolerance")
+    axes.semilogy(time, error, color=BLUE)
+    axes.axhline(tolerance, color=VERMILION, linestyle="--", label="tolerance")
     axes.legend(loc="best")
 
 
@@ -127,7 +114,7 @@ def _draw_joint_positions(axes: Axes, result: TrackResult) -> None:
 
 
 def _draw_evaluations(axes: Axes, result: TrackResult) -> None:
-    axes.step(result.time[1:], result.step_evaluations[1:], where="mid", color=_GREEN)
+    axes.step(result.time[1:], result.step_evaluations[1:], where="mid", color=GREEN)
     axes.set_ylim(bottom=0)
     axes.set_ylabel("evaluations per step")
 
@@ -143,9 +130,9 @@ def _draw_velocities(figure: Any, result: TrackResult, rows: int) -> None:
             axes.set_visible(False)
             continue
         bound = np.minimum(limit[:, j], 2.0 * top)  # an infinite limit shades nothing within view
-        axes.fill_between(time, bound, 2.0 * top, color=_FORBIDDEN, linewidth=0)
-        axes.fill_between(time, -bound, -2.0 * top, color=_FORBIDDEN, linewidth=0)
-        axes.plot(time, velocity[:, j], color=_joint_style(j)["color"])
+        axes.fill_between(time, bound, 2.0 * top, color=FORBIDDEN, linewidth=0)
+        axes.fill_between(time, -bound, -2.0 * top, color=FORBIDDEN, linewidth=0)
+        axes.plot(time, velocity[:, j], color=line(j)["color"])
         axes.set_title(names[j])
         axes.set_ylim(-top, top)
     unit = "rad/s" if _all_turn(result.robot) else "rad/s, m/s"
@@ -155,16 +142,11 @@ def _draw_velocities(figure: Any, result: TrackResult, rows: int) -> None:
 
 def _draw_joints(axes: Axes, time: NDArray[np.float64], values: NDArray[np.float64], names: list[str]) -> None:
     for j, name in enumerate(names):
-        axes.plot(time, values[:, j], label=name, **_joint_style(j))
+        axes.plot(time, values[:, j], label=name, **line(j))
 
 
 def _legend_columns(names: list[str]) -> int:
     return -(-len(names) // _LEGEND_ROWS)
-
-
-def _joint_style(j: int) -> dict[str, Any]:
-    """Colour of joint `j`; the next round of colours is dashed."""
-    return {"color": _CYCLE[j % len(_CYCLE)], "linestyle": ("-", "--", ":", "-.")[j // len(_CYCLE) % 4]}
 
 
 def _equal_axes(axes: Any, points: NDArray[np.float64]) -> None:
@@ -185,25 +167,6 @@ def _highest(values: NDArray[np.float64]) -> float:
 
 def _all_turn(robot: Robot) -> bool:
     return "prismatic" not in robot.joint_kinds
-
-
-@contextmanager
-def _style() -> Iterator[None]:
-    import matplotlib as mpl
-
-    style: dict[str, Any] = {
-        "axes.grid": True,
-        "axes.spines.right": False,
-        "axes.spines.top": False,
-        "axes.titlesize": "medium",
-        "figure.labelsize": "medium",
-        "font.size": 9.5,
-        "grid.alpha": 0.3,
-        "legend.frameon": False,
-        "lines.linewidth": 1.3,
-    }
-    with mpl.rc_context(style):  # type: ignore[arg-type, unused-ignore]  # the stub wants literal keys
-        yield
 
 
 def _new_figure(width: float, height: float) -> Figure:

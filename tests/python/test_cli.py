@@ -265,7 +265,7 @@ def test_the_module_runs_and_a_pipe_gets_no_progress_bar() -> None:
     assert "mean position error [m]" in done.stdout
 
 
-@pytest.mark.parametrize("command", ["", "robots", "fk", "solve", "track"])
+@pytest.mark.parametrize("command", ["", "robots", "fk", "solve", "track", "reproduce"])
 def test_help(command: str) -> None:
     result = run(*command.split(), "--help")
     assert result.exit_code == 0

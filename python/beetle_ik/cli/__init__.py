@@ -1,4 +1,4 @@
-"""The command line: `beetle-ik robots | fk | solve | track`.
+"""The command line: `beetle-ik robots | fk | solve | track | reproduce`.
 
 Exit status: 0 what was asked was reached, 1 it was computed but not reached, 2 the input was wrong.
 """

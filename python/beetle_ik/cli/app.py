@@ -7,6 +7,7 @@ from typer.core import TyperGroup
 
 from .. import BeetleIkError, __version__
 from .fk import fk
+from .reproduce import reproduce
 from .robots import robots
 from .solve import solve
 from .track import track
@@ -53,7 +54,7 @@ def _options_of_all(
     """Take what belongs to no single command."""
 
 
-for command in (robots, fk, solve, track):
+for command in (robots, fk, solve, track, reproduce):
     app.command()(command)
 
 

@@ -9,6 +9,7 @@ import typer
 from .. import InvalidInputError, Limits, Robot
 from .. import Path as ReferencePath
 from .. import track as track_path
+from .._files import whole_folder
 from .curves import CurveName, make_curve, read_points
 from .options import (
     AsJson,
@@ -24,7 +25,6 @@ from .options import (
     numbers,
     velocity_limit,
 )
-from .output import output_folder
 from .show import print_json
 from .summary import print_summary, summarize
 from .track_files import write_files
@@ -102,7 +102,7 @@ def track(
     given |= {name: value for name, value in others.items() if value is not None}
     path = _reference(arm, curve, points, duration, given)
     limits = None if velocity_limit_text is None else Limits(velocity=velocity_limit(velocity_limit_text))
-    with nullcontext() if out is None else output_folder(out) as folder:
+    with nullcontext() if out is None else whole_folder(out, option="--out") as folder:
         result = track_path(
             arm,
             path,

@@ -1,0 +1,45 @@
+"""How all figures look: one palette, one set of sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+# Okabe and Ito's palette, which colour-blind readers can tell apart too; its yellow is too faint for lines on white.
+BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK = PALETTE = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#E69F00",
+    "#56B4E9",
+    "#000000",
+)
+FORBIDDEN = "#D9D9D9"  # shade of where nothing may go
+_DASHES = ("-", "--", ":", "-.")
+
+
+def line(i: int) -> dict[str, Any]:
+    """Colour and dash of line `i`; the next round of colours is dashed."""
+    return {"color": PALETTE[i % len(PALETTE)], "linestyle": _DASHES[i // len(PALETTE) % len(_DASHES)]}
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Figures made inside look like all of ours."""
+    import matplotlib as mpl
+
+    settings: dict[str, Any] = {
+        "axes.grid": True,
+        "axes.spines.right": False,
+        "axes.spines.top": False,
+        "axes.titlesize": "medium",
+        "figure.labelsize": "medium",
+        "font.size": 9.5,
+        "grid.alpha": 0.3,
+        "legend.frameon": False,
+        "lines.linewidth": 1.3,
+    }
+    with mpl.rc_context(settings):  # type: ignore[arg-type, unused-ignore]  # the stub wants literal keys
+        yield

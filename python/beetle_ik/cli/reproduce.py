@@ -1,0 +1,49 @@
+"""`beetle-ik reproduce`: run a paper's experiments again."""
+
+from contextlib import closing
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .. import experiments
+from .._progress import Bar
+from .._text import counted
+from ..report import Provenance, Report, Verdict, described
+from .options import AsJson, Seed
+from .show import print_json, print_table
+
+
+def reproduce(
+    name: Annotated[str, typer.Argument(help=f"One of {', '.join(experiments.names())}, or all.")],
+    *,
+    out: Annotated[
+        Path, typer.Option(help="Folder for the report, its tables and its figures; an earlier report is replaced.")
+    ],
+    short: Annotated[bool, typer.Option("--short", help="A quick pass with fewer runs.")] = False,
+    seed: Seed = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Run a paper's experiments again: every table beside the printed one, every figure, every claim with a verdict."""
+    with closing(Bar()) as bar:
+        done = experiments.reproduce(name, out, short=short, seed=seed, progress=bar.show, option="--out")
+    if as_json:
+        described_reports = [described(report, made) for report, made in done]
+        print_json(described_reports if name == experiments.ALL else described_reports[0])
+    else:
+        _show(done, out / ("index.html" if name == experiments.ALL else "report.html"))
+    raise typer.Exit(1 if any(report.missed for report, _ in done) else 0)
+
+
+def _show(done: list[tuple[Report, Provenance]], page: Path) -> None:
+    rows = [(made.name, *_counts(report), f"{made.elapsed:.1f}") for report, made in done]
+    print_table("Claims by verdict", ("experiment", *Verdict, "time [s]"), rows)
+    for report, made in done:
+        for claim in report.missed:
+            typer.echo(f"{made.name} missed: {claim.statement} Measured: {claim.measured}")
+    typer.echo(f"{counted(len(done), 'report')}: {page}")
+
+
+def _counts(report: Report) -> list[str]:
+    verdicts = [claim.verdict for claim in report.claims]
+    return [str(verdicts.count(verdict)) for verdict in Verdict]

@@ -1,0 +1,143 @@
+"""What the paper sets, and what we had to choose because it does not.
+
+The paper states the circles, the velocity limits, T and Ts. It states neither c1, c2, n and the error band nor the
+link lengths and the start; ours are chosen so that its sentences about Figures 2 to 6 come true.
+"""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+import beetle_ik as bik
+
+Solver: TypeAlias = bik.BAS | bik.LevenbergMarquardt
+
+DURATION = 30.0  # s, section IV-A
+DT = 0.2  # s, section IV-A
+STEPS = round(DURATION / DT)
+STEADY = slice(STEPS // 2 + 1, None)  # rows of the second half, when the approach is over
+_RIPPLE = 0.004  # rad/s, W of eq. (7); omega is 1 rad/s
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """An arm that follows a circle."""
+
+    name: str
+    robot: bik.Robot
+    circle: bik.Path
+    velocity: float
+    """H of eq. (7) in rad/s."""
+    on_path: NDArray[np.float64]
+    """A start on the circle."""
+    off_path: NDArray[np.float64]
+    """A start off the circle, so that there is an approach to see."""
+
+    @property
+    def limits(self) -> bik.Limits:
+        """Eq. (7): H + W sin(t); positions as the robot has them."""
+        return bik.Limits(velocity=bik.Sinusoid(mean=self.velocity, amplitude=_RIPPLE, angular_frequency=1.0))
+
+    def track(
+        self,
+        solver: Solver | None,
+        *,
+        band: float,
+        seed: int = 0,
+        start: NDArray[np.float64] | None = None,
+        limits: bik.Limits | None = None,
+    ) -> bik.TrackResult:
+        """Follow the circle: from off the path and under the paper's limits where nothing else is said.
+
+        A tick's limit is that at its start, as in the paper.
+        """
+        return bik.track(
+            self.robot,
+            self.circle,
+            self.off_path if start is None else start,
+            dt=DT,
+            solver=solver,
+            limits=self.limits if limits is None else limits,
+            position_tolerance=band,
+            seed=seed,
+            limit_at="start",
+        )
+
+
+_PLANAR_ON_PATH = np.array([0.6697427192, -0.3400667941, -0.2474717864, -0.2588906663, 0.3263813181])
+FIVE_LINK = Task(
+    name="five-link arm",
+    robot=bik.Robot.planar([1.0] * 5, lower=-np.pi, upper=np.pi),
+    circle=bik.paths.circle((4.0, 1.0, 0.0), diameter=1.4, duration=DURATION),
+    velocity=0.2,
+    on_path=_PLANAR_ON_PATH,
+    off_path=_PLANAR_ON_PATH + np.array([0.05, 0.05, 0.05, -0.05, 0.05]),
+)
+
+_IIWA_ON_PATH = np.array([0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.6179441060, 0.0])
+IIWA = Task(
+    name="iiwa 14",
+    robot=bik.Robot.named("iiwa14"),
+    circle=bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=DURATION),
+    velocity=2.0,
+    on_path=_IIWA_ON_PATH,
+    off_path=_IIWA_ON_PATH + 0.1,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """A beetle, and the error band in which it may rest."""
+
+    walk: Literal["star", "chain"]
+    c1: float
+    c2: float = 1.0
+    explorations: int
+    band: float
+    """m"""
+
+    @property
+    def solver(self) -> bik.BAS:
+        """The beetle."""
+        return bik.BAS(variant=self.walk, c1=self.c1, c2=self.c2, explorations=self.explorations)
+
+
+# The literal reading: all explorations of a pass start from the same point, eq. (8), (9) and (11).
+STAR = {
+    FIVE_LINK.name: Setting(walk="star", c1=1.0, explorations=50, band=4e-5),
+    IIWA.name: Setting(walk="star", c1=3.0, explorations=50, band=1.7e-5),
+}
+# The original beetle: it walks on from wherever it went (step vii of Algorithm 1).
+CHAIN = {
+    FIVE_LINK.name: Setting(walk="chain", c1=0.3, explorations=30, band=5e-5),
+    IIWA.name: Setting(walk="chain", c1=1.0, explorations=30, band=2.2e-5),
+}
+WALKS = {"star": STAR, "chain": CHAIN}
+
+
+def steady_error(result: bik.TrackResult) -> float:
+    """Mean error over the second half (m)."""
+    return float(result.position_error[STEADY].mean())
+
+
+def worst_error(result: bik.TrackResult) -> float:
+    """Largest error over the second half (m)."""
+    return float(result.position_error[STEADY].max())
+
+
+def roughness(result: bik.TrackResult) -> float:
+    """How much the joint velocities oscillate: rms change from step to step over the second half (rad/s)."""
+    return float(np.sqrt(np.mean(np.diff(result.qd[STEADY], axis=0) ** 2)))
+
+
+def steps_to_band(result: bik.TrackResult) -> int:
+    """Steps until the error is first within its band; the number of steps where it never is."""
+    within = result.position_error <= result.position_tolerance
+    return int(within.argmax()) if within.any() else len(within) - 1
+
+
+def excess_velocity(result: bik.TrackResult) -> float:
+    """By how much a joint is faster than its limit, at most (rad/s); negative where none comes near it."""
+    return float(np.max(np.abs(result.qd[1:]) - result.velocity_limit[1:]))

@@ -1,0 +1,251 @@
+"""Figures 4, 5 and 6: what n, c1 and c2 do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypeAlias
+
+from ...report import (
+    BLUE,
+    VERMILION,
+    Block,
+    Claim,
+    Column,
+    Figure,
+    Section,
+    Spread,
+    Table,
+    draw_error,
+    draw_velocities,
+    drawing,
+    number,
+)
+from ..experiment import Context
+from .settings import FIVE_LINK, IIWA, STAR, WALKS, Setting, Task, roughness, steps_to_band
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
+
+TITLE = "What n, c₁ and c₂ do"
+_SEEDS = 10
+_SEEDS_SHORT = 2
+_TASKS = (FIVE_LINK, IIWA)
+
+_TEXT = """
+Three options shape a pass of the beetle: it makes n explorations, with antennae c₁ times as long as the error (in
+radians a metre, eq. (12)), and moves by c₂ antenna lengths (eq. (13)). Each is varied here with the others as set,
+on both arms and for both readings of the walk.
+"""
+_TEXT_N = """
+**More explorations.** To the letter of eq. (8), (9) and (11), where all explorations of a pass start from the same
+point (*star*), all three statements of the paper hold: the arm is in its band sooner, its velocities oscillate less,
+and it costs more. The original beetle (*chain*) is sooner in its band too, but oscillates *more* with larger n,
+because n steps of a random walk lead further away than one. This is what decided for *star* as our reading.
+"""
+_TEXT_C1 = """
+**Longer antennae.** "Larger c₁: less computation, more oscillation" holds below an optimum, which is near c₁ = 1 for
+the planar arm and near 3 for the iiwa. Above it the beetle mostly steps too far, and the cost rises again.
+"""
+_TEXT_C2 = """
+**Longer steps.** c₂ behaves like c₁, since with c₁ fixed it only scales the step. In the chain walk only the product
+c₁c₂ matters: the length of the antennae themselves is irrelevant over a decade.
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sweep:
+    """One option of the beetle over a range, the others as set."""
+
+    figure: str
+    symbol: str
+    vary: Callable[[Setting, float], Setting]
+    full: tuple[float, ...]
+    short: tuple[float, ...]
+    text: str
+
+
+_EXPLORATIONS = Sweep(
+    figure="figure_4",
+    symbol="n",
+    vary=lambda setting, n: replace(setting, explorations=int(n)),
+    full=(5, 10, 20, 50, 100, 200),
+    short=(5, 50, 200),
+    text=_TEXT_N,
+)
+_ANTENNA = Sweep(
+    figure="figure_5",
+    symbol="c₁",
+    vary=lambda setting, c1: replace(setting, c1=c1),
+    full=(0.3, 0.5, 1, 2, 3, 5),
+    short=(0.3, 1, 3),
+    text=_TEXT_C1,
+)
+_STEP = Sweep(
+    figure="figure_6",
+    symbol="c₂",
+    vary=lambda setting, c2: replace(setting, c2=c2),
+    full=(0.3, 0.5, 1, 2, 3, 5),
+    short=(0.3, 1, 3),
+    text=_TEXT_C2,
+)
+_SWEEPS = (_EXPLORATIONS, _ANTENNA, _STEP)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What many seeds gave for one value of the option: mean and standard deviation over the seeds."""
+
+    value: float
+    steps: Spread
+    roughness: Spread
+    evaluations: Spread
+
+
+Measurements: TypeAlias = dict[tuple[str, str], list[Measured]]
+"""By arm and walk, in the order of the option's values."""
+
+
+def trends(context: Context) -> tuple[Section, list[Claim]]:
+    """All three sweeps on both arms, for both readings of the walk."""
+    found = {sweep.figure: _measure(context, sweep) for sweep in _SWEEPS}
+    blocks: list[Block] = [_TEXT]
+    for sweep in _SWEEPS:
+        blocks += [sweep.text, _runs(sweep), _table(sweep, found[sweep.figure])]
+    overview = Figure(
+        name="trends",
+        title="The same on both arms and for both walks",
+        drawing=_draw_trends(found),
+        caption=f"Means over {len(_seeds(context))} seeds. Roughness: rms change of joint velocity from step to step.",
+    )
+    return Section(TITLE, [*blocks, overview]), _claims(found)
+
+
+def _seeds(context: Context) -> range:
+    return context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
+
+
+def _measure(context: Context, sweep: Sweep) -> Measurements:
+    found: Measurements = {(task.name, walk): [] for task in _TASKS for walk in WALKS}
+    values = context.pick(full=sweep.full, short=sweep.short)
+    cases = [(task, walk, value) for task in _TASKS for walk in WALKS for value in values]
+    for task, walk, value in context.each(f"cheng2020: {_number_of(sweep)}", cases):
+        found[task.name, walk].append(_run(task, sweep.vary(WALKS[walk][task.name], value), value, _seeds(context)))
+    return found
+
+
+def _run(task: Task, setting: Setting, value: float, seeds: range) -> Measured:
+    results = [task.track(setting.solver, band=setting.band, seed=seed) for seed in seeds]
+    measures = (steps_to_band, roughness, lambda result: result.evaluations)
+    return Measured(value, *(Spread.of([measure(result) for result in results]) for measure in measures))
+
+
+def _claims(found: dict[str, Measurements]) -> list[Claim]:
+    star = (FIVE_LINK.name, "star")
+    few, *_, many = found["figure_4"][star]
+    by_c1, by_c2 = ({row.value: row for row in found[figure][star]} for figure in ("figure_5", "figure_6"))
+    return [
+        Claim.checked(
+            "With more explorations n the error converges faster and the joint velocity oscillates less, at more cost.",
+            source="Section IV-A.3a, Figure 4",
+            measured=_change("n", few, many),
+            holds=many.steps.mean < few.steps.mean
+            and many.roughness.mean < few.roughness.mean
+            and many.evaluations.mean > few.evaluations.mean,
+            reading="Explorations of a pass start from the same point; in a chain walk the oscillation grows.",
+            section=TITLE,
+        ),
+        *(
+            Claim.checked(
+                f"A larger {symbol} decreases the computation and makes the joint velocity oscillate.",
+                source=source,
+                measured=f"{_change(symbol, rows[0.3], rows[1.0])} (cost at most half, roughness at least double)",
+                holds=rows[1.0].evaluations.mean <= 0.5 * rows[0.3].evaluations.mean
+                and rows[1.0].roughness.mean >= 2.0 * rows[0.3].roughness.mean,
+                reading="Below an optimum, that is; beyond it the cost rises again.",
+                section=TITLE,
+            )
+            for symbol, source, rows in (
+                ("c₁", "Section IV-A.3b, Figure 5", by_c1),
+                ("c₂", "Section IV-A.3c, Figure 6", by_c2),
+            )
+        ),
+    ]
+
+
+def _change(symbol: str, before: Measured, after: Measured) -> str:
+    return (
+        f"{symbol} from {before.value:g} to {after.value:g} on the five-link arm: "
+        f"{number(before.steps.mean, 2)} to {number(after.steps.mean, 2)} steps to the band, "
+        f"roughness {number(before.roughness.mean, 2)} to {number(after.roughness.mean, 2)} rad/s, "
+        f"{number(round(before.evaluations.mean))} to {number(round(after.evaluations.mean))} evaluations"
+    )
+
+
+def _number_of(sweep: Sweep) -> str:
+    return sweep.figure.replace("_", " ").capitalize()
+
+
+def _table(sweep: Sweep, found: Measurements) -> Table:
+    return Table(
+        name=f"{sweep.figure}_trend",
+        title=f"Numbers: {sweep.symbol} on both arms and for both walks",
+        columns=[
+            Column(name="arm"),
+            Column(name="walk"),
+            Column(name=sweep.symbol),
+            Column(name="steps to the band", digits=2),
+            Column(name="roughness", unit="rad/s", digits=2),
+            Column(name="evaluations"),
+        ],
+        rows=[
+            [arm, walk, f"{row.value:g}", row.steps, row.roughness, row.evaluations]
+            for (arm, walk), rows in found.items()
+            for row in rows
+        ],
+        folded=True,
+    )
+
+
+def _runs(sweep: Sweep) -> Figure:
+    """One run each of the five-link arm for three values, as the paper draws them."""
+    setting = STAR[FIVE_LINK.name]
+    with drawing(4.2) as figure:
+        panels = figure.subplots(2, len(sweep.short), sharex=True, sharey="row")
+        for (error, velocity), value in zip(panels.T, sweep.short, strict=True):
+            result = FIVE_LINK.track(sweep.vary(setting, value).solver, band=setting.band)
+            draw_error(error, result.time, result.position_error, band=setting.band, color=BLUE)
+            draw_velocities(velocity, result.time[1:], result.qd[1:], result.velocity_limit[1:, 0], linewidth=0.7)
+            error.set_title(f"{sweep.symbol} = {value:g}: {result.evaluations:,} evaluations")
+            velocity.set(xlabel="time [s]", xlim=(0.0, result.time[-1]))
+        for axes in panels[:, 1:].flat:
+            axes.set_ylabel("")
+    caption = "Five-link arm, star walk. Above: error, with its band dashed. Below: the velocities of the five joints."
+    return Figure(name=sweep.figure, title=f"{_number_of(sweep)}: {sweep.symbol}", drawing=figure, caption=caption)
+
+
+def _draw_trends(found: dict[str, Measurements]) -> Drawing:
+    quantities = {"evaluations": "evaluations", "steps": "steps to the band", "roughness": "roughness [rad/s]"}
+    with drawing(6.6) as figure:
+        panels = figure.subplots(len(quantities), len(_SWEEPS), sharex="col", sharey="row")
+        for column, sweep in zip(panels.T, _SWEEPS, strict=True):
+            for axes, quantity in zip(column, quantities, strict=True):
+                for (arm, walk), measured in found[sweep.figure].items():
+                    axes.plot(
+                        [row.value for row in measured],
+                        [getattr(row, quantity).mean for row in measured],
+                        color=BLUE if arm == FIVE_LINK.name else VERMILION,
+                        linestyle="-" if walk == "star" else "--",
+                        marker="o",
+                        markersize=3,
+                        label=f"{arm}, {walk}",
+                    )
+                axes.set(xscale="log", yscale="log")
+            values = [row.value for row in measured]
+            column[-1].set_xticks(values, [f"{value:g}" for value in values])
+            column[-1].tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
+            column[-1].set_xlabel(sweep.symbol)
+        for axes, label in zip(panels[:, 0], quantities.values(), strict=True):
+            axes.set_ylabel(label)
+        figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    return figure

@@ -1,0 +1,56 @@
+"""Reports to read: text, figures, tables with the printed value beside the measured one, claims with verdicts.
+
+    from beetle_ik.report import Claim, Column, Figure, Report, Section, Table, drawing
+
+    with drawing(height=3.0) as figure:
+        axes = figure.subplots()
+        axes.plot([0.0, 1.0], [0.0, 1.0])
+        axes.set(xlabel="time [s]", ylabel="position [m]")
+    motion = Figure(name="motion", title="A motion", drawing=figure)
+    report = Report(summary="It moves.", sections=[Section("Motion", ["Watch:", motion])])
+
+`beetle_ik.experiments` makes them; `write_report` writes one as a self-contained HTML page beside CSV and PNG files.
+"""
+
+from .._style import BLACK, BLUE, FORBIDDEN, GREEN, ORANGE, PALETTE, PURPLE, SKY, VERMILION, line
+from .content import Block, Cell, Claim, Column, Figure, Printed, Report, Section, Spread, Table, Value, Verdict
+from .drawing import draw_error, draw_velocities, drawing
+from .folder import report_folder
+from .needs import check_installed
+from .numbers import number
+from .write import Provenance, described, write_index, write_report
+
+__all__ = [
+    "BLACK",
+    "BLUE",
+    "FORBIDDEN",
+    "GREEN",
+    "ORANGE",
+    "PALETTE",
+    "PURPLE",
+    "SKY",
+    "VERMILION",
+    "Block",
+    "Cell",
+    "Claim",
+    "Column",
+    "Figure",
+    "Printed",
+    "Provenance",
+    "Report",
+    "Section",
+    "Spread",
+    "Table",
+    "Value",
+    "Verdict",
+    "check_installed",
+    "described",
+    "draw_error",
+    "draw_velocities",
+    "drawing",
+    "line",
+    "number",
+    "report_folder",
+    "write_index",
+    "write_report",
+]

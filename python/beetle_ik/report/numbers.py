@@ -1,0 +1,51 @@
+"""Numbers as they are read: rounded, with powers of ten where those help."""
+
+import math
+
+_THIN_SPACE = "\u202f"
+_SPACE = "\u00a0"  # where no line may break
+_MINUS = "\u2212"
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def number(value: float, digits: int = 3) -> str:
+    """`value` in so many significant digits; whole numbers (int) in full, with their thousands set apart."""
+    if isinstance(value, int):
+        return _signed(f"{value:,}".replace(",", _THIN_SPACE))
+    if not math.isfinite(value):
+        return "–" if math.isnan(value) else _signed(f"{value}").replace("inf", "∞")
+    exponent = _exponent(value, digits)
+    return _signed(_scaled(value, exponent, digits - 1 - _magnitude(value, digits)) + _power(exponent))
+
+
+def spread(mean: float, std: float, digits: int = 3) -> str:
+    """Mean and standard deviation to the same decimal, over a common power of ten."""
+    if not (math.isfinite(mean) and math.isfinite(std)):
+        return number(mean, digits)
+    exponent = _exponent(mean, digits)
+    decimals = digits - 1 - _magnitude(mean, digits)
+    both = f"{_scaled(mean, exponent, decimals)}{_SPACE}±{_SPACE}{_scaled(std, exponent, decimals)}"
+    return _signed(f"({both}){_power(exponent)}" if exponent else both)
+
+
+def _magnitude(value: float, digits: int) -> int:
+    """The power of ten of the first digit, after rounding: 0.9996 in three digits is 1.00."""
+    return int(f"{value:.{digits - 1}e}".partition("e")[2]) if value else 0
+
+
+def _exponent(value: float, digits: int) -> int:
+    """The power of ten to set apart: 0 for numbers that read well without."""
+    magnitude = _magnitude(value, digits)
+    return 0 if -3 <= magnitude < 7 else magnitude
+
+
+def _scaled(value: float, exponent: int, decimals: int) -> str:
+    return f"{value / 10.0**exponent:,.{max(decimals + exponent, 0)}f}".replace(",", _THIN_SPACE)
+
+
+def _power(exponent: int) -> str:
+    return f"{_SPACE}×{_SPACE}10{str(exponent).translate(_SUPERSCRIPT)}" if exponent else ""
+
+
+def _signed(text: str) -> str:
+    return text.replace("-", _MINUS)

@@ -1,0 +1,86 @@
+"""A report as a folder: the page, a CSV file for each table, a PNG file for each figure, everything said as JSON."""
+
+import base64
+import csv
+import io
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from .content import Claim, Figure, Report
+from .folder import MANIFEST, files_in
+from .page import index_page, report_page
+from .tables import to_csv
+
+_DPI = 150
+
+
+@dataclass(frozen=True, kw_only=True)
+class Provenance:
+    """What was run to make a report, and where."""
+
+    name: str
+    title: str
+    paper: str
+    command: str
+    short: bool
+    seed: int
+    made: str
+    """Date and time."""
+    elapsed: float
+    """Seconds."""
+    machine: str
+    """Versions and processor."""
+
+
+def write_report(folder: Path, report: Report, provenance: Provenance) -> None:
+    """Write `report.html`, `report.json`, `claims.csv`, `tables/*.csv` and `figures/*.png` into `folder`."""
+    pictures = {figure.name: _png(figure) for figure in report.figures}
+    for kind in ("tables", "figures"):
+        (folder / kind).mkdir()
+    for table in report.tables:
+        (folder / "tables" / f"{table.name}.csv").write_text(to_csv(table), encoding="utf-8")
+    for name, picture in pictures.items():
+        (folder / "figures" / f"{name}.png").write_bytes(picture)
+    (folder / "claims.csv").write_text(_claims_csv(report.claims), encoding="utf-8")
+    embedded = {name: base64.b64encode(picture).decode() for name, picture in pictures.items()}
+    (folder / "report.html").write_text(report_page(report, provenance, embedded), encoding="utf-8")
+    _write_manifest(folder, described(report, provenance))
+
+
+def write_index(folder: Path, reports: list[tuple[Report, Provenance]]) -> None:
+    """Write the page over several reports, which are in folders of their names within `folder`."""
+    (folder / "index.html").write_text(index_page(reports), encoding="utf-8")
+    _write_manifest(folder, {"reports": [described(report, provenance) for report, provenance in reports]})
+
+
+def described(report: Report, provenance: Provenance) -> dict[str, Any]:
+    """A report for machines: how it was made, what it says, each claim."""
+    return {
+        **asdict(provenance),
+        "success": not report.missed,
+        "summary": report.summary,
+        "claims": [asdict(claim) for claim in report.claims],
+    }
+
+
+def _write_manifest(folder: Path, content: dict[str, Any]) -> None:
+    content = {**content, "files": [*files_in(folder), MANIFEST]}
+    (folder / MANIFEST).write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def _png(figure: Figure) -> bytes:
+    picture = io.BytesIO()
+    figure.drawing.savefig(picture, format="png", dpi=_DPI, metadata={"Software": None})  # same figure, same bytes
+    return picture.getvalue()
+
+
+def _claims_csv(claims: Sequence[Claim]) -> str:
+    text = io.StringIO()
+    columns = ["statement", "source", "measured", "verdict", "reason"]
+    writer = csv.DictWriter(text, columns, extrasaction="ignore", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(asdict(claim) for claim in claims)
+    return text.getvalue()

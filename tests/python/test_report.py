@@ -1,0 +1,265 @@
+"""Reports: what their parts refuse, how numbers and text read, what files come out."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+import beetle_ik as bik
+from beetle_ik import experiments
+from beetle_ik.experiments import Context, Experiment
+from beetle_ik.report import (
+    Claim,
+    Column,
+    Figure,
+    Printed,
+    Report,
+    Section,
+    Spread,
+    Table,
+    Verdict,
+    drawing,
+    number,
+)
+from beetle_ik.report.markup import inline, paragraphs
+from beetle_ik.report.numbers import spread
+from beetle_ik.report.tables import shown_rows, to_csv
+
+NBSP = "\u00a0"
+
+
+def table(**changes: object) -> Table:
+    options: dict[str, object] = {
+        "name": "table_2",
+        "title": "Times",
+        "columns": [Column(name="method"), Column(name="time", unit="s", compared=True), Column(name="evaluations")],
+        "rows": [
+            ["BAS", (Spread(0.53, 0.04), Spread(1.234e-6, 3e-8)), 12345],
+            ["GA", (Printed.NOT_IN_COPY, Spread(25.0, 10.2)), None],
+        ],
+    }
+    return Table(**(options | changes))  # type: ignore[arg-type]
+
+
+def claim(holds: bool = True) -> Claim:
+    return Claim.checked("It is fast.", source="Table 2", measured="1 s", holds=holds, section="Times")
+
+
+def report(holds: bool = True) -> Report:
+    with drawing(2.0) as figure:
+        figure.subplots().plot([0.0, 1.0])
+    blocks = ["Text with <marks>.", table(), Figure(name="figure_1", title="A line", drawing=figure)]
+    return Report(summary="All of *it*.", sections=[Section("Times", blocks)], claims=[claim(holds)])
+
+
+@pytest.fixture
+def registered(monkeypatch: pytest.MonkeyPatch) -> list[Context]:
+    """Experiments "first" and "second" in place of the real ones; the list receives the contexts of their runs."""
+    contexts: list[Context] = []
+
+    def run(context: Context) -> Report:
+        contexts.append(context)
+        for _ in context.each("counting", range(2)):
+            pass
+        return report(holds=context.seed == 0)
+
+    made = {
+        name: Experiment(name=name, title=name.title(), paper="A. Author, 2020", run=run)
+        for name in ("first", "second")
+    }
+    monkeypatch.setattr("beetle_ik.experiments.reproduction.names", lambda: list(made))
+    monkeypatch.setattr("beetle_ik.experiments.reproduction.experiment", made.__getitem__)
+    return contexts
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [
+        (0.0, 3, "0.00"),
+        (1.97e-5, 3, f"1.97{NBSP}×{NBSP}10⁻⁵"),
+        (9.999e-4, 3, "0.00100"),
+        (0.5, 2, "0.50"),
+        (-12.34, 3, "\u221212.3"),
+        (123456.0, 3, "123\u202f456"),
+        (12345678.0, 3, f"1.23{NBSP}×{NBSP}10⁷"),
+        (123456, 3, "123\u202f456"),
+        (float("nan"), 3, "–"),
+        (float("-inf"), 3, "\u2212∞"),
+    ],
+)
+def test_numbers_read_well(value: float, digits: int, text: str) -> None:
+    assert number(value, digits) == text
+
+
+def test_a_spread_shares_its_power_of_ten() -> None:
+    assert spread(1.97e-5, 1.1e-6) == f"(1.97{NBSP}±{NBSP}0.11){NBSP}×{NBSP}10⁻⁵"
+    assert spread(25.0, 10.2) == f"25.0{NBSP}±{NBSP}10.2"
+    assert spread(25.0, float("nan")) == "25.0"
+
+
+def test_spread_is_that_of_a_sample() -> None:
+    assert Spread.of([1.0, 2.0, 3.0]) == Spread(2.0, 1.0)
+    assert Spread.of([4.0]).std != Spread.of([4.0]).std  # one run has no spread
+
+
+def test_text_is_escaped_and_marked() -> None:
+    assert inline("a < b, `c*d*e`, *so* **it** is") == (
+        "a &lt; b, <code>c*d*e</code>, <em>so</em> <strong>it</strong> is"
+    )
+    assert inline("[here](https://example.org/a)") == '<a href="https://example.org/a">here</a>'
+    assert inline("[no](javascript:alert)") == "[no](javascript:alert)"
+    assert paragraphs("one\ntwo\n\n- a\n- b\n  c") == "<p>one two</p>\n<ul><li>a</li><li>b c</li></ul>"
+
+
+def test_a_table_keeps_all_digits_in_its_csv() -> None:
+    assert list(csv.reader(to_csv(table()).splitlines())) == [
+        [
+            "method",
+            *(f"time [s] {part} {s}" for part in ("printed", "measured") for s in ("mean", "std")),
+            "evaluations",
+        ],
+        ["BAS", "0.53", "0.04", "1.234e-06", "3e-08", "12345"],
+        ["GA", "not in our copy", "", "25.0", "10.2", ""],
+    ]
+    assert to_csv(table(rows=[])) == "method,time [s] printed,time [s] measured,evaluations\n"
+
+
+def test_printed_numbers_are_shown_as_they_are_printed() -> None:
+    bas, ga = shown_rows(table())
+    assert [cell.text for cell in bas][:2] == ["BAS", f"0.53{NBSP}±{NBSP}0.04"]
+    assert [(cell.text, cell.kind) for cell in ga] == [
+        ("GA", "text"),
+        ("not in our copy", "absent"),
+        (f"25.0{NBSP}±{NBSP}10.2", "number measured"),
+        ("–", "number"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"name": "Table 2"}, "'Table 2' is no name for a file: use lower-case letters, digits and '_'"),
+        ({"rows": [["BAS", 1.0, 2]]}, "table 'table_2', row 0, column 'time': expected a pair (printed, measured)"),
+        (
+            {"rows": [["BAS", (1.0, 1.0), (1, 2)]]},
+            "table 'table_2', row 0, column 'evaluations': expected a single value",
+        ),
+        ({"rows": [["BAS"]]}, "table 'table_2', row 0: 1 cells for 3 columns"),
+    ],
+)
+def test_a_wrong_table_is_refused_where_it_is_made(changes: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError) as refused:  # noqa: PT011  # the message is compared in full
+        table(**changes)
+    assert str(refused.value) == message
+
+
+def test_a_verdict_needs_its_reason() -> None:
+    with pytest.raises(ValueError, match=r"^claim 'It is.': 'not reproducible' needs a reason$"):
+        Claim.not_reproducible("It is.", source="Table 2", reason="")
+    assert Claim.checked("It is.", source="", measured="", holds=True, reading="so").verdict is Verdict.WITH_READING
+    assert Claim.checked("It is.", source="", measured="", holds=False, reading="so").verdict is Verdict.MISSED
+
+
+def test_a_report_refuses_what_does_not_hang_together() -> None:
+    with pytest.raises(ValueError, match=r"^claim 'It is fast.': there is no section 'Times'$"):
+        Report(summary="", sections=[], claims=[claim()])
+    with pytest.raises(ValueError, match=r"^two tables or figures are named 'table_2'$"):
+        Report(summary="", sections=[Section("Times", [table(), table()])])
+
+
+def test_a_report_and_its_files(tmp_path: Path, registered: list[Context]) -> None:
+    experiments.reproduce("first", tmp_path / "out", short=True)
+    out = tmp_path / "out"
+    found = {file.relative_to(out).as_posix() for file in out.rglob("*") if file.is_file()}
+    assert found == {"report.html", "report.json", "claims.csv", "tables/table_2.csv", "figures/figure_1.png"}
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "Text with &lt;marks&gt;." in page
+    assert "All of <em>it</em>." in page
+    assert "a quick pass" in page
+    assert 'src="data:image/png;base64,' in page
+    assert 'src="h' not in page  # nothing is fetched
+    told = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    assert (told["name"], told["short"], told["success"]) == ("first", True, True)
+    assert set(told["files"]) == found
+    assert told["claims"][0]["verdict"] == "reproduced"
+    assert [context.short for context in registered] == [True]
+
+
+def test_all_reports_have_a_page_over_them(tmp_path: Path, registered: list[Context]) -> None:
+    done = experiments.reproduce("all", tmp_path)
+    assert [made.name for _, made in done] == ["first", "second"]
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert 'href="second/report.html#times"' in page
+    assert (tmp_path / "second" / "figures" / "figure_1.png").is_file()
+    assert len(registered) == 2
+
+
+def test_a_new_report_takes_the_place_of_the_old_one(tmp_path: Path, registered: list[Context]) -> None:
+    experiments.reproduce("all", tmp_path)
+    experiments.reproduce("first", tmp_path)
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == [
+        "claims.csv",
+        "figures",
+        "report.html",
+        "report.json",
+        "tables",
+    ]
+    assert len(registered) == 3  # run again, not taken from the earlier report
+
+
+def test_files_of_others_are_not_touched(tmp_path: Path, registered: list[Context]) -> None:
+    (tmp_path / "notes.txt").touch()
+    with pytest.raises(bik.InvalidInputError) as refused:
+        experiments.reproduce("first", tmp_path)
+    assert str(refused.value) == (
+        f"out: folder '{tmp_path}' holds 'notes.txt', which no earlier report put there; "
+        "name an empty folder or a new one"
+    )
+    assert not registered
+
+
+def interrupt(what: str, _done: int, _total: int) -> None:
+    if "writing" in what:
+        raise KeyboardInterrupt
+
+
+@pytest.mark.usefixtures("registered")
+def test_ctrl_c_leaves_the_earlier_report_or_none(tmp_path: Path) -> None:
+    old, new = tmp_path / "old", tmp_path / "new" / "one"
+    experiments.reproduce("first", old)
+    before = (old / "report.html").read_bytes()
+    for folder in (old, new):
+        with pytest.raises(KeyboardInterrupt):
+            experiments.reproduce("all", folder, progress=interrupt)
+    assert (old / "report.html").read_bytes() == before
+    assert [entry.name for entry in tmp_path.iterdir()] == ["old"]
+
+
+@pytest.mark.usefixtures("registered")
+def test_progress_is_told(tmp_path: Path) -> None:
+    told: list[tuple[str, int, int]] = []
+    experiments.reproduce("first", tmp_path, progress=lambda *what: told.append(what))
+    assert told[:3] == [("counting", 0, 2), ("counting", 1, 2), ("counting", 2, 2)]
+
+
+def test_an_unknown_experiment_lists_those_there_are() -> None:
+    with pytest.raises(bik.UnknownNameError) as refused:
+        experiments.experiment("cheng2021")
+    known = ", ".join(experiments.names())
+    assert str(refused.value) == f"no experiment is named 'cheng2021'; known experiments: {known}, or all"
+
+
+def test_what_the_extra_brings_is_asked_for_before_any_work(
+    tmp_path: Path, registered: list[Context], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("beetle_ik.report.needs.find_spec", lambda name: None if name == "jinja2" else object())
+    with pytest.raises(bik.BeetleIkError) as refused:
+        experiments.reproduce("first", tmp_path)
+    assert str(refused.value) == "reports need jinja2, which is not installed: pip install 'beetle-ik[report]'"
+    assert not registered
+
+
+@pytest.mark.parametrize("name", experiments.names())
+def test_every_experiment_is_registered_under_its_name(name: str) -> None:
+    assert experiments.experiment(name).name == name

@@ -1,0 +1,72 @@
+"""`beetle-ik reproduce`: exit codes, what is printed, and the papers themselves in their short mode."""
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from beetle_ik import experiments
+from beetle_ik.cli import app
+from beetle_ik.experiments import Context, Experiment
+from beetle_ik.report import Claim, Report, Section
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(app, ["reproduce", *arguments])
+
+
+@pytest.fixture
+def registered(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An experiment "paper" whose claim holds for seed 0 only."""
+
+    def report(context: Context) -> Report:
+        claim = Claim.checked("It holds.", source="Table 1", measured="1.5 m", holds=context.seed == 0)
+        return Report(summary="It was run.", sections=[Section("Runs", ["One."])], claims=[claim])
+
+    paper = Experiment(name="paper", title="A paper", paper="A. Author, 2020", run=report)
+    monkeypatch.setattr("beetle_ik.experiments.reproduction.experiment", lambda _: paper)
+    monkeypatch.setattr("beetle_ik.experiments.reproduction.names", lambda: ["paper"])
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_report_is_written_and_named(tmp_path: Path) -> None:
+    result = run("paper", "--out", str(tmp_path / "out"))
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert f"1 report: {tmp_path / 'out' / 'report.html'}" in result.stdout
+    assert (tmp_path / "out" / "report.html").is_file()
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_claim_that_was_missed_exits_with_1(tmp_path: Path) -> None:
+    result = run("paper", "--seed", "1", "--out", str(tmp_path))
+    assert result.exit_code == 1
+    assert "paper missed: It holds. Measured: 1.5 m" in result.stdout
+    assert (tmp_path / "report.html").is_file()
+
+
+@pytest.mark.usefixtures("registered")
+def test_json_for_machines(tmp_path: Path) -> None:
+    one = json.loads(run("paper", "--short", "--json", "--out", str(tmp_path / "one")).stdout)
+    assert (one["name"], one["short"], one["success"]) == ("paper", True, True)
+    (each,) = json.loads(run("all", "--json", "--out", str(tmp_path / "all")).stdout)
+    assert each["claims"] == one["claims"]
+    assert (tmp_path / "all" / "index.html").is_file()
+
+
+def test_wrong_input_is_told_exactly(tmp_path: Path) -> None:
+    known = ", ".join(experiments.names())
+    result = run("cheng2021", "--out", str(tmp_path))
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == f"Error: no experiment is named 'cheng2021'; known experiments: {known}, or all\n"
+    (tmp_path / "notes.txt").touch()
+    assert run("cheng2020", "--out", str(tmp_path)).stderr == (
+        f"Error: --out: folder '{tmp_path}' holds 'notes.txt', which no earlier report put there; "
+        "name an empty folder or a new one\n"
+    )
+
+
+@pytest.mark.parametrize("name", experiments.names())
+def test_each_paper_in_short(name: str, tmp_path: Path) -> None:
+    result = run(name, "--short", "--out", str(tmp_path))
+    assert result.exit_code == 0, result.output
