@@ -12,7 +12,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
     result.trajectory.to_csv("trajectory.csv")
 """
 
-from . import goals, paths, plot, tasks
+from . import goals, paths, plot, tasks, vision
 from ._core import (
     BAS,
     PSO,
@@ -105,4 +105,5 @@ __all__ = [
     "solve_batch",
     "tasks",
     "track",
+    "vision",
 ]
