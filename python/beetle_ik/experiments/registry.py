@@ -6,7 +6,7 @@ from .. import UnknownNameError
 from .experiment import Experiment
 
 # One module of this folder each, of the same name with "_" for "-"; it holds EXPERIMENT.
-_NAMES = ("cheng2020",)
+_NAMES = ("cheng2020", "pso-tracking")
 
 
 def names() -> list[str]:
