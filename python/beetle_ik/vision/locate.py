@@ -2,7 +2,7 @@
 
 A contour of the arm is found, by a threshold or by an active contour, and the joint angles are fitted to it: every
 point of the contour should be half a link's width from the nearest link. The contour energy of "Trajectory tracking of
-redundant manipulator based on PSO algorithm optimization", eq. (19) to (21), is not that of scikit-image, which is used.
+redundant manipulator based on PSO algorithm optimization", eq. (19) to (21), is not that of scikit-image.
 """
 
 from __future__ import annotations

@@ -22,6 +22,7 @@ MOST = 2.0  # rad/s, of the command
 DISTURBANCE = 0.05  # rad/s, amplitude; 3 rad/s
 CENTRES = np.array([(q, qd) for q in (-0.5, 0.0, 0.5) for qd in (-0.8, 0.0, 0.8)])
 WIDTH = 0.45
+ADAPTATION = 200.0  # 1/s^2, of the network's weights while it runs
 
 
 @dataclass(frozen=True)
@@ -102,11 +103,11 @@ def genetic_network(motion: Motion, short: bool, seed: int) -> _Array:
     basis = features(trial)
 
     def cost(weights: _Array) -> float:
-        return float(np.sqrt(np.mean(simulate(trial, gains, weights=weights, basis=basis) ** 2)))
+        return float(np.sqrt(np.mean(simulate(trial, gains, weights=weights, basis=basis, adaptation=ADAPTATION) ** 2)))
 
     size = len(CENTRES)
     found = _least(cost, [-1.0] * size, [1.0] * size, Genetic(), 60 if short else 300, seed)
-    return simulate(motion, gains, weights=found, basis=features(motion), adaptation=200.0)
+    return simulate(motion, gains, weights=found, basis=features(motion), adaptation=ADAPTATION)
 
 
 CONTROLLERS: dict[str, Callable[[Motion, bool, int], _Array]] = {

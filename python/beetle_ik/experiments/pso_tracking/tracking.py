@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import Limits, Robot, Trajectory, TrackResult, WeightedPseudoInverse, paths, track
-from ...report import Claim, Column, Figure, Printed, Section, Table, drawing, line, number
+from ... import Limits, Robot, TrackResult, Trajectory, WeightedPseudoInverse, paths, track
+from ...report import Block, Cell, Claim, Column, Figure, Printed, Section, Table, drawing, line, number
 from ..experiment import Context
 from .servo import CONTROLLERS, paper_motion, settled
 
@@ -69,7 +69,7 @@ def tracking(context: Context) -> tuple[Section, list[Claim]]:
     free = results["K = 50, 10 ms"]
     kept = _follow(0.01, None, gain=50.0)
     worst = {name: float(np.abs(error).max()) for name, error in errors.items()}
-    blocks = [
+    blocks: list[Block] = [
         _TEXT,
         _pseudo_inverse_table(results),
         _figure_8(held, motion.time, errors),
@@ -93,9 +93,9 @@ def tracking(context: Context) -> tuple[Section, list[Claim]]:
             source="Section 3.2, Figure 8",
             measured=f"{number(held_error)} rad or m; {', '.join(f'{n} {number(w)}' for n, w in worst.items())}",
             holds=held_error < min(worst.values()),
-            reading="the posture is held through the null space, which eq. (13) and (14) do not do: with them alone the "
-            f"joints stray by {number(float(np.abs(_joint_error(free)).max()))}. And a kinematic tracker has no servo to "
-            "fight: the comparison favours it, in the paper as here",
+            reading="the posture is held through the null space, which eq. (13) and (14) do not do: without it the "
+            f"joints stray by {number(float(np.abs(_joint_error(free)).max()))}. And a kinematic tracker has no servo "
+            "to fight: the comparison favours it, in the paper as here",
             section=_TITLE,
         ),
         Claim.checked(
@@ -107,7 +107,7 @@ def tracking(context: Context) -> tuple[Section, list[Claim]]:
             section=_TITLE,
         ),
         Claim.not_reproducible(
-            "Largest errors 1.72e-3, 0.91e-3 and 1.38e-3 rad of PID, GA-RBF and bee colony; at most 2.2 s of control time.",
+            "Largest errors 1.72e-3, 0.91e-3 and 1.38e-3 rad of PID, GA-RBF and bee colony; 2.2 s of control time.",
             source="Section 3.2, Figures 8 and 9",
             measured=", ".join(f"{name} {number(value)} rad" for name, value in worst.items()),
             reason="neither the plant, nor gains, network, disturbance or what counts as control time are given",
@@ -159,7 +159,9 @@ def _pseudo_inverse_table(results: dict[str, TrackResult]) -> Table:
 
 
 def _controllers_table(worst: dict[str, float], errors: dict[str, NDArray[np.float64]], held: TrackResult) -> Table:
-    rows = [[name, (PRINTED_ERRORS[name], worst[name]), settled(errors[name], 0.01)] for name in worst]
+    rows: list[list[Cell]] = [
+        [name, (PRINTED_ERRORS[name], worst[name]), settled(errors[name], 0.01)] for name in worst
+    ]
     own = _joint_error(held)[:, 0]
     rows.append(["pseudo-inverse, posture held", (PRINTED_OWN, float(np.abs(own).max())), 0.0])
     return Table(
@@ -170,7 +172,7 @@ def _controllers_table(worst: dict[str, float], errors: dict[str, NDArray[np.flo
             Column(name="largest error", unit="rad", compared=True),
             Column(name="settled", unit="s"),
         ],
-        rows=rows,  # type: ignore[arg-type]
+        rows=rows,
     )
 
 
@@ -188,8 +190,8 @@ def _figure_8(held: TrackResult, time: NDArray[np.float64], errors: dict[str, ND
         name="figure_8",
         title="Figure 8: errors of joint 1",
         drawing=figure,
-        caption="The pseudo-inverse, a kinematic tracker without a servo, for the two seconds of the path; controllers of "
-        "the servo for as long as they ran. Errors dip where they change sign.",
+        caption="The pseudo-inverse, a kinematic tracker without a servo, for the two seconds of the path; the "
+        "controllers for as long as they ran. Errors dip where they change sign.",
     )
 
 
@@ -207,8 +209,8 @@ def _figure_9(errors: dict[str, NDArray[np.float64]], held: TrackResult) -> Figu
         name="figure_9",
         title="Figure 9: share of the time in control",
         drawing=figure,
-        caption="The paper compares a “control time” that it does not define; shown here is how much of the time joint 1 is "
-        "within a band.",
+        caption="The paper compares a “control time” that it does not define; shown here is how much of the time "
+        "joint 1 is within a band.",
     )
 
 
