@@ -19,10 +19,21 @@ SOLVERS = [
     bik.BAS(variant="chain", c1=0.3, c2=0.5, explorations=7, max_passes=9),
     bik.LevenbergMarquardt(),
     bik.LevenbergMarquardt(initial_damping=0.125),
+    bik.PSO(),
+    bik.PSO(population=20, form="inertia", inertia=0.5, c1=1.5, c2=1.25, velocity_limit=0.25),
+    bik.QPSO(expansion=0.5, max_generations=9, stall_generations=None),
+    bik.Firefly(population=20, attractiveness=0.5, absorption=2.0, randomness=0.1, randomness_decay=0.9),
+    bik.Genetic(elite_share=0.1, crossover_share=0.5, tournament=2, mutation_scale=0.2, mutation_decay=0.9),
+    bik.BeeColony(),
+    bik.BeeColony(limit=25),
+    bik.BeetleSwarm(),
+    bik.BeetleSwarm(inertia=1.0, velocity_limit=1.0, direction="downhill"),
+    bik.DifferentialEvolution(weight=0.75, crossover_rate=0.5),
+    bik.MultiStart(bik.Firefly()),
     bik.MultiStart(bik.BAS(variant="greedy")),
     bik.MultiStart(bik.LevenbergMarquardt(initial_damping=0.5), max_starts=3),
 ]
-STOPS = [bik.Stop(), bik.Stop(max_evaluations=10, max_iterations=20, max_time=0.25)]
+STOPS = [bik.Stop(), bik.Stop(max_evaluations=10, max_iterations=20, max_time=0.25, value_below=-0.5)]
 VALUES = [*SINUSOIDS, *SOLVERS, *STOPS]
 
 MECHANISM, MECHANISM_BASE, MECHANISM_TIP = chain(joints=9, place="branch", seed=4)

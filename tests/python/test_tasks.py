@@ -88,7 +88,7 @@ def test_the_nearest_solution_is_nearest() -> None:
 
 
 def test_goals_are_served() -> None:
-    posture = Q + [0.2, -0.2, 0.3, 0.1, -0.3, 0.2, 0.4]
+    posture = Q + 0.2
     plain = bik.solve(IIWA, POSE, start=Q)
     near = bik.solve(IIWA, POSE, start=Q, goals=goals.Posture(posture))
     best = bik.solve(IIWA, POSE, start=Q, goals=[goals.Manipulability()])
@@ -99,11 +99,11 @@ def test_goals_are_served() -> None:
 
 
 def test_a_tracker_drifts_towards_its_goal() -> None:
-    posture = Q + [0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 0.0]
+    posture = Q + 0.2 * np.linalg.svd(IIWA.jacobian(Q))[2][-1]  # along the self-motion
     tracker = bik.Tracker(IIWA, Q, dt=0.01, goals=goals.Posture(posture))
     steps = [tracker.step(POSE) for _ in range(200)]
     assert all(step.success for step in steps)
-    assert np.linalg.norm(tracker.q - posture) < 0.95 * np.linalg.norm(Q - posture)
+    assert np.linalg.norm(tracker.q - posture) < 0.3 * np.linalg.norm(Q - posture)
 
 
 def test_a_path_is_followed_as_far_as_the_task_asks() -> None:

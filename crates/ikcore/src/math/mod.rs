@@ -6,6 +6,7 @@ pub mod box_step;
 pub mod frame;
 pub mod interval;
 pub mod knots;
+pub mod logarithm;
 pub mod polynomial;
 pub mod pose;
 pub mod sincos;

@@ -161,6 +161,9 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     pub fn evaluate_all(&mut self, mut xs: &mut [f64], values: &mut [f64]) -> Result<(), Halt> {
         for values in values.chunks_mut(self.pace.at_once) {
             let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
+            if affordable == 0 {
+                return Err(Halt::Budget);
+            }
             self.spend(affordable)?;
             let (chunk, rest) = xs.split_at_mut(affordable * self.dimension);
             self.evaluate_chunk(chunk, &mut values[..affordable]);

@@ -170,17 +170,19 @@ pub fn turn_particles(
 ) {
     let widths = &population.widths[..];
     let n = widths.len();
-    let g = memory.members.point(memory.leader);
+    let g = &memory.members.point(memory.leader)[..n];
     let mut draws = Point::from_elem(0.0, n);
+    let draws = &mut draws[..n];
     let particles = population.members.points().zip(memory.members.points()).zip(velocities.chunks_exact_mut(n));
     for ((x, p), v) in particles {
-        rng.fill(&mut draws);
-        let places = v.iter_mut().zip(x).zip(p).zip(g).zip(widths).zip(&draws[..]);
-        for (((((v, x), p), g), width), draw) in places {
-            let [r1, r2] = split(*draw);
-            let most = velocity_limit * width;
-            let wanted = w * *v + c1 * r1 * (p - x) + c2 * r2 * (g - x);
-            *v = wanted.max(-most).min(most);
+        rng.fill(draws);
+        let (x, p, v) = (&x[..n], &p[..n], &mut v[..n]);
+        for k in 0..n {
+            let [r1, r2] = split(draws[k]);
+            let most = velocity_limit * widths[k];
+            let wanted = w * v[k] + c1 * r1 * (p[k] - x[k]) + c2 * r2 * (g[k] - x[k]);
+            let raised = if wanted > -most { wanted } else { -most };
+            v[k] = if raised < most { raised } else { most };
         }
     }
 }
