@@ -12,7 +12,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
     result.trajectory.to_csv("trajectory.csv")
 """
 
-from . import goals, obstacles, paths, plot, tasks
+from . import goals, obstacles, paths, plot, tasks, vision
 from ._core import (
     APPS,
     BAS,
@@ -26,6 +26,7 @@ from ._core import (
     BroydenBAS,
     ControlSession,
     InfeasibleError,
+    CircleSwarm,
     DifferentialEvolution,
     Firefly,
     Genetic,
@@ -41,6 +42,7 @@ from ._core import (
     NewtonRaphson,
     Path,
     Plan,
+    PlanarPosture,
     Robot,
     Sinusoid,
     Solution,
@@ -60,6 +62,8 @@ from ._core import (
     minimize,
     plan_along_path,
     plan_point_to_point,
+    WeightedPseudoInverse,
+    planar_posture,
     pose,
     solve,
     solve_all,
@@ -82,6 +86,7 @@ __all__ = [
     "BroydenBAS",
     "ControlSession",
     "InfeasibleError",
+    "CircleSwarm",
     "DifferentialEvolution",
     "Firefly",
     "Genetic",
@@ -97,6 +102,7 @@ __all__ = [
     "NewtonRaphson",
     "Path",
     "Plan",
+    "PlanarPosture",
     "Robot",
     "Sinusoid",
     "Solution",
@@ -112,6 +118,7 @@ __all__ = [
     "UrdfError",
     "VelocityEllipsoid",
     "Violation",
+    "WeightedPseudoInverse",
     "__version__",
     "goals",
     "minimize",
@@ -119,6 +126,7 @@ __all__ = [
     "paths",
     "plan_along_path",
     "plan_point_to_point",
+    "planar_posture",
     "plot",
     "pose",
     "solve",
@@ -128,4 +136,5 @@ __all__ = [
     "time_optimal",
     "track",
     "track_model_free",
+    "vision",
 ]

@@ -488,6 +488,32 @@ class NewtonRaphson:
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
+class WeightedPseudoInverse:
+    def __new__(
+        cls,
+        *,
+        gain: float | None = None,  # 1/s
+        integrator: Literal["euler", "rk4"] = "euler",
+        weights: ArrayLike | None = None,  # (n,)
+        posture: Trajectory | None = None,
+        posture_gain: float = ...,  # 1/s
+        damping: float = 0.0,
+    ) -> WeightedPseudoInverse: ...
+    @property
+    def gain(self) -> float | None: ...
+    @property
+    def integrator(self) -> str: ...
+    @property
+    def weights(self) -> _Array | None: ...
+    @property
+    def posture(self) -> Trajectory | None: ...
+    @property
+    def posture_gain(self) -> float: ...
+    @property
+    def damping(self) -> float: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class Stop:
     def __new__(
         cls,
@@ -573,11 +599,15 @@ def solve(
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
     goals: _Goals = None,
-    prefer: Literal["any", "nearest"] = "any",
+    prefer: Literal["any", "nearest", "best"] = "any",
     limits: Limits | None = None,
     stop: Stop | None = None,
     seed: int = 0,
 ) -> Solution: ...
+
+@final
+class LinkManipulability(Goal):
+    def __new__(cls, *, motion: _Motion = "position", weight: float = 1.0) -> LinkManipulability: ...
 
 @final
 class Solution:
@@ -654,7 +684,7 @@ def solve_batch(
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
     goals: _Goals = None,
-    prefer: Literal["any", "nearest"] = "any",
+    prefer: Literal["any", "nearest", "best"] = "any",
     limits: Limits | None = None,
     stop: Stop | None = None,  # budgets of each target
     seed: int = 0,
@@ -724,6 +754,67 @@ class Minimum:
     @property
     def elapsed(self) -> float: ...
 
+# --- postures -----------------------------------------------------------------------------------
+
+@final
+class CircleSwarm:
+    def __new__(
+        cls,
+        *,
+        population: int = 5,
+        generations: int = 10,
+        c1: float = 2.05,
+        c2: float = 2.05,
+        velocity_limit: float = 0.2,  # m a generation
+        signed: bool = False,
+    ) -> CircleSwarm: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def generations(self) -> int: ...
+    @property
+    def c1(self) -> float: ...
+    @property
+    def c2(self) -> float: ...
+    @property
+    def velocity_limit(self) -> float: ...
+    @property
+    def signed(self) -> bool: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+def planar_posture(
+    robot: Robot,
+    target: ArrayLike,  # (3,)
+    *,
+    measure: Literal["tip", "overall"] = "tip",
+    region: ArrayLike | None = None,  # (2, 2): least and largest x, y (m)
+    swarm: CircleSwarm | None = None,
+    seed: int = 0,
+) -> PlanarPosture: ...
+
+@final
+class PlanarPosture:
+    @property
+    def q(self) -> _Array: ...  # (n,)
+    @property
+    def index(self) -> float: ...
+    @property
+    def history(self) -> _Array: ...  # (generations,), or empty
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def position_error(self) -> float: ...  # m
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...
+
 # --- reference paths (public as beetle_ik.paths) ------------------------------------------------
 
 @final
@@ -783,7 +874,7 @@ def track(
     *,
     dt: float,
     task: Task | None = None,
-    solver: _Solver | None = None,
+    solver: _Solver | WeightedPseudoInverse | None = None,
     limits: Limits | None = None,
     goals: _Goals = None,
     position_tolerance: float = 1e-6,
@@ -852,7 +943,7 @@ class Tracker:
         *,
         dt: float,
         task: Task | None = None,
-        solver: _Solver | None = None,
+        solver: _Solver | WeightedPseudoInverse | None = None,
         limits: Limits | None = None,
         goals: _Goals = None,
         position_tolerance: float = 1e-6,
@@ -860,7 +951,7 @@ class Tracker:
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
     ) -> Tracker: ...
-    def step(self, target: ArrayLike) -> Step: ...  # (4, 4) pose or (3,) position
+    def step(self, target: ArrayLike, *, velocity: ArrayLike | None = None) -> Step: ...  # (4, 4) or (3,); m/s
     def reset(self, q: ArrayLike) -> None: ...
     @property
     def q(self) -> _Array: ...  # (n,)

@@ -14,10 +14,12 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyGoal>()?;
     module.add_class::<PyPosture>()?;
     module.add_class::<PyCentring>()?;
-    module.add_class::<PyManipulability>()
+    module.add_class::<PyManipulability>()?;
+    module.add_class::<PyLinkManipulability>()
 }
 
-/// What the joints should do where the task leaves them free: one of `Posture`, `Centring` and `Manipulability`.
+/// What the joints should do where the task leaves them free: one of `Posture`, `Centring`, `Manipulability` and
+/// `LinkManipulability`.
 #[pyclass(name = "Goal", module = "beetle_ik.goals", frozen, subclass, eq)]
 #[derive(Clone, PartialEq)]
 pub struct PyGoal {
@@ -38,6 +40,9 @@ impl PyGoal {
             Goal::Posture { posture, .. } => format!("goals.Posture({posture:?}, weight={weight})"),
             Goal::Centring { .. } => format!("goals.Centring(weight={weight})"),
             Goal::Manipulability { motion, .. } => format!("goals.Manipulability(motion='{motion}', weight={weight})"),
+            Goal::LinkManipulability { motion, .. } => {
+                format!("goals.LinkManipulability(motion='{motion}', weight={weight})")
+            }
         }
     }
 
@@ -47,7 +52,7 @@ impl PyGoal {
         let arguments = match &self.core {
             Goal::Posture { posture, .. } => PyTuple::new(py, [row(py, posture.clone())])?,
             Goal::Centring { .. } => PyTuple::empty(py),
-            Goal::Manipulability { motion, .. } => {
+            Goal::Manipulability { motion, .. } | Goal::LinkManipulability { motion, .. } => {
                 options.set_item("motion", motion.name())?;
                 PyTuple::empty(py)
             }
@@ -120,6 +125,25 @@ impl PyManipulability {
     fn new(motion: &str, weight: f64) -> PyResult<PyClassInitializer<Self>> {
         let motion = motion.parse::<Motion>().map_err(raise)?;
         Ok(PyClassInitializer::from(goal(Goal::Manipulability { motion, weight })?).add_subclass(Self))
+    }
+}
+
+/// The whole arm far from singularities: lowers -ln of the sum of `Robot.link_manipulability`, so that no link comes near
+/// a straight line with the one before it.
+///
+/// Args:
+///     motion: of the links' tips, as in `Robot.manipulability`: "pose", "position" or "rotation".
+///     weight: share among several goals.
+#[pyclass(name = "LinkManipulability", module = "beetle_ik.goals", extends = PyGoal, frozen)]
+pub struct PyLinkManipulability;
+
+#[pymethods]
+impl PyLinkManipulability {
+    #[new]
+    #[pyo3(signature = (*, motion="position", weight=1.0))]
+    fn new(motion: &str, weight: f64) -> PyResult<PyClassInitializer<Self>> {
+        let motion = motion.parse::<Motion>().map_err(raise)?;
+        Ok(PyClassInitializer::from(goal(Goal::LinkManipulability { motion, weight })?).add_subclass(Self))
     }
 }
 

@@ -9,7 +9,7 @@ use ikcore::tracking::{self, Session, TrackOptions};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::convert::{count, row, vector};
+use crate::convert::{count, point, row, vector};
 use crate::error::raise;
 use crate::goal::read_goals;
 use crate::ik::read_target;
@@ -93,7 +93,7 @@ impl PyStep {
 ///     start: (n,), configuration at t = 0.
 ///     dt: time step (s).
 ///     task, goals: as in `track`.
-///     solver: what runs in every step; None: the library's model-based rule.
+///     solver: what runs in every step: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule.
 ///     limits: None: the robot's. Numbers and `Sinusoid`s; a callable has no end to be sampled to.
 ///     position_tolerance: m.
 ///     rotation_tolerance: rad.
@@ -146,10 +146,17 @@ impl PyTracker {
     }
 
     /// Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
-    fn step(&self, py: Python<'_>, target: &Bound<'_, PyAny>) -> PyResult<PyStep> {
+    ///
+    /// Args:
+    ///     target: where the tip is to be at the end of the tick.
+    ///     velocity: (3,) (m/s), that of the target then, for `WeightedPseudoInverse`; None: the way from where it was.
+    ///         Other rules need none.
+    #[pyo3(signature = (target, *, velocity=None))]
+    fn step(&self, py: Python<'_>, target: &Bound<'_, PyAny>, velocity: Option<&Bound<'_, PyAny>>) -> PyResult<PyStep> {
         let target = read_target(target)?;
+        let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
         let mut session = self.session();
-        let core = session.step(&target, &mut Unattended).map_err(raise)?;
+        let core = session.step_moving(&target, velocity, &mut Unattended).map_err(raise)?;
         Ok(PyStep::new(py, core, session.q(), session.qd()))
     }
 

@@ -19,6 +19,7 @@ use crate::solver::{any_solver, status};
 use crate::task::read_task;
 use crate::trajectory::PyTrajectory;
 use crate::upward;
+use crate::weighted_pseudo_inverse::PyWeightedPseudoInverse;
 
 /// The record of a track: k = steps + 1 rows; row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
 #[pyclass(name = "TrackResult", module = "beetle_ik", frozen)]
@@ -218,7 +219,8 @@ impl PyTrackResult {
 /// Follows `path` with the tip of `robot`, tick by tick, inside the limits.
 ///
 /// In every tick the joints may move within the position limits and within what the velocity limits let the last
-/// accepted configuration reach, so that neither can be broken (Cheng et al. 2020, Algorithm 1).
+/// accepted configuration reach, so that neither can be broken (Cheng et al. 2020, Algorithm 1). Acceleration limits narrow
+/// that further, with room left to brake before position limits; the arm starts at rest.
 ///
 /// Args:
 ///     robot: the arm.
@@ -226,10 +228,11 @@ impl PyTrackResult {
 ///     start: (n,), configuration at t = 0; None solves for the path's first point.
 ///     dt: time step (s).
 ///     task: of `tasks`, what of the path matters; None: all that it says.
-///     solver: what runs in every tick; None: the library's model-based rule, which needs one or two evaluations a step.
+///     solver: what runs in every tick: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule, which
+///         needs one or two evaluations a step.
 ///     limits: None: the robot's.
 ///     goals: of `goals`, one or several: in every tick the freedom that the task leaves goes down their gradient by weight times
-///         dt. They need the library's own rule.
+///         dt. They need the library's own rule, or `WeightedPseudoInverse`.
 ///     position_tolerance: the error band (m).
 ///     rotation_tolerance: the same for orientations (rad).
 ///     seed: of the random draws: the same seed, the same bits.
@@ -242,7 +245,7 @@ impl PyTrackResult {
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, dt not positive.
 ///     LimitError: a start outside its limits, a limit below zero.
-///     UnsupportedLimit: acceleration or jerk limits, which this tracker does not keep.
+///     UnsupportedLimit: jerk limits, which this tracker does not keep.
 #[pyfunction]
 #[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
                     position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval", progress=None))]
@@ -264,12 +267,13 @@ pub fn track(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTrackResult> {
     let arm = robot.get().core.clone();
-    let reference = path.reference(py, dt)?;
+    let rule = tick_rule(solver)?;
+    let reference = if rule.uses_velocities() { path.moving_reference(py, dt)? } else { path.reference(py, dt)? };
     let sampling = Sampling::of_ticks(dt, reference.len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
     let options = TrackOptions {
-        rule: tick_rule(solver)?,
+        rule,
         task: read_task(task)?,
         goals: read_goals(goals)?,
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
@@ -286,7 +290,11 @@ pub fn track(
     Ok(PyTrackResult { tables: Tables::new(py, &core)?, robot: robot.clone().unbind(), limits: in_force, core })
 }
 
-/// A solver, or the library's own rule.
+/// A rule, a solver, or the library's own rule.
 pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
-    solver.map_or(Ok(TickRule::default()), |solver| any_solver(solver).map(TickRule::EachTick))
+    let Some(solver) = solver else { return Ok(TickRule::default()) };
+    match solver.cast::<PyWeightedPseudoInverse>() {
+        Ok(rule) => Ok(rule.get().rule()),
+        Err(_) => any_solver(solver).map(TickRule::EachTick),
+    }
 }

@@ -1,6 +1,7 @@
 //! Inverse kinematics: one target, one answer, or all of them.
 
 mod all;
+mod best;
 mod nearest;
 mod prepared;
 mod self_motion;
@@ -28,6 +29,8 @@ pub enum Prefer {
     Any,
     /// Of those found, the one nearest to the start.
     Nearest,
+    /// Of those found, the one that serves the goals best.
+    Best,
 }
 
 impl FromStr for Prefer {
@@ -37,7 +40,8 @@ impl FromStr for Prefer {
         match name {
             "any" => Ok(Self::Any),
             "nearest" => Ok(Self::Nearest),
-            _ => Err(Error::unknown_option("prefer", name, &["any", "nearest"])),
+            "best" => Ok(Self::Best),
+            _ => Err(Error::unknown_option("prefer", name, &["any", "nearest", "best"])),
         }
     }
 }
@@ -71,7 +75,8 @@ pub struct SolveOptions {
 /// With goals, the solution found is moved along the self-motion until they are as good as they get near it. With
 /// [`Prefer::Nearest`] further solutions are sought from starts spread ever wider about the given one, each moved along the
 /// self-motion and by whole turns towards it, until twelve in a row are no nearer or the budget is spent. Near is what has the
-/// smallest |q - start|, joints counted in rad and m.
+/// smallest |q - start|, joints counted in rad and m. With [`Prefer::Best`] solutions are sought from all over until 24 in
+/// a row, each moved along the self-motion, serve the goals no better.
 ///
 /// # Errors
 /// Any [`enum@Error`] for wrong input. A target that is not reached is a status, not an error.

@@ -51,6 +51,9 @@ impl<'a> Prepared<'a> {
                 problem: "prefer=\"nearest\" is a goal itself: leave goals out".into(),
             });
         }
+        if options.prefer == Prefer::Best && options.goals.is_empty() {
+            return Err(Error::Contradiction { problem: "prefer=\"best\" needs goals: best for what?".into() });
+        }
         let bounds = position_box(robot, options.limits.as_ref())?;
         let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;
         let robot = with_tool.map_or(Cow::Borrowed(robot), Cow::Owned);
@@ -64,6 +67,10 @@ impl<'a> Prepared<'a> {
 
     pub(super) fn bounds(&self) -> &Bounds {
         &self.bounds
+    }
+
+    pub(super) fn goals(&self) -> &Goals {
+        &self.goals
     }
 
     pub(super) fn options(&self) -> &SolveOptions {
@@ -116,6 +123,9 @@ impl<'a> Prepared<'a> {
         let mut rng = rng::stream(self.options.seed, stream);
         if let (Prefer::Nearest, Some(start)) = (self.options.prefer, start) {
             return self.run_nearest(target, start, &mut rng, monitor);
+        }
+        if self.options.prefer == Prefer::Best {
+            return self.run_best(target, start, &mut rng, monitor);
         }
         let mut problem = self.problem(target);
         let mut buffer = [0.0; MAX_DOF];

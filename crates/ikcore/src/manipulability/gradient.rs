@@ -4,7 +4,7 @@
 //! (product of the others) u_i v_i'. The Jacobian changes by cross products of its own columns: turning about an element
 //! carries all elements behind it along, and moves the tip as seen from all before it.
 
-use super::{Manipulability, Motion};
+use super::Manipulability;
 use crate::math::MAX_DOF;
 use crate::math::singular::SingularValues;
 use crate::math::so3::cross;
@@ -27,22 +27,26 @@ pub(super) fn add(measure: &Manipulability, screws: &[Screw], tip: &[f64; 3], ou
         *share = screw.column(tip);
         columns[screw.joint].iter_mut().zip(&*share).for_each(|(sum, entry)| *sum += entry);
     }
-    let columns = &mut columns[..out.len()];
-    measure.motion().select(columns);
-    let values = SingularValues::of(columns);
-    let sensitivity = sensitivity(&values, measure.directions(), out.len());
+    let (index, sensitivity) = sensitivity(measure, &mut columns[..out.len()]);
     for (b, (moved, moving)) in shares.iter().zip(screws).enumerate() {
         for (a, (share, screw)) in shares.iter().zip(screws).enumerate() {
             let change = change_of(share, moved, a >= b);
-            out[moving.joint] += inner(&sensitivity[screw.joint], &change, measure.motion());
+            out[moving.joint] += inner(&sensitivity[screw.joint], &change);
         }
     }
-    measure.product(&values)
+    index
 }
 
-/// dw/dJ, column by column.
-fn sensitivity(values: &SingularValues, directions: usize, n: usize) -> Columns {
+/// w and dw/dJ, column by column.
+fn sensitivity(measure: &Manipulability, columns: &mut [[f64; 6]]) -> (f64, Columns) {
     let mut sensitivity: Columns = [[0.0; 6]; MAX_DOF];
+    if let Some(regular) = measure.regular(columns) {
+        regular.sensitivity(columns, &mut sensitivity);
+        return (regular.index(), sensitivity);
+    }
+    measure.motion().select(columns);
+    let values = SingularValues::of(columns);
+    let (n, directions) = (columns.len(), measure.directions());
     for i in 0..directions {
         let others: f64 = (0..directions).filter(|k| *k != i).map(|k| values.lengths[k]).product();
         for (column, right) in sensitivity[..n].iter_mut().zip(&values.right[i]) {
@@ -51,7 +55,7 @@ fn sensitivity(values: &SingularValues, directions: usize, n: usize) -> Columns 
             }
         }
     }
-    sensitivity
+    (measure.product(&values), sensitivity)
 }
 
 /// The derivative of one element's column by the motion of another: `carried` along if it is that one or behind it,
@@ -69,12 +73,7 @@ fn halves(column: &[f64; 6]) -> [[f64; 3]; 2] {
     [[x, y, z], [a, b, c]]
 }
 
-/// The sum of products over the rows that count.
-fn inner(a: &[f64; 6], b: &[f64; 6], motion: Motion) -> f64 {
-    let rows = match motion {
-        Motion::Pose => 0..6,
-        Motion::Position => 0..3,
-        Motion::Rotation => 3..6,
-    };
-    rows.map(|k| a[k] * b[k]).sum()
+/// The sum of products; the sensitivity is zero in rows that do not count.
+fn inner(a: &[f64; 6], b: &[f64; 6]) -> f64 {
+    (0..6).map(|k| a[k] * b[k]).sum()
 }

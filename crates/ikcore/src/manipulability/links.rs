@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use super::{Manipulability, gradient};
-use crate::math::{MAX_DOF, singular::SingularValues};
+use crate::math::MAX_DOF;
 use crate::robot::{Columns, Robot};
 
 /// At most so many links move.
@@ -41,9 +41,7 @@ impl Manipulability {
                 let share = screw.column(&link.end);
                 columns[screw.joint].iter_mut().zip(share).for_each(|(sum, entry)| *sum += entry);
             }
-            let columns = &mut columns[..q.len()];
-            self.motion().select(columns);
-            indices.values[i] = self.unit_ball() * self.product(&SingularValues::of(columns));
+            indices.values[i] = self.unit_ball() * self.index_of(&mut columns[..q.len()]);
         }
         indices
     }

@@ -7,18 +7,21 @@
 mod ellipsoid;
 mod gradient;
 mod links;
+mod regular;
 
 pub use ellipsoid::Ellipsoid;
 pub use links::{LinkIndices, MAX_LINKS};
 
 use std::fmt;
+use std::ops::Range;
 use std::str::FromStr;
+
+use regular::Regular;
 
 use crate::error::{Error, Result};
 use crate::math::MAX_DOF;
 use crate::math::singular::SingularValues;
-use crate::rng;
-use crate::robot::{Columns, Joint, Robot};
+use crate::robot::{Columns, Directions, Robot};
 
 /// Which motion of the tip counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -44,14 +47,21 @@ impl Motion {
         }
     }
 
+    /// The rows that count.
+    fn rows(self) -> Range<usize> {
+        match self {
+            Self::Pose => 0..6,
+            Self::Position => 0..3,
+            Self::Rotation => 3..6,
+        }
+    }
+
     /// Empties the rows that do not count.
     fn select(self, columns: &mut [[f64; 6]]) {
+        let Range { start, end } = self.rows();
         for column in columns {
-            match self {
-                Self::Pose => {}
-                Self::Position => column[3..].fill(0.0),
-                Self::Rotation => column[..3].fill(0.0),
-            }
+            column[..start].fill(0.0);
+            column[end..].fill(0.0);
         }
     }
 }
@@ -82,26 +92,16 @@ pub struct Manipulability {
     directions: usize,
 }
 
-/// Singular values below this share of the largest are no direction of motion.
-const RANK: f64 = 1e-9;
-
-/// Postures looked at to see how many directions there are; one of them would do but for an unlucky draw.
-const DRAWS: u64 = 3;
-
 impl Manipulability {
     /// The measure of `motion` for `robot`.
     pub fn of(robot: &Robot, motion: Motion) -> Self {
-        let rank = |draw| {
-            let mut rng = rng::stream(0, draw);
-            let mut q = [0.0; MAX_DOF];
-            for (q, joint) in q.iter_mut().zip(robot.joints()) {
-                let (lower, upper) = Joint::sampling_range(joint);
-                *q = rng.uniform_in(lower, upper);
-            }
-            let values = decompose(robot, motion, &q[..robot.dof()]);
-            values.lengths.iter().filter(|length| **length > RANK * values.lengths[0]).count()
+        let Directions { pose, position, rotation } = robot.directions();
+        let directions = match motion {
+            Motion::Pose => pose,
+            Motion::Position => position,
+            Motion::Rotation => rotation,
         };
-        Self { motion, directions: (0..DRAWS).map(rank).max().unwrap_or(0) }
+        Self { motion, directions }
     }
 
     /// Which motion counts.
@@ -116,7 +116,26 @@ impl Manipulability {
 
     /// Yoshikawa's index at `q`, which has one finite entry per joint of the robot.
     pub fn index(&self, robot: &Robot, q: &[f64]) -> f64 {
-        self.product(&decompose(robot, self.motion, q))
+        let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+        robot.tip_and_jacobian(q, &mut columns);
+        self.index_of(&mut columns[..q.len()])
+    }
+
+    /// The index of the matrix with these columns, of which the rows that do not count are emptied.
+    fn index_of(&self, columns: &mut [[f64; 6]]) -> f64 {
+        match self.regular(columns) {
+            Some(regular) => regular.index(),
+            None => {
+                self.motion.select(columns);
+                self.product(&SingularValues::of(columns))
+            }
+        }
+    }
+
+    /// The quick way, where there is one.
+    fn regular(&self, columns: &[[f64; 6]]) -> Option<Regular> {
+        let rows = self.motion.rows();
+        if rows.len() == self.directions { Regular::of(columns, rows) } else { None }
     }
 
     /// The index at `q`, and its gradient (n,) in `out`; nothing is allocated. `q` and `out` have one entry per joint.

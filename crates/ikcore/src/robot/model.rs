@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::builder::{ChainBuilder, Element};
 use super::chain::Chain;
 use super::collision::CollisionModel;
+use super::directions::Directions;
 use super::joint::Joint;
 use super::seed_index::SeedIndex;
 use super::{Columns, MAX_DOF, Wrench};
@@ -29,6 +30,8 @@ pub struct Robot {
     collision: CollisionModel,
     /// Built when first asked for; copies that differ in base and tool share it.
     seed_index: Arc<OnceLock<SeedIndex>>,
+    /// Found when first asked for.
+    directions: OnceLock<Directions>,
 }
 
 impl PartialEq for Robot {
@@ -63,7 +66,8 @@ impl Robot {
     ) -> Result<Self> {
         description.validate()?;
         let chain = Chain::new(&description.elements, &base, &tool);
-        Ok(Self { description, base, tool, chain, collision, seed_index: Arc::default() })
+        let (seed_index, directions) = (Arc::default(), OnceLock::new());
+        Ok(Self { description, base, tool, chain, collision, seed_index, directions })
     }
 
     /// The robot's name.
@@ -237,6 +241,11 @@ impl Robot {
 
     pub(super) fn chain(&self) -> &Chain {
         &self.chain
+    }
+
+    /// In how many directions the tip can move at all.
+    pub fn directions(&self) -> Directions {
+        *self.directions.get_or_init(|| Directions::of(self))
     }
 
     pub(super) fn seed_index(&self) -> &SeedIndex {

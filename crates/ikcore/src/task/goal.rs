@@ -27,6 +27,14 @@ pub enum Goal {
         /// Share among several goals.
         weight: f64,
     },
+    /// The whole arm far from singularities: -ln of the sum of the indices of all links
+    /// ([`Manipulability::link_indices`]).
+    LinkManipulability {
+        /// Which motion of the links' tips counts.
+        motion: Motion,
+        /// Share among several goals.
+        weight: f64,
+    },
 }
 
 /// Goals made ready for one robot between its limits.
@@ -41,8 +49,15 @@ pub struct Goals {
 enum Term {
     /// The sum of stiffness * (q - rest)^2.
     Springs { stiffness: Point, rest: Point },
-    /// -weight * ln w.
-    Manipulability { measure: Manipulability, weight: f64 },
+    /// -weight * ln of an index.
+    Manipulability { measure: Manipulability, of: Part, weight: f64 },
+}
+
+/// What an index is taken of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Tip,
+    AllLinks,
 }
 
 /// An index below this counts as this: a singular posture has no logarithm.
@@ -51,8 +66,12 @@ const SINGULAR: f64 = 1e-12;
 impl Goal {
     /// Share among several goals.
     pub fn weight(&self) -> f64 {
-        let (Self::Posture { weight, .. } | Self::Centring { weight } | Self::Manipulability { weight, .. }) = self;
-        *weight
+        match self {
+            Self::Posture { weight, .. }
+            | Self::Centring { weight }
+            | Self::Manipulability { weight, .. }
+            | Self::LinkManipulability { weight, .. } => *weight,
+        }
     }
 
     /// Checks the weight.
@@ -71,7 +90,7 @@ impl Goal {
         self.validate_weight()?;
         match self {
             Self::Posture { posture, .. } => robot.check("posture", posture),
-            Self::Centring { .. } | Self::Manipulability { .. } => Ok(()),
+            Self::Centring { .. } | Self::Manipulability { .. } | Self::LinkManipulability { .. } => Ok(()),
         }
     }
 
@@ -91,8 +110,13 @@ impl Goal {
                 Term::Springs { stiffness, rest }
             }
             Self::Manipulability { motion, weight } => {
-                Term::Manipulability { measure: Manipulability::of(robot, *motion), weight: *weight }
+                Term::Manipulability { measure: Manipulability::of(robot, *motion), of: Part::Tip, weight: *weight }
             }
+            Self::LinkManipulability { motion, weight } => Term::Manipulability {
+                measure: Manipulability::of(robot, *motion),
+                of: Part::AllLinks,
+                weight: *weight,
+            },
         }
     }
 }
@@ -130,8 +154,12 @@ impl Term {
                 }
                 cost
             }
-            Self::Manipulability { measure, weight } => {
-                let index = measure.gradient(robot, q, one).max(SINGULAR);
+            Self::Manipulability { measure, of, weight } => {
+                let index = match of {
+                    Part::Tip => measure.gradient(robot, q, one),
+                    Part::AllLinks => measure.overall_gradient(robot, q, one),
+                };
+                let index = index.max(SINGULAR);
                 for (slope, one) in gradient.iter_mut().zip(one) {
                     *slope -= weight * *one / index;
                 }

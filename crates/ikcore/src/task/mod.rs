@@ -5,6 +5,7 @@ pub mod entrywise;
 mod error;
 mod goal;
 mod kind;
+mod motion;
 mod orientation;
 mod pointing;
 mod pose;
@@ -14,6 +15,7 @@ pub use criterion::{Assessment, Components, Criterion};
 pub use error::{SquaredError, TipError, Tolerance};
 pub use goal::{Goal, Goals};
 pub use kind::{Kind, Task};
+pub use motion::{TargetMotion, Twist};
 
 use crate::error::{Result, require_finite};
 use crate::math::box_step::ROWS;

@@ -17,7 +17,7 @@ pub use controller::Controller;
 pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
 pub use plant::{Fault, FunctionPlant, KinematicPlant, Plant};
 pub use record::Record;
-pub use rule::TickRule;
+pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
 pub use session::{Session, Step};
 
 use crate::error::{Error, Result};
@@ -59,8 +59,8 @@ impl TrackOptions {
 
     /// Checks that the rule serves the goals, and the goals the robot.
     fn check_goals(&self, robot: &Robot) -> Result<()> {
-        if !self.goals.is_empty() && self.rule != TickRule::MidStep {
-            let problem = "goals beside the path are served by the library's own rule: leave solver out";
+        if !self.goals.is_empty() && !self.rule.serves_goals() {
+            let problem = "goals beside the path are served by the library's own rule and by WeightedPseudoInverse: leave solver out";
             return Err(Error::Contradiction { problem: problem.into() });
         }
         self.goals.iter().try_for_each(|goal| goal.validate(robot))
@@ -94,7 +94,7 @@ pub fn track(
     let mut session = Session::new(robot, &start, reference.dt(), options)?;
     let mut record =
         Record::new(start.len(), reference.len(), session.limits().clone(), *session.criterion(), reference.dt());
-    let beginning = session.begin(&target(reference, 0))?;
+    let beginning = session.begin(&target(reference, 0), reference.velocity(0))?;
     record.push(&session.accepted(), reference.position(0), &beginning);
     let finished = follow(reference, &mut session, &mut record, monitor)?;
     record.finish(!finished, stopwatch.elapsed());
@@ -114,7 +114,7 @@ fn follow(
         if !monitor.keep_going() {
             return Ok(false);
         }
-        let step = session.step(&target(reference, i), monitor)?;
+        let step = session.step_moving(&target(reference, i), reference.velocity(i), monitor)?;
         if step.interrupted {
             return Ok(false);
         }

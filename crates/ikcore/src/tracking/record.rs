@@ -129,7 +129,8 @@ impl Record {
             let too_fast = (q - before).abs() - velocity_limit[j] * self.dt;
             // From displacements, which keep the limit to the last bit; velocities round once more.
             self.limit_margin = self.limit_margin.min(0.0 - too_fast / self.dt);
-            let excess = too_fast.max(lower - q).max(q - upper);
+            let too_sudden = self.too_sudden(j, q - before, [from, to]);
+            let excess = too_fast.max(too_sudden).max(lower - q).max(q - upper);
             self.note_excess(excess, j, *q, to);
         }
     }
@@ -141,6 +142,13 @@ impl Record {
             self.max_violation = excess;
             self.worst_violation = Some((j, when));
         }
+    }
+
+    /// By how much the displacement `step` of joint `j` differs from that of the tick before, beyond the acceleration limit.
+    fn too_sudden(&self, j: usize, step: f64, [from, to]: [f64; 2]) -> f64 {
+        let rows = self.q.len() / self.dof;
+        let before = if rows > 1 { self.q[(rows - 1) * self.dof + j] - self.q[(rows - 2) * self.dof + j] } else { 0.0 };
+        (step - before).abs() - self.limits.acceleration_over(j, from, to) * self.dt * self.dt
     }
 
     /// Sums up: the track has succeeded if, once in its band, it stayed there, and every limit was kept.
@@ -175,8 +183,8 @@ impl Record {
         if let Some((joint, when)) = self.worst_violation {
             let (joint, excess) = (self.limits.joint_name(joint), number(self.max_violation));
             return format!(
-                "joint '{joint}' is {excess} (rad or m) beyond its position limit at t = {} s: the limit closes in faster than \
-                 the joint may move; slow it down, raise the velocity limit, or start farther inside",
+                "joint '{joint}' is {excess} (rad or m) beyond its limits at t = {} s: a limit closes in faster than \
+                 the joint may move; slow it down, raise the velocity or acceleration limit, or start farther inside",
                 time(when)
             );
         }

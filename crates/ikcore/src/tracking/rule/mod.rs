@@ -2,6 +2,9 @@
 
 mod each_tick;
 mod mid_step;
+mod weighted_pseudo_inverse;
+
+pub use weighted_pseudo_inverse::{Integrator, WeightedPseudoInverse};
 
 use crate::error::Result;
 use crate::math::Frame;
@@ -9,7 +12,7 @@ use crate::objective::{Bounds, Point, Score};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Monitor};
-use crate::task::{Assessment, Criterion, Goals, SquaredError, Target};
+use crate::task::{Assessment, Criterion, Goals, SquaredError, Target, TargetMotion};
 
 /// What runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,6 +22,8 @@ pub enum TickRule {
     MidStep,
     /// A solver, begun anew from the accepted configuration.
     EachTick(AnySolver),
+    /// Velocities by the weighted pseudo-inverse of the Jacobian.
+    WeightedPseudoInverse(WeightedPseudoInverse),
 }
 
 /// One tick, as a rule sees it.
@@ -28,8 +33,14 @@ pub(super) struct Tick<'a> {
     pub criterion: &'a Criterion,
     /// What to do with the freedom that the target leaves.
     pub goals: &'a mut Goals,
+    /// How the target comes to where it is to be met, for rules that work with velocities.
+    pub motion: TargetMotion,
+    /// When the tick begins (s).
+    pub time: f64,
     /// Length of the tick (s).
     pub dt: f64,
+    /// The velocity limits of the tick (n,) (rad/s, m/s).
+    pub velocity_limit: &'a [f64],
     /// Where the tick may end.
     pub tick_box: &'a Bounds,
     /// The value accepted in the tick before, if any.
@@ -78,6 +89,7 @@ impl Found {
 pub(super) enum Running {
     MidStep(mid_step::Memory),
     EachTick(AnySolver),
+    WeightedPseudoInverse(WeightedPseudoInverse, weighted_pseudo_inverse::Scratch),
 }
 
 impl TickRule {
@@ -89,13 +101,35 @@ impl TickRule {
         match self {
             Self::MidStep => Ok(()),
             Self::EachTick(solver) => solver.validate(),
+            Self::WeightedPseudoInverse(rule) => rule.validate(),
         }
+    }
+
+    /// Checks them for `robot` and ticks of `dt` (s).
+    pub(super) fn validate_for(&self, robot: &Robot, dt: f64) -> Result<()> {
+        match self {
+            Self::MidStep | Self::EachTick(_) => Ok(()),
+            Self::WeightedPseudoInverse(rule) => rule.validate_for(robot, dt),
+        }
+    }
+
+    /// Whether goals beside the path are served.
+    pub(super) fn serves_goals(&self) -> bool {
+        !matches!(self, Self::EachTick(_))
+    }
+
+    /// Whether the velocity of the target makes a difference.
+    pub fn uses_velocities(&self) -> bool {
+        matches!(self, Self::WeightedPseudoInverse(_))
     }
 
     pub(super) fn start(&self) -> Running {
         match self {
             Self::MidStep => Running::MidStep(mid_step::Memory::default()),
             Self::EachTick(solver) => Running::EachTick(solver.clone()),
+            Self::WeightedPseudoInverse(rule) => {
+                Running::WeightedPseudoInverse(rule.clone(), weighted_pseudo_inverse::Scratch::default())
+            }
         }
     }
 }
@@ -106,6 +140,7 @@ impl Running {
         match self {
             Self::MidStep(memory) => mid_step::advance(memory, q, tick),
             Self::EachTick(solver) => each_tick::advance(solver, q, tick),
+            Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, q, tick),
         }
     }
 }
