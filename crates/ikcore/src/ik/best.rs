@@ -10,7 +10,7 @@ use crate::solver::{Monitor, Status};
 use crate::task::Target;
 
 /// Solutions in a row that are no better, before the search is over.
-const PATIENCE: usize = 24;
+const PATIENCE: usize = 40;
 
 /// Costs that differ by less are the same.
 const SAME: f64 = 1e-9;
