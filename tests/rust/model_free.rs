@@ -227,7 +227,7 @@ fn no_command_breaks_a_limit_and_the_seed_decides_every_bit() {
 #[test]
 fn a_limit_that_closes_in_is_followed_and_told() {
     let closing = Profile::Sampled { step: 1.0, values: vec![1.0, -1.0] };
-    let limits = Limits::none(7).replace(Field::Upper, vec![closing]).unwrap();
+    let limits = Limits::none_for(7).replace(Field::Upper, vec![closing]).unwrap();
     let limits = limits.replace(Field::Velocity, vec![Profile::Constant(0.5)]).unwrap();
     let options = ModelFreeOptions { limits: Some(limits), ..ModelFreeOptions::default() };
     let record = on_circle(&mut exact_plant(), &options);
@@ -309,7 +309,7 @@ fn a_session_gives_the_same_commands_as_the_run() {
 
 #[test]
 fn turns_are_kept() {
-    let mut session = Session::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none(2), 1e-6, 0).unwrap();
+    let mut session = Session::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none_for(2), 1e-6, 0).unwrap();
     let early = "observe: there is no command to answer; call command(target) first";
     assert_eq!(message(session.observe([0.0; 3])), early);
     session.command([1.0, 0.0, 0.0]).unwrap();
