@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._shapes import draw_obstacles
 from ._style import BLACK, BLUE, GREEN, SKY, VERMILION, line
 
 if TYPE_CHECKING:
@@ -37,7 +38,8 @@ class Scene:
         self.axes = figure.add_subplot(place, projection=None if self._flat else "3d")
 
     def draw_way(self) -> None:
-        """The tip's way, beginning and end, and the points that it was to follow."""
+        """The tip's way, beginning and end, the points that it was to follow, and what it had to keep clear of."""
+        draw_obstacles(self.axes, self._plan.obstacles)
         if self._plan.reference is not None:
             points = np.asarray(self._plan.reference)
             self._plot(points, color=VERMILION, marker="x", markersize=4, linestyle="none", label="points to follow")
@@ -80,16 +82,18 @@ class Scene:
 
 
 def draw(figure: Figure, plan: Plan) -> None:
-    """The arm on its way and the search on the left; positions, velocities, accelerations on the right."""
+    """The arm on its way and the search, where there was one, on the left; positions, velocities, accelerations on the right."""
     grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.15])
-    scene = Scene(figure, grid[:2, 0], plan)
+    searched = len(plan.history) > 1
+    scene = Scene(figure, grid[: 2 if searched else 3, 0], plan)
     for i in range(_SNAPSHOTS):
         share = i / (_SNAPSHOTS - 1)
         label = "arm" if i == _SNAPSHOTS - 1 else None
         scene.draw_arm(share, color=SKY, alpha=0.25 + 0.75 * share, label=label)
     scene.draw_way()
     scene.axes.legend(loc="upper left", fontsize="small")
-    _draw_search(figure.add_subplot(grid[2, 0]), plan)
+    if searched:
+        _draw_search(figure.add_subplot(grid[2, 0]), plan)
     time = np.linspace(0.0, plan.trajectory.duration, _SAMPLES)
     labels = ("position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]")
     panels = [figure.add_subplot(grid[row, 1]) for row in range(3)]
