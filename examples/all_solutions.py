@@ -2,8 +2,8 @@
 All solutions of a six-joint arm
 ================================
 
-An arm with six joints has a finite number of solutions for a pose, up to whole turns. ``solve_all`` looks for them until
-a hundred in a row were known already.
+An arm with six joints has a finite number of solutions for a pose, up to whole turns. ``solve_all`` looks for them
+until a hundred in a row were known already.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 Your own objective
 ==================
 
-``minimize`` runs any solver that needs values alone on a function of yours. Here: where to bolt down a planar arm, so that
-it works well at four places at once.
+``minimize`` runs any solver that needs values alone on a function of yours. Here: where to bolt down a planar arm, so
+that it works well at four places at once.
 """
 
 import matplotlib.pyplot as plt

@@ -2,10 +2,9 @@
 A pentagram in minimum time
 ===========================
 
-A planar arm with three links has one degree of freedom more than its tip needs. ``plan_along_path`` finds redundancy and
-timing together. The accuracy is asked for at the points given; between them the joints follow splines, which round the
-star's corners: dense points keep that small. How much of each limit is used shows how near to the least possible time the motion is: somewhere,
-always, a limit is met.
+A planar arm with three links has one degree of freedom more than its tip needs. ``plan_along_path`` finds redundancy
+and timing together. The accuracy is asked for at the points given; between them the joints follow splines, which round
+the star's corners: dense points keep that small. A motion that takes no longer than it must meets a limit all the time.
 """
 
 import matplotlib.pyplot as plt

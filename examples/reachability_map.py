@@ -2,8 +2,8 @@
 A batch, and the reachability map of an arm
 ===========================================
 
-``solve_batch`` solves many targets on all cores. Here it asks, for every point of a vertical slice, how many of a set of
-orientations the Panda can reach there: a reachability map.
+``solve_batch`` solves many targets on all cores. Here it asks, for every point of a vertical slice, how many of a set
+of orientations the Panda can reach there: a reachability map.
 """
 
 import matplotlib.pyplot as plt

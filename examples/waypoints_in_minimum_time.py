@@ -2,8 +2,8 @@
 Waypoints in minimum time
 =========================
 
-Joint positions that were taught by hand become a motion: ``time_optimal`` keeps the shape of the spline through them and
-finds the fastest timing that velocity and acceleration limits allow, at every instant.
+Joint positions that were taught by hand become a motion: ``time_optimal`` keeps the shape of the spline through them
+and finds the fastest timing that velocity and acceleration limits allow, at every instant.
 """
 
 import matplotlib.pyplot as plt
@@ -34,6 +34,6 @@ gentle = bik.time_optimal(
 print(f"{gentle.duration:.3f} s with jerk limits")
 
 # %%
-# Someone, somewhere, is always at a limit.
+# All the time one of the joints is at a limit.
 bik.plot.saturation(trajectory, limits)
 plt.show()

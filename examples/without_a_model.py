@@ -3,7 +3,8 @@ An arm with a wrong model
 =========================
 
 The arm is not built as it was drawn: links up to 2 cm off, joints up to 2°. Angles computed from the drawing miss the
-circle by centimetres. ``BroydenBAS`` uses no drawing: it commands, measures the tip, and learns how one follows from the other.
+circle by centimetres. ``BroydenBAS`` uses no drawing: it commands, measures the tip, and learns how one
+follows from the other.
 
 The same on a simulated arm with gravity and servos, as a film: ``examples/wrong_model.py``.
 """

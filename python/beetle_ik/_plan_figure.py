@@ -82,7 +82,7 @@ class Scene:
 
 
 def draw(figure: Figure, plan: Plan) -> None:
-    """The arm on its way and the search, where there was one, on the left; positions, velocities, accelerations on the right."""
+    """The arm on its way, and the search where there was one, on the left; motions of the joints on the right."""
     grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.15])
     searched = len(plan.history) > 1
     scene = Scene(figure, grid[: 2 if searched else 3, 0], plan)
