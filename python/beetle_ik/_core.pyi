@@ -864,6 +864,8 @@ class Plan:
     @property
     def violations(self) -> list[Violation]: ...
     @property
+    def obstacles(self) -> tuple[Obstacle, ...]: ...
+    @property
     def accuracy(self) -> float: ...  # m, from the points of the path; NaN from end to end
     @property
     def redundancy(self) -> _Array: ...  # (points, links, 3): orientation chosen, lowest, highest (rad)
