@@ -4,7 +4,10 @@
 use std::time::Duration;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
-use ikcore::objective::{Bounds, LeastSquares, Linearization, Objective, Score};
+use ikcore::math::box_step::ROWS;
+use ikcore::objective::{
+    Bounds, Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, Score, Slope,
+};
 use ikcore::problem::Problem;
 use ikcore::rng;
 use ikcore::robot::Robot;
@@ -48,6 +51,18 @@ impl Objective for Unsolved<'_> {
     }
 }
 
+impl Residual for Sphere {
+    fn residual(&mut self, x: &[f64], _: &mut [f64; ROWS]) -> Score {
+        self.evaluate(x)
+    }
+}
+
+impl Residual for Unsolved<'_> {
+    fn residual(&mut self, x: &[f64], out: &mut [f64; ROWS]) -> Score {
+        Score { solved: false, ..self.0.residual(x, out) }
+    }
+}
+
 impl LeastSquares for Sphere {
     fn linearize(&mut self, x: &[f64], _: &mut Linearization) -> Score {
         self.evaluate(x)
@@ -57,6 +72,21 @@ impl LeastSquares for Sphere {
 impl LeastSquares for Unsolved<'_> {
     fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score {
         Score { solved: false, ..self.0.linearize(x, out) }
+    }
+}
+
+impl Gradient for Sphere {
+    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> Slope {
+        gradient.iter_mut().zip(x).for_each(|(slope, x)| *slope = x - 0.7);
+        let score = self.evaluate(x);
+        Slope { error: 0.5 * score.value, score }
+    }
+}
+
+impl Gradient for Unsolved<'_> {
+    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> Slope {
+        let Slope { error, score } = self.0.differentiate(x, gradient);
+        Slope { error, score: Score { solved: false, ..score } }
     }
 }
 
@@ -79,7 +109,7 @@ fn swarms() -> Vec<(&'static str, Algorithm)> {
 }
 
 /// Spends the whole budget.
-fn spend(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, solver: Algorithm, problem: &mut dyn LeastSquares) {
+fn spend(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, solver: Algorithm, problem: &mut dyn Differentiable) {
     let bounds = Bounds::new(&[-2.0; 7], &[2.5; 7]).expect("a box");
     let solver = AnySolver::Single(solver);
     let stop = Stop { max_evaluations: EVALUATIONS, ..Stop::default() };

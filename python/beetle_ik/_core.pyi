@@ -11,15 +11,18 @@ from typing import Any, Literal, Protocol, TypeAlias, final, type_check_only
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
 
 __version__: str
 
 _Array: TypeAlias = NDArray[np.float64]
 _DerivativeFree: TypeAlias = BAS | BeeColony | BeetleSwarm | DifferentialEvolution | Firefly | Genetic | PSO | QPSO
-_Single: TypeAlias = _DerivativeFree | BroydenBAS | LevenbergMarquardt
+_Single: TypeAlias = _DerivativeFree | APPS | BroydenBAS | JacobianTranspose | LevenbergMarquardt | NewtonRaphson
 _Solver: TypeAlias = _Single | MultiStart
 _LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
 _LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] | None
+_Motion: TypeAlias = Literal["pose", "position", "rotation"]
+_Goals: TypeAlias = Goal | Iterable[Goal] | None
 _Plant: TypeAlias = KinematicPlant | Callable[[_Array], ArrayLike] | _Mover
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
@@ -101,10 +104,27 @@ class Robot:
     ) -> Robot: ...
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot: ...  # up to, m and rad
     def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
+    def clip(self, q: ArrayLike) -> _Array: ...  # (n,) or (m, n)
     def link_poses(self, q: ArrayLike) -> _Array: ...  # (links, 4, 4), in the order of link_names
     def jacobian(self, q: ArrayLike) -> _Array: ...  # (n,) -> (6, n); (m, n) -> (m, 6, n)
     def random_configurations(self, m: int, seed: int = 0) -> _Array: ...  # (m, n)
-    def manipulability(self, q: ArrayLike) -> Any: ...  # (n,) -> float; (m, n) -> (m,)
+    def manipulability(self, q: ArrayLike, *, motion: _Motion = "pose") -> Any: ...  # (n,) -> float; (m, n) -> (m,)
+    def manipulability_gradient(self, q: ArrayLike, *, motion: _Motion = "pose") -> _Array: ...  # (n,)
+    def link_manipulability(self, q: ArrayLike, *, motion: _Motion = "position") -> _Array: ...  # (links,)
+    def velocity_ellipsoid(self, q: ArrayLike, *, motion: _Motion = "position") -> VelocityEllipsoid: ...
+
+@final
+class VelocityEllipsoid:
+    @property
+    def lengths(self) -> _Array: ...  # (directions,), longest first
+    @property
+    def axes(self) -> _Array: ...  # (directions, 6): linear, then angular part
+    @property
+    def index(self) -> float: ...
+    @property
+    def condition(self) -> float: ...
+    @property
+    def isotropy(self) -> float: ...
 
 def pose(
     position: ArrayLike,
@@ -168,7 +188,29 @@ class Status(IntEnum):
     INTERRUPTED = 6
     LOST = 7
     INVALID = 8
-    PLANT_FAILED = 9
+    OUT_OF_REACH = 9
+    PLANT_FAILED = 10
+    BELOW_THRESHOLD = 11
+    OUTSIDE_LIMITS = 12
+
+@final
+class APPS:
+    def __new__(
+        cls,
+        *,
+        learning_rate: float | Literal["auto"] = "auto",
+        step_limit: float = 0.2,  # rad or m
+        error_threshold: float | None = None,
+    ) -> APPS: ...
+    @staticmethod
+    def paper() -> APPS: ...
+    @property
+    def learning_rate(self) -> float | Literal["auto"]: ...
+    @property
+    def step_limit(self) -> float: ...
+    @property
+    def error_threshold(self) -> float | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class BAS:
@@ -213,6 +255,10 @@ class BroydenBAS:
         position_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession: ...
+class JacobianTranspose:
+    def __new__(cls, *, step_size: float | Literal["auto"] = "auto") -> JacobianTranspose: ...
+    @property
+    def step_size(self) -> float | Literal["auto"]: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -374,6 +420,7 @@ class PSO:
         c1: float | None = None,
         c2: float | None = None,
         velocity_limit: float = ...,
+        accept: Literal["always", "improving"] = "always",
         max_generations: int | None = ...,
         stall_generations: int | None = ...,
     ) -> PSO: ...
@@ -389,6 +436,8 @@ class PSO:
     def c2(self) -> float: ...
     @property
     def velocity_limit(self) -> float: ...
+    @property
+    def accept(self) -> str: ...
     @property
     def max_generations(self) -> int | None: ...
     @property
@@ -432,6 +481,39 @@ class MultiStart:
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
+class NewtonRaphson:
+    def __new__(cls, *, step_fraction: float = ...) -> NewtonRaphson: ...
+    @property
+    def step_fraction(self) -> float: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class WeightedPseudoInverse:
+    def __new__(
+        cls,
+        *,
+        gain: float | None = None,  # 1/s
+        integrator: Literal["euler", "rk4"] = "euler",
+        weights: ArrayLike | None = None,  # (n,)
+        posture: Trajectory | None = None,
+        posture_gain: float = ...,  # 1/s
+        damping: float = 0.0,
+    ) -> WeightedPseudoInverse: ...
+    @property
+    def gain(self) -> float | None: ...
+    @property
+    def integrator(self) -> str: ...
+    @property
+    def weights(self) -> _Array | None: ...
+    @property
+    def posture(self) -> Trajectory | None: ...
+    @property
+    def posture_gain(self) -> float: ...
+    @property
+    def damping(self) -> float: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class Stop:
     def __new__(
         cls,
@@ -451,20 +533,81 @@ class Stop:
     def value_below(self) -> float | None: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
+# --- tasks and goals ----------------------------------------------------------------------------
+
+class Task:
+    @property
+    def weights(self) -> _Array | None: ...
+    @property
+    def tolerance(self) -> _Array | None: ...  # m, rad
+    @property
+    def tool(self) -> _Array | None: ...  # (4, 4)
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+class Pose(Task):
+    def __new__(
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+    ) -> Pose: ...
+
+class Position(Task):
+    def __new__(
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+    ) -> Position: ...
+
+class Orientation(Task):
+    def __new__(
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+    ) -> Orientation: ...
+
+class Pointing(Task):
+    def __new__(
+        cls,
+        *,
+        axis: ArrayLike | None = None,  # None: (0, 0, 1)
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: ArrayLike | None = None,
+    ) -> Pointing: ...
+    @property
+    def axis(self) -> _Array: ...  # (3,)
+
+class Goal:
+    @property
+    def weight(self) -> float: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+class Posture(Goal):
+    def __new__(cls, posture: ArrayLike, *, weight: float = 1.0) -> Posture: ...
+    @property
+    def posture(self) -> _Array: ...  # (n,)
+
+class Centring(Goal):
+    def __new__(cls, *, weight: float = 1.0) -> Centring: ...
+
+class Manipulability(Goal):
+    def __new__(cls, *, motion: _Motion = "pose", weight: float = 1.0) -> Manipulability: ...
+
 # --- inverse kinematics -------------------------------------------------------------------------
 
 def solve(
     robot: Robot,
     target: ArrayLike,  # (4, 4) pose or (3,) position
     *,
+    task: Task | None = None,
     start: ArrayLike | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
+    goals: _Goals = None,
+    prefer: Literal["any", "nearest", "best"] = "any",
     limits: Limits | None = None,
     stop: Stop | None = None,
     seed: int = 0,
 ) -> Solution: ...
+
+@final
+class LinkManipulability(Goal):
+    def __new__(cls, *, motion: _Motion = "position", weight: float = 1.0) -> LinkManipulability: ...
 
 @final
 class Solution:
@@ -491,6 +634,43 @@ class Solution:
     @property
     def limits(self) -> Limits: ...  # those in force
 
+def solve_all(
+    robot: Robot,
+    target: ArrayLike,  # (4, 4) pose or (3,) position
+    *,
+    start: ArrayLike | None = None,
+    limit: int = 16,
+    separation: float = 0.1,  # rad, m
+    task: Task | None = None,
+    solver: _Solver | None = None,
+    position_tolerance: float = 1e-6,
+    rotation_tolerance: float = 1e-6,
+    limits: Limits | None = None,
+    stop: Stop | None = None,  # budgets of the whole search
+    seed: int = 0,
+) -> SolutionSet: ...
+
+@final
+class SolutionSet:
+    @property
+    def q(self) -> _Array: ...  # (k, n)
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def miss(self) -> Solution | None: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int) -> Solution: ...
+
 def solve_batch(
     robot: Robot,
     targets: ArrayLike,  # (m, 4, 4) poses or (m, 3) positions
@@ -499,9 +679,12 @@ def solve_batch(
     threads: int | None = None,  # None: one per core
     on_invalid: Literal["raise", "skip"] = "raise",
     progress: _Progress = None,
+    task: Task | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
+    goals: _Goals = None,
+    prefer: Literal["any", "nearest", "best"] = "any",
     limits: Limits | None = None,
     stop: Stop | None = None,  # budgets of each target
     seed: int = 0,
@@ -571,6 +754,67 @@ class Minimum:
     @property
     def elapsed(self) -> float: ...
 
+# --- postures -----------------------------------------------------------------------------------
+
+@final
+class CircleSwarm:
+    def __new__(
+        cls,
+        *,
+        population: int = 5,
+        generations: int = 10,
+        c1: float = 2.05,
+        c2: float = 2.05,
+        velocity_limit: float = 0.2,  # m a generation
+        signed: bool = False,
+    ) -> CircleSwarm: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def generations(self) -> int: ...
+    @property
+    def c1(self) -> float: ...
+    @property
+    def c2(self) -> float: ...
+    @property
+    def velocity_limit(self) -> float: ...
+    @property
+    def signed(self) -> bool: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+def planar_posture(
+    robot: Robot,
+    target: ArrayLike,  # (3,)
+    *,
+    measure: Literal["tip", "overall"] = "tip",
+    region: ArrayLike | None = None,  # (2, 2): least and largest x, y (m)
+    swarm: CircleSwarm | None = None,
+    seed: int = 0,
+) -> PlanarPosture: ...
+
+@final
+class PlanarPosture:
+    @property
+    def q(self) -> _Array: ...  # (n,)
+    @property
+    def index(self) -> float: ...
+    @property
+    def history(self) -> _Array: ...  # (generations,), or empty
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def position_error(self) -> float: ...  # m
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...
+
 # --- reference paths (public as beetle_ik.paths) ------------------------------------------------
 
 @final
@@ -629,8 +873,10 @@ def track(
     start: ArrayLike | None = None,  # None solves for the path's first point
     *,
     dt: float,
-    solver: _Solver | None = None,
+    task: Task | None = None,
+    solver: _Solver | WeightedPseudoInverse | None = None,
     limits: Limits | None = None,
+    goals: _Goals = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
     seed: int = 0,
@@ -696,14 +942,16 @@ class Tracker:
         start: ArrayLike,
         *,
         dt: float,
-        solver: _Solver | None = None,
+        task: Task | None = None,
+        solver: _Solver | WeightedPseudoInverse | None = None,
         limits: Limits | None = None,
+        goals: _Goals = None,
         position_tolerance: float = 1e-6,
         rotation_tolerance: float = 1e-6,
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
     ) -> Tracker: ...
-    def step(self, target: ArrayLike) -> Step: ...  # (4, 4) pose or (3,) position
+    def step(self, target: ArrayLike, *, velocity: ArrayLike | None = None) -> Step: ...  # (4, 4) or (3,); m/s
     def reset(self, q: ArrayLike) -> None: ...
     @property
     def q(self) -> _Array: ...  # (n,)
@@ -739,10 +987,11 @@ class Step:
 
 # --- obstacles ----------------------------------------------------------------------------------
 
+@disjoint_base
 class Obstacle:
     @property
     def triangles(self) -> _Array: ...  # (t, 3, 3) m, for drawing
-    def __eq__(self, other: object) -> bool: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Sphere(Obstacle):
@@ -864,8 +1113,6 @@ class Plan:
     @property
     def violations(self) -> list[Violation]: ...
     @property
-    def obstacles(self) -> tuple[Obstacle, ...]: ...
-    @property
     def accuracy(self) -> float: ...  # m, from the points of the path; NaN from end to end
     @property
     def redundancy(self) -> _Array: ...  # (points, links, 3): orientation chosen, lowest, highest (rad)
@@ -885,6 +1132,8 @@ class Plan:
     def limits(self) -> Limits: ...  # those in force
     @property
     def robot(self) -> Robot: ...
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]: ...
     def plot(self) -> Figure: ...
 
 @final

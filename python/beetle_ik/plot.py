@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from ._core import Limits, Obstacle, Plan, Robot, TrackResult, Trajectory
+    from ._core import Limits, ModelFreeResult, Obstacle, Plan, Robot, TrackResult, Trajectory
 
 _ROW_HEIGHT = 2.4  # inches, of a panel over time
 _VELOCITY_PANELS_A_ROW = 7
@@ -66,6 +66,28 @@ def track(result: TrackResult) -> Figure:
         axes.set_xlabel("time [s]")
         above.align_ylabels()
         _draw_velocities(below, result, velocity_rows)
+    return figure
+
+
+def model_free(result: ModelFreeResult) -> Figure:
+    """A path tracked without a model: tip and target in space, error, joint positions, measurements."""
+    names = [f"joint {j + 1}" for j in range(result.q.shape[1])]
+    with style():
+        figure = _new_figure(13.0, 3 * _ROW_HEIGHT + 0.3)
+        steps = f"{counted(len(result) - 1, 'step')} of {result.time[1]:g} s" if len(result) > 1 else "no step"
+        figure.suptitle(f"without a model, {steps}")
+        grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.25])
+        _draw_space(figure.add_subplot(grid[:, 0], projection="3d"), result)
+        error, joints, measurements = (figure.add_subplot(grid[row, 1]) for row in range(3))
+        _draw_error(error, result.time, result.position_error, result.position_tolerance)
+        error.set_ylabel("measured error [m]")
+        _draw_joints(joints, result.time, result.q, names)
+        joints.set_ylabel("joint position [rad, m]")
+        joints.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), ncols=_legend_columns(names))
+        measurements.step(result.time, result.step_evaluations, where="mid", color=GREEN)
+        measurements.set_ylim(bottom=0)
+        measurements.set(ylabel="measurements per step", xlabel="time [s]")
+        figure.align_ylabels()
     return figure
 
 
@@ -136,7 +158,7 @@ def _slopes(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[n
     return np.vstack((slopes, slopes[-1:]))
 
 
-def _draw_space(axes: Any, result: TrackResult) -> None:
+def _draw_space(axes: Any, result: TrackResult | ModelFreeResult) -> None:
     axes.plot(*result.reference.T, color=VERMILION, linewidth=4, alpha=0.45, label="target")
     axes.plot(*result.position.T, color=BLUE, linewidth=1.2, label="tip")
     axes.plot(*result.position[:1].T, color=BLUE, marker="o", linestyle="none", label="start")

@@ -15,14 +15,35 @@ SINUSOIDS = [
     bik.Sinusoid(mean=[1.0, 2.0], amplitude=0.1, angular_frequency=[3.0, 4.0], phase=-0.5),
 ]
 SOLVERS = [
+    bik.APPS(),
+    bik.APPS.paper(),
+    bik.APPS(learning_rate=0.1, step_limit=0.5, error_threshold=1e-7),
     bik.BAS(),
     bik.BAS(variant="chain", c1=0.3, c2=0.5, explorations=7, max_passes=9),
+    bik.BroydenBAS(),
+    bik.BroydenBAS(antenna_length=0.02, max_evaluations_per_step=3, sensor_delay=1),
+    bik.JacobianTranspose(),
+    bik.JacobianTranspose(step_size=0.125),
     bik.LevenbergMarquardt(),
     bik.LevenbergMarquardt(initial_damping=0.125),
+    bik.NewtonRaphson(),
+    bik.NewtonRaphson(step_fraction=0.5),
+    bik.MultiStart(bik.APPS(step_limit=0.1)),
+    bik.PSO(),
+    bik.PSO(population=20, form="inertia", inertia=0.5, c1=1.5, c2=1.25, velocity_limit=0.25, accept="improving"),
+    bik.QPSO(expansion=0.5, max_generations=9, stall_generations=None),
+    bik.Firefly(population=20, attractiveness=0.5, absorption=2.0, randomness=0.1, randomness_decay=0.9),
+    bik.Genetic(elite_share=0.1, crossover_share=0.5, tournament=2, mutation_scale=0.2, mutation_decay=0.9),
+    bik.BeeColony(),
+    bik.BeeColony(limit=25),
+    bik.BeetleSwarm(),
+    bik.BeetleSwarm(inertia=1.0, velocity_limit=1.0, direction="downhill"),
+    bik.DifferentialEvolution(weight=0.75, crossover_rate=0.5),
+    bik.MultiStart(bik.Firefly()),
     bik.MultiStart(bik.BAS(variant="greedy")),
     bik.MultiStart(bik.LevenbergMarquardt(initial_damping=0.5), max_starts=3),
 ]
-STOPS = [bik.Stop(), bik.Stop(max_evaluations=10, max_iterations=20, max_time=0.25)]
+STOPS = [bik.Stop(), bik.Stop(max_evaluations=10, max_iterations=20, max_time=0.25, value_below=-0.5)]
 TURN = bik.pose([0, 0, 0], rpy=[0.1, 0.2, 0.3])[:3, :3]
 OBSTACLES = [
     bik.obstacles.Sphere([0.1, 0.2, 0.3], 0.5),
@@ -72,6 +93,11 @@ def test_different_values_differ() -> None:
 
 
 def test_defaults_are_shown_in_full() -> None:
+    assert repr(bik.APPS()) == "APPS(learning_rate='auto', step_limit=0.2, error_threshold=None)"
+    paper = "APPS(learning_rate=0.2, step_limit=0.017453292519943295, error_threshold=5e-10)"
+    assert repr(bik.APPS.paper()) == paper
+    assert repr(bik.JacobianTranspose()) == "JacobianTranspose(step_size='auto')"
+    assert repr(bik.NewtonRaphson()) == "NewtonRaphson(step_fraction=1.0)"
     assert repr(bik.BAS()) == "BAS(variant='star', c1=3, c2=1, explorations=50, max_passes=200)"
     assert repr(bik.BAS(variant="chain")) == "BAS(variant='chain', c1=1, c2=1, explorations=30, max_passes=200)"
     assert repr(bik.BAS(variant="greedy")) == "BAS(variant='greedy', c1=3, c2=1, explorations=5, max_passes=200)"

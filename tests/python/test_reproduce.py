@@ -1,6 +1,9 @@
 """`beetle-ik reproduce`: exit codes, what is printed, and the papers themselves in their short mode."""
 
+import csv
 import json
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -66,7 +69,40 @@ def test_wrong_input_is_told_exactly(tmp_path: Path) -> None:
     )
 
 
+@pytest.fixture(scope="module")
+def short_reports(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """The folder of a paper's short report, made when it is first asked for."""
+
+    @cache
+    def made(name: str) -> Path:
+        folder = tmp_path_factory.mktemp("reports") / name
+        result = run(name, "--short", "--out", str(folder))
+        assert result.exit_code == 0, result.output
+        return folder
+
+    return made
+
+
 @pytest.mark.parametrize("name", experiments.names())
-def test_each_paper_in_short(name: str, tmp_path: Path) -> None:
-    result = run(name, "--short", "--out", str(tmp_path))
-    assert result.exit_code == 0, result.output
+def test_each_paper_in_short(name: str, short_reports: Callable[[str], Path]) -> None:
+    assert json.loads((short_reports(name) / "report.json").read_text(encoding="utf-8"))["success"]
+
+
+def read(file: Path) -> list[dict[str, str]]:
+    with file.open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_tables_of_cheng2020_stand_beside_the_printed_ones(short_reports: Callable[[str], Path]) -> None:
+    tables = short_reports("cheng2020") / "tables"
+    errors, times = read(tables / "table_1.csv"), read(tables / "table_2.csv")
+    assert [row["method"] for row in errors] == [row["method"] for row in times] == ["BAS", "GA", "PSO", "FA", "QPSO"]
+    assert {row[f"along {axis} [m] printed"] for row in errors for axis in "xyz"} == {"not in our copy"}
+    assert [row["time [s] printed mean"] for row in times] == ["0.53", "25.0", "5.0", "6.9", "6.1"]
+    assert float(times[0]["evaluations a step mean"]) < 100
+    assert float(errors[0]["mean error [m] measured mean"]) < 1e-9
+
+
+def test_figures_of_cheng2020_are_all_there(short_reports: Callable[[str], Path]) -> None:
+    figures = {file.stem for file in (short_reports("cheng2020") / "figures").iterdir()}
+    assert {f"figure_{i}" for i in range(2, 9)} | {"figure_2_without_limit", "search_box", "accuracy"} <= figures

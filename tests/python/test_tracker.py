@@ -87,5 +87,5 @@ def test_wrong_input_is_named(iiwa: bik.Robot) -> None:
         tracker.reset([9, 0, 0, 0, 0, 0, 0])
     with pytest.raises(bik.UnsupportedLimit, match="Tracker cannot honour callable velocity limits: it has no end"):
         bik.Tracker(iiwa, ON_CIRCLE, dt=0.2, limits=bik.Limits(velocity=lambda t: 1.0 + t))
-    with pytest.raises(bik.UnsupportedLimit, match="track cannot honour acceleration limits"):
-        bik.Tracker(iiwa, ON_CIRCLE, dt=0.2, limits=bik.Limits(acceleration=1.0))
+    with pytest.raises(bik.UnsupportedLimit, match="track cannot honour jerk limits"):
+        bik.Tracker(iiwa, ON_CIRCLE, dt=0.2, limits=bik.Limits(jerk=1.0))

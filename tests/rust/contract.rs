@@ -10,13 +10,14 @@ use std::time::Duration;
 
 use common::{bits, pose_at, robot};
 use ikcore::math::box_step::ROWS;
-use ikcore::objective::{Bounds, LeastSquares, Linearization, Objective, Residual, Score};
+use ikcore::objective::{
+    Bounds, Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, Score, Slope,
+};
 use ikcore::problem::Problem;
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
 use ikcore::solver::{
-    Algorithm, AnySolver, Best, DerivativeFree, Evaluator, Halt, LevenbergMarquardt, Monitor, Outcome, Status, Stop,
-    Unattended,
+    Algorithm, AnySolver, Best, DerivativeFree, Evaluator, Halt, Monitor, Outcome, Status, Stop, Unattended,
 };
 use ikcore::task::{Target, Tolerance};
 
@@ -64,12 +65,21 @@ impl LeastSquares for Valley {
     }
 }
 
+impl Gradient for Valley {
+    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> Slope {
+        let mut linearization = Linearization::default();
+        let score = self.linearize(x, &mut linearization);
+        linearization.gradient(gradient);
+        Slope { error: 0.5 * score.value, score }
+    }
+}
+
 /// Says of a point, by its number, that its value is not finite.
 type Poison = fn(&[f64], usize) -> Option<f64>;
 
 /// Passes everything on to `inner`, writes down what it saw, and spoils what the poison names.
 struct Probe {
-    inner: Box<dyn LeastSquares>,
+    inner: Box<dyn Differentiable>,
     poison: Poison,
     seen: Vec<f64>,
     values: Vec<f64>,
@@ -107,6 +117,17 @@ impl Objective for Probe {
     fn propose_start(&mut self, attempt: usize, bounds: &Bounds, rng: &mut LazyRng, x: &mut [f64]) {
         self.inner.propose_start(attempt, bounds, rng, x);
     }
+
+    fn period(&self, entry: usize) -> Option<f64> {
+        self.inner.period(entry)
+    }
+}
+
+impl Gradient for Probe {
+    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> Slope {
+        let slope = self.inner.differentiate(x, gradient);
+        Slope { score: self.note(x, slope.score), ..slope }
+    }
 }
 
 impl Residual for Probe {
@@ -129,7 +150,7 @@ static POSE: LazyLock<Target> = LazyLock::new(|| pose_at(&ARM, &[0.3, 0.5, -0.2,
 /// What is minimised, where from, and under which rules.
 struct Case {
     name: &'static str,
-    problem: fn() -> Box<dyn LeastSquares>,
+    problem: fn() -> Box<dyn Differentiable>,
     start: Vec<f64>,
     bounds: Bounds,
     stop: Stop,
@@ -169,6 +190,15 @@ fn arm() -> Case {
     }
 }
 
+/// The same where whole turns do not count: whoever declares so may search outside the limits.
+fn turning_arm() -> Case {
+    Case {
+        name: "pose of iiwa14 up to whole turns",
+        problem: || Box::new(Problem::new(&ARM, &POSE, Tolerance::default()).disregarding_turns()),
+        ..arm()
+    }
+}
+
 /// Every algorithm, alone and from many starts.
 fn solvers() -> Vec<AnySolver> {
     let all = Algorithm::all().into_iter();
@@ -195,7 +225,12 @@ fn check_valley(solver: &AnySolver, run: &Run) {
 
 /// Whether the solver's path depends on its seed even without a restart.
 fn is_random(solver: &AnySolver) -> bool {
-    !matches!(solver, AnySolver::Single(Algorithm::LevenbergMarquardt(_) | Algorithm::BroydenBas(_)))
+    matches!(solver, AnySolver::MultiStart(_) | AnySolver::Single(Algorithm::DerivativeFree(_)))
+}
+
+/// Whether the solver may look outside the box, where the objective repeats itself.
+fn is_free(solver: &AnySolver) -> bool {
+    matches!(solver.algorithm(), Algorithm::Apps(_))
 }
 
 struct Run {
@@ -219,31 +254,36 @@ impl Case {
     fn run_watched(&self, solver: &AnySolver, monitor: &mut dyn Monitor) -> Run {
         let mut probe = Probe { inner: (self.problem)(), poison: self.poison, seen: vec![], values: vec![] };
         let mut rng = rng::stream(self.seed, 0);
-        let objective: &mut dyn LeastSquares = &mut probe;
+        let objective: &mut dyn Differentiable = &mut probe;
         let mut evaluator = Evaluator::new(objective, &self.bounds, self.stop, &mut rng, monitor);
         let outcome = solver.run(&mut evaluator, &self.start);
         let (evaluations, best) = (evaluator.evaluations(), evaluator.best().clone());
         let run = Run { outcome, evaluations, best, seen: probe.seen, values: probe.values };
         let what = format!("{} by {solver:?}", self.name);
-        run.check_points(self, &what);
-        run.check_best(&what);
+        run.check_points(self, is_free(solver), &what);
+        run.check_best(self, &what);
         run.check_counts(self, &what);
         run
     }
 }
 
 impl Run {
-    fn check_points(&self, case: &Case, what: &str) {
+    fn check_points(&self, case: &Case, is_free: bool, what: &str) {
+        let repeats = is_free && (case.problem)().period(0).is_some();
         assert_eq!(self.seen[..case.start.len()], case.start, "{what}: the start comes first");
         for x in self.seen.chunks_exact(case.start.len()) {
-            assert!(case.bounds.contains(x) && x.iter().all(|v| v.is_finite()), "{what}: {x:?} is outside the box");
+            let admitted = repeats || case.bounds.contains(x);
+            assert!(admitted && x.iter().all(|v| v.is_finite()), "{what}: {x:?} is outside the box");
         }
     }
 
-    /// The best is the lowest finite value seen, at the point where it was seen; without any, the start.
-    fn check_best(&self, what: &str) {
+    /// The best is the lowest finite value seen in the box, at the point where it was seen; without any, the start.
+    fn check_best(&self, case: &Case, what: &str) {
         let Best { x, value, solved } = &self.best;
-        let lowest = self.values.iter().copied().filter(|v| v.is_finite()).fold(f64::INFINITY, f64::min);
+        assert!(case.bounds.contains(x), "{what}: kept {x:?}, which is outside the box");
+        let seen = self.seen.chunks_exact(x.len()).zip(&self.values);
+        let inside = seen.filter(|(x, value)| case.bounds.contains(x) && value.is_finite());
+        let lowest = inside.map(|(_, value)| *value).fold(f64::INFINITY, f64::min);
         assert!(*value == lowest || *solved, "{what}: kept {value}, saw {lowest}");
         let at = self.values.iter().position(|v| v == value).unwrap_or(0);
         let seen = &self.seen[at * x.len()..(at + 1) * x.len()];
@@ -270,8 +310,10 @@ fn all_solve_the_valley_and_come_near_the_pose() {
         check_valley(&solver, &valley().run(&solver));
         if matches!(solver, AnySolver::MultiStart(_)) {
             // Six rows at once are slow work for a beetle: the default budget brings it near, not there.
-            let run = arm().run(&solver);
-            assert!(run.best.value < 1e-2, "{solver:?}: {:?}", run.best);
+            for case in [arm, turning_arm] {
+                let run = case().run(&solver);
+                assert!(run.best.value < 1e-2, "{solver:?}: {:?}", run.best);
+            }
         }
     }
 }
@@ -279,7 +321,7 @@ fn all_solve_the_valley_and_come_near_the_pose() {
 #[test]
 fn budgets_are_kept_to_the_last_evaluation() {
     for solver in solvers() {
-        for case in [bottomless, arm] {
+        for case in [bottomless, arm, turning_arm] {
             for max_evaluations in [1, 2, 3, 4, 5, 7, 8, 9, 50, 151, 1000] {
                 let run = case().with_stop(Stop { max_evaluations, ..Stop::default() }).run(&solver);
                 let gave_up_before = run.evaluations < max_evaluations;
@@ -295,7 +337,10 @@ fn iterations_are_limited() {
     for solver in solvers() {
         for max_iterations in [1, 2, 3] {
             let run = bottomless().with_stop(Stop { max_iterations, ..Stop::default() }).run(&solver);
-            assert_eq!(run.outcome, Outcome { halt: Halt::Budget, iterations: max_iterations }, "{solver:?}");
+            let Outcome { halt, iterations } = run.outcome;
+            // The floor leaves a quadratic: Newton-Raphson is at its end after two.
+            let ended_before = halt == Halt::Stalled && iterations < max_iterations;
+            assert!(ended_before || (halt, iterations) == (Halt::Budget, max_iterations), "{solver:?}: {halt:?}");
         }
     }
 }

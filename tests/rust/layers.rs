@@ -25,6 +25,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("minimize", &["objective", "solver"]),
     ("ik", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem"]),
     ("batch", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"]),
+    ("posture", &["robot", "objective", "manipulability", "task", "solver", "ik"]),
     (
         "planning",
         &[

@@ -4,10 +4,11 @@
 
 mod common;
 
+use std::collections::VecDeque;
+
 use common::{bits, message, robot};
-use ikcore::Error;
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
-use ikcore::path::{Circle, Path, Plane, Polyline, Reference};
+use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{BroydenBas, Monitor, Status, Unattended};
@@ -55,6 +56,11 @@ fn rms(errors: impl Fn(usize) -> f64) -> f64 {
     ((20..150).map(|i| errors(i).powi(2)).sum::<f64>() / 130.0).sqrt()
 }
 
+/// How far the tip of the arm that was really there is from its target in row `i`.
+fn true_error(arm: &Robot, record: &ModelFreeRecord, i: usize) -> f64 {
+    distance(arm.tip_position(&record.track.q[7 * i..][..7]), record.track.reference[i])
+}
+
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }
@@ -98,91 +104,259 @@ fn noise_of_the_sensor_is_not_much_more_than_passed_on() {
     }
 }
 
+/// The 90th percentile of rows 20 to 149 by the arm that was really there.
+fn ninetieth(arm: &Robot, record: &ModelFreeRecord) -> f64 {
+    let mut errors: Vec<f64> = (20..150).map(|i| true_error(arm, record, i)).collect();
+    errors.sort_by(f64::total_cmp);
+    errors[117]
+}
+
 #[test]
 fn outliers_of_the_sensor_do_not_throw_it_off() {
     for seed in 0..SEEDS {
         let (wrong, mut rng) = (wrong_arm(seed), rng::stream(seed, 2));
+        // One measurement in a hundred is wrong by a decimetre.
         let mut plant = FunctionPlant(|q: &[f64]| {
             let outlier = if rng.uniform() < 0.01 { 0.1 } else { 0.0 };
             wrong.tip_position(q).map(|x| x + outlier * rng.normal_pair()[0])
         });
         let record = on_circle(&mut plant, &options(0));
-        let wrong = wrong_arm(seed);
-        let true_error =
-            |i: usize| distance(wrong.tip_position(&record.track.q[7 * i..][..7]), record.track.reference[i]);
-        let mut errors: Vec<f64> = (20..150).map(true_error).collect();
-        errors.sort_by(f64::total_cmp);
-        println!(
-            "{seed} median {:.1e} p90 {:.1e} max {:.1e} ev {}",
-            errors[65],
-            errors[117],
-            errors[129],
-            record.track.evaluations()
-        );
+        let error = ninetieth(&wrong, &record);
+        assert!(error <= 1e-8, "seed {seed}: {error:.1e}");
+    }
+}
+
+/// A plant whose sensor answers so many measurements late.
+fn late_plant(late: usize) -> impl Plant {
+    let arm = robot("iiwa14");
+    let mut on_the_way = VecDeque::from(vec![ON_CIRCLE.to_vec(); late]);
+    FunctionPlant(move |q: &[f64]| {
+        on_the_way.push_back(q.to_vec());
+        arm.tip_position(&on_the_way.pop_front().unwrap())
+    })
+}
+
+#[test]
+fn a_late_sensor_costs_measurements_and_no_accuracy() {
+    let broyden = BroydenBas { sensor_delay: 1, max_evaluations_per_step: 40, ..BroydenBas::default() };
+    let record =
+        on_circle(&mut late_plant(1), &ModelFreeOptions { controller: Controller::BroydenBas(broyden), ..options(0) });
+    assert_eq!(record.track.status, Status::Solved, "{}", record.message());
+    assert!(record.track.evaluations() <= 1400, "{}", record.track.evaluations());
+    let plane = Plane::xy([0.3, 0.3, 1.0]).unwrap();
+    let fine = Path::new(Circle::new(plane, 0.2, 30.0).unwrap()).sample(1e-3).unwrap();
+    let znnbas = Znnbas { sensor_delay: 20, ..Znnbas::default() };
+    let options = ModelFreeOptions { controller: Controller::Znnbas(znnbas), tolerance: 0.02, ..options(0) };
+    let record = track_model_free(&mut late_plant(20), &fine, &ON_CIRCLE, &options, &mut Unattended).unwrap();
+    assert_eq!(record.track.status, Status::Solved, "{}", record.message());
+}
+
+#[test]
+fn one_measurement_a_step_is_enough_for_a_tenth_of_a_millimetre() {
+    let broyden = BroydenBas { max_evaluations_per_step: 1, ..BroydenBas::default() };
+    let record =
+        on_circle(&mut exact_plant(), &ModelFreeOptions { controller: Controller::BroydenBas(broyden), ..options(0) });
+    assert_eq!(record.track.evaluations(), 151);
+    assert!(record.settled_error() <= 1e-4, "{}", record.settled_error());
+    assert_eq!(record.track.max_violation, 0.0);
+}
+
+#[test]
+fn it_joins_the_circle_from_the_singular_home_position() {
+    for limits in [None, Some(circle_limits(&robot("iiwa14")))] {
+        let options = ModelFreeOptions { limits, ..ModelFreeOptions::default() };
+        let record = track_model_free(&mut exact_plant(), &circle(), &[0.0; 7], &options, &mut Unattended).unwrap();
+        assert_eq!(record.track.status, Status::Solved, "{}", record.message());
+        assert!(record.track.joined().unwrap() <= 10);
+    }
+}
+
+/// Hands everything on, and holds every command against the limits by itself.
+struct Guarded {
+    arm: Robot,
+    limits: Limits,
+    sent: Vec<f64>,
+}
+
+impl Plant for Guarded {
+    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault> {
+        self.limits.require_inside("command", 0.0, command).map_err(|error| Fault(error.to_string()))?;
+        self.sent.extend_from_slice(command);
+        Ok(self.arm.tip_position(command))
     }
 }
 
 #[test]
-fn late() {
-    for (name, delay) in [("0", 0), ("1", 1), ("2", 2), ("20", 20)] {
-        let arm = robot("iiwa14");
-        let mut past = vec![ON_CIRCLE.to_vec(); delay];
-        let mut plant = FunctionPlant(|q: &[f64]| {
-            past.push(q.to_vec());
-            let q = past.remove(0);
-            arm.tip_position(&q)
-        });
-        let o = ModelFreeOptions {
-            controller: Controller::BroydenBas(BroydenBas { sensor_delay: delay, ..Default::default() }),
-            ..options(0)
+fn no_command_breaks_a_limit_and_the_seed_decides_every_bit() {
+    let (arm, speed) = (robot("iiwa14"), 0.3);
+    let narrow = Limits::of(&arm).replace(Field::Velocity, vec![Profile::Constant(speed)]).unwrap();
+    // A limit that the circle runs into.
+    let narrow = narrow.replace(Field::Upper, vec![Profile::Constant(0.56)]).unwrap();
+    let start = [0.5, 0.1, 0.1, -0.9, 0.1, 0.55, 0.0];
+    let constant = Znnbas { antenna: Antenna::Constant(vec![0.5]), ..Znnbas::published() };
+    for controller in [Controller::default(), Controller::Znnbas(Znnbas::default()), Controller::Znnbas(constant)] {
+        let run = |seed| {
+            let mut plant = Guarded { arm: arm.clone(), limits: narrow.clone(), sent: vec![] };
+            let options = ModelFreeOptions {
+                controller: controller.clone(),
+                limits: Some(narrow.clone()),
+                seed,
+                ..ModelFreeOptions::default()
+            };
+            let record = track_model_free(&mut plant, &circle(), &start, &options, &mut Unattended).unwrap();
+            assert_eq!((record.fault.as_ref(), record.track.max_violation), (None, 0.0), "{controller:?}");
+            let mut commands = plant.sent.chunks(7);
+            for (i, count) in record.track.step_evaluations.iter().enumerate() {
+                let accepted = &record.track.q[7 * i.saturating_sub(1)..][..7];
+                for command in commands.by_ref().take(*count) {
+                    let farthest = command.iter().zip(accepted).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
+                    assert!(farthest <= speed * 0.2, "{controller:?}, step {i}: {farthest}");
+                }
+            }
+            assert_eq!(commands.next(), None);
+            plant.sent
         };
-        let record = on_circle(&mut plant, &o);
-        println!("delay {name} {} ev {}", record.message(), record.track.evaluations());
-        let mut past = vec![ON_CIRCLE.to_vec(); delay];
-        let mut plant = FunctionPlant(|q: &[f64]| {
-            past.push(q.to_vec());
-            let q = past.remove(0);
-            arm.tip_position(&q)
-        });
-        let z = ModelFreeOptions {
-            controller: Controller::Znnbas(Znnbas { sensor_delay: delay, ..Znnbas::default() }),
-            tolerance: 0.02,
-            ..ModelFreeOptions::default()
-        };
-        let fine =
-            Path::new(Circle::new(Plane::xy([0.3, 0.3, 1.0]).unwrap(), 0.2, 30.0).unwrap()).sample(0.001).unwrap();
-        let record = track_model_free(&mut plant, &fine, &ON_CIRCLE, &z, &mut Unattended).unwrap();
-        println!("   znn {} ev {}", record.message(), record.track.evaluations());
+        let sent = run(5);
+        assert_eq!(bits(&sent), bits(&run(5)), "{controller:?}");
+        if controller != Controller::default() {
+            assert_ne!(bits(&sent), bits(&run(6)), "{controller:?}");
+        }
     }
-    for per in [1, 2, 3, 5] {
-        let o = ModelFreeOptions {
-            controller: Controller::BroydenBas(BroydenBas { max_evaluations_per_step: per, ..Default::default() }),
-            ..options(0)
-        };
-        let record = on_circle(&mut exact_plant(), &o);
-        println!("{per} a step: {} ev {}", record.message(), record.track.evaluations());
+}
+
+#[test]
+fn a_limit_that_closes_in_is_followed_and_told() {
+    let closing = Profile::Sampled { step: 1.0, values: vec![1.0, -1.0] };
+    let limits = Limits::none(7).replace(Field::Upper, vec![closing]).unwrap();
+    let limits = limits.replace(Field::Velocity, vec![Profile::Constant(0.5)]).unwrap();
+    let options = ModelFreeOptions { limits: Some(limits), ..ModelFreeOptions::default() };
+    let record = on_circle(&mut exact_plant(), &options);
+    assert_eq!(record.track.status, Status::Lost);
+    assert!(record.track.max_violation > 0.1);
+    assert!(record.message().contains("beyond its position limit"), "{}", record.message());
+}
+
+/// Answers so many times, then fails in one way or another.
+struct Failing {
+    left: usize,
+    failure: fn() -> Result<[f64; 3], Fault>,
+}
+
+impl Plant for Failing {
+    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault> {
+        if self.left == 0 {
+            return (self.failure)();
+        }
+        self.left -= 1;
+        Ok(robot("iiwa14").tip_position(command))
     }
-    let line = Polyline::new(&[[0.4, 0.3, 1.0], [2.4, 0.3, 1.0], [0.4, 0.3, 1.0]], 30.0);
-    println!("{:?}", line.is_ok());
-    if let Ok(line) = line {
-        let r = Path::new(line).sample(0.2).unwrap();
-        let record = track_model_free(&mut exact_plant(), &r, &ON_CIRCLE, &options(0), &mut Unattended).unwrap();
-        println!(
-            "out of reach {} ev {} last error {:e}",
-            record.message(),
-            record.track.evaluations(),
-            record.track.position_error.last().unwrap()
-        );
+}
+
+#[test]
+fn a_plant_that_fails_ends_the_run_with_what_was_recorded() {
+    let every_tick =
+        ModelFreeOptions { controller: Controller::Znnbas(Znnbas::default()), ..ModelFreeOptions::default() };
+    let run = |left, failure| {
+        let mut plant = Failing { left, failure };
+        track_model_free(&mut plant, &circle(), &ON_CIRCLE, &every_tick, &mut Unattended)
+    };
+    let record = run(41, || Err(Fault("raised ValueError: no".into()))).unwrap();
+    assert_eq!((record.track.status, record.track.time.len()), (Status::PlantFailed, 41));
+    assert_eq!(record.message(), "the plant raised ValueError: no at t = 8.2 s; the 41 rows before are recorded");
+    let record = run(3, || Ok([0.0, f64::NAN, 0.0])).unwrap();
+    let expected = "the plant returned a position that is not finite: [0.0, NaN, 0.0] at t = 0.6 s; the 3 rows before are recorded";
+    assert_eq!(record.message(), expected);
+    let at_once = message(run(0, || Err(Fault("raised ValueError: no".into()))));
+    assert_eq!(at_once, "the plant raised ValueError: no");
+}
+
+/// Says stop after so many looks.
+struct Countdown(usize);
+
+impl Monitor for Countdown {
+    fn keep_going(&mut self) -> bool {
+        self.0 = self.0.saturating_sub(1);
+        self.0 > 0
     }
-    let record = track_model_free(&mut exact_plant(), &circle(), &[0.0; 7], &options(0), &mut Unattended).unwrap();
-    println!("home {} ev {} {:?}", record.message(), record.track.evaluations(), &record.track.position_error[..10]);
-    let record =
-        track_model_free(&mut exact_plant(), &circle(), &[0.0; 7], &ModelFreeOptions::default(), &mut Unattended)
-            .unwrap();
-    println!(
-        "home free {} ev {} {:?}",
-        record.message(),
-        record.track.evaluations(),
-        &record.track.position_error[..10]
+}
+
+#[test]
+fn a_monitor_that_says_stop_leaves_the_steps_that_were_finished() {
+    let record = track_model_free(&mut exact_plant(), &circle(), &ON_CIRCLE, &options(0), &mut Countdown(8)).unwrap();
+    assert_eq!((record.track.status, record.track.time.len()), (Status::Interrupted, 7));
+}
+
+#[test]
+fn a_session_gives_the_same_commands_as_the_run() {
+    let arm = robot("iiwa14");
+    for controller in [Controller::default(), Controller::Znnbas(Znnbas::default())] {
+        let options = ModelFreeOptions { controller: controller.clone(), ..options(3) };
+        let record = on_circle(&mut exact_plant(), &options);
+        let limits = options.limits.clone().unwrap();
+        let mut session = Session::new(&controller, &ON_CIRCLE, 0.2, limits, 1e-9, 3).unwrap();
+        for i in 0..=150 {
+            let step = loop {
+                let command = session.command(record.track.reference[i]).unwrap().to_vec();
+                if let Some(step) = session.observe(arm.tip_position(&command)).unwrap() {
+                    break step;
+                }
+            };
+            assert_eq!(bits(session.q()), bits(&record.track.q[7 * i..][..7]), "{controller:?}, row {i}");
+            assert_eq!((step.status, session.time()), (record.track.step_status[i], record.track.time[i]));
+        }
+    }
+}
+
+#[test]
+fn turns_are_kept() {
+    let mut session = Session::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none(2), 1e-6, 0).unwrap();
+    let early = "observe: there is no command to answer; call command(target) first";
+    assert_eq!(message(session.observe([0.0; 3])), early);
+    session.command([1.0, 0.0, 0.0]).unwrap();
+    let late = "command: the last command is not answered yet; call observe(position) first";
+    assert_eq!(message(session.command([1.0, 0.0, 0.0])), late);
+    assert_eq!(message(session.observe([0.0, f64::NAN, 0.0])), "position must be finite, but entry 1 is NaN");
+    assert!(session.observe([0.0; 3]).is_ok(), "the turn is not lost by a mistake");
+    assert_eq!(message(session.command([f64::INFINITY, 0.0, 0.0])), "target must be finite, but entry 0 is inf");
+}
+
+#[test]
+fn wrong_input_is_named() {
+    let run = |controller: Controller, start: &[f64]| {
+        let options = ModelFreeOptions { controller, ..options(0) };
+        message(track_model_free(&mut exact_plant(), &circle(), start, &options, &mut Unattended))
+    };
+    let znnbas = |znnbas| run(Controller::Znnbas(znnbas), &ON_CIRCLE);
+    let standard = Znnbas::default;
+    assert_eq!(
+        znnbas(Znnbas { delay_steps: 150, ..standard() }),
+        "delay_steps must be less than the 150 steps of the run, got 150"
     );
+    assert_eq!(znnbas(Znnbas { delay_steps: 0, ..standard() }), "delay_steps must be at least 1, got 0");
+    assert_eq!(
+        znnbas(Znnbas { gain: 0.0, ..standard() }),
+        "gain must be finite and not zero (positive to converge), got 0"
+    );
+    let antenna = Antenna::Constant(vec![0.1; 3]);
+    assert_eq!(
+        znnbas(Znnbas { antenna, ..standard() }),
+        "antenna_length: expected one number, or 7 (one per joint), got 3"
+    );
+    let antenna = Antenna::Adaptive { c1: -1.0 };
+    assert_eq!(znnbas(Znnbas { antenna, ..standard() }), "c1 must be positive and finite, got -1");
+    let broyden = |broyden| run(Controller::BroydenBas(broyden), &ON_CIRCLE);
+    assert_eq!(
+        broyden(BroydenBas { max_evaluations_per_step: 0, ..Default::default() }),
+        "max_evaluations_per_step must be at least 1, got 0"
+    );
+    assert_eq!(
+        broyden(BroydenBas { antenna_length: 0.0, ..Default::default() }),
+        "antenna_length must be positive and finite, got 0"
+    );
+    let outside = [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let limits = "start: joint 'joint_1' at 3 is outside its limits [-2.9670597283903604, 2.9670597283903604]";
+    assert_eq!(run(Controller::default(), &outside), limits);
+    let none = ModelFreeOptions::default();
+    let no_joints = track_model_free(&mut exact_plant(), &circle(), &[], &none, &mut Unattended);
+    assert_eq!(message(no_joints), "start: expected 1 to 32 joints, got 0");
 }

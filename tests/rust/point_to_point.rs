@@ -1,5 +1,7 @@
 //! Point to point: against the bound of the plane's arms, and around a box.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::{Obstacle, Scene};
 use ikcore::planning::{End, Plan, PointToPointOptions, plan_point_to_point};
@@ -37,7 +39,6 @@ fn plane_arms_come_near_the_time_of_bang_bang() {
         let robot = Robot::planar(&vec![2.0 / links as f64; links]).unwrap();
         let limits = limits(&robot, Some(std::f64::consts::PI), std::f64::consts::TAU);
         let mut sum = 0.0;
-        let mut slowest = 0.0_f64;
         for seed in 0..20 {
             let options = PointToPointOptions { limits: Some(limits.clone()), seed, ..Default::default() };
             let plan = plan_point_to_point(&robot, &position(1.0, 0.0), &position(0.5, 1.5), &options, &mut Unattended);
@@ -46,15 +47,7 @@ fn plane_arms_come_near_the_time_of_bang_bang() {
             assert!(plan.trajectory.max_velocity().iter().all(|v| *v <= std::f64::consts::PI));
             assert!(plan.trajectory.max_acceleration().iter().all(|a| *a <= std::f64::consts::TAU));
             sum += plan.cost / 20.0;
-            if seed > 0 {
-                slowest = slowest.max(plan.elapsed.as_secs_f64());
-            }
         }
-        println!(
-            "{links} links: {sum:.4} s = {:.3} times the bound, slowest plan {:.2} ms",
-            sum / bound,
-            1e3 * slowest
-        );
         assert!(sum <= 1.25 * bound, "{links} links: {sum} {bound}");
     }
 }
@@ -83,7 +76,7 @@ fn arms_find_their_way_around_a_box() {
         let scene = Scene::new(&robot, &obstacles).unwrap();
         let start: Vec<f64> = robot.joints().iter().map(|joint| 0.5 * (joint.lower + joint.upper)).collect();
         let mut solved = 0;
-        for (i, end) in poses_behind(&robot, &obstacles, 20).iter().enumerate() {
+        for end in &poses_behind(&robot, &obstacles, 20) {
             let options = PointToPointOptions {
                 limits: Some(limits(&robot, None, 10.0)),
                 obstacles: obstacles.clone(),
@@ -91,15 +84,6 @@ fn arms_find_their_way_around_a_box() {
             };
             let plan = plan_point_to_point(&robot, &End::Configuration(start.clone()), end, &options, &mut Unattended);
             let plan = plan.unwrap();
-            println!(
-                "{name} {i}: {:?} {:.3} s, clearance {:?}, {:.1} ms, {} knots, {}",
-                plan.status,
-                plan.cost,
-                plan.clearance,
-                1e3 * plan.elapsed.as_secs_f64(),
-                plan.trajectory.knots().len(),
-                plan.message()
-            );
             if plan.status == Status::Solved {
                 solved += 1;
                 let nearest = |q: Vec<f64>| scene.nearest(&q).unwrap().unwrap().distance;
@@ -115,7 +99,6 @@ fn arms_find_their_way_around_a_box() {
                 assert!(!plan.violations.is_empty());
             }
         }
-        println!("{name}: {solved} of 20");
         assert!(solved >= 19, "{name}: {solved} of 20");
     }
 }
@@ -134,14 +117,6 @@ fn a_way_around_a_wall_is_found_and_smooth() {
             ..Default::default()
         };
         let plan = plan_point_to_point(&robot, &side(-0.7), &side(0.7), &options, &mut Unattended).unwrap();
-        println!(
-            "wall {seed}: {:.3} s, {} knots, {} evaluations, clearance {:?}, {:.1} ms",
-            plan.cost,
-            plan.trajectory.knots().len(),
-            plan.evaluations,
-            plan.clearance,
-            1e3 * plan.elapsed.as_secs_f64()
-        );
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
         assert!(plan.trajectory.max_acceleration().iter().all(|a| *a <= 10.0));
         // Velocity and acceleration go on across every knot.
@@ -210,7 +185,6 @@ fn plans_reported_free_are_free_at_every_sample() {
         let hit = states(&plan, 2000).find(|q| !scene.is_clear(q, 0.001));
         assert!(hit.is_none(), "case {case}: {hit:?}");
     }
-    println!("{free} plans, {around} of them around");
     assert!(free > 60 && around > 10, "{free} {around}");
 }
 
@@ -243,11 +217,11 @@ fn mistakes_are_named() {
     );
     assert_eq!(
         refused(&arm, &here, &position(3.0, 0.0), with(vec![], &arm)),
-        "end cannot be reached: the nearest configuration found stays 1.000e0 m away"
+        "end cannot be reached: the nearest configuration found stays 1.000 m away"
     );
     assert_eq!(
         refused(&arm, &here, &there, PointToPointOptions::default()),
-        "joint 'joint1' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
+        "joint 'joint_1' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
          limits=Limits(velocity=...)"
     );
     assert_eq!(

@@ -48,8 +48,11 @@ fn first_and_random(robot: &Robot, count: usize, target_at: impl Fn(&Robot, &[f6
     let (mut first, mut random) = (0.0, 0.0);
     for (goal, drawn) in goals.chunks_exact(robot.dof()).zip(randoms.chunks_exact(robot.dof())) {
         let target = target_at(robot, goal);
-        first += target.error(robot, &starts(robot, &target, &box_of(robot), 0, 1)[0]).sum();
-        random += target.error(robot, drawn).sum();
+        first += target
+            .assess(robot, &starts(robot, &target, &box_of(robot), 0, 1)[0], &Tolerance::default().into())
+            .score
+            .value;
+        random += target.assess(robot, drawn, &Tolerance::default().into()).score.value;
     }
     (first / count as f64, random / count as f64)
 }
@@ -129,7 +132,7 @@ fn other_limits_get_an_index_of_their_own() {
     let start = starts(&narrow, &target, &box_of(&narrow), 0, 1);
     assert_ne!(wide, start);
     // In so narrow a range the index is dense: its best entry is nearly there.
-    assert!(target.error(&narrow, &start[0]).sum() < 0.05, "{start:?}");
+    assert!(target.assess(&narrow, &start[0], &Tolerance::default().into()).score.value < 0.05, "{start:?}");
 }
 
 #[test]

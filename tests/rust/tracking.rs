@@ -321,8 +321,8 @@ fn a_position_limit_that_outruns_its_joint_is_no_success() {
     let record = task.track_with(&TrackOptions { limits: Some(limits), ..task.options(descent(), 1e-6, 0) });
     assert_eq!(record.status, Status::Lost);
     // At 0.5 s the limit is -1 rad, and since the start at 0.1 rad the joint has come down by 0.5 rad/s.
-    let says = "joint 'joint_7' is 0.9000 (rad or m) beyond its position limit at t = 0.6 s: the limit closes in faster \
-                than the joint may move; slow it down, raise the velocity limit, or start farther inside";
+    let says = "joint 'joint_7' is 0.9000 (rad or m) beyond its limits at t = 0.6 s: a limit closes in faster than the \
+                joint may move; slow it down, raise the velocity or acceleration limit, or start farther inside";
     assert_eq!(record.message(), says);
 }
 

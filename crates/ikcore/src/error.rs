@@ -175,6 +175,18 @@ pub enum Error {
         /// By how much it fails.
         problem: String,
     },
+    /// A position where a task needs a whole pose.
+    #[error("task {task} needs a target pose (4, 4), got a position (3,)")]
+    WrongTarget {
+        /// The kind of task.
+        task: String,
+    },
+    /// Options that do not go together.
+    #[error("{problem}")]
+    Contradiction {
+        /// Which, and what would be right.
+        problem: String,
+    },
     /// An obstacle that cannot be one, or not for this robot.
     #[error("{problem}")]
     InvalidObstacle {

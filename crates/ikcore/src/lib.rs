@@ -51,7 +51,7 @@
 //! | 3 | [`task`], [`solver`] |
 //! | 4 | [`problem`] |
 //! | 5 | [`ik`], [`minimize`](mod@minimize) |
-//! | 6 | [`tracking`], [`planning`], [`batch`] |
+//! | 6 | [`tracking`], [`planning`], [`posture`], [`batch`] |
 
 pub mod batch;
 pub mod error;
@@ -64,6 +64,7 @@ pub mod objective;
 pub mod obstacle;
 pub mod path;
 pub mod planning;
+pub mod posture;
 pub mod problem;
 pub mod rng;
 pub mod robot;

@@ -60,6 +60,13 @@ pub trait Objective {
         let _ = attempt;
         bounds.sample(rng, x);
     }
+
+    /// After how much entry number `entry` of a point repeats itself, if it does: 2 pi for an angle whose turns do not
+    /// count.
+    fn period(&self, entry: usize) -> Option<f64> {
+        let _ = entry;
+        None
+    }
 }
 
 /// Residual r and Jacobian dr/dx at a point.
@@ -88,6 +95,37 @@ pub trait LeastSquares: Residual {
     /// Residual and Jacobian at `x` in one pass, and the score.
     fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score;
 }
+
+impl Linearization {
+    /// J'r into `gradient`, which has one entry per entry of x: the gradient of r'r / 2.
+    pub fn gradient(&self, gradient: &mut [f64]) {
+        for (slope, column) in gradient.iter_mut().zip(&self.columns) {
+            *slope = column.iter().zip(&self.residual).map(|(c, r)| c * r).sum();
+        }
+    }
+}
+
+/// An objective that knows a smooth error E and its gradient without forming a Jacobian.
+///
+/// E need not be half of the score's value: it shares its zeros. That of a pose is eq. (11) of Yuan et al. 2016.
+pub trait Gradient: Objective {
+    /// E and the score at `x` in one pass; dE/dx into `gradient`, which has one entry per entry of x.
+    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> Slope;
+}
+
+/// What [`Gradient`] says of a point beside the gradient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slope {
+    /// The smooth error E.
+    pub error: f64,
+    /// What the objective says of the point otherwise.
+    pub score: Score,
+}
+
+/// All that an algorithm can ask of inverse kinematics.
+pub trait Differentiable: LeastSquares + Gradient {}
+
+impl<O: LeastSquares + Gradient + ?Sized> Differentiable for O {}
 
 /// A box, entry by entry: lower <= upper; infinite bounds are allowed.
 #[derive(Debug, Clone, PartialEq)]
@@ -143,6 +181,26 @@ impl Bounds {
             // One instruction each, where `max` and `min` would sort out NaN; a NaN becomes the lower bound.
             let raised = if *x > *lower { *x } else { *lower };
             *x = if raised < *upper { raised } else { *upper };
+        }
+    }
+
+    /// Brings every entry of `x` into its range by the fewest whole periods: eq. (12) of Yuan et al. 2016, which turns
+    /// once at most. An entry without a period is clipped; one that no number of periods brings inside stays outside.
+    pub fn wrap(&self, x: &mut [f64], periods: &[Option<f64>]) {
+        for (i, x) in x.iter_mut().enumerate() {
+            let (lower, upper) = (self.lower[i], self.upper[i]);
+            if lower <= *x && *x <= upper {
+                continue;
+            }
+            let nearest = if *x > upper { upper } else { lower };
+            *x = match periods[i] {
+                None => nearest,
+                Some(period) => {
+                    let turns = ((nearest - *x) / period).abs().ceil();
+                    let wrapped = if *x > upper { *x - turns * period } else { *x + turns * period };
+                    if lower <= wrapped && wrapped <= upper { wrapped } else { *x }
+                }
+            }
         }
     }
 

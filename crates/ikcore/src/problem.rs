@@ -1,35 +1,50 @@
 //! A robot and a target as something to minimise.
 
 use crate::math::box_step::ROWS;
-use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Residual, Score};
+use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, Slope};
 use crate::rng::LazyRng;
 use crate::robot::{Robot, Seeds};
-use crate::task::{SquaredError, Target, TipError, Tolerance};
+use crate::task::{Assessment, Criterion, Target, entrywise};
 
 /// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
 #[derive(Debug, Clone, Copy)]
 pub struct Problem<'a> {
     robot: &'a Robot,
     target: &'a Target,
-    tolerance: Tolerance,
+    criterion: Criterion,
     /// Found when the first start is asked for.
     seeds: Option<Seeds<'a>>,
+    turns: Turns,
+}
+
+/// Whether it matters how often a joint has turned round.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Turns {
+    /// On the way from one tick to the next it does.
+    Count,
+    /// For a configuration that stands alone it does not.
+    Repeat,
 }
 
 impl<'a> Problem<'a> {
     /// The problem of bringing the tip of `robot` to `target`.
-    pub fn new(robot: &'a Robot, target: &'a Target, tolerance: Tolerance) -> Self {
-        Self { robot, target, tolerance, seeds: None }
+    pub fn new(robot: &'a Robot, target: &'a Target, criterion: impl Into<Criterion>) -> Self {
+        Self { robot, target, criterion: criterion.into(), seeds: None, turns: Turns::Count }
     }
 
-    /// The errors at `q`, by forward kinematics.
-    pub fn verify(&self, q: &[f64]) -> TipError {
-        self.target.error(self.robot, q).into()
+    /// The same problem where a joint may be brought back by whole turns: the robot is free to get there in any way.
+    pub fn disregarding_turns(self) -> Self {
+        Self { turns: Turns::Repeat, ..self }
     }
 
-    #[inline]
-    fn score(&self, error: SquaredError) -> Score {
-        Score { value: error.sum(), solved: error.within(&self.tolerance) }
+    /// Where the tip is to be.
+    pub fn target(&self) -> &'a Target {
+        self.target
+    }
+
+    /// The errors at `q` and what they come to, by forward kinematics.
+    pub fn assess(&self, q: &[f64]) -> Assessment {
+        self.target.assess(self.robot, q, &self.criterion)
     }
 }
 
@@ -40,26 +55,34 @@ impl Objective for Problem<'_> {
 
     #[inline]
     fn evaluate(&mut self, q: &[f64]) -> Score {
-        self.score(self.target.error(self.robot, q))
+        self.assess(q).score
     }
 
     fn evaluate_all(&mut self, qs: &[f64], out: &mut [Score]) {
         let mut scores = out.iter_mut();
-        self.target.errors(self.robot, qs, |error| {
+        self.target.assess_all(self.robot, qs, &self.criterion, |assessment| {
             if let Some(score) = scores.next() {
-                *score = self.score(error);
+                *score = assessment.score;
             }
         });
+    }
+
+    fn period(&self, joint: usize) -> Option<f64> {
+        let repeats = self.turns == Turns::Repeat && self.robot.repeats_every_turn(joint);
+        repeats.then_some(std::f64::consts::TAU)
     }
 
     /// The nearest of the robot's indexed configurations, then uniform in the box, where a side without a limit is drawn
     /// from the joint's sampling range. Whoever brings a start of their own gets the nearest as their second.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
-        let seeds = self.seeds.get_or_insert_with(|| match self.target {
-            Target::Position(position) => self.robot.seeds_near_position(position),
-            Target::Pose(pose) => self.robot.seeds_near_pose(pose),
-        });
-        if seeds.write_next(bounds.lower(), bounds.upper(), q) {
+        if self.seeds.is_none() {
+            self.seeds = match (self.target, self.target.position()) {
+                (Target::Pose(pose), _) => Some(self.robot.seeds_near_pose(pose)),
+                (_, Some(position)) => Some(self.robot.seeds_near_position(&position)),
+                _ => None,
+            };
+        }
+        if self.seeds.as_mut().is_some_and(|seeds| seeds.write_next(bounds.lower(), bounds.upper(), q)) {
             return;
         }
         for (i, joint) in self.robot.joints().iter().enumerate() {
@@ -73,16 +96,32 @@ impl Residual for Problem<'_> {
     fn residual(&mut self, q: &[f64], out: &mut [f64; ROWS]) -> Score {
         // No columns are completed: the residual needs the tip alone.
         let mut completed = Linearization::default();
-        let error = self.target.complete(&self.robot.tip(q), 0, &mut completed);
+        let assessment = self.target.complete(&self.robot.tip(q), 0, &self.criterion, &mut completed);
         *out = completed.residual;
-        self.score(error)
+        assessment.score
+    }
+}
+
+impl Gradient for Problem<'_> {
+    /// E of eq. (11) of Yuan et al. 2016; where components have weights, half the weighted sum of squares.
+    #[inline]
+    fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> Slope {
+        if self.criterion.components.is_some() {
+            let mut linearization = Linearization::default();
+            let score = self.linearize(q, &mut linearization);
+            linearization.gradient(gradient);
+            return Slope { error: 0.5 * score.value, score };
+        }
+        let target = self.target;
+        let tip = self.robot.tip_and_torques(q, &|tip| entrywise::pull(target, tip), gradient);
+        gradient.iter_mut().for_each(|slope| *slope = -*slope);
+        Slope { error: entrywise::error(target, &tip), score: target.assess_tip(&tip, &self.criterion).score }
     }
 }
 
 impl LeastSquares for Problem<'_> {
     #[inline]
     fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> Score {
-        let error = self.target.linearize(self.robot, q, out);
-        self.score(error)
+        self.target.linearize(self.robot, q, &self.criterion, out).score
     }
 }

@@ -8,13 +8,15 @@ use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, P
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
-use crate::convert::{Rows, array, count, optional_count, row, rows, shape_text, table};
+use crate::convert::{Rows, array, count, optional_count, position_in, row, rows, shape_text, table};
 use crate::error::{invalid, raise};
+use crate::goal::read_goals;
 use crate::ik::PySolution;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::{Progress, Watcher};
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, any_solver};
+use crate::task::read_task;
 
 /// Solutions in the order of the targets, as columns; `b[i]` is one of them as a `Solution`.
 #[pyclass(name = "BatchSolution", module = "beetle_ik", frozen)]
@@ -64,8 +66,7 @@ impl PyBatchSolution {
 
     fn __getitem__(&self, py: Python<'_>, index: isize) -> PyResult<PySolution> {
         let len = self.items.len();
-        let from_start = if index < 0 { index.checked_add_unsigned(len) } else { Some(index) };
-        match from_start.and_then(|i| usize::try_from(i).ok()).filter(|i| *i < len) {
+        match position_in(index, len) {
             Some(i) => {
                 let q = self.q.bind(py).readonly();
                 let solution = self.items[i].solution(&q.as_slice()?[i * self.dof..(i + 1) * self.dof]);
@@ -114,11 +115,12 @@ fn column<T: Element>(py: Python<'_>, items: &[Item], of: impl Fn(&Item) -> T) -
 /// Args:
 ///     robot: the arm.
 ///     targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free.
-///     starts: where to begin, (m, n), or (n,) for all; None begins at random configurations.
+///     starts: where to begin, (m, n), or (n,) for all; None begins at stored configurations of the robot whose tip is near.
 ///     threads: None: one per core. With 1, nothing leaves the calling thread.
 ///     on_invalid: what to do about a target or start that is wrong: "raise" names its row; "skip" solves the others
 ///         and marks the row `Status.INVALID`, its q NaN.
 ///     progress: True for a bar on the terminal, or a callable of (done, total).
+///     task, goals, prefer: as for `solve`.
 ///     solver: None: Levenberg-Marquardt from many starts.
 ///     position_tolerance: m.
 ///     rotation_tolerance: rad, geodesic angle.
@@ -133,8 +135,9 @@ fn column<T: Element>(py: Python<'_>, items: &[Item], of: impl Fn(&Item) -> T) -
 ///     InvalidInputError: wrong shape; NaN or a target that is not a rigid transform, with its row.
 ///     LimitError: a start outside the limits, with its row.
 #[pyfunction]
-#[pyo3(signature = (robot, targets, *, starts=None, threads=None, on_invalid="raise", progress=None, solver=None,
-                    position_tolerance=1e-6, rotation_tolerance=1e-6, limits=None, stop=None, seed=0))]
+#[pyo3(signature = (robot, targets, *, starts=None, threads=None, on_invalid="raise", progress=None, task=None,
+                    solver=None, position_tolerance=1e-6, rotation_tolerance=1e-6, goals=None, prefer="any",
+                    limits=None, stop=None, seed=0))]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_batch(
     py: Python<'_>,
@@ -144,9 +147,12 @@ pub fn solve_batch(
     threads: Option<i128>,
     on_invalid: &str,
     progress: Option<&Bound<'_, PyAny>>,
+    task: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
     position_tolerance: f64,
     rotation_tolerance: f64,
+    goals: Option<&Bound<'_, PyAny>>,
+    prefer: &str,
     limits: Option<&PyLimits>,
     stop: Option<&PyStop>,
     seed: i128,
@@ -163,6 +169,9 @@ pub fn solve_batch(
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let each = SolveOptions {
         solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
+        task: read_task(task)?,
+        goals: read_goals(goals)?,
+        prefer: prefer.parse().map_err(raise)?,
         start: start_of_all,
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
         limits: resolved,

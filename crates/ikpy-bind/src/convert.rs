@@ -6,6 +6,7 @@ use numpy::{
     Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
     PyUntypedArrayMethods,
 };
+use pyo3::exceptions::PyException;
 use pyo3::intern;
 use pyo3::prelude::*;
 
@@ -32,7 +33,9 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyA
         numpy.call_method(intern!(py, "asarray"), (value,), Some(&pyo3::types::IntoPyDict::into_py_dict(options, py)?));
     match converted {
         Ok(array) => Ok(array.cast_into::<PyArrayDyn<f64>>()?.readonly()),
-        Err(_) => Err(no_numbers()),
+        // A Ctrl-C that falls into the conversion is not the value's fault.
+        Err(error) if error.is_instance_of::<PyException>(py) => Err(no_numbers()),
+        Err(interrupt) => Err(interrupt),
     }
 }
 
@@ -45,6 +48,12 @@ pub fn count<T: TryFrom<i128>>(what: &str, value: i128) -> PyResult<T> {
 /// [`count`] where one was given.
 pub fn optional_count<T: TryFrom<i128>>(what: &str, value: Option<i128>) -> PyResult<Option<T>> {
     value.map(|value| count(what, value)).transpose()
+}
+
+/// An index as Python counts, from the end where negative; None outside `len` items.
+pub fn position_in(index: isize, len: usize) -> Option<usize> {
+    let from_start = if index < 0 { index.checked_add_unsigned(len) } else { Some(index) };
+    from_start.and_then(|i| usize::try_from(i).ok()).filter(|i| *i < len)
 }
 
 /// The repr of a value, cut to a readable length.

@@ -9,10 +9,12 @@ use pyo3::prelude::*;
 
 use crate::convert::{array, count, point, rigid_rows, row, shape_text, vector};
 use crate::error::{invalid, raise};
+use crate::goal::read_goals;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::Watcher;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, any_solver, status};
+use crate::task::read_task;
 
 /// The best configuration found, and what became of the search.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
@@ -108,10 +110,16 @@ impl PySolution {
 /// Args:
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m) with the orientation left free.
+///     task: of `tasks`, what of the target matters; None: all that it says.
 ///     start: (n,), where to begin; None begins at stored configurations of the robot whose tip is near the target.
 ///     solver: None: Levenberg-Marquardt from many starts.
 ///     position_tolerance: m.
 ///     rotation_tolerance: rad, geodesic angle.
+///     goals: of `goals`, one or several: the solution found is moved along the self-motion to where they are best near it.
+///     prefer: "any" solution, or the "nearest" to the start: of those found until twelve in a row were no nearer, each moved
+///         along the self-motion and by whole turns inside the limits towards the start, the one with the smallest
+///         |q - start| (rad, m); or the "best" for the goals, of those found all over, each moved along the self-motion, until
+///         40 in a row were no better.
 ///     limits: position limits to keep; None keeps the robot's.
 ///     stop: budgets; None: a count of evaluations that keeps a 7-joint arm under about 10 ms.
 ///     seed: of the random draws: the same seed, the same bits.
@@ -123,17 +131,20 @@ impl PySolution {
 ///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform.
 ///     LimitError: a start outside the limits.
 #[pyfunction]
-#[pyo3(signature = (robot, target, *, start=None, solver=None, position_tolerance=1e-6, rotation_tolerance=1e-6,
-                    limits=None, stop=None, seed=0))]
+#[pyo3(signature = (robot, target, *, task=None, start=None, solver=None, position_tolerance=1e-6,
+                    rotation_tolerance=1e-6, goals=None, prefer="any", limits=None, stop=None, seed=0))]
 #[allow(clippy::too_many_arguments)]
 pub fn solve(
     py: Python<'_>,
     robot: &PyRobot,
     target: &Bound<'_, PyAny>,
+    task: Option<&Bound<'_, PyAny>>,
     start: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
     position_tolerance: f64,
     rotation_tolerance: f64,
+    goals: Option<&Bound<'_, PyAny>>,
+    prefer: &str,
     limits: Option<&PyLimits>,
     stop: Option<&PyStop>,
     seed: i128,
@@ -142,6 +153,9 @@ pub fn solve(
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let options = SolveOptions {
         solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
+        task: read_task(task)?,
+        goals: read_goals(goals)?,
+        prefer: prefer.parse().map_err(raise)?,
         start: start.map(|start| vector("start", start)).transpose()?,
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
         limits: resolved,

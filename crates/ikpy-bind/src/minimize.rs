@@ -6,6 +6,7 @@ use ikcore::minimize::{self, MinimizeOptions};
 use ikcore::objective::{Objective, Pace, Score};
 use ikcore::solver::{Monitor, Status, Stop};
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyException;
 use pyo3::intern;
 use pyo3::prelude::*;
 
@@ -178,7 +179,9 @@ fn number(value: &Bound<'_, PyAny>) -> PyResult<f64> {
     if value.is_none() || dimensions > 0 || is_complex(value)? {
         return Err(no_number());
     }
-    value.extract::<f64>().map_err(|_| no_number())
+    value
+        .extract::<f64>()
+        .map_err(|error| if error.is_instance_of::<PyException>(value.py()) { no_number() } else { error })
 }
 
 /// Ends the search after a failure, and on Ctrl-C.

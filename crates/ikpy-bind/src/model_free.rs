@@ -108,7 +108,7 @@ impl PyModelFreeResult {
     /// The error band (m), as asked.
     #[getter]
     fn position_tolerance(&self) -> f64 {
-        self.core.track.tolerance.position
+        self.core.track.criterion.tolerance.position
     }
 
     /// How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED

@@ -321,21 +321,31 @@ impl PyConvexMesh {
     }
 }
 
-/// Any sequence of obstacles.
-pub fn read_obstacles(value: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Obstacle>> {
-    let Some(value) = value else { return Ok(vec![]) };
-    let wrong = |i: Option<usize>, got: &Bound<'_, PyAny>| {
-        let place = i.map_or("obstacles".into(), |i| format!("obstacle {i}"));
-        invalid(format!("{place} must be made by bik.obstacles, such as Sphere or Box, got {}", summary(got)))
-    };
-    let items = value.try_iter().map_err(|_| wrong(None, value))?;
-    items
-        .enumerate()
-        .map(|(i, item)| {
-            let item = item?;
-            item.cast::<PyObstacle>().map(|obstacle| obstacle.get().core.clone()).map_err(|_| wrong(Some(i), &item))
-        })
-        .collect()
+/// Obstacles as a caller gave them.
+pub struct Given {
+    /// For the core.
+    pub core: Vec<Obstacle>,
+    /// For results that carry them along.
+    pub tuple: Py<PyTuple>,
+}
+
+impl Given {
+    /// Any sequence of obstacles; None is none.
+    pub fn read(py: Python<'_>, value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let wrong = |place: &str, got: &Bound<'_, PyAny>| {
+            let got = summary(got);
+            invalid(format!("{place} must be made by bik.obstacles, such as Sphere or Box, got {got}"))
+        };
+        let items: Vec<Bound<'_, PyAny>> = match value {
+            None => vec![],
+            Some(value) => value.try_iter().map_err(|_| wrong("obstacles", value))?.collect::<PyResult<_>>()?,
+        };
+        let core = items.iter().enumerate().map(|(i, item)| match item.cast::<PyObstacle>() {
+            Ok(obstacle) => Ok(obstacle.get().core.clone()),
+            Err(_) => Err(wrong(&format!("obstacle {i}"), item)),
+        });
+        Ok(Self { core: core.collect::<PyResult<_>>()?, tuple: PyTuple::new(py, items)?.unbind() })
+    }
 }
 
 /// Distance between `robot` and what it is nearest to, at q (n,) or (m, n): a number or (m,) (m). Negative by the depth
@@ -359,7 +369,7 @@ pub fn clearance<'py>(
     q: &Bound<'py, PyAny>,
     obstacles: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let obstacles = read_obstacles(obstacles)?;
+    let obstacles = Given::read(py, obstacles)?.core;
     let scene = Scene::new(&robot.core, &obstacles).map_err(raise)?;
     match rows("joint angles", robot.core.name(), robot.core.dof(), q)? {
         Rows::One(q) => Ok(scene.clearances(q.as_slice()?).map_err(raise)?[0].into_pyobject(py)?.into_any()),

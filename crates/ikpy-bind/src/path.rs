@@ -144,6 +144,15 @@ impl PyPath {
         Reference::new(dt, positions, rotations).map_err(raise)
     }
 
+    /// The same with the velocities at the ticks.
+    pub fn moving_reference(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
+        let reference = self.reference(py, dt)?;
+        let velocities = (0..reference.len())
+            .map(|i| self.velocity_at(py, reference.time(i).min(self.duration())))
+            .collect::<PyResult<_>>()?;
+        reference.with_velocities(velocities).map_err(raise)
+    }
+
     fn position_at(&self, py: Python<'_>, t: f64) -> PyResult<[f64; 3]> {
         match &self.curve {
             Curve::Core(path) => Ok(path.position(t)),

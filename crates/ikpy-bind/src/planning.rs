@@ -13,7 +13,7 @@ use crate::convert::{array, count, point, rigid_rows, shape_text, table, vector}
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::{Progress, Watcher};
-use crate::obstacle::read_obstacles;
+use crate::obstacle::Given;
 use crate::path::PyPath;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver, status};
@@ -77,7 +77,7 @@ pub struct PyPlan {
     /// Positions (k, 3) (m) that the tip was to follow; None for a plan from end to end.
     #[pyo3(get)]
     reference: Option<Py<PyArrayDyn<f64>>>,
-    /// What the robot was not to touch, a tuple.
+    /// What the robot was not to touch, as given.
     #[pyo3(get)]
     obstacles: Py<PyTuple>,
     /// The robot that was planned for.
@@ -186,7 +186,7 @@ impl PyPlan {
         reference: Option<&Reference>,
         robot: &Bound<'_, PyRobot>,
         limits: Py<PyLimits>,
-        obstacles: Bound<'_, PyTuple>,
+        obstacles: Py<PyTuple>,
     ) -> PyResult<Self> {
         let py = robot.py();
         let history: Vec<f64> = core.history.iter().flat_map(|step| [step.evaluations as f64, step.cost]).collect();
@@ -202,7 +202,7 @@ impl PyPlan {
             history: table(py, history, &[core.history.len(), 2])?.unbind(),
             redundancy: table(py, orientations, &shape)?.unbind(),
             reference: reference.transpose()?,
-            obstacles: obstacles.unbind(),
+            obstacles,
             robot: robot.clone().unbind(),
             limits,
             core,
@@ -261,13 +261,12 @@ pub fn plan_point_to_point(
     let arm = robot.get().core.clone();
     let (start, end) = (read_end("start", start, start_q)?, read_end("end", end, end_q)?);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
-    // Kept for pictures, and read from what is kept: an iterator gives its items only once.
-    let obstacles = obstacles.map_or(Ok(PyTuple::empty(py)), kept)?;
-    let avoided = read_obstacles(Some(obstacles.as_any()))?;
+    let obstacles = Given::read(py, obstacles)?;
+    let given = obstacles.tuple;
     let options = PointToPointOptions {
         method: method.parse().map_err(raise)?,
         objective: objective.parse().map_err(raise)?,
-        obstacles: avoided,
+        obstacles: obstacles.core,
         margin,
         elbows: [read_elbow("elbows[0]", elbows[0])?, read_elbow("elbows[1]", elbows[1])?],
         limits: resolved,
@@ -280,7 +279,7 @@ pub fn plan_point_to_point(
     let plan = py.detach(|| planning::plan_point_to_point(&arm, &start, &end, &options, &mut watcher));
     progress.close(py)?;
     watcher.finish()?;
-    PyPlan::new(plan.map_err(raise)?, None, robot, in_force, obstacles)
+    PyPlan::new(plan.map_err(raise)?, None, robot, in_force, given)
 }
 
 /// Plans a motion whose tip follows a path, in order.
@@ -345,15 +344,7 @@ pub fn plan_along_path(
     let plan = py.detach(|| planning::plan_along_path(&arm, &reference, &options, &mut watcher));
     progress.close(py)?;
     watcher.finish()?;
-    PyPlan::new(plan.map_err(raise)?, Some(&reference), robot, in_force, PyTuple::empty(py))
-}
-
-/// The items of an iterable; anything else by itself, for the reader of obstacles to say what is wrong with it.
-fn kept<'py>(obstacles: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyTuple>> {
-    match obstacles.try_iter() {
-        Ok(items) => PyTuple::new(obstacles.py(), items.collect::<PyResult<Vec<_>>>()?),
-        Err(_) => PyTuple::new(obstacles.py(), [obstacles]),
-    }
+    PyPlan::new(plan.map_err(raise)?, Some(&reference), robot, in_force, PyTuple::empty(py).unbind())
 }
 
 /// Which way a planar arm bends.

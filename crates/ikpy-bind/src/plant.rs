@@ -3,11 +3,11 @@
 use std::sync::{Mutex, PoisonError};
 
 use ikcore::tracking::{Fault, KinematicPlant, Plant};
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::PyException;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
+use pyo3::types::{PyDict, PyList, PyListMethods, PyTuple};
 
 use crate::convert::{array, count, shape_text, summary, vector};
 use crate::error::{invalid, raise};
@@ -139,17 +139,15 @@ impl Plant for PythonPlant<'_> {
 
 /// Three numbers; quick for what plants mostly return.
 fn position(answer: &Bound<'_, PyAny>) -> Result<[f64; 3], Fault> {
-    if let Ok(array) = answer.cast::<PyArrayDyn<f64>>() {
-        let array = array.readonly();
-        if let Ok(&[x, y, z]) = array.as_slice()
-            && array.shape().len() == 1
-        {
-            return Ok([x, y, z]);
-        }
-    } else if (answer.is_exact_instance_of::<PyTuple>() || answer.is_exact_instance_of::<PyList>())
-        && let Ok(position) = answer.extract::<[f64; 3]>()
+    if let Ok(tuple) = answer.cast_exact::<PyTuple>()
+        && let Ok((x, y, z)) = tuple.extract()
     {
-        return Ok(position);
+        return Ok([x, y, z]);
+    }
+    if let Ok(list) = answer.cast_exact::<PyList>()
+        && let Ok((x, y, z)) = list.to_tuple().extract()
+    {
+        return Ok([x, y, z]);
     }
     let Ok(array) = array("position", answer) else {
         return Err(Fault(format!("returned {}, not a position (3,)", summary(answer))));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use ikcore::manipulability;
+use ikcore::manipulability::{self, Motion};
 use ikcore::rng;
 use ikcore::robot::{Dh, DhTable, Joint, JointKind, LinkCapsule, Robot};
 use numpy::{PyArray1, PyArrayDyn};
@@ -14,6 +14,7 @@ use pyo3::types::PyBytes;
 use crate::convert::{self, Rows, count, pose_array, row, rows, table, vector};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
+use crate::manipulability::PyVelocityEllipsoid;
 
 /// A robot arm: the chain of joints from a base link to a tip link. Immutable; make one with `from_urdf`, `from_dh`,
 /// `planar` or `named`.
@@ -297,6 +298,19 @@ impl PyRobot {
         }
     }
 
+    /// The nearest configuration inside the position limits: each joint brought to the limit that it is beyond. (n,) for q (n,),
+    /// (m, n) for q (m, n).
+    fn clip<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let n = self.core.dof();
+        match rows("joint angles", self.core.name(), n, q)? {
+            Rows::One(q) => {
+                self.core.check("joint angles", q.as_slice()?).map_err(raise)?;
+                table(py, self.core.clip_all(q.as_slice()?).map_err(raise)?, &[n])
+            }
+            Rows::Many(q, m) => table(py, self.core.clip_all(q.as_slice()?).map_err(raise)?, &[m, n]),
+        }
+    }
+
     /// Poses of all links at q (n,), in the order of `link_names`: (links, 4, 4).
     fn link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let poses = self.core.link_poses(&vector("joint angles", q)?).map_err(raise)?;
@@ -332,19 +346,46 @@ impl PyRobot {
         table(py, self.core.random_configurations(m, &mut rng::stream(seed, 0)).map_err(raise)?, &[m, self.core.dof()])
     }
 
-    /// Yoshikawa's manipulability sqrt(det(J J')) at q (n,) or (m, n); below six joints sqrt(det(J' J)).
-    fn manipulability<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    /// Yoshikawa's manipulability at q (n,) or (m, n): sqrt(det(J J')), the product of the singular values of the
+    /// Jacobian, one per direction in which the tip can move at all.
+    ///
+    /// Args:
+    ///     motion: what counts, "pose", "position" or "rotation".
+    #[pyo3(signature = (q, *, motion="pose"))]
+    fn manipulability<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyAny>> {
+        let motion: Motion = motion.parse().map_err(raise)?;
         match rows("joint angles", self.core.name(), self.core.dof(), q)? {
             Rows::One(q) => {
-                let value = manipulability::manipulability(&self.core, q.as_slice()?).map_err(raise)?;
+                let value = manipulability::manipulability(&self.core, motion, q.as_slice()?).map_err(raise)?;
                 Ok(value.into_pyobject(py)?.into_any())
             }
             Rows::Many(q, _) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                let values = in_pieces(py, q, robot.dof(), |q| manipulability::manipulability_all(robot, q))?;
+                let values = in_pieces(py, q, robot.dof(), |q| manipulability::manipulability_all(robot, motion, q))?;
                 Ok(row(py, values).into_any())
             }
         }
+    }
+
+    /// Gradient (n,) of the manipulability at q (n,), exact; `motion` as there.
+    #[pyo3(signature = (q, *, motion="pose"))]
+    fn manipulability_gradient<'py>(&self, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        crate::manipulability::gradient(&self.core, q, motion)
+    }
+
+    /// Manipulability of the tip of every moving link, moved by the joints before it, times the volume of the unit ball
+    /// (pi in the plane): (links,), the last one the tip's. Their sum is a measure of the whole arm.
+    ///
+    /// Links with fewer joints before them than there are directions have zero. `motion` as in `manipulability`.
+    #[pyo3(signature = (q, *, motion="position"))]
+    fn link_manipulability<'py>(&self, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        crate::manipulability::of_links(&self.core, q, motion)
+    }
+
+    /// The ellipsoid of tip velocities at q (n,) for unit joint speeds; `motion` as in `manipulability`.
+    #[pyo3(signature = (q, *, motion="position"))]
+    fn velocity_ellipsoid(&self, q: &Bound<'_, PyAny>, motion: &str) -> PyResult<PyVelocityEllipsoid> {
+        crate::manipulability::ellipsoid(&self.core, q, motion)
     }
 
     fn __repr__(&self) -> String {

@@ -9,12 +9,14 @@ use ikcore::tracking::{self, Session, TrackOptions};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::convert::{count, row, vector};
+use crate::convert::{count, point, row, vector};
 use crate::error::raise;
+use crate::goal::read_goals;
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::robot::PyRobot;
 use crate::solver::status;
+use crate::task::read_task;
 use crate::tracking::tick_rule;
 
 /// What became of one step of a `Tracker` or a `ControlSession`.
@@ -90,7 +92,8 @@ impl PyStep {
 ///     robot: the arm.
 ///     start: (n,), configuration at t = 0.
 ///     dt: time step (s).
-///     solver: what runs in every step; None: the library's model-based rule.
+///     task, goals: as in `track`.
+///     solver: what runs in every step: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule.
 ///     limits: None: the robot's. Numbers and `Sinusoid`s; a callable has no end to be sampled to.
 ///     position_tolerance: m.
 ///     rotation_tolerance: rad.
@@ -110,15 +113,17 @@ pub struct PyTracker {
 #[pymethods]
 impl PyTracker {
     #[new]
-    #[pyo3(signature = (robot, start, *, dt, solver=None, limits=None, position_tolerance=1e-6,
-                        rotation_tolerance=1e-6, seed=0, limit_at="interval"))]
+    #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
+                        position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval"))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
         start: &Bound<'_, PyAny>,
         dt: f64,
+        task: Option<&Bound<'_, PyAny>>,
         solver: Option<&Bound<'_, PyAny>>,
         limits: Option<&PyLimits>,
+        goals: Option<&Bound<'_, PyAny>>,
         position_tolerance: f64,
         rotation_tolerance: f64,
         seed: i128,
@@ -129,6 +134,8 @@ impl PyTracker {
         let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
         let options = TrackOptions {
             rule: tick_rule(solver)?,
+            task: read_task(task)?,
+            goals: read_goals(goals)?,
             tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
             limits: resolved,
             limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
@@ -139,10 +146,17 @@ impl PyTracker {
     }
 
     /// Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
-    fn step(&self, py: Python<'_>, target: &Bound<'_, PyAny>) -> PyResult<PyStep> {
+    ///
+    /// Args:
+    ///     target: where the tip is to be at the end of the tick.
+    ///     velocity: (3,) (m/s), that of the target then, for `WeightedPseudoInverse`; None: the way from where it was.
+    ///         Other rules need none.
+    #[pyo3(signature = (target, *, velocity=None))]
+    fn step(&self, py: Python<'_>, target: &Bound<'_, PyAny>, velocity: Option<&Bound<'_, PyAny>>) -> PyResult<PyStep> {
         let target = read_target(target)?;
+        let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
         let mut session = self.session();
-        let core = session.step(&target, &mut Unattended).map_err(raise)?;
+        let core = session.step_moving(&target, velocity, &mut Unattended).map_err(raise)?;
         Ok(PyStep::new(py, core, session.q(), session.qd()))
     }
 

@@ -10,13 +10,16 @@ use pyo3::prelude::*;
 
 use crate::convert::{count, row, table, vector};
 use crate::error::raise;
+use crate::goal::read_goals;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::{Progress, Watcher};
 use crate::path::PyPath;
 use crate::robot::PyRobot;
 use crate::solver::{any_solver, status};
+use crate::task::read_task;
 use crate::trajectory::PyTrajectory;
 use crate::upward;
+use crate::weighted_pseudo_inverse::PyWeightedPseudoInverse;
 
 /// The record of a track: k = steps + 1 rows; row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
 #[pyclass(name = "TrackResult", module = "beetle_ik", frozen)]
@@ -119,13 +122,13 @@ impl PyTrackResult {
     /// The error band (m), as asked.
     #[getter]
     fn position_tolerance(&self) -> f64 {
-        self.core.tolerance.position
+        self.core.criterion.tolerance.position
     }
 
     /// The same for orientations (rad), as asked.
     #[getter]
     fn rotation_tolerance(&self) -> f64 {
-        self.core.tolerance.rotation
+        self.core.criterion.tolerance.rotation
     }
 
     /// How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED
@@ -216,15 +219,20 @@ impl PyTrackResult {
 /// Follows `path` with the tip of `robot`, tick by tick, inside the limits.
 ///
 /// In every tick the joints may move within the position limits and within what the velocity limits let the last
-/// accepted configuration reach, so that neither can be broken (Cheng et al. 2020, Algorithm 1).
+/// accepted configuration reach, so that neither can be broken (Cheng et al. 2020, Algorithm 1). Acceleration limits narrow
+/// that further, with room left to brake before position limits; the arm starts at rest.
 ///
 /// Args:
 ///     robot: the arm.
 ///     path: positions or poses over time.
 ///     start: (n,), configuration at t = 0; None solves for the path's first point.
 ///     dt: time step (s).
-///     solver: what runs in every tick; None: the library's model-based rule, which needs one or two evaluations a step.
+///     task: of `tasks`, what of the path matters; None: all that it says.
+///     solver: what runs in every tick: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule, which
+///         needs one or two evaluations a step.
 ///     limits: None: the robot's.
+///     goals: of `goals`, one or several: in every tick the freedom that the task leaves goes down their gradient by weight times
+///         dt. They need the library's own rule, or `WeightedPseudoInverse`.
 ///     position_tolerance: the error band (m).
 ///     rotation_tolerance: the same for orientations (rad).
 ///     seed: of the random draws: the same seed, the same bits.
@@ -237,10 +245,10 @@ impl PyTrackResult {
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, dt not positive.
 ///     LimitError: a start outside its limits, a limit below zero.
-///     UnsupportedLimit: acceleration or jerk limits, which this tracker does not keep.
+///     UnsupportedLimit: jerk limits, which this tracker does not keep.
 #[pyfunction]
-#[pyo3(signature = (robot, path, start=None, *, dt, solver=None, limits=None, position_tolerance=1e-6,
-                    rotation_tolerance=1e-6, seed=0, limit_at="interval", progress=None))]
+#[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
+                    position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval", progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn track(
     py: Python<'_>,
@@ -248,8 +256,10 @@ pub fn track(
     path: &PyPath,
     start: Option<&Bound<'_, PyAny>>,
     dt: f64,
+    task: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
+    goals: Option<&Bound<'_, PyAny>>,
     position_tolerance: f64,
     rotation_tolerance: f64,
     seed: i128,
@@ -257,12 +267,15 @@ pub fn track(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTrackResult> {
     let arm = robot.get().core.clone();
-    let reference = path.reference(py, dt)?;
+    let rule = tick_rule(solver)?;
+    let reference = if rule.uses_velocities() { path.moving_reference(py, dt)? } else { path.reference(py, dt)? };
     let sampling = Sampling::of_ticks(dt, reference.len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
     let options = TrackOptions {
-        rule: tick_rule(solver)?,
+        rule,
+        task: read_task(task)?,
+        goals: read_goals(goals)?,
         tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
         limits: resolved,
         limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
@@ -277,7 +290,11 @@ pub fn track(
     Ok(PyTrackResult { tables: Tables::new(py, &core)?, robot: robot.clone().unbind(), limits: in_force, core })
 }
 
-/// A solver, or the library's own rule.
+/// A rule, a solver, or the library's own rule.
 pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
-    solver.map_or(Ok(TickRule::default()), |solver| any_solver(solver).map(TickRule::EachTick))
+    let Some(solver) = solver else { return Ok(TickRule::default()) };
+    match solver.cast::<PyWeightedPseudoInverse>() {
+        Ok(rule) => Ok(rule.get().rule()),
+        Err(_) => any_solver(solver).map(TickRule::EachTick),
+    }
 }

@@ -25,6 +25,12 @@ impl From<Trajectory> for PyTrajectory {
     }
 }
 
+impl PyTrajectory {
+    pub fn core(&self) -> &Trajectory {
+        &self.0
+    }
+}
+
 /// The joints' names, or "q1", "q2", ... where none were given.
 pub fn names(given: Option<Vec<String>>, n: usize) -> Vec<String> {
     given.unwrap_or_else(|| (1..=n).map(|i| format!("q{i}")).collect())

@@ -6,7 +6,7 @@ from .. import UnknownNameError
 from .experiment import Experiment
 
 # One module of this folder each, of the same name with "_" for "-"; it holds EXPERIMENT.
-_NAMES = ("cheng2020", "wang2019")
+_NAMES = ("cheng2020", "khan2022", "pso-tracking", "wang2019", "yuan2016")
 
 
 def names() -> list[str]:

@@ -15,6 +15,7 @@ from .page import index_page, report_page
 from .tables import to_csv
 
 _DPI = 150
+_DPI_SHORT = 75
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +38,7 @@ class Provenance:
 
 def write_report(folder: Path, report: Report, provenance: Provenance) -> None:
     """Write `report.html`, `report.json`, `claims.csv`, `tables/*.csv` and `figures/*.png` into `folder`."""
-    pictures = {figure.name: _png(figure) for figure in report.figures}
+    pictures = {figure.name: _png(figure, _DPI_SHORT if provenance.short else _DPI) for figure in report.figures}
     for kind in ("tables", "figures"):
         (folder / kind).mkdir()
     for table in report.tables:
@@ -71,9 +72,9 @@ def _write_manifest(folder: Path, content: dict[str, Any]) -> None:
     (folder / MANIFEST).write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
-def _png(figure: Figure) -> bytes:
+def _png(figure: Figure, dpi: int) -> bytes:
     picture = io.BytesIO()
-    figure.drawing.savefig(picture, format="png", dpi=_DPI, metadata={"Software": None})  # same figure, same bytes
+    figure.drawing.savefig(picture, format="png", dpi=dpi, metadata={"Software": None})  # same figure, same bytes
     return picture.getvalue()
 
 

@@ -6,8 +6,11 @@
 pub mod chains;
 pub mod circles;
 
+use ikcore::objective::{LeastSquares, Linearization};
+use ikcore::problem::Problem;
+use ikcore::rng;
 use ikcore::robot::Robot;
-use ikcore::task::Target;
+use ikcore::task::{Criterion, Target};
 
 /// A built-in robot.
 pub fn robot(name: &str) -> Robot {
@@ -36,4 +39,38 @@ pub fn position_at(robot: &Robot, q: &[f64]) -> Target {
 /// The bits of these numbers: equal bits also tell 0 from -0 and compare NaN.
 pub fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| value.to_bits()).collect()
+}
+
+/// `count` random configurations of `robot`.
+pub fn configurations(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
+    let flat = robot.random_configurations(count, &mut rng::stream(11, 0)).unwrap();
+    flat.chunks_exact(robot.dof()).map(<[f64]>::to_vec).collect()
+}
+
+/// Compares the columns of `linearize` with central differences of its residual.
+#[track_caller]
+pub fn assert_derivative(robot: &Robot, target: &Target, criterion: impl Into<Criterion>, q: &[f64]) {
+    let mut problem = Problem::new(robot, target, criterion);
+    let mut residual_at = |q: &[f64]| {
+        let mut out = Linearization::default();
+        let score = problem.linearize(q, &mut out);
+        let squares: f64 = out.residual.iter().map(|r| r * r).sum();
+        assert!((score.value - squares).abs() <= 1e-14 * squares, "{}: value and residual differ", robot.name());
+        (out.residual, out.columns)
+    };
+    let (_, columns) = residual_at(q);
+    let h = 1e-6;
+    for j in 0..q.len() {
+        let mut moved = q.to_vec();
+        moved[j] = q[j] + h;
+        let (ahead, _) = residual_at(&moved);
+        moved[j] = q[j] - h;
+        let (behind, _) = residual_at(&moved);
+        for row in 0..6 {
+            let difference = (ahead[row] - behind[row]) / (2.0 * h);
+            let error = (difference - columns[j][row]).abs();
+            let size = columns[j].iter().fold(1.0_f64, |size, v| size.max(v.abs()));
+            assert!(error < 1e-7 * size, "{}: row {row}, joint {j}: {error:.3e}", robot.name());
+        }
+    }
 }

@@ -116,12 +116,13 @@ impl<'a> Job<'a> {
         let prepared = Prepared::new(robot, &options.each)?;
         let common_start = options.each.start.as_deref();
         common_start.map_or(Ok(()), |q| prepared.check_start(q))?;
+        prepared.require_reference(options.starts.or(common_start))?;
         Ok(Self { prepared, targets, starts: options.starts, common_start, dof })
     }
 
     /// Target `i` and where it begins, both checked.
     fn read(&self, i: usize) -> Result<(Target, Option<&'a [f64]>)> {
-        let target = self.targets.read(i)?;
+        let target = self.prepared.read(&self.targets.read(i)?)?;
         let Some(starts) = self.starts else { return Ok((target, self.common_start)) };
         let start = &starts[i * self.dof..(i + 1) * self.dof];
         self.prepared.check_start(start).map(|()| (target, Some(start)))
@@ -140,10 +141,10 @@ impl<'a> Job<'a> {
 
     fn solve_row(&self, i: usize, q: &mut [f64], monitor: &mut dyn Monitor) -> Item {
         let Ok((target, start)) = self.read(i) else { return Item::untouched(Status::Invalid) };
-        let Solution { q: found, status, error, iterations, restarts, evaluations, elapsed } =
+        let Solution { q: found, status, error, obstruction, iterations, restarts, evaluations, elapsed } =
             self.prepared.run(&target, start, i as u64, monitor);
         q.copy_from_slice(&found);
-        Item { status, error, iterations, restarts, evaluations, elapsed }
+        Item { status, error, obstruction, iterations, restarts, evaluations, elapsed }
     }
 
     fn run_here(&self, batch: &mut Batch, monitor: &mut dyn Monitor) {

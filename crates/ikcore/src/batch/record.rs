@@ -8,12 +8,14 @@ use crate::solver::Status;
 use crate::task::TipError;
 
 /// What became of one target; its configuration is a row of [`Batch::q`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Item {
     /// Why the search ended.
     pub status: Status,
     /// Errors by forward kinematics; NaN where nothing was solved.
     pub error: TipError,
+    /// What is in the way of a target that was not reached, in words; empty where nothing is known.
+    pub obstruction: String,
     /// Iterations over all starts.
     pub iterations: usize,
     /// Starts beyond the first.
@@ -28,13 +30,14 @@ impl Item {
     /// An item that nothing was done about.
     pub(super) fn untouched(status: Status) -> Self {
         let error = TipError { position: f64::NAN, rotation: f64::NAN };
-        Self { status, error, iterations: 0, restarts: 0, evaluations: 0, elapsed: Duration::ZERO }
+        let obstruction = String::new();
+        Self { status, error, obstruction, iterations: 0, restarts: 0, evaluations: 0, elapsed: Duration::ZERO }
     }
 
     /// The same with its configuration.
     pub fn solution(&self, q: &[f64]) -> Solution {
-        let Self { status, error, iterations, restarts, evaluations, elapsed } = *self;
-        Solution { q: Point::from_slice(q), status, error, iterations, restarts, evaluations, elapsed }
+        let Self { status, error, obstruction, iterations, restarts, evaluations, elapsed } = self.clone();
+        Solution { q: Point::from_slice(q), status, error, obstruction, iterations, restarts, evaluations, elapsed }
     }
 }
 

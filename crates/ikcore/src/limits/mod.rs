@@ -1,5 +1,6 @@
 //! Limits on joint motion. Each only narrows the box of the next tick; the tick's box is what a tracker may use.
 
+mod braking;
 mod profile;
 mod tick_box;
 

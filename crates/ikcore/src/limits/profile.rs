@@ -67,13 +67,22 @@ impl Profile {
     }
 
     /// (time, value) of its smallest value over \[`from`, `to`\] (s).
+    #[inline]
     pub fn smallest(&self, from: f64, to: f64) -> (f64, f64) {
-        self.extreme(-1.0, from, to)
+        match self {
+            // Most limits never change, and a control loop asks some twenty times a tick.
+            Self::Constant(value) => (from, *value),
+            _ => self.extreme(-1.0, from, to),
+        }
     }
 
     /// (time, value) of its largest value over \[`from`, `to`\] (s).
+    #[inline]
     pub fn largest(&self, from: f64, to: f64) -> (f64, f64) {
-        self.extreme(1.0, from, to)
+        match self {
+            Self::Constant(value) => (from, *value),
+            _ => self.extreme(1.0, from, to),
+        }
     }
 
     /// The largest (`sign` 1) or smallest (-1): at an end of the interval, a peak, or a sample between.

@@ -10,6 +10,9 @@ pub const ROWS: usize = 6;
 /// Pivots below this share of the matrix's trace count as zero: no step in that direction.
 const SINGULAR: f64 = 1e-15;
 
+/// [`least_damping`] over the squared size of the Jacobian.
+const LEAST: f64 = 1e-10;
+
 /// Joints can stick one after another; after so many rounds the rest is cut off at the box.
 const ROUNDS: usize = 4;
 
@@ -33,6 +36,33 @@ pub fn box_step(
         return unsafe { fused(columns, residual, lambda, x, lower, upper, out) };
     }
     step::<Baseline>(columns, residual, lambda, x, lower, upper, out);
+}
+
+/// A damping that makes no difference but where a direction is lost: a singular system stays solvable.
+pub fn least_damping(columns: &[[f64; ROWS]]) -> f64 {
+    LEAST * columns.as_flattened().iter().map(|entry| entry * entry).sum::<f64>()
+}
+
+/// [`box_step`] with a wish: of the points that (nearly) solve residual + J (out - x) = 0, the one in the box that is nearest to
+/// `wished`, itself in the box. What the task leaves free goes where it is wished.
+#[allow(clippy::too_many_arguments)]
+pub fn box_step_near(
+    columns: &[[f64; ROWS]],
+    residual: &[f64; ROWS],
+    lambda: f64,
+    x: &[f64],
+    wished: &[f64],
+    lower: &[f64],
+    upper: &[f64],
+    out: &mut [f64],
+) {
+    let mut there = *residual;
+    for ((column, x), wished) in columns.iter().zip(x).zip(wished) {
+        for (entry, slope) in there.iter_mut().zip(column) {
+            *entry += slope * (wished - x);
+        }
+    }
+    box_step(columns, &there, lambda, wished, lower, upper, out);
 }
 
 /// [`step`] compiled for AVX2 and FMA.
@@ -184,6 +214,21 @@ mod tests {
         let mut out = [0.0; 2];
         box_step(&columns, &residual, 1e-12, &[0.0; 2], &[-0.1, -FREE], &[0.1, FREE], &mut out);
         assert!((out[0] - 0.1).abs() < 1e-15 && (out[1] - 0.9).abs() < 1e-9, "{out:?}");
+    }
+
+    #[test]
+    fn what_the_task_leaves_free_goes_where_it_is_wished() {
+        // x + y is to become 1; of all such points, the nearest to (0.8, 0.6) is (0.6, 0.4); with x <= 0.4, (0.4, 0.6).
+        let columns = [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 2];
+        let residual = [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let near = |upper: f64| {
+            let mut out = [0.0; 2];
+            let wished = [0.8_f64.min(upper), 0.6];
+            box_step_near(&columns, &residual, 1e-12, &[0.0; 2], &wished, &[-FREE; 2], &[upper, FREE], &mut out);
+            out
+        };
+        assert!(near(FREE).iter().zip([0.6, 0.4]).all(|(x, e)| (x - e).abs() < 1e-9), "{:?}", near(FREE));
+        assert!(near(0.4).iter().zip([0.4, 0.6]).all(|(x, e)| (x - e).abs() < 1e-9), "{:?}", near(0.4));
     }
 
     #[test]

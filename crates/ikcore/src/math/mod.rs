@@ -1,16 +1,18 @@
-//! Rotations, rigid transforms, fast sines, polynomials, splines, knots in time and the one bounded step. Plain arrays where it
-//! is hot, nalgebra elsewhere.
+//! Rotations, rigid transforms, fast sines, singular values, polynomials, splines, knots in time and the one bounded step.
+//! Plain arrays where it is hot, nalgebra elsewhere.
 
 pub mod arithmetic;
 pub mod box_step;
 pub mod frame;
 pub mod interval;
 pub mod knots;
+pub mod logarithm;
 pub mod natural_spline;
 pub mod polynomial;
 pub mod pose;
 pub mod secant;
 pub mod sincos;
+pub mod singular;
 pub mod so3;
 pub mod ticks;
 

@@ -49,10 +49,14 @@ impl Secant {
         }
     }
 
+    /// The squared size of the first `n` columns.
+    pub fn size(&self, n: usize) -> f64 {
+        self.columns[..n].as_flattened().iter().map(|entry| entry * entry).sum()
+    }
+
     /// Writes into `out` the bounded step from `x`; `damping` is relative to the squared size of the Jacobian.
     pub fn step(&self, residual: &[f64; ROWS], damping: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
-        let size: f64 = self.columns[..x.len()].as_flattened().iter().map(|entry| entry * entry).sum();
-        box_step(&self.columns, residual, damping * size, x, lower, upper, out);
+        box_step(&self.columns, residual, damping * self.size(x.len()), x, lower, upper, out);
     }
 }
 

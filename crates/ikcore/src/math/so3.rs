@@ -75,14 +75,31 @@ impl InverseLeftJacobian {
     }
 }
 
+/// `v`, turned by the rotation vector `phi` (rad): Rodrigues' formula.
+#[inline]
+pub fn rotated(v: &[f64; 3], phi: &[f64; 3]) -> [f64; 3] {
+    let squared = phi.iter().map(|entry| entry * entry).sum::<f64>();
+    // sin(x) / x and (1 - cos x) / x^2.
+    let (first, second) = if squared < SMALL {
+        (1.0 - squared / 6.0 * (1.0 - squared / 20.0), 0.5 - squared / 24.0 * (1.0 - squared / 30.0))
+    } else {
+        let angle = squared.sqrt();
+        (angle.sin() / angle, (1.0 - angle.cos()) / squared)
+    };
+    let once = cross(phi, v);
+    let twice = cross(phi, &once);
+    std::array::from_fn(|k| v[k] + first * once[k] + second * twice[k])
+}
+
 /// Euclidean length.
 #[inline(always)]
 pub fn norm(v: &[f64; 3]) -> f64 {
     (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }
 
+/// a x b.
 #[inline(always)]
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+pub fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
@@ -125,6 +142,18 @@ mod tests {
             let phi = Vector3::from(rotation_between(&Frame::IDENTITY, &frame(turned)));
             assert!((phi.norm() - PI).abs() < 1e-14);
             assert!(phi.cross(&axis).norm() < 1e-7);
+        }
+    }
+
+    #[test]
+    fn turned_vectors_are_those_of_the_exponential() {
+        for axis in directions() {
+            for angle in [0.0, 1e-9, 1e-3, 0.0099, 0.0101, 1.0, 3.0, 6.0] {
+                for v in directions() {
+                    let turned = Vector3::from(rotated(&v.into(), &(axis * angle).into()));
+                    assert!((turned - Rotation3::new(axis * angle) * v).norm() < 1e-14, "{axis} {angle}");
+                }
+            }
         }
     }
 

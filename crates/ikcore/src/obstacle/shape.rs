@@ -4,7 +4,9 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 #[cfg(feature = "convex-mesh")]
 use super::convert::Hull;
-use crate::error::{Error, Result, require_finite, require_positive};
+#[cfg(feature = "convex-mesh")]
+use crate::error::Error;
+use crate::error::{Result, require_finite, require_positive};
 use crate::math::{Pose, pose};
 
 /// What an obstacle looks like (m, rad).

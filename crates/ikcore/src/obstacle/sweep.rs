@@ -44,8 +44,8 @@ pub struct TooNear {
     pub contact: Contact,
 }
 
-/// A pair that keeps its margin by less than this cannot be told from one that does not (m).
-const RESOLUTION: f64 = 1e-6;
+/// A pair that keeps its margin by less than this counts as one that does not (m): finer would take long to tell.
+const RESOLUTION: f64 = 1e-5;
 
 /// Looks at motions in a scene; owns its scratch.
 #[derive(Debug)]
@@ -69,7 +69,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Ok if everything stays at least `margin` (m) apart on all of the motion over \[`from`, `to`\]; proven between
-    /// samples too. Err where it does not, or keeps the margin by less than a micrometre.
+    /// samples too. Err where it does not, or keeps the margin by less than a hundredth of a millimetre.
     pub fn check(&mut self, motion: &impl Motion, [from, to]: [f64; 2], margin: f64) -> Result<(), Box<TooNear>> {
         self.check_pending(motion, [from, to], margin, self.pending.len())
     }

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use super::orientation::check_rotations;
 use super::polyline::check_points;
-use crate::error::{Error, Result, require_positive};
+use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::{Pose, pose};
 
 /// Positions, and where wanted rotations, at the ticks t_i = i dt: row 0 is where to start, row i where to be at the end
@@ -14,6 +14,7 @@ pub struct Reference {
     dt: f64,
     positions: Vec<[f64; 3]>,
     rotations: Option<Vec<Matrix3<f64>>>,
+    velocities: Option<Vec<[f64; 3]>>,
 }
 
 #[expect(clippy::len_without_is_empty, reason = "there are always at least two rows")]
@@ -33,8 +34,23 @@ impl Reference {
                 let expected = format!("{}, one a position", positions.len());
                 Err(Error::WrongLength { what: "path rotations".into(), expected, got: rows.len() })
             }
-            _ => Ok(Self { dt, positions, rotations }),
+            _ => Ok(Self { dt, positions, rotations, velocities: None }),
         }
+    }
+
+    /// The same reference with the velocities (m/s) of its positions, for rules that work with velocities.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] where they are not one a position, [`Error::NotFinite`].
+    pub fn with_velocities(self, velocities: Vec<[f64; 3]>) -> Result<Self> {
+        if velocities.len() != self.positions.len() {
+            let expected = format!("{}, one a position", self.positions.len());
+            return Err(Error::WrongLength { what: "path velocities".into(), expected, got: velocities.len() });
+        }
+        require_finite("path velocities", velocities.as_flattened(), |i| {
+            format!("{} of row {}", ["x", "y", "z"][i % 3], i / 3)
+        })?;
+        Ok(Self { velocities: Some(velocities), ..self })
     }
 
     /// Time between two rows (s).
@@ -55,6 +71,11 @@ impl Reference {
     /// Position of row `i` (m).
     pub fn position(&self, i: usize) -> [f64; 3] {
         self.positions[i]
+    }
+
+    /// Velocity at row `i` (m/s), if it is known; at a corner, that of the stroke that begins.
+    pub fn velocity(&self, i: usize) -> Option<[f64; 3]> {
+        self.velocities.as_ref().map(|velocities| velocities[i])
     }
 
     /// Rotation of row `i`, if there are rotations.

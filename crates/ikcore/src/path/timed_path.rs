@@ -71,4 +71,14 @@ impl Path {
         let rotations = times.map(|t| self.rotation(t)).collect();
         Reference::new(dt, positions, rotations)
     }
+
+    /// The same with the velocities at the ticks.
+    ///
+    /// # Errors
+    /// As [`sample`](Self::sample).
+    pub fn sample_with_velocities(&self, dt: f64) -> Result<Reference> {
+        let reference = self.sample(dt)?;
+        let velocities = (0..reference.len()).map(|i| self.velocity(reference.time(i))).collect();
+        reference.with_velocities(velocities)
+    }
 }

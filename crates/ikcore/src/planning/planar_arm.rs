@@ -5,7 +5,6 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
-use crate::math::Frame;
 use crate::robot::{JointKind, Robot};
 use crate::task::Target;
 use crate::wording::number;
@@ -113,9 +112,10 @@ impl PlanarArm {
         std::iter::once(self.base).chain(links)
     }
 
-    /// Where the tip is to be in the plane, and its orientation (rad) if that is given; None for a target beside the plane.
+    /// Where the tip is to be in the plane, and its orientation (rad) if that is given; None for a target beside the plane, or
+    /// one that is neither a position nor a pose.
     pub fn place(&self, target: &Target) -> Option<Place> {
-        let (Target::Position(position) | Target::Pose(Frame { origin: position, .. })) = target;
+        let position = target.position()?;
         let orientation = match target {
             Target::Position(_) => None,
             Target::Pose(frame) => {
@@ -123,6 +123,7 @@ impl PlanarArm {
                 let angle = frame.axes[0][1].atan2(frame.axes[0][0]) - self.tool;
                 upright.then_some(Some(angle))?
             }
+            Target::Orientation(_) | Target::Pointing { .. } => return None,
         };
         let in_plane = (position[2] - self.height).abs() < AGREEMENT;
         in_plane.then_some(Place { position: [position[0], position[1]], orientation })

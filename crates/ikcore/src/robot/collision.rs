@@ -73,31 +73,36 @@ impl Robot {
     /// sliding joint leaves open between two links is part of neither.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a negative radius.
+    /// [`Error::OutOfRange`] for a negative radius; [`Error::InvalidRobot`] where nothing between two joints has a name.
     pub fn with_capsules_along_links(&self, radius: f64) -> Result<Self> {
         checked_radius("radius", radius)?;
         let chain = self.chain();
-        let moving = self.moving_stages();
-        let capsules = (0..=moving).flat_map(|body| {
-            // What moves with this body, from its own joint's frame.
+        let moving = chain.moving;
+        let mut capsules = vec![];
+        for body in 0..=moving {
+            // Everything that moves with this body, from its own joint's frame.
             let frames: Vec<&LinkFrame> = chain.links.iter().filter(|link| link.stages == body).collect();
+            let joint = (body > 0).then_some([0.0; 3]);
             let end = if body < moving { chain.stages[body].origin } else { chain.tip.origin };
-            let start = if body > 0 { Some([0.0; 3]) } else { None };
-            let places = start.into_iter().chain(frames.iter().map(|link| link.offset.origin)).chain([end]);
+            let places = joint.into_iter().chain(frames.iter().map(|link| link.offset.origin)).chain([end]);
             let places: Vec<[f64; 3]> = places.collect();
-            let carrier = frames.first().copied();
-            let pieces = places.windows(2).filter(|ends| distance(ends[0], ends[1]) > SHORTEST);
-            let pieces: Vec<[[f64; 3]; 2]> = pieces.map(|ends| [ends[0], ends[1]]).collect();
-            carrier.into_iter().flat_map(move |carrier| {
-                let seen_from_link = carrier.offset.inverse();
-                pieces.clone().into_iter().map(move |ends| {
-                    let [a, b] = ends.map(|end| seen_from_link.place::<Separate>(&end));
-                    LinkCapsule { link: carrier.name.clone(), a, b, radius }
-                })
-            })
-        });
-        let capsules = capsules.collect();
+            for ends in places.windows(2).filter(|ends| distance(ends[0], ends[1]) > SHORTEST) {
+                let Some(carrier) = frames.first() else { return Err(self.nameless(body)) };
+                let from_link = carrier.offset.inverse();
+                let [a, b] = [ends[0], ends[1]].map(|end| from_link.place::<Separate>(&end));
+                capsules.push(LinkCapsule { link: carrier.name.clone(), a, b, radius });
+            }
+        }
         Ok(self.with_collision(CollisionModel { capsules, unread: vec![] }))
+    }
+
+    fn nameless(&self, body: usize) -> Error {
+        let problem = format!(
+            "no link is named between moving elements {} and {}, so that none can carry a capsule: name one there",
+            body,
+            body + 1
+        );
+        Error::InvalidRobot { robot: self.name().into(), problem }
     }
 
     /// After how many moving elements a link sits, and its frame from there.
@@ -110,11 +115,6 @@ impl Robot {
     pub(crate) fn write_stage_frames(&self, q: &[f64], frames: &mut [Frame; MAX_DOF + 1]) {
         let frames: &mut StageFrames = frames;
         (self.chain().kernels.stage_frames)(self.chain(), q, frames);
-    }
-
-    /// How many elements move.
-    pub(crate) fn moving_stages(&self) -> usize {
-        self.chain().moving
     }
 
     /// By how much moving element `stage` turns (rad) and slides (m) when each joint changes by up to `reach`.

@@ -2,7 +2,7 @@
 //! ([`SIZES`](super::chain::SIZES)), for machines with and without AVX2 and FMA.
 
 use super::chain::Chain;
-use super::kinematics::{self, Columns, StageFrames};
+use super::kinematics::{self, Columns, StageFrames, Wrench};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 #[cfg(target_arch = "x86_64")]
@@ -33,6 +33,7 @@ macro_rules! baseline {
             tip_pair: kinematics::side_by_side::<Baseline, $n, $l, 2>,
             tip_four: kinematics::side_by_side::<Baseline, $n, $n, 4>,
             jacobian: kinematics::jacobian::<Baseline, $n, $l>,
+            torques: kinematics::torques::<Baseline, $n, $l>,
             stage_frames: kinematics::stage_frames::<Baseline, $n, $l>,
         }
     };
@@ -42,17 +43,21 @@ macro_rules! baseline {
 #[cfg(target_arch = "x86_64")]
 macro_rules! fused {
     ($n:literal, $l:literal) => {
-        // SAFETY (all six): the table is handed out only where `has_fused` found the instructions.
+        // SAFETY (all seven): the table is handed out only where `has_fused` found the instructions.
         Kernels {
             tip: |chain, q| unsafe { fused::tip::<$n, $l>(chain, q) },
             tip_position: |chain, q| unsafe { fused::tip_position::<$n, $l>(chain, q) },
             tip_pair: |chain, qs| unsafe { fused::side_by_side::<$n, $l, 2>(chain, qs) },
             tip_four: |chain, qs| unsafe { fused::side_by_side::<$n, $n, 4>(chain, qs) },
             jacobian: |chain, q, columns| unsafe { fused::jacobian::<$n, $l>(chain, q, columns) },
+            torques: |chain, q, pull, torques| unsafe { fused::torques::<$n, $l>(chain, q, pull, torques) },
             stage_frames: |chain, q, reached| unsafe { fused::stage_frames::<$n, $l>(chain, q, reached) },
         }
     };
 }
+
+/// What the joints feel of the wrench that is said of the tip.
+type Torques = fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Frame;
 
 /// The kernels compiled for one padded number of stages and one instruction set; a chain chooses when it is built.
 #[derive(Debug, Clone, Copy)]
@@ -62,6 +67,7 @@ pub(super) struct Kernels {
     pub tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
     pub tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
     pub jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
+    pub torques: Torques,
     pub stage_frames: fn(&Chain, &[f64], &mut StageFrames),
 }
 
@@ -84,7 +90,7 @@ impl Kernels {
 /// The kernels compiled for AVX2 and FMA.
 #[cfg(target_arch = "x86_64")]
 mod fused {
-    use super::{Chain, Columns, Frame, Fused, StageFrames, kinematics};
+    use super::{Chain, Columns, Frame, Fused, StageFrames, Wrench, kinematics};
 
     #[target_feature(enable = "avx2,fma")]
     pub fn tip<const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
@@ -104,6 +110,16 @@ mod fused {
     #[target_feature(enable = "avx2,fma")]
     pub fn jacobian<const N: usize, const L: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
         kinematics::jacobian::<Fused, N, L>(chain, q, columns)
+    }
+
+    #[target_feature(enable = "avx2,fma")]
+    pub fn torques<const N: usize, const L: usize>(
+        chain: &Chain,
+        q: &[f64],
+        pull: &dyn Fn(&Frame) -> Wrench,
+        torques: &mut [f64],
+    ) -> Frame {
+        kinematics::torques::<Fused, N, L>(chain, q, pull, torques)
     }
 
     #[target_feature(enable = "avx2,fma")]
@@ -146,6 +162,13 @@ mod tests {
             assert!(near(tip.axes.as_flattened(), other.axes.as_flattened()), "{joints} joints");
             assert!(near(&tip.origin, &other.origin), "{joints} joints");
             assert!(near(columns.as_flattened(), others.as_flattened()), "{joints} joints");
+            let wrench = [0.3, -1.0, 2.0, 0.5, 0.7, -0.2];
+            let (mut torques, mut theirs) = (vec![0.0; joints], vec![0.0; joints]);
+            (best.torques)(&chain, &q, &|_| wrench, &mut torques);
+            (baseline.torques)(&chain, &q, &|_| wrench, &mut theirs);
+            let work = |column: &[f64; 6]| column.iter().zip(wrench).map(|(c, w)| c * w).sum::<f64>();
+            assert!(near(&torques, &columns.iter().take(joints).map(work).collect::<Vec<_>>()), "{joints} joints");
+            assert!(near(&torques, &theirs), "{joints} joints");
             assert!(near(&(baseline.tip_position)(&chain, &q), &tip.origin), "{joints} joints");
             assert!(near(&(baseline.tip)(&chain, &q).origin, &tip.origin), "{joints} joints");
             let four = (baseline.tip_four)(&chain, &q.repeat(4));

@@ -12,6 +12,10 @@ use crate::math::sincos::sincos;
 /// Columns of a 6 x n matrix, one per joint: linear rows (m per rad or m), then angular rows; the first n are in use.
 pub type Columns = [[f64; 6]; MAX_DOF];
 
+/// A force (N) at the tip and a moment (N m) about it, in the base's axes: what a tip that moves linearly or turns works
+/// against.
+pub type Wrench = [f64; 6];
+
 /// Frames reached after 0, 1, 2, ... stages.
 pub(super) type StageFrames = [Frame; MAX_DOF + 1];
 
@@ -49,6 +53,12 @@ impl Chain {
     #[inline]
     pub fn jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
         (self.kernels.jacobian)(self, q, columns)
+    }
+
+    /// The tip's frame, and into `torques` what each joint feels of the wrench that `pull` says of it.
+    #[inline]
+    pub fn torques(&self, q: &[f64], pull: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
+        (self.kernels.torques)(self, q, pull, torques)
     }
 
     /// The frame of every link, in the order of `links`.
@@ -181,6 +191,37 @@ pub(super) fn jacobian<A: Arithmetic, const N: usize, const L: usize>(
             column[k] += linear;
             column[3 + k] = A::mul_add(motion.turn_scale, axes[i][k], column[3 + k]);
         }
+    }
+    tip
+}
+
+/// J'w without J: of the wrench w at the tip, each axis feels the moment about itself and the force along itself.
+#[inline(always)]
+pub(super) fn torques<A: Arithmetic, const N: usize, const L: usize>(
+    chain: &Chain,
+    q: &[f64],
+    pull: &dyn Fn(&Frame) -> Wrench,
+    torques: &mut [f64],
+) -> Frame {
+    let (mut axes, mut origins) = ([[0.0; 3]; N], [[0.0; 3]; N]);
+    let tip = pass::<A, N, L>(chain, q, |i, frame| {
+        axes[i] = frame.axes[2];
+        origins[i] = frame.origin;
+    });
+    let [fx, fy, fz, mx, my, mz] = pull(&tip);
+    torques.fill(0.0);
+    for (i, motion) in chain.motions[..N].iter().enumerate() {
+        let [lx, ly, lz]: [f64; 3] = std::array::from_fn(|k| tip.origin[k] - origins[i][k]);
+        let [ax, ay, az] = axes[i];
+        let about = [
+            A::mul_add(ly, fz, A::mul_add(-lz, fy, mx)),
+            A::mul_add(lz, fx, A::mul_add(-lx, fz, my)),
+            A::mul_add(lx, fy, A::mul_add(-ly, fx, mz)),
+        ];
+        let turning = A::mul_add(ax, about[0], A::mul_add(ay, about[1], az * about[2]));
+        let sliding = A::mul_add(ax, fx, A::mul_add(ay, fy, az * fz));
+        // Several stages may share a joint (mimics), so shares are summed.
+        torques[motion.joint] += A::mul_add(motion.turn_scale, turning, motion.slide_scale * sliding);
     }
     tip
 }

@@ -1,4 +1,4 @@
-//! Nearest neighbours by a plain scan, eight at a time.
+//! Nearest neighbours by a scan of some blocks of entries, eight entries at a time.
 
 #[cfg(target_arch = "x86_64")]
 use crate::math::arithmetic::has_fused;
@@ -16,40 +16,61 @@ pub(super) trait Distance {
     fn of(&self, block: &[Row]) -> Row;
 }
 
-/// The nearest entry of each lane, the nearest of all first. `rows` holds blocks of `width` rows; entry `LANES * b + i`
-/// is lane i of block b.
+/// The nearest entry of each lane in `blocks`, the nearest of all first. `rows` holds blocks of `width` rows; entry
+/// `LANES * b + i` is lane i of block b.
 ///
 /// Only the first is sure to be among the eight nearest; the others are the nearest of an eighth of the entries each. To
 /// start from they are as good, and no order has to be kept during the scan.
-pub(super) fn nearest_by_lane(rows: &[Row], width: usize, distance: &impl Distance) -> [usize; LANES] {
-    let (distances, blocks) = scan(rows, width, distance);
+pub(super) fn nearest_by_lane(
+    rows: &[Row],
+    width: usize,
+    blocks: impl Iterator<Item = usize>,
+    distance: &impl Distance,
+) -> [usize; LANES] {
+    let (distances, blocks) = scan(rows, width, blocks, distance);
     let mut lanes: [usize; LANES] = std::array::from_fn(|lane| lane);
     lanes.sort_by(|a, b| distances[*a].total_cmp(&distances[*b]));
     lanes.map(|lane| blocks[lane] as usize * LANES + lane)
 }
 
 /// For each lane the smallest distance, and the first block that has it.
-fn scan(rows: &[Row], width: usize, distance: &impl Distance) -> (Row, [u32; LANES]) {
+fn scan(
+    rows: &[Row],
+    width: usize,
+    blocks: impl Iterator<Item = usize>,
+    distance: &impl Distance,
+) -> (Row, [u32; LANES]) {
     #[cfg(target_arch = "x86_64")]
     if has_fused() {
         // SAFETY: the instructions were found.
-        return unsafe { scan_avx2(rows, width, distance) };
+        return unsafe { scan_avx2(rows, width, blocks, distance) };
     }
-    scan_body(rows, width, distance)
+    scan_body(rows, width, blocks, distance)
 }
 
 /// [`scan_body`] with registers as wide as a row; the same bits.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn scan_avx2(rows: &[Row], width: usize, distance: &impl Distance) -> (Row, [u32; LANES]) {
-    scan_body(rows, width, distance)
+fn scan_avx2(
+    rows: &[Row],
+    width: usize,
+    blocks: impl Iterator<Item = usize>,
+    distance: &impl Distance,
+) -> (Row, [u32; LANES]) {
+    scan_body(rows, width, blocks, distance)
 }
 
 #[inline(always)]
-fn scan_body(rows: &[Row], width: usize, distance: &impl Distance) -> (Row, [u32; LANES]) {
+fn scan_body(
+    rows: &[Row],
+    width: usize,
+    blocks: impl Iterator<Item = usize>,
+    distance: &impl Distance,
+) -> (Row, [u32; LANES]) {
     let (mut nearest, mut found) = ([f32::INFINITY; LANES], [0; LANES]);
-    for (number, block) in (0..).zip(rows.chunks_exact(width)) {
-        let distances = distance.of(block);
+    for block in blocks {
+        let distances = distance.of(&rows[block * width..(block + 1) * width]);
+        let number = block as u32;
         for lane in 0..LANES {
             let nearer = distances[lane] < nearest[lane];
             nearest[lane] = if nearer { distances[lane] } else { nearest[lane] };

@@ -42,6 +42,17 @@ impl Robot {
         Ok(jacobians)
     }
 
+    /// The configurations inside the position limits that are nearest to `qs`, (m, n) row after row.
+    ///
+    /// # Errors
+    /// As [`fk_all`](Self::fk_all).
+    pub fn clip_all(&self, qs: &[f64]) -> Result<Vec<f64>> {
+        let rows = self.rows(qs)?;
+        Ok(rows
+            .flat_map(|q| q.iter().zip(self.joints()).map(|(q, joint)| q.max(joint.lower).min(joint.upper)))
+            .collect())
+    }
+
     /// The rows of `qs`, all whole and finite.
     pub(crate) fn rows<'q>(&self, qs: &'q [f64]) -> Result<std::slice::ChunksExact<'q, f64>> {
         let n = self.dof();

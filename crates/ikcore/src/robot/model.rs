@@ -9,9 +9,10 @@ use serde::{Deserialize, Serialize};
 use super::builder::{ChainBuilder, Element};
 use super::chain::Chain;
 use super::collision::CollisionModel;
+use super::directions::Directions;
 use super::joint::Joint;
 use super::seed_index::SeedIndex;
-use super::{Columns, MAX_DOF};
+use super::{Columns, MAX_DOF, Wrench};
 use crate::error::{Error, Result, require_finite};
 use crate::math::{Frame, Pose, pose};
 use crate::rng::LazyRng;
@@ -29,6 +30,8 @@ pub struct Robot {
     collision: CollisionModel,
     /// Built when first asked for; copies that differ in base and tool share it.
     seed_index: Arc<OnceLock<SeedIndex>>,
+    /// Found when first asked for.
+    directions: OnceLock<Directions>,
 }
 
 impl PartialEq for Robot {
@@ -63,7 +66,8 @@ impl Robot {
     ) -> Result<Self> {
         description.validate()?;
         let chain = Chain::new(&description.elements, &base, &tool);
-        Ok(Self { description, base, tool, chain, collision, seed_index: Arc::default() })
+        let (seed_index, directions) = (Arc::default(), OnceLock::new());
+        Ok(Self { description, base, tool, chain, collision, seed_index, directions })
     }
 
     /// The robot's name.
@@ -126,6 +130,13 @@ impl Robot {
             change(index, joint);
         }
         Self::assembled(description, self.base, self.tool, self.collision.clone())
+    }
+
+    /// Whether a whole turn of joint `joint` brings all that it moves back to where it was.
+    pub fn repeats_every_turn(&self, joint: usize) -> bool {
+        let driven = self.chain.motions.iter().filter(|motion| motion.joint == joint);
+        let scales = driven.map(|motion| (motion.turn_scale, motion.slide_scale));
+        self.joints()[joint].kind.turns() && scales.into_iter().all(|(turn, slide)| turn.fract() == 0.0 && slide == 0.0)
     }
 
     /// Err unless `q` has one finite entry per joint; `what` names it in the message.
@@ -192,6 +203,13 @@ impl Robot {
         self.chain.jacobian(q, columns)
     }
 
+    /// Tip and joint torques (N m, N for sliding joints) in one pass and without a Jacobian: what the joints feel of the
+    /// wrench that `pull` says of the tip. `q` and `torques` have one entry per joint.
+    #[inline]
+    pub fn tip_and_torques(&self, q: &[f64], pull: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
+        self.chain.torques(q, pull, torques)
+    }
+
     /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).
     ///
     /// # Errors
@@ -223,6 +241,11 @@ impl Robot {
 
     pub(super) fn chain(&self) -> &Chain {
         &self.chain
+    }
+
+    /// In how many directions the tip can move at all.
+    pub fn directions(&self) -> Directions {
+        *self.directions.get_or_init(|| Directions::of(self))
     }
 
     pub(super) fn seed_index(&self) -> &SeedIndex {

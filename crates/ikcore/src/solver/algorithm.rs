@@ -1,5 +1,6 @@
 //! The one list of algorithms: the binding and the contract test read it.
 
+use super::apps::Apps;
 use super::bas::{Bas, Variant};
 use super::bee_colony::BeeColony;
 use super::beetle_swarm::BeetleSwarm;
@@ -9,13 +10,15 @@ use super::driver::{Outcome, Solver, run};
 use super::evaluator::Evaluator;
 use super::firefly::Firefly;
 use super::genetic::Genetic;
+use super::jacobian_transpose::JacobianTranspose;
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::multi_start::{MultiStart, RestartRule};
+use super::newton_raphson::NewtonRaphson;
 use super::population::Schedule;
 use super::pso::{Form, Pso};
 use super::qpso::Qpso;
 use crate::error::Result;
-use crate::objective::{LeastSquares, Objective};
+use crate::objective::{Differentiable, Objective};
 
 /// Algorithms that need nothing but values: they minimise anything.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,10 +46,16 @@ pub enum DerivativeFree {
 pub enum Algorithm {
     /// One that needs values alone.
     DerivativeFree(DerivativeFree),
+    /// APPS, which needs a gradient.
+    Apps(Apps),
+    /// Jacobian transpose.
+    JacobianTranspose(JacobianTranspose),
     /// Antenna differences as secants, which need residuals.
     BroydenBas(BroydenBas),
     /// Levenberg-Marquardt.
     LevenbergMarquardt(LevenbergMarquardt),
+    /// Newton-Raphson.
+    NewtonRaphson(NewtonRaphson),
 }
 
 /// `$body` for whichever derivative-free solver it is.
@@ -83,17 +92,17 @@ macro_rules! listed {
 }
 listed!(Bas, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, Qpso);
 
-impl From<BroydenBas> for Algorithm {
-    fn from(solver: BroydenBas) -> Self {
-        Self::BroydenBas(solver)
-    }
+/// Those that need more than values.
+macro_rules! listed_with_more {
+    ($($solver:ident),*) => {$(
+        impl From<$solver> for Algorithm {
+            fn from(solver: $solver) -> Self {
+                Self::$solver(solver)
+            }
+        }
+    )*};
 }
-
-impl From<LevenbergMarquardt> for Algorithm {
-    fn from(solver: LevenbergMarquardt) -> Self {
-        Self::LevenbergMarquardt(solver)
-    }
-}
+listed_with_more!(Apps, BroydenBas, JacobianTranspose, LevenbergMarquardt, NewtonRaphson);
 
 impl DerivativeFree {
     /// Every one with its default options.
@@ -168,8 +177,13 @@ impl Algorithm {
     /// Every algorithm with its default options.
     pub fn all() -> Vec<Self> {
         let mut all: Vec<_> = DerivativeFree::all().into_iter().map(Self::DerivativeFree).collect();
-        all.push(BroydenBas::default().into());
-        all.push(LevenbergMarquardt::default().into());
+        all.extend([
+            Apps::default().into(),
+            BroydenBas::default().into(),
+            JacobianTranspose::default().into(),
+            LevenbergMarquardt::default().into(),
+            NewtonRaphson::default().into(),
+        ]);
         all
     }
 
@@ -178,7 +192,9 @@ impl Algorithm {
     pub fn into_multi_start(self) -> MultiStart<Self> {
         let patience = match &self {
             Self::DerivativeFree(solver) => solver.patience(),
+            Self::Apps(_) | Self::JacobianTranspose(_) => 50,
             Self::BroydenBas(_) | Self::LevenbergMarquardt(_) => 3,
+            Self::NewtonRaphson(_) => 10,
         };
         MultiStart { solver: self, rule: RestartRule::with_patience(patience) }
     }
@@ -191,7 +207,10 @@ impl Algorithm {
         match self {
             Self::DerivativeFree(solver) => solver.validate(),
             Self::BroydenBas(broyden) => broyden.validate(),
+            Self::Apps(apps) => apps.validate(),
+            Self::JacobianTranspose(transpose) => transpose.validate(),
             Self::LevenbergMarquardt(lm) => lm.validate(),
+            Self::NewtonRaphson(newton) => newton.validate(),
         }
     }
 
@@ -199,13 +218,16 @@ impl Algorithm {
     pub(super) fn run(
         &self,
         restarts: Option<RestartRule>,
-        evaluator: &mut Evaluator<'_, dyn LeastSquares + '_>,
+        evaluator: &mut Evaluator<'_, dyn Differentiable + '_>,
         x0: &[f64],
     ) -> Outcome {
         match self {
             Self::DerivativeFree(solver) => evaluator.with_values_only(|evaluator| solver.run(restarts, evaluator, x0)),
             Self::BroydenBas(broyden) => run_or_restart(broyden, restarts, evaluator, x0),
+            Self::Apps(apps) => run_or_restart(apps, restarts, evaluator, x0),
+            Self::JacobianTranspose(transpose) => run_or_restart(transpose, restarts, evaluator, x0),
             Self::LevenbergMarquardt(lm) => run_or_restart(lm, restarts, evaluator, x0),
+            Self::NewtonRaphson(newton) => run_or_restart(newton, restarts, evaluator, x0),
         }
     }
 }

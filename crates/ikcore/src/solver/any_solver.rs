@@ -7,7 +7,7 @@ use super::levenberg_marquardt::LevenbergMarquardt;
 use super::multi_start::{MultiStart, RestartRule};
 use super::stop::Stop;
 use crate::error::{Error, Result};
-use crate::objective::{LeastSquares, Objective};
+use crate::objective::{Differentiable, Objective};
 
 /// An algorithm of list `A`: [`Algorithm`] for robots, [`DerivativeFree`] for functions of which only values are known.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,8 +74,21 @@ impl AnySolver {
         matches!(self.algorithm(), Algorithm::DerivativeFree(_))
     }
 
+    /// Whether it comes to an end without a budget, solved or not.
+    pub fn ends_by_itself(&self) -> bool {
+        matches!(self, Self::Single(Algorithm::DerivativeFree(_) | Algorithm::LevenbergMarquardt(_)))
+    }
+
+    /// The descent that is begun again and again, where this is one.
+    pub fn restarted_descent(&self) -> Option<&LevenbergMarquardt> {
+        match self {
+            Self::MultiStart(MultiStart { solver: Algorithm::LevenbergMarquardt(descent), .. }) => Some(descent),
+            _ => None,
+        }
+    }
+
     /// Runs from `x0` until solved, stopped or given up.
-    pub fn run(&self, evaluator: &mut Evaluator<'_, dyn LeastSquares + '_>, x0: &[f64]) -> Outcome {
+    pub fn run(&self, evaluator: &mut Evaluator<'_, dyn Differentiable + '_>, x0: &[f64]) -> Outcome {
         self.algorithm().run(self.restarts(), evaluator, x0)
     }
 }

@@ -1,5 +1,6 @@
 //! The loop: start, step, check; the same for every solver.
 
+use super::conduct::Conduct;
 use super::evaluator::{Evaluator, Halt};
 use super::stop::Status;
 use crate::objective::Objective;
@@ -8,6 +9,11 @@ use crate::objective::Objective;
 pub trait Solver<O: Objective + ?Sized> {
     /// What the algorithm remembers between steps.
     type State;
+
+    /// Where it searches and what ends it; by default, inside the box and until solved.
+    fn conduct(&self) -> Conduct {
+        Conduct::default()
+    }
 
     /// Evaluates the start `x0` (first of all) and whatever else the algorithm begins with.
     ///
@@ -24,6 +30,10 @@ pub trait Solver<O: Objective + ?Sized> {
 
 impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for &S {
     type State = S::State;
+
+    fn conduct(&self) -> Conduct {
+        (*self).conduct()
+    }
 
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Halt> {
         (*self).start(evaluator, x0)
@@ -49,6 +59,8 @@ impl Outcome {
         match self.halt {
             Halt::Solved => Status::Solved,
             Halt::BelowValue => Status::Improved,
+            Halt::BelowThreshold => Status::BelowThreshold,
+            Halt::OutsideBox => Status::OutsideLimits,
             Halt::Stalled => Status::Stalled,
             Halt::Budget => Status::BudgetSpent,
             Halt::Time => Status::TimeUp,
@@ -60,6 +72,7 @@ impl Outcome {
 /// Runs `solver` from `x0` until something halts it. A start that is solved already is returned untouched.
 pub fn run<O: Objective + ?Sized, S: Solver<O>>(solver: &S, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Outcome {
     let mut iterations = 0;
+    evaluator.adopt(solver.conduct());
     let mut until_halt = || -> Result<std::convert::Infallible, Halt> {
         let mut state = solver.start(evaluator, x0)?;
         evaluator.before_steps()?;

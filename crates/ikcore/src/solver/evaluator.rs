@@ -4,10 +4,14 @@ use std::mem;
 
 use smallvec::SmallVec;
 
+use crate::math::MAX_DOF;
 use crate::math::box_step::ROWS;
-use crate::objective::{Bounds, LeastSquares, Linearization, Objective, Pace, Point, Residual, Score};
+use crate::objective::{
+    Bounds, Differentiable, Gradient, LeastSquares, Linearization, Objective, Pace, Point, Residual, Score, Slope,
+};
 use crate::rng::LazyRng;
 
+use super::conduct::{Conduct, Domain, Goal};
 use super::stop::{Monitor, Stop, Stopwatch};
 
 /// Why a solver cannot go on; passed up with `?`.
@@ -17,6 +21,10 @@ pub enum Halt {
     Solved,
     /// The best value fell below [`Stop::value_below`].
     BelowValue,
+    /// The solver's own threshold was met.
+    BelowThreshold,
+    /// The search arrived at a solution outside the box that whole periods do not bring inside.
+    OutsideBox,
     /// The solver's own rule: nothing more to gain from here.
     Stalled,
     /// The evaluation or iteration budget is spent.
@@ -72,6 +80,11 @@ pub struct Evaluator<'a, O: ?Sized> {
     attempts: usize,
     dimension: usize,
     pace: Pace,
+    conduct: Conduct,
+    /// After how much each entry repeats itself; empty where everything is clipped.
+    periods: SmallVec<[Option<f64>; MAX_DOF]>,
+    /// Whether the last point was solved, but outside the box.
+    strayed: bool,
 }
 
 impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
@@ -98,6 +111,20 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             attempt_value: f64::INFINITY,
             attempts: 1,
             pace,
+            conduct: Conduct::default(),
+            periods: SmallVec::new(),
+            strayed: false,
+        }
+    }
+
+    /// Takes over what the solver declares of itself.
+    pub(super) fn adopt(&mut self, conduct: Conduct) {
+        self.conduct = conduct;
+        if conduct.domain == Domain::Wrapped {
+            // A locked entry has no room to turn in.
+            let locked = |i: usize| self.bounds.lower()[i] == self.bounds.upper()[i];
+            let period = |i| if locked(i) { None } else { self.objective.period(i) };
+            self.periods = (0..self.dimension).map(period).collect();
         }
     }
 
@@ -143,6 +170,15 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         self.attempt_value = f64::INFINITY;
     }
 
+    /// Clips `x` to the box, or wraps it there, as the solver declared.
+    #[inline]
+    fn admit(&self, x: &mut [f64]) {
+        match self.conduct.domain {
+            Domain::Clipped => self.bounds.clip(x),
+            Domain::Wrapped => self.bounds.wrap(x, &self.periods),
+        }
+    }
+
     /// Clips `x` to the box and returns its value, infinite where it is not finite.
     ///
     /// # Errors
@@ -150,7 +186,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     #[inline]
     pub fn evaluate(&mut self, x: &mut [f64]) -> Result<f64, Halt> {
         self.spend(1)?;
-        self.bounds.clip(x);
+        self.admit(x);
         let score = self.objective.evaluate(x);
         Ok(self.record(x, score))
     }
@@ -162,6 +198,9 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     pub fn evaluate_all(&mut self, mut xs: &mut [f64], values: &mut [f64]) -> Result<(), Halt> {
         for values in values.chunks_mut(self.pace.at_once) {
             let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
+            if affordable == 0 {
+                return Err(Halt::Budget);
+            }
             self.spend(affordable)?;
             let (chunk, rest) = xs.split_at_mut(affordable * self.dimension);
             self.evaluate_chunk(chunk, &mut values[..affordable]);
@@ -177,7 +216,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     fn evaluate_chunk(&mut self, xs: &mut [f64], values: &mut [f64]) {
         let unknown = Score { value: f64::INFINITY, solved: false };
         let mut scores: SmallVec<[Score; CHUNK]> = SmallVec::from_elem(unknown, values.len());
-        xs.chunks_exact_mut(self.dimension).for_each(|x| self.bounds.clip(x));
+        xs.chunks_exact_mut(self.dimension).for_each(|x| self.admit(x));
         self.objective.evaluate_all(xs, &mut scores);
         for ((x, score), value) in xs.chunks_exact(self.dimension).zip(&scores).zip(values) {
             *value = self.record(x, *score);
@@ -189,7 +228,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     /// # Errors
     /// [`Halt::Solved`].
     pub fn before_steps(&self) -> Result<(), Halt> {
-        if self.stop.min_iterations == 0 { self.check_solved() } else { Ok(()) }
+        if self.stop.min_iterations == 0 { self.check_goal() } else { Ok(()) }
     }
 
     /// What the driver asks after every step: is it time to stop?
@@ -200,7 +239,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         if iterations < self.stop.min_iterations {
             return Ok(());
         }
-        self.check_solved()?;
+        self.check_goal()?;
         match self.stop.value_below {
             Some(value) if self.best.value < value => Err(Halt::BelowValue),
             _ if iterations >= self.stop.max_iterations => Err(Halt::Budget),
@@ -214,6 +253,22 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     /// [`Halt::Solved`].
     pub fn check_solved(&self) -> Result<(), Halt> {
         if self.best.solved { Err(Halt::Solved) } else { Ok(()) }
+    }
+
+    /// Err(OutsideBox) if the last point evaluated was solved, but outside the box.
+    ///
+    /// # Errors
+    /// [`Halt::OutsideBox`].
+    pub fn check_strayed(&self) -> Result<(), Halt> {
+        if self.strayed { Err(Halt::OutsideBox) } else { Ok(()) }
+    }
+
+    /// A solver with a threshold of its own goes on where others are done.
+    fn check_goal(&self) -> Result<(), Halt> {
+        match self.conduct.goal {
+            Goal::Solved => self.check_solved(),
+            Goal::Threshold => Ok(()),
+        }
     }
 
     #[inline]
@@ -246,6 +301,13 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         let value = if score.value.is_finite() { score.value } else { f64::INFINITY };
         self.attempt_value = self.attempt_value.min(value);
         let solved = score.solved && value.is_finite();
+        if self.conduct.domain == Domain::Wrapped {
+            let outside = !self.bounds.contains(x);
+            self.strayed = solved && outside;
+            if outside {
+                return value;
+            }
+        }
         let better = (solved && !self.best.solved) || (solved == self.best.solved && value < self.best.value);
         if better || self.best.x.is_empty() {
             self.best.replace(x, value, solved);
@@ -268,7 +330,7 @@ impl<O: Residual + ?Sized> Evaluator<'_, O> {
     }
 }
 
-impl Evaluator<'_, dyn LeastSquares + '_> {
+impl Evaluator<'_, dyn Differentiable + '_> {
     /// Lends the run to a solver that asks for values alone, so that there is one compiled copy of such a solver whatever
     /// the objective offers beyond.
     pub fn with_values_only<R>(&mut self, work: impl FnOnce(&mut Evaluator<'_, dyn Objective + '_>) -> R) -> R {
@@ -286,6 +348,9 @@ impl Evaluator<'_, dyn LeastSquares + '_> {
             attempts: self.attempts,
             dimension: self.dimension,
             pace: self.pace,
+            conduct: self.conduct,
+            periods: SmallVec::new(),
+            strayed: false,
         };
         let result = work(&mut narrowed);
         let Evaluator { evaluations, next_poll, best, attempt_value, attempts, .. } = narrowed;
@@ -306,8 +371,24 @@ impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
     #[inline]
     pub fn linearize(&mut self, x: &mut [f64], out: &mut Linearization) -> Result<f64, Halt> {
         self.spend(1)?;
-        self.bounds.clip(x);
+        self.admit(x);
         let score = self.objective.linearize(x, out);
         Ok(self.record(x, score))
+    }
+}
+
+impl<O: Gradient + ?Sized> Evaluator<'_, O> {
+    /// Brings `x` into the domain; error and gradient there, counted as one evaluation. The error is infinite where the
+    /// value is not finite.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    #[inline]
+    pub fn differentiate(&mut self, x: &mut [f64], gradient: &mut [f64]) -> Result<f64, Halt> {
+        self.spend(1)?;
+        self.admit(x);
+        let Slope { error, score } = self.objective.differentiate(x, gradient);
+        let value = self.record(x, score);
+        Ok(if value.is_finite() { error } else { f64::INFINITY })
     }
 }

@@ -8,7 +8,7 @@ use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use super::population::{Members, Population, Schedule};
 use crate::error::{Error, Result, require_positive};
-use crate::objective::Objective;
+use crate::objective::{Objective, Point};
 use crate::rng::LazyRng;
 
 /// Firefly algorithm.
@@ -79,6 +79,8 @@ pub struct State {
     attractor: usize,
     /// alpha of this turn.
     randomness: f64,
+    /// One over the widths of the box; zero for a locked coordinate, along which there is no distance.
+    scales: Point,
 }
 
 impl<O: Objective + ?Sized> Solver<O> for Firefly {
@@ -86,8 +88,10 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
 
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
         let fireflies = self.schedule.population;
+        let population = Population::start(&self.schedule, evaluator, x0)?;
         Ok(State {
-            population: Population::start(&self.schedule, evaluator, x0)?,
+            scales: population.widths.iter().map(|width| if *width > 0.0 { 1.0 / width } else { 0.0 }).collect(),
+            population,
             moving: Vec::with_capacity(fireflies),
             moved: Members::new(fireflies, x0.len()),
             attractor: 0,
@@ -96,18 +100,19 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
-        let State { population, moving, moved, attractor, randomness } = state;
+        let State { population, moving, moved, attractor, randomness, scales } = state;
         if population.is_drawn(&self.turns(), evaluator)? {
             return Ok(());
         }
         let Population { members, widths, .. } = population;
-        let light = members.values[*attractor];
+        let (light, x_j) = (members.values[*attractor], members.point(*attractor));
         moving.clear();
         moving.extend((0..members.values.len()).filter(|i| members.values[*i] > light));
         for (place, i) in moving.iter().enumerate() {
             let x = moved.point_mut(place);
             x.copy_from_slice(members.point(*i));
-            self.attract(x, members.point(*attractor), widths, *randomness, evaluator.rng());
+            let beta = self.attractiveness_at(x, x_j, scales);
+            fly(x, x_j, beta, *randomness, widths, evaluator.rng());
         }
         moved.evaluate_first(moving.len(), evaluator)?;
         for (place, i) in moving.iter().enumerate() {
@@ -120,21 +125,21 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
 }
 
 impl Firefly {
-    /// x = x + beta_0 exp(-gamma r^2) (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009).
+    /// beta = beta_0 exp(-gamma r^2), eq. (9) of Yang (2009).
     #[inline]
-    fn attract(&self, x: &mut [f64], x_j: &[f64], widths: &[f64], randomness: f64, rng: &mut LazyRng) {
-        let mut squared = 0.0;
-        for ((x, x_j), width) in x.iter().zip(x_j).zip(widths) {
-            // A locked coordinate has no width, and no distance either.
-            let apart = if *width > 0.0 { (x_j - x) / width } else { 0.0 };
-            squared += apart * apart;
-        }
-        let beta = self.attractiveness * (-self.absorption * squared).exp();
-        let pairs = x.chunks_mut(2).zip(x_j.chunks(2)).zip(widths.chunks(2));
-        for ((x, x_j), widths) in pairs {
-            for (((x, x_j), width), u) in x.iter_mut().zip(x_j).zip(widths).zip(rng.uniform_pair()) {
-                *x += beta * (x_j - *x) + randomness * width * (u - 0.5);
-            }
+    fn attractiveness_at(&self, x: &[f64], x_j: &[f64], scales: &[f64]) -> f64 {
+        let apart = x.iter().zip(x_j).zip(scales).map(|((x, x_j), scale)| (x_j - x) * scale);
+        let squared: f64 = apart.map(|apart| apart * apart).sum();
+        self.attractiveness * (-self.absorption * squared).exp()
+    }
+}
+
+/// x = x + beta (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009).
+#[inline]
+fn fly(x: &mut [f64], x_j: &[f64], beta: f64, randomness: f64, widths: &[f64], rng: &mut LazyRng) {
+    for ((x, x_j), widths) in x.chunks_mut(2).zip(x_j.chunks(2)).zip(widths.chunks(2)) {
+        for (((x, x_j), width), u) in x.iter_mut().zip(x_j).zip(widths).zip(rng.uniform_pair()) {
+            *x += beta * (x_j - *x) + randomness * width * (u - 0.5);
         }
     }
 }

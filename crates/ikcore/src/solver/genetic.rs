@@ -30,13 +30,13 @@ pub struct Genetic {
 }
 
 impl Default for Genetic {
-    /// MATLAB's elite, crossover and tournament, population 50 and 80 % crossover.
+    /// MATLAB's elite, crossover share and population; tournaments of two, which keep more variety than MATLAB's four.
     fn default() -> Self {
         Self {
             schedule: Schedule::of(50),
             elite_share: 0.05,
             crossover_share: 0.8,
-            tournament: 4,
+            tournament: 2,
             mutation_scale: 0.1,
             mutation_decay: 0.97,
         }
@@ -152,7 +152,7 @@ impl Genetic {
         let (mother, father) = (self.parent(parents, rng), self.parent(parents, rng));
         let mut coins = Coins::default();
         for (x, (mother, father)) in child.iter_mut().zip(mother.iter().zip(father)) {
-            *x = if coins.toss(rng) { *mother } else { *father };
+            *x = [*father, *mother][usize::from(coins.toss(rng))];
         }
     }
 }
@@ -160,7 +160,7 @@ impl Genetic {
 /// The better of two members.
 fn better_of_two(parents: &Members, rng: &mut LazyRng) -> usize {
     let [one, other] = rng.pair_below(parents.values.len());
-    if parents.values[other] < parents.values[one] { other } else { one }
+    [one, other][usize::from(parents.values[other] < parents.values[one])]
 }
 
 /// Gaussian mutation of all coordinates.

@@ -1,5 +1,6 @@
 //! The one multi-start: any solver, begun again elsewhere when it stalls or its attempt is hopeless.
 
+use super::conduct::Conduct;
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result};
@@ -63,6 +64,10 @@ pub struct State<T> {
 impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for MultiStart<S> {
     type State = State<S::State>;
 
+    fn conduct(&self) -> Conduct {
+        self.solver.conduct()
+    }
+
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Halt> {
         let inner = self.solver.start(evaluator, x0)?;
         Ok(State { inner, steps: 0, milestone: evaluator.attempt_value() })
@@ -71,7 +76,7 @@ impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for MultiStart<S> {
     fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
         match self.solver.step(&mut state.inner, evaluator) {
             Ok(()) if !self.hopeless(state, evaluator.attempt_value()) => Ok(()),
-            Ok(()) | Err(Halt::Stalled) => self.restart(state, evaluator),
+            Ok(()) | Err(Halt::Stalled | Halt::OutsideBox) => self.restart(state, evaluator),
             halt => halt,
         }
     }

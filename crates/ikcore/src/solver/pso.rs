@@ -5,6 +5,7 @@
 //! and a particle that meets a wall stops there.
 
 use std::fmt;
+use std::str::FromStr;
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
@@ -57,6 +58,36 @@ impl Form {
     }
 }
 
+/// Whether a particle stays where it went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Accept {
+    /// Always, as published.
+    Always,
+    /// Where that is its best place so far; else it returns there. Quicker on smooth functions, and what mealpy's PSO does.
+    Improving,
+}
+
+impl fmt::Display for Accept {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Always => "always",
+            Self::Improving => "improving",
+        })
+    }
+}
+
+impl FromStr for Accept {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "always" => Ok(Self::Always),
+            "improving" => Ok(Self::Improving),
+            _ => Err(Error::unknown_option("accept", name, &["always", "improving"])),
+        }
+    }
+}
+
 /// Particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pso {
@@ -70,6 +101,8 @@ pub struct Pso {
     pub c2: f64,
     /// Largest velocity, as a share of the box's width a generation.
     pub velocity_limit: f64,
+    /// Whether a particle stays where it went.
+    pub accept: Accept,
 }
 
 impl Default for Pso {
@@ -82,7 +115,14 @@ impl Pso {
     /// A form with its published attractions. Half the width is the dynamic range X_max of Eberhart and Shi (2000).
     pub fn of(form: Form) -> Self {
         let attraction = form.attraction();
-        Self { schedule: Schedule::of(40), form, c1: attraction, c2: attraction, velocity_limit: 0.5 }
+        Self {
+            schedule: Schedule::of(40),
+            form,
+            c1: attraction,
+            c2: attraction,
+            velocity_limit: 0.5,
+            accept: Accept::Always,
+        }
     }
 
     /// Checks the options.
@@ -146,6 +186,9 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
             population.members.evaluate_from(0, evaluator)?;
         }
         memory.update(population);
+        if self.accept == Accept::Improving {
+            population.members.points.copy_from_slice(&memory.members.points);
+        }
         Ok(())
     }
 }
@@ -170,17 +213,19 @@ pub fn turn_particles(
 ) {
     let widths = &population.widths[..];
     let n = widths.len();
-    let g = memory.members.point(memory.leader);
+    let g = &memory.members.point(memory.leader)[..n];
     let mut draws = Point::from_elem(0.0, n);
+    let draws = &mut draws[..n];
     let particles = population.members.points().zip(memory.members.points()).zip(velocities.chunks_exact_mut(n));
     for ((x, p), v) in particles {
-        rng.fill(&mut draws);
-        let places = v.iter_mut().zip(x).zip(p).zip(g).zip(widths).zip(&draws[..]);
-        for (((((v, x), p), g), width), draw) in places {
-            let [r1, r2] = split(*draw);
-            let most = velocity_limit * width;
-            let wanted = w * *v + c1 * r1 * (p - x) + c2 * r2 * (g - x);
-            *v = wanted.max(-most).min(most);
+        rng.fill(draws);
+        let (x, p, v) = (&x[..n], &p[..n], &mut v[..n]);
+        for k in 0..n {
+            let [r1, r2] = split(draws[k]);
+            let most = velocity_limit * widths[k];
+            let wanted = w * v[k] + c1 * r1 * (p[k] - x[k]) + c2 * r2 * (g[k] - x[k]);
+            let raised = if wanted > -most { wanted } else { -most };
+            v[k] = if raised < most { raised } else { most };
         }
     }
 }

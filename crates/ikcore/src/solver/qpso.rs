@@ -8,6 +8,7 @@ use super::evaluator::{Evaluator, Halt};
 use super::population::{Memory, Population, Schedule};
 use crate::error::{Result, require_positive};
 use crate::math::MAX_DOF;
+use crate::math::logarithm::ln;
 use crate::objective::{Objective, Point};
 use crate::rng::{LazyRng, split};
 
@@ -86,13 +87,13 @@ impl Qpso {
         for (x, p) in points.chunks_exact_mut(n).zip(memory.members.points()) {
             rng.fill(&mut draws);
             let (first, second) = draws.split_at(n);
-            let places = x.iter_mut().zip(p).zip(g).zip(mean).zip(first).zip(second);
-            for (((((x, p), g), mean), first), second) in places {
-                let [phi, side] = split(*first);
-                // In (0, 1]: the logarithm is finite.
-                let u = 1.0 - second;
-                let spread = self.expansion * (mean - *x).abs() * u.ln();
-                *x = g + phi * (p - g) + if side < 0.5 { -spread } else { spread };
+            let (x, p, g, mean, second) = (&mut x[..n], &p[..n], &g[..n], &mean[..n], &second[..n]);
+            for k in 0..n {
+                let [phi, side] = split(first[k]);
+                // 1 - u is in (0, 1], where the logarithm is finite.
+                let spread = self.expansion * (mean[k] - x[k]).abs() * ln(1.0 - second[k]);
+                let attractor = g[k] + phi * (p[k] - g[k]);
+                x[k] = attractor + if side < 0.5 { -spread } else { spread };
             }
         }
     }

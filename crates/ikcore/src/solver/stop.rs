@@ -72,13 +72,19 @@ pub enum Status {
     Lost = 7,
     /// An item of a batch whose target or start is wrong: nothing was solved.
     Invalid = 8,
+    /// The target is farther from the base than the arm is long.
+    OutOfReach = 9,
     /// A plant that raised an error, or returned what is no position: the run ended with what was recorded.
-    PlantFailed = 9,
+    PlantFailed = 10,
+    /// The solver's own threshold was met before the tolerances were.
+    BelowThreshold = 11,
+    /// The search arrived outside the limits, and whole turns do not bring it inside; the best inside is kept.
+    OutsideLimits = 12,
 }
 
 impl Status {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 13] = [
         Self::Solved,
         Self::Improved,
         Self::Capped,
@@ -88,7 +94,10 @@ impl Status {
         Self::Interrupted,
         Self::Lost,
         Self::Invalid,
+        Self::OutOfReach,
         Self::PlantFailed,
+        Self::BelowThreshold,
+        Self::OutsideLimits,
     ];
 
     /// The name as Python shows it.
@@ -103,7 +112,10 @@ impl Status {
             Self::Interrupted => "INTERRUPTED",
             Self::Lost => "LOST",
             Self::Invalid => "INVALID",
+            Self::OutOfReach => "OUT_OF_REACH",
             Self::PlantFailed => "PLANT_FAILED",
+            Self::BelowThreshold => "BELOW_THRESHOLD",
+            Self::OutsideLimits => "OUTSIDE_LIMITS",
         }
     }
 
@@ -119,8 +131,13 @@ impl Status {
             Self::Lost => {
                 "slow the path down, raise the velocity limits, start elsewhere (another start or seed), or move the path into reach"
             }
+            Self::OutOfReach => "move the target nearer to the base, or the base nearer to the target",
             Self::Invalid => "on_invalid=\"raise\" says what is wrong",
             Self::PlantFailed => "mend the plant and run again",
+            Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
+            Self::OutsideLimits => {
+                "try another start or seed, MultiStart, or a solver that searches inside the limits, such as LevenbergMarquardt"
+            }
         }
     }
 }

@@ -35,49 +35,48 @@ impl Tolerance {
     }
 }
 
-/// Squared errors, as solvers use them: no root is taken in hot loops.
+/// Squared errors, as solvers use them: no root is taken in hot loops. None is what a target does not ask for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SquaredError {
     /// Squared distance (m^2).
-    pub position: f64,
-    /// Squared geodesic angle (rad^2); None where the target asks for no orientation.
+    pub position: Option<f64>,
+    /// Squared angle (rad^2): to the target's orientation, or to the direction that an axis is to have.
     pub rotation: Option<f64>,
 }
 
 impl SquaredError {
-    /// The sum of squares that solvers minimise.
-    #[inline]
-    pub fn sum(&self) -> f64 {
-        self.position + self.rotation.unwrap_or(0.0)
-    }
-
     /// Whether both errors are within `tolerance`. Since sqrt(x * x) is x, this is the comparison of the errors.
     #[inline]
     pub fn within(&self, tolerance: &Tolerance) -> bool {
-        self.position <= tolerance.position * tolerance.position
+        self.position.is_none_or(|position| position <= tolerance.position * tolerance.position)
             && self.rotation.is_none_or(|rotation| rotation <= tolerance.rotation * tolerance.rotation)
     }
 }
 
-/// The errors as a caller reads them.
+/// The errors as a caller reads them; NaN is what the target does not ask for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TipError {
     /// Distance (m).
     pub position: f64,
-    /// Geodesic angle (rad); NaN where the target asks for no orientation.
+    /// Geodesic angle (rad).
     pub rotation: f64,
 }
 
 impl From<SquaredError> for TipError {
     fn from(squared: SquaredError) -> Self {
-        Self { position: squared.position.sqrt(), rotation: squared.rotation.map_or(f64::NAN, f64::sqrt) }
+        let root = |squared: Option<f64>| squared.map_or(f64::NAN, f64::sqrt);
+        Self { position: root(squared.position), rotation: root(squared.rotation) }
     }
 }
 
 impl fmt::Display for TipError {
-    /// Both errors with their units; the angle only where it was asked for.
+    /// What was asked for, with its unit.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} m", number(self.position))?;
-        if self.rotation.is_nan() { Ok(()) } else { write!(f, " and {} rad", number(self.rotation)) }
+        let Self { position, rotation } = *self;
+        match (position.is_nan(), rotation.is_nan()) {
+            (false, true) => write!(f, "{} m", number(position)),
+            (true, false) => write!(f, "{} rad", number(rotation)),
+            _ => write!(f, "{} m and {} rad", number(position), number(rotation)),
+        }
     }
 }

@@ -1,12 +1,24 @@
-//! What the tip is to reach: residuals of a frame task and their derivatives.
+//! What the tip is to reach: residuals of a frame task and their derivatives, and goals beside it.
 
+mod criterion;
+pub mod entrywise;
 mod error;
+mod goal;
+mod kind;
+mod motion;
+mod orientation;
+mod pointing;
 mod pose;
 mod position;
 
+pub use criterion::{Assessment, Components, Criterion};
 pub use error::{SquaredError, TipError, Tolerance};
+pub use goal::{Goal, Goals};
+pub use kind::{Kind, Task};
+pub use motion::{TargetMotion, Twist};
 
 use crate::error::{Result, require_finite};
+use crate::math::box_step::ROWS;
 use crate::math::{Frame, Pose};
 use crate::objective::Linearization;
 use crate::robot::Robot;
@@ -18,6 +30,15 @@ pub enum Target {
     Position([f64; 3]),
     /// A full pose.
     Pose(Frame),
+    /// The orientation of a frame, the position left free.
+    Orientation(Frame),
+    /// The position of a frame, and the direction that `axis` has in it; the spin about that is left free.
+    Pointing {
+        /// Where the tip would be if its spin mattered too.
+        frame: Frame,
+        /// Of unit length, in the tip's own coordinates.
+        axis: [f64; 3],
+    },
 }
 
 impl From<&Pose> for Target {
@@ -32,55 +53,124 @@ impl Target {
     /// # Errors
     /// [`Error::NotFinite`](crate::Error::NotFinite).
     pub fn validate(&self) -> Result<()> {
-        let (Self::Position(position) | Self::Pose(Frame { origin: position, .. })) = self;
-        require_finite("target", position, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
+        let frame = match self {
+            Self::Position(position) => return check_point(position),
+            Self::Pose(frame) | Self::Orientation(frame) | Self::Pointing { frame, .. } => frame,
+        };
+        check_point(&frame.origin)?;
+        require_finite("target", frame.axes.as_flattened(), |i| format!("rotation entry {i}"))
+    }
+
+    /// The position asked for (m), if any.
+    pub fn position(&self) -> Option<[f64; 3]> {
         match self {
-            Self::Position(_) => Ok(()),
-            Self::Pose(frame) => require_finite("target", frame.axes.as_flattened(), |i| format!("rotation entry {i}")),
+            Self::Position(position) => Some(*position),
+            Self::Pose(frame) | Self::Pointing { frame, .. } => Some(frame.origin),
+            Self::Orientation(_) => None,
         }
     }
 
-    /// How far the tip of `robot` at `q` is from here.
+    /// How far the tip of `robot` at `q` is from here, by `criterion`.
     #[inline]
-    pub fn error(&self, robot: &Robot, q: &[f64]) -> SquaredError {
-        match self {
-            Self::Position(target) => position::error(target, &robot.tip_position(q)),
-            Self::Pose(target) => pose::error(target, &robot.tip(q)),
+    pub fn assess(&self, robot: &Robot, q: &[f64], criterion: &Criterion) -> Assessment {
+        match (self, &criterion.components) {
+            (Self::Position(target), None) => position_alone(target, &robot.tip_position(q), criterion),
+            _ => self.assess_tip(&robot.tip(q), criterion),
         }
     }
 
-    /// Hands [`error`](Self::error) at the configurations stored one after another to `keep`, in order; side by side
+    /// Hands [`assess`](Self::assess) at the configurations stored one after another to `keep`, in order; side by side
     /// where only positions matter.
     #[inline]
-    pub fn errors(&self, robot: &Robot, qs: &[f64], mut keep: impl FnMut(SquaredError)) {
-        match self {
-            Self::Position(target) => robot.tip_positions(qs, |tip| keep(position::error(target, &tip))),
-            Self::Pose(_) => qs.chunks(robot.dof()).for_each(|q| keep(self.error(robot, q))),
+    pub fn assess_all(&self, robot: &Robot, qs: &[f64], criterion: &Criterion, mut keep: impl FnMut(Assessment)) {
+        match (self, &criterion.components) {
+            (Self::Position(target), None) => {
+                robot.tip_positions(qs, |tip| keep(position_alone(target, &tip, criterion)));
+            }
+            _ => qs.chunks(robot.dof()).for_each(|q| keep(self.assess(robot, q, criterion))),
         }
     }
 
-    /// How far a tip is from here.
+    /// How far a tip is from here, by `criterion`.
     #[inline]
-    pub fn error_of(&self, tip: &Frame) -> SquaredError {
-        match self {
-            Self::Position(target) => position::error(target, &tip.origin),
-            Self::Pose(target) => pose::error(target, tip),
+    pub fn assess_tip(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
+        let (error, value) = self.error(tip);
+        match &criterion.components {
+            None => criterion.of_whole(error, value),
+            Some(components) => criterion.of_components(components, self, &self.residual(tip), error),
         }
     }
 
-    /// Residual and Jacobian at `q`, and the error.
+    /// Weighted residual and Jacobian at `q`, and what `criterion` makes of them.
     #[inline]
-    pub fn linearize(&self, robot: &Robot, q: &[f64], out: &mut Linearization) -> SquaredError {
+    pub fn linearize(&self, robot: &Robot, q: &[f64], criterion: &Criterion, out: &mut Linearization) -> Assessment {
         let tip = robot.tip_and_jacobian(q, &mut out.columns);
-        self.complete(&tip, q.len(), out)
+        self.complete(&tip, q.len(), criterion, out)
     }
 
     /// The same from a tip and its geometric Jacobian, which stands in the first `dof` columns of `out`.
     #[inline]
-    pub fn complete(&self, tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
+    pub fn complete(&self, tip: &Frame, dof: usize, criterion: &Criterion, out: &mut Linearization) -> Assessment {
+        let (error, value) = self.complete_whole(tip, dof, out);
+        let Some(components) = &criterion.components else { return criterion.of_whole(error, value) };
+        let assessment = criterion.of_components(components, self, &out.residual, error);
+        components.apply(self, dof, out);
+        assessment
+    }
+
+    /// Unweighted residual and Jacobian, in base coordinates; the errors and r'r.
+    #[inline]
+    fn complete_whole(&self, tip: &Frame, dof: usize, out: &mut Linearization) -> (SquaredError, f64) {
         match self {
-            Self::Position(target) => position::linearize(target, tip, dof, out),
-            Self::Pose(target) => pose::linearize(target, tip, dof, out),
+            Self::Pose(target) => summed(pose::linearize(target, tip, dof, out)),
+            Self::Position(target) => {
+                position::linearize(target, &tip.origin, dof, out);
+                self.error(tip)
+            }
+            Self::Pointing { frame, axis } => pointing::linearize(frame, axis, tip, dof, out),
+            Self::Orientation(target) => {
+                out.residual[..3].fill(0.0);
+                out.columns[..dof].iter_mut().for_each(|column| column[..3].fill(0.0));
+                let rotation = orientation::linearize(target, tip, dof, out);
+                summed(SquaredError { position: None, rotation: Some(rotation) })
+            }
         }
     }
+
+    /// The errors and r'r.
+    #[inline]
+    fn error(&self, tip: &Frame) -> (SquaredError, f64) {
+        match self {
+            Self::Pose(target) => summed(pose::error(target, tip)),
+            Self::Position(target) => {
+                summed(SquaredError { position: Some(position::error(target, &tip.origin)), rotation: None })
+            }
+            Self::Pointing { frame, axis } => pointing::error(frame, axis, tip),
+            Self::Orientation(target) => {
+                summed(SquaredError { position: None, rotation: Some(orientation::error(target, tip)) })
+            }
+        }
+    }
+
+    fn residual(&self, tip: &Frame) -> [f64; ROWS] {
+        let mut out = Linearization::default();
+        self.complete_whole(tip, 0, &mut out);
+        out.residual
+    }
+}
+
+#[inline(always)]
+fn position_alone(target: &[f64; 3], tip: &[f64; 3], criterion: &Criterion) -> Assessment {
+    let squared = position::error(target, tip);
+    criterion.of_whole(SquaredError { position: Some(squared), rotation: None }, squared)
+}
+
+/// Errors whose squares are those of the residual.
+#[inline(always)]
+fn summed(error: SquaredError) -> (SquaredError, f64) {
+    (error, error.position.unwrap_or(0.0) + error.rotation.unwrap_or(0.0))
+}
+
+fn check_point(point: &[f64; 3]) -> Result<()> {
+    require_finite("target", point, |i| format!("coordinate {}", ["x", "y", "z"][i]))
 }

@@ -1,7 +1,5 @@
 //! The tip at a point: r = p - p_d, dr/dq = linear rows of the geometric Jacobian.
 
-use super::SquaredError;
-use crate::math::Frame;
 use crate::objective::Linearization;
 
 /// p - p_d (m).
@@ -12,18 +10,17 @@ pub fn residual(target: &[f64; 3], tip: &[f64; 3]) -> [f64; 3] {
 
 /// The squared distance.
 #[inline(always)]
-pub fn error(target: &[f64; 3], tip: &[f64; 3]) -> SquaredError {
+pub fn error(target: &[f64; 3], tip: &[f64; 3]) -> f64 {
     let [x, y, z] = residual(target, tip);
-    SquaredError { position: x * x + y * y + z * z, rotation: None }
+    x * x + y * y + z * z
 }
 
 /// Residual and derivative from the tip's geometric Jacobian, which stands in `out`; the angular rows are emptied.
 #[inline]
-pub fn linearize(target: &[f64; 3], tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
-    let [x, y, z] = residual(target, &tip.origin);
+pub fn linearize(target: &[f64; 3], tip: &[f64; 3], dof: usize, out: &mut Linearization) {
+    let [x, y, z] = residual(target, tip);
     out.residual = [x, y, z, 0.0, 0.0, 0.0];
     for column in &mut out.columns[..dof] {
         column[3..].fill(0.0);
     }
-    error(target, &tip.origin)
 }

@@ -17,23 +17,27 @@ pub use controller::Controller;
 pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
 pub use plant::{Fault, FunctionPlant, KinematicPlant, Plant};
 pub use record::Record;
-pub use rule::TickRule;
+pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
 pub use session::{Session, Step};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::ik::{SolveOptions, solve};
 use crate::limits::{Field, LimitAt, Limits};
 use crate::path::Reference;
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::solver::stop::Stopwatch;
-use crate::task::{Target, Tolerance};
+use crate::task::{Criterion, Goal, Target, Task, Tolerance};
 
 /// How to track.
 #[derive(Debug, Clone, Default)]
 pub struct TrackOptions {
     /// What runs in every tick.
     pub rule: TickRule,
+    /// What of the path matters; None: all that it says.
+    pub task: Option<Task>,
+    /// What to do with the freedom that the task leaves.
+    pub goals: Vec<Goal>,
     /// The error band.
     pub tolerance: Tolerance,
     /// Limits to keep; None keeps the robot's.
@@ -45,6 +49,23 @@ pub struct TrackOptions {
 }
 
 impl TrackOptions {
+    /// When a tick is within its band.
+    fn criterion(&self) -> Result<Criterion> {
+        self.task.as_ref().map_or(Ok(()), Task::validate)?;
+        let components = self.task.and_then(|task| task.components);
+        let criterion = Criterion { tolerance: self.tolerance, components };
+        criterion.validate().map(|()| criterion)
+    }
+
+    /// Checks that the rule serves the goals, and the goals the robot.
+    fn check_goals(&self, robot: &Robot) -> Result<()> {
+        if !self.goals.is_empty() && !self.rule.serves_goals() {
+            let problem = "goals beside the path are served by the library's own rule and by WeightedPseudoInverse: leave solver out";
+            return Err(Error::Contradiction { problem: problem.into() });
+        }
+        self.goals.iter().try_for_each(|goal| goal.validate(robot))
+    }
+
     /// The limits in force for `robot`.
     fn limits_for(&self, robot: &Robot) -> Limits {
         self.limits.clone().unwrap_or_else(|| Limits::of(robot))
@@ -72,8 +93,8 @@ pub fn track(
     };
     let mut session = Session::new(robot, &start, reference.dt(), options)?;
     let mut record =
-        Record::new(start.len(), reference.len(), session.limits().clone(), session.tolerance(), reference.dt());
-    let beginning = session.begin(&target(reference, 0));
+        Record::new(start.len(), reference.len(), session.limits().clone(), *session.criterion(), reference.dt());
+    let beginning = session.begin(&target(reference, 0), reference.velocity(0))?;
     record.push(&session.accepted(), reference.position(0), &beginning);
     let finished = follow(reference, &mut session, &mut record, monitor)?;
     record.finish(!finished, stopwatch.elapsed());
@@ -93,7 +114,7 @@ fn follow(
         if !monitor.keep_going() {
             return Ok(false);
         }
-        let step = session.step(&target(reference, i), monitor)?;
+        let step = session.step_moving(&target(reference, i), reference.velocity(i), monitor)?;
         if step.interrupted {
             return Ok(false);
         }
@@ -127,6 +148,7 @@ fn first_configuration(
     // Tighter than the band, so that the track does not begin at its edge.
     let tolerance =
         Tolerance { position: 0.1 * options.tolerance.position, rotation: 0.1 * options.tolerance.rotation };
-    let options = SolveOptions { tolerance, seed: options.seed, ..SolveOptions::default() };
+    let TrackOptions { task, goals, seed, .. } = options;
+    let options = SolveOptions { task: *task, goals: goals.clone(), tolerance, seed: *seed, ..SolveOptions::default() };
     Ok(solve(&constant, &target(reference, 0), &options, monitor)?.q.to_vec())
 }

@@ -64,7 +64,7 @@ pub fn track_model_free(
     let ModelFreeOptions { controller, tolerance, seed, .. } = options;
     let mut session = controller::Session::new(controller, start, reference.dt(), limits.clone(), *tolerance, *seed)?;
     let band = Tolerance { position: *tolerance, rotation: f64::INFINITY };
-    let track = Record::new(start.len(), reference.len(), limits, band, reference.dt());
+    let track = Record::new(start.len(), reference.len(), limits, band.into(), reference.dt());
     let command = Vec::with_capacity(reference.len() * start.len());
     let mut record = ModelFreeRecord { track, command, fault: None };
     let mut interrupted = false;
@@ -111,8 +111,9 @@ fn tick(
 ) -> Result<Result<Step, Fault>> {
     loop {
         let measured = plant.measure(session.command(target)?).and_then(check);
-        let (excess, joint, sent) = session.excess();
-        track.note_excess(excess, joint, sent, session.time() + session.dt());
+        if let Some((excess, joint, sent)) = session.excess() {
+            track.note_excess(excess, joint, sent, session.time() + session.dt());
+        }
         match measured {
             Err(fault) => return Ok(Err(fault)),
             Ok(position) => {

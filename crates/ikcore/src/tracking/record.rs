@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::session::Step;
 use crate::limits::Limits;
 use crate::solver::Status;
-use crate::task::{TipError, Tolerance};
+use crate::task::{Criterion, TipError};
 use crate::wording::{number, time};
 
 /// Rounding that a limit may be exceeded by: units in the last place of q.
@@ -49,7 +49,7 @@ pub struct Record {
     /// The limits in force.
     pub limits: Limits,
     /// The error band.
-    pub tolerance: Tolerance,
+    pub criterion: Criterion,
     /// How the track as a whole ended.
     pub status: Status,
     /// Time taken.
@@ -70,7 +70,7 @@ pub(super) struct Accepted<'a> {
 
 impl Record {
     /// An empty record of `dof` joints with room for `rows`.
-    pub(super) fn new(dof: usize, rows: usize, limits: Limits, tolerance: Tolerance, dt: f64) -> Self {
+    pub(super) fn new(dof: usize, rows: usize, limits: Limits, criterion: Criterion, dt: f64) -> Self {
         Self {
             dof,
             time: Vec::with_capacity(rows),
@@ -88,7 +88,7 @@ impl Record {
             worst_violation: None,
             limit_margin: f64::INFINITY,
             limits,
-            tolerance,
+            criterion,
             status: Status::Lost,
             elapsed: Duration::ZERO,
             dt,
@@ -129,7 +129,8 @@ impl Record {
             let too_fast = (q - before).abs() - velocity_limit[j] * self.dt;
             // From displacements, which keep the limit to the last bit; velocities round once more.
             self.limit_margin = self.limit_margin.min(0.0 - too_fast / self.dt);
-            let excess = too_fast.max(lower - q).max(q - upper);
+            let too_sudden = self.too_sudden(j, q - before, [from, to]);
+            let excess = too_fast.max(too_sudden).max(lower - q).max(q - upper);
             self.note_excess(excess, j, *q, to);
         }
     }
@@ -141,6 +142,13 @@ impl Record {
             self.max_violation = excess;
             self.worst_violation = Some((j, when));
         }
+    }
+
+    /// By how much the displacement `step` of joint `j` differs from that of the tick before, beyond the acceleration limit.
+    fn too_sudden(&self, j: usize, step: f64, [from, to]: [f64; 2]) -> f64 {
+        let rows = self.q.len() / self.dof;
+        let before = if rows > 1 { self.q[(rows - 1) * self.dof + j] - self.q[(rows - 2) * self.dof + j] } else { 0.0 };
+        (step - before).abs() - self.limits.acceleration_over(j, from, to) * self.dt * self.dt
     }
 
     /// Sums up: the track has succeeded if, once in its band, it stayed there, and every limit was kept.
@@ -175,12 +183,16 @@ impl Record {
         if let Some((joint, when)) = self.worst_violation {
             let (joint, excess) = (self.limits.joint_name(joint), number(self.max_violation));
             return format!(
-                "joint '{joint}' is {excess} (rad or m) beyond its position limit at t = {} s: the limit closes in faster than \
-                 the joint may move; slow it down, raise the velocity limit, or start farther inside",
+                "joint '{joint}' is {excess} (rad or m) beyond its limits at t = {} s: a limit closes in faster than \
+                 the joint may move; slow it down, raise the velocity or acceleration limit, or start farther inside",
                 time(when)
             );
         }
-        let band = self.in_words(self.tolerance.position, self.tolerance.rotation);
+        let Criterion { tolerance, components } = self.criterion;
+        let band = match components.and_then(|components| components.tolerance) {
+            Some(_) => "its tolerance in each component".into(),
+            None => self.in_words(tolerance.position, tolerance.rotation),
+        };
         let advice = Status::Lost.advice();
         let Some(joined) = self.joined() else {
             let (position, rotation) = (smallest(&self.position_error), smallest(&self.rotation_error));
@@ -198,10 +210,12 @@ impl Record {
         )
     }
 
-    /// Errors (m, rad) with their units; the angle only where orientations were asked for.
+    /// Errors (m, rad) with their units, as far as they were asked for.
     fn in_words(&self, position: f64, rotation: f64) -> String {
-        let asked = self.rotation_error.iter().any(|error| !error.is_nan());
-        TipError { position, rotation: if asked { rotation } else { f64::NAN } }.to_string()
+        let asked =
+            |errors: &[f64], value: f64| if errors.iter().any(|error| !error.is_nan()) { value } else { f64::NAN };
+        let position = asked(&self.position_error, position);
+        TipError { position, rotation: asked(&self.rotation_error, rotation) }.to_string()
     }
 }
 

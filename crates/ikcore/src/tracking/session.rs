@@ -3,13 +3,13 @@
 use super::TrackOptions;
 use super::record::Accepted;
 use super::rule::{Found, Running, Tick, TickRule};
-use crate::error::{Result, require_positive};
+use crate::error::{Result, require_finite, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
-use crate::objective::Point;
+use crate::objective::{Bounds, Point, Score};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::{Target, TipError, Tolerance};
+use crate::task::{Assessment, Criterion, Goals, Target, TargetMotion, Task, TipError, Twist};
 
 /// What became of one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,7 +24,7 @@ pub struct Step {
     pub evaluations: usize,
     /// Iterations of the rule; passes of the beetle.
     pub iterations: usize,
-    /// False where a joint cannot be brought within its position limits in this tick.
+    /// False where a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this tick.
     pub inside_limits: bool,
     /// The monitor asked to stop; nothing was accepted and time stands still.
     pub interrupted: bool,
@@ -34,7 +34,7 @@ impl Step {
     /// What happened, and what to try.
     pub fn message(&self) -> String {
         let error = &self.error;
-        let limits = if self.inside_limits { "" } else { "; a joint is outside its position limits and returns" };
+        let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
         match self.status {
             Status::Solved => format!("within the tolerances, {error} away{limits}"),
             Status::Improved => format!("nearer than before, {error} away{limits}"),
@@ -51,13 +51,17 @@ pub struct Session {
     limit_at: LimitAt,
     rule: TickRule,
     running: Running,
-    tolerance: Tolerance,
+    task: Option<Task>,
+    criterion: Criterion,
+    goals: Goals,
     dt: f64,
     ticks: usize,
     q: Point,
     qd: Point,
     /// The value accepted in the tick before: what a random search has to beat.
     last_value: Option<f64>,
+    /// Where the target was at the end of that tick, and its velocity (m/s) if known.
+    last_target: Option<(Target, Option<[f64; 3]>)>,
     tick_box: TickBox,
     seed: u64,
     rng: LazyRng,
@@ -73,25 +77,34 @@ impl Session {
         let limits = options.limits_for(robot);
         require_positive("dt", dt)?;
         options.rule.validate()?;
-        options.tolerance.validate()?;
+        options.rule.validate_for(robot, dt)?;
+        let criterion = options.criterion()?;
+        options.check_goals(robot)?;
         limits.require_for(robot)?;
         limits.validate(dt, 0)?;
-        let remedy = "this tracker keeps position and velocity limits; leave it out";
-        limits.require_none(&[Field::Acceleration, Field::Jerk], "track", remedy)?;
+        let remedy = "this tracker keeps position, velocity and acceleration limits; leave it out";
+        limits.require_none(&[Field::Jerk], "track", remedy)?;
         robot.check("start", start)?;
         limits.require_inside("start", 0.0, start)?;
+        let robot = options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone());
+        // Where limits vary, what goals take for a joint's range is that at the start.
+        let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
+        let goals = Goals::new(&options.goals, &robot, &ranges);
         Ok(Self {
-            robot: robot.clone(),
+            robot,
             limits,
             limit_at: options.limit_at,
             rule: options.rule.clone(),
             running: options.rule.start(),
-            tolerance: options.tolerance,
+            task: options.task,
+            criterion,
+            goals,
             dt,
             ticks: 0,
             q: Point::from_slice(start),
             qd: Point::from_elem(0.0, start.len()),
             last_value: None,
+            last_target: None,
             tick_box: TickBox::around(start),
             seed: options.seed,
             rng: rng::stream(options.seed, 0),
@@ -128,8 +141,14 @@ impl Session {
         &self.tick_box.velocity
     }
 
-    pub(super) fn tolerance(&self) -> Tolerance {
-        self.tolerance
+    pub(super) fn criterion(&self) -> &Criterion {
+        &self.criterion
+    }
+
+    /// What of `wanted` the task asks for, checked.
+    fn read(&self, wanted: &Target) -> Result<Target> {
+        wanted.validate()?;
+        self.task.map_or(Ok(*wanted), |task| task.target(wanted))
     }
 
     /// What the last tick has accepted.
@@ -142,37 +161,66 @@ impl Session {
         &self.robot
     }
 
-    /// Stands still and takes the error to `target` as what the first tick has to beat.
-    pub fn begin(&mut self, target: &Target) -> Step {
-        let error = target.error(&self.robot, &self.q);
-        self.last_value = Some(error.sum());
-        let status = if error.within(&self.tolerance) { Status::Solved } else { Status::Improved };
-        let position = self.robot.tip_position(&self.q);
-        let error = error.into();
-        Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false }
+    /// Stands still and takes the error to `target`, which moves at `velocity` (m/s), as what the first tick has to beat.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn begin(&mut self, target: &Target, velocity: Option<[f64; 3]>) -> Result<Step> {
+        let target = self.read(target)?;
+        self.last_target = Some((target, velocity));
+        let Assessment { score, error } = target.assess(&self.robot, &self.q, &self.criterion);
+        self.last_value = Some(score.value);
+        let status = if score.solved { Status::Solved } else { Status::Improved };
+        let (position, error) = (self.robot.tip_position(&self.q), error.into());
+        Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false })
     }
 
     /// Moves by one tick towards `target`, inside the limits. Time advances whatever comes of it.
     ///
     /// # Errors
-    /// [`Error::NotFinite`](crate::Error::NotFinite) for a target that is not finite.
+    /// [`Error::NotFinite`](crate::Error::NotFinite) for a target that is not finite,
+    /// [`Error::WrongTarget`](crate::Error::WrongTarget) for one that says too little for the task.
     pub fn step(&mut self, target: &Target, monitor: &mut dyn Monitor) -> Result<Step> {
-        target.validate()?;
+        self.step_moving(target, None, monitor)
+    }
+
+    /// The same with the velocity (m/s) that the target has at the end of the tick, for rules that work with velocities;
+    /// None: they take the way from where it was.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn step_moving(
+        &mut self,
+        target: &Target,
+        velocity: Option<[f64; 3]>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Step> {
+        let target = self.read(target)?;
+        if let Some(velocity) = &velocity {
+            require_finite("velocity of the target", velocity, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
+        }
+        let motion = self.motion(&target, velocity);
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
-        let inside_limits = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
+        let within = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
+        let slow_enough = self.limits.brake(&self.q, &self.qd, [from, to], self.dt, &mut self.tick_box);
         let tick = Tick {
             robot: &self.robot,
-            target,
-            tolerance: self.tolerance,
+            target: &target,
+            criterion: &self.criterion,
+            goals: &mut self.goals,
+            motion,
+            time: from,
+            dt: self.dt,
+            velocity_limit: &self.tick_box.velocity,
             tick_box: &self.tick_box.bounds,
             last_value: self.last_value,
             rng: &mut self.rng,
             monitor,
         };
         let found = self.running.advance(&self.q, tick);
-        let value = found.error.sum();
+        let Assessment { score: Score { value, solved }, error } = found.assessment;
         let status = match self.last_value {
-            _ if found.error.within(&self.tolerance) => Status::Solved,
+            _ if solved => Status::Solved,
             Some(last) if value >= last => Status::Capped,
             _ => Status::Improved,
         };
@@ -182,9 +230,28 @@ impl Session {
             }
             self.q.copy_from_slice(&found.q);
             (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
+            self.last_target = Some((target, velocity));
         }
-        let Found { error, position, evaluations, iterations, interrupted, .. } = found;
+        let Found { position, evaluations, iterations, interrupted, .. } = found;
+        let inside_limits = within && slow_enough;
         Ok(Step { status, error: error.into(), position, evaluations, iterations, inside_limits, interrupted })
+    }
+
+    /// How `target`, which has this `velocity` at the end of the tick, comes there. Where nothing is known of the tick
+    /// before, it has moved with that velocity, or stood still.
+    fn motion(&self, target: &Target, velocity: Option<[f64; 3]>) -> TargetMotion {
+        let dt = self.dt;
+        match (self.last_target, velocity) {
+            (Some((begin, before)), _) => {
+                let velocities = before.zip(velocity).map(|(before, velocity)| [before, velocity]);
+                TargetMotion { begin, end: *target, velocities, dt }
+            }
+            (None, None) => TargetMotion { begin: *target, end: *target, velocities: None, dt },
+            (None, Some(linear)) => {
+                let begin = target.moved(&Twist { linear, angular: [0.0; 3] }, -dt);
+                TargetMotion { begin, end: *target, velocities: Some([linear; 2]), dt }
+            }
+        }
     }
 
     /// Back to rest in `start` (n,), at t = 0.
@@ -196,7 +263,7 @@ impl Session {
         self.limits.require_inside("start", 0.0, start)?;
         self.q.copy_from_slice(start);
         self.qd.fill(0.0);
-        (self.ticks, self.last_value, self.running) = (0, None, self.rule.start());
+        (self.ticks, self.last_value, self.last_target, self.running) = (0, None, None, self.rule.start());
         self.rng = rng::stream(self.seed, 0);
         Ok(())
     }

@@ -12,7 +12,7 @@ use crate::error::{invalid, raise};
 /// little.
 ///
 /// Args:
-///     solver: `BAS` or `LevenbergMarquardt`.
+///     solver: any other, such as `BAS` or `LevenbergMarquardt`.
 ///     max_starts: starts in all; None: as many as the evaluation budget allows.
 #[pyclass(name = "MultiStart", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! `PSO`.
 
 use ikcore::solver::Pso;
-use ikcore::solver::pso::Form;
+use ikcore::solver::pso::{Accept, Form};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -18,6 +18,8 @@ use crate::error::raise;
 ///     c1: attraction to the particle's own best place; None: 2.05 with constriction, 1.49445 with inertia.
 ///     c2: attraction to the swarm's best place; None: as c1's.
 ///     velocity_limit: largest velocity, as a share of the box's width a generation.
+///     accept: "always", a particle stays where it went (as published); "improving", it returns to its best place if that
+///         is better.
 ///     max_generations: after so many it gives up; None: as many as the budget allows.
 ///     stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None: never.
 #[pyclass(name = "PSO", module = "beetle_ik", frozen, eq, from_py_object)]
@@ -28,7 +30,7 @@ pub struct PyPso(pub Pso);
 impl PyPso {
     #[new]
     #[pyo3(signature = (*, population=Pso::default().schedule.population.give(), form="constriction", inertia=None, c1=None,
-                        c2=None, velocity_limit=Pso::default().velocity_limit,
+                        c2=None, velocity_limit=Pso::default().velocity_limit, accept="always",
                         max_generations=limited(Pso::default().schedule.max_generations).give(),
                         stall_generations=limited(Pso::default().schedule.stall_generations).give()))]
     #[allow(clippy::too_many_arguments)]
@@ -39,6 +41,7 @@ impl PyPso {
         c1: Option<f64>,
         c2: Option<f64>,
         velocity_limit: f64,
+        accept: &str,
         max_generations: Option<i128>,
         stall_generations: Option<i128>,
     ) -> PyResult<Self> {
@@ -48,6 +51,7 @@ impl PyPso {
             c1: c1.unwrap_or(standard.c1),
             c2: c2.unwrap_or(standard.c2),
             velocity_limit,
+            accept: accept.parse::<Accept>().map_err(raise)?,
             ..standard
         };
         solver.validate().map_err(raise)?;
@@ -93,6 +97,12 @@ impl PyPso {
         self.0.velocity_limit
     }
 
+    /// "always" or "improving".
+    #[getter]
+    fn accept(&self) -> String {
+        self.0.accept.to_string()
+    }
+
     /// Generations after which it gives up; None: as many as the budget allows.
     #[getter]
     fn max_generations(&self) -> Option<usize> {
@@ -106,10 +116,10 @@ impl PyPso {
     }
 
     fn __repr__(&self) -> String {
-        let Pso { schedule, form, c1, c2, velocity_limit } = &self.0;
+        let Pso { schedule, form, c1, c2, velocity_limit, accept } = &self.0;
         let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={weight}, "));
         format!(
-            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={velocity_limit}, {})",
+            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={velocity_limit}, accept='{accept}', {})",
             schedule.population,
             show_schedule(schedule)
         )
@@ -123,6 +133,7 @@ impl PyPso {
         options.set_item("c1", self.0.c1)?;
         options.set_item("c2", self.0.c2)?;
         options.set_item("velocity_limit", self.0.velocity_limit)?;
+        options.set_item("accept", self.accept())?;
         options.set_item("max_generations", self.max_generations())?;
         options.set_item("stall_generations", self.stall_generations())?;
         Ok((PyTuple::empty(py), options))

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 import beetle_ik as bik
 
-Solver: TypeAlias = bik.BAS | bik.LevenbergMarquardt
+Solver: TypeAlias = bik.BAS | bik.Firefly | bik.Genetic | bik.PSO | bik.QPSO
+Run: TypeAlias = bik.TrackResult | bik.ModelFreeResult
 
 DURATION = 30.0  # s, section IV-A
 DT = 0.2  # s, section IV-A
@@ -117,7 +118,7 @@ CHAIN = {
 WALKS = {"star": STAR, "chain": CHAIN}
 
 
-def steady_error(result: bik.TrackResult) -> float:
+def steady_error(result: Run) -> float:
     """Mean error over the second half (m)."""
     return float(result.position_error[STEADY].mean())
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
+from ..._text import counted
 from ...report import (
     BLUE,
     VERMILION,
@@ -29,13 +30,12 @@ if TYPE_CHECKING:
 
 TITLE = "What n, c₁ and c₂ do"
 _SEEDS = 10
-_SEEDS_SHORT = 2
-_TASKS = (FIVE_LINK, IIWA)
+_SEEDS_SHORT = 1
 
 _TEXT = """
 Three options shape a pass of the beetle: it makes n explorations, with antennae c₁ times as long as the error (in
 radians a metre, eq. (12)), and moves by c₂ antenna lengths (eq. (13)). Each is varied here with the others as set,
-on both arms and for both readings of the walk.
+for both readings of the walk.
 """
 _TEXT_N = """
 **More explorations.** To the letter of eq. (8), (9) and (11), where all explorations of a pass start from the same
@@ -114,9 +114,12 @@ def trends(context: Context) -> tuple[Section, list[Claim]]:
         blocks += [sweep.text, _runs(sweep), _table(sweep, found[sweep.figure])]
     overview = Figure(
         name="trends",
-        title="The same on both arms and for both walks",
+        title="The same for both walks",
         drawing=_draw_trends(found),
-        caption=f"Means over {len(_seeds(context))} seeds. Roughness: rms change of joint velocity from step to step.",
+        caption=(
+            f"Means over {counted(len(_seeds(context)), 'seed')}. "
+            "Roughness: rms change of joint velocity from step to step."
+        ),
     )
     return Section(TITLE, [*blocks, overview]), _claims(found)
 
@@ -126,9 +129,10 @@ def _seeds(context: Context) -> range:
 
 
 def _measure(context: Context, sweep: Sweep) -> Measurements:
-    found: Measurements = {(task.name, walk): [] for task in _TASKS for walk in WALKS}
+    tasks = context.pick(full=(FIVE_LINK, IIWA), short=(FIVE_LINK,))
+    found: Measurements = {(task.name, walk): [] for task in tasks for walk in WALKS}
     values = context.pick(full=sweep.full, short=sweep.short)
-    cases = [(task, walk, value) for task in _TASKS for walk in WALKS for value in values]
+    cases = [(task, walk, value) for task in tasks for walk in WALKS for value in values]
     for task, walk, value in context.each(f"cheng2020: {_number_of(sweep)}", cases):
         found[task.name, walk].append(_run(task, sweep.vary(WALKS[walk][task.name], value), value, _seeds(context)))
     return found
@@ -189,7 +193,7 @@ def _number_of(sweep: Sweep) -> str:
 def _table(sweep: Sweep, found: Measurements) -> Table:
     return Table(
         name=f"{sweep.figure}_trend",
-        title=f"Numbers: {sweep.symbol} on both arms and for both walks",
+        title=f"Numbers: {sweep.symbol}",
         columns=[
             Column(name="arm"),
             Column(name="walk"),

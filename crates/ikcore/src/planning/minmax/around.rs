@@ -17,8 +17,8 @@ use crate::wording::number;
 
 /// Distance that is kept where none is asked for (m).
 pub(in crate::planning) const DEFAULT_MARGIN: f64 = 1e-3;
-/// So much more is kept on straight lines, that rounding does not matter once they are timed (m).
-const EXTRA: f64 = 1e-5;
+/// So much more is kept on straight lines, that they can be certified again once they are timed (m).
+const EXTRA: f64 = 5e-5;
 /// Configurations that all trees together may look at: about half a second.
 const BUDGET: usize = 200_000;
 /// Fewer open pairs make more be sought, so many from so many random starts.
@@ -185,7 +185,9 @@ fn finish(
         distance
     });
     let status = match ended {
-        Status::Solved if !violations.is_empty() => Status::Stalled,
+        // A straight line that no search could certify with room to spare may still keep everything.
+        _ if violations.is_empty() => Status::Solved,
+        Status::Solved => Status::Stalled,
         status => status,
     };
     let cost = options.objective.of(search.robot, &trajectory);
@@ -221,7 +223,7 @@ pub(in crate::planning) fn refuse_collision(what: &str, scene: &Scene, q: &[f64]
             let depth = if distance < 0.0 {
                 format!("{} m inside", number(-distance))
             } else {
-                format!("only {} m (of a margin of {} m) from", number(distance), number(margin))
+                format!("only {} m (of a margin of {} m) from", number(distance), number(margin + EXTRA))
             };
             Err(Error::InCollision { what, link, other, depth })
         }

@@ -11,7 +11,7 @@ use crate::math::box_step::ROWS;
 use crate::objective::{Linearization, Point};
 use crate::planning::MotionLimits;
 use crate::robot::Robot;
-use crate::task::Target;
+use crate::task::{Criterion, Target};
 
 const ROUNDS: usize = 20;
 /// No joint moves farther in one round (rad, m).
@@ -34,7 +34,7 @@ pub(super) fn bring_nearer(robot: &Robot, limits: &MotionLimits, free: [Option<&
     for _ in 0..ROUNDS {
         for ((end, target), linearization) in free_ends.iter().zip(&mut linearizations) {
             let q = if *end == 0 { &pair.start } else { &pair.end };
-            target.linearize(robot, q, linearization);
+            target.linearize(robot, q, &Criterion::default(), linearization);
         }
         let displacement: Vec<f64> = pair.start.iter().zip(&pair.end).map(|(start, end)| end - start).collect();
         let duration = limits.quintic_duration(displacement.iter().copied());

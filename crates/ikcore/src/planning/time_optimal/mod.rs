@@ -64,6 +64,14 @@ const SEGMENTS_TO_SMOOTH: usize = 300;
 /// ends that are too high; [`Error::OutOfRange`] for the options.
 pub fn time_optimal(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
     limits.require_for(path)?;
+    time(path, limits, options)
+}
+
+/// [`time_optimal`] for whoever looks after the position limits.
+///
+/// # Errors
+/// As there, but for those.
+pub(super) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
     let ends = [end_range(path, options.start_speed, false)?, end_range(path, options.end_speed, true)?];
     let fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends);
     let profile = match options.gridpoints {

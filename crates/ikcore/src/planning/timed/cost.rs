@@ -27,8 +27,6 @@ pub struct TimedCost<'a> {
     pub path: &'a Reference,
     /// The splines pass every so many-th point.
     pub stride: usize,
-    /// Whether the first configuration is given.
-    pub starts_as_given: bool,
     /// What is a lot of the cost: the measure of penalties.
     pub scale: f64,
 }
@@ -46,7 +44,7 @@ impl TimedCost<'_> {
     /// What the offsets may be; None where the arm has no choice.
     pub fn bounds(&self) -> Option<Bounds> {
         let freedom = self.motion.freedom();
-        let free = if self.starts_as_given { freedom } else { 0 };
+        let free = if self.motion.starts_as_given() { freedom } else { 0 };
         let reach = |i: usize| if i < free { (0.0, 0.0) } else { (-REACH, REACH) };
         (freedom > 0).then(|| Bounds::from_ranges((0..NODES * freedom).map(reach)))
     }

@@ -12,15 +12,17 @@
 mod cost;
 mod self_motion;
 
+use super::time_optimal::time;
 use super::tpbso::extent;
 use super::tpbso::search::{Found, Search};
-use super::{AlongPathOptions, Cost, MotionLimits, Plan, TimingLimits, TimingOptions, Violation, time_optimal};
+use super::{AlongPathOptions, Cost, MotionLimits, Plan, TimingLimits, TimingOptions, Violation};
 use crate::error::{Error, Result, require_positive};
 use crate::limits::Limits;
 use crate::path::Reference;
 use crate::robot::Robot;
 use crate::solver::stop::Stopwatch;
 use crate::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Monitor, Schedule, Status, Stop};
+use crate::wording::number;
 use cost::TimedCost;
 use self_motion::SelfMotion;
 
@@ -61,6 +63,9 @@ pub(super) fn along_path(
     }
     let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * extent(path));
     require_positive("accuracy", accuracy)?;
+    if let Some(q) = &options.start {
+        require_on_path(robot, q, path, accuracy)?;
+    }
     let bounded = limits.applied_to(robot)?;
     let plan_with = |stride: usize, monitor: &mut dyn Monitor| {
         let motion = SelfMotion::new(&bounded, path, stride, options.start.as_deref(), options.seed)?;
@@ -72,7 +77,6 @@ pub(super) fn along_path(
             accuracy,
             path,
             stride,
-            starts_as_given: options.start.is_some(),
             scale: options.objective.scale(robot, &limits),
         };
         plan(robot, cost, options, stopwatch, monitor)
@@ -96,7 +100,7 @@ fn plan(
     let found = search(&mut cost, options, monitor)?;
     let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
     let (joint_path, _) = cost.joint_path(z)?;
-    let trajectory = time_optimal(&joint_path, cost.timing_limits, &TimingOptions::default())?;
+    let trajectory = time(&joint_path, cost.timing_limits, &TimingOptions::default())?;
     let mut violations = cost.limits.violations(&trajectory);
     violations.extend(cost.distances(&joint_path).filter(|(_, distance)| *distance > cost.accuracy).map(
         |(row, distance)| Violation {
@@ -138,6 +142,18 @@ fn search(cost: &mut TimedCost<'_>, options: &AlongPathOptions, monitor: &mut dy
         seed: options.seed,
     };
     search.run(cost, &bounds, monitor).map(Some)
+}
+
+/// Err unless `q` has the tip at the first point of the path, as near as any point must be met.
+fn require_on_path(robot: &Robot, q: &[f64], path: &Reference, accuracy: f64) -> Result<()> {
+    let (tip, wanted) = (robot.tip_position(q), path.position(0));
+    let distance = (0..3).map(|i| (tip[i] - wanted[i]).powi(2)).sum::<f64>().sqrt();
+    if distance <= accuracy {
+        return Ok(());
+    }
+    let (distance, accuracy) = (number(distance), number(accuracy));
+    let problem = format!("start_q has the tip {distance} m from the path's first point, allowed {accuracy} m");
+    Err(Error::Infeasible { problem })
 }
 
 fn timing_limits_of(robot: &Robot, limits: Option<&Limits>) -> Result<TimingLimits> {

@@ -49,6 +49,8 @@ pub struct SelfMotion<'a> {
     bases: Vec<DMatrix<f64>>,
     /// What the offset at a node contributes at a point: point by point, node by node.
     weights: Vec<f64>,
+    /// Whether the first configuration is given, and stays as it is.
+    starts_as_given: bool,
     linearization: Linearization,
 }
 
@@ -62,8 +64,16 @@ impl<'a> SelfMotion<'a> {
         let joints = robot.joints();
         let bounds = Bounds::from_ranges(joints.iter().map(|joint| (joint.lower, joint.upper)));
         let weights = node_weights(targets.len());
-        let linearization = Linearization::default();
-        let mut motion = Self { robot, bounds, targets, nominal: vec![], bases: vec![], weights, linearization };
+        let mut motion = Self {
+            robot,
+            bounds,
+            targets,
+            nominal: vec![],
+            bases: vec![],
+            weights,
+            starts_as_given: start.is_some(),
+            linearization: Linearization::default(),
+        };
         motion.nominal = match start {
             Some(q) => motion.follow(q).map_err(|lost| lost.error(path, stride))?,
             None => motion.shortest(path, stride, seed)?,
@@ -85,6 +95,11 @@ impl<'a> SelfMotion<'a> {
     /// How many numbers are free at each node.
     pub fn freedom(&self) -> usize {
         self.bases[0].ncols()
+    }
+
+    /// Whether the first configuration is given.
+    pub fn starts_as_given(&self) -> bool {
+        self.starts_as_given
     }
 
     /// Where the tip is at `q` (m).
@@ -113,7 +128,9 @@ impl<'a> SelfMotion<'a> {
             from[..n].copy_from_slice(q);
             q.iter_mut().zip(&correction).for_each(|(q, c)| *q += c);
             self.bounds.clip(q);
-            missed += project(self.robot, &self.targets[point], &self.bounds, q, &mut self.linearization);
+            if point > 0 || !self.starts_as_given {
+                missed += project(self.robot, &self.targets[point], &self.bounds, q, &mut self.linearization);
+            }
             for j in 0..n {
                 correction[j] = q[j] - from[j];
             }
@@ -157,7 +174,10 @@ impl<'a> SelfMotion<'a> {
         q[..n].copy_from_slice(start);
         for (point, target) in self.targets.iter().enumerate() {
             let before = q;
-            let missed = project(self.robot, target, &self.bounds, &mut q[..n], &mut self.linearization);
+            let missed = match point {
+                0 if self.starts_as_given => 0.0,
+                _ => project(self.robot, target, &self.bounds, &mut q[..n], &mut self.linearization),
+            };
             let jump = (0..n).map(|j| (q[j] - before[j]).abs()).fold(0.0, f64::max);
             if missed > 0.0 || (point > 0 && jump > JUMP) {
                 return Err(Lost { point, missed });

@@ -3,8 +3,10 @@
 //! A sensor may be noisy, and now and then wrong altogether, so a step that came out quite otherwise than predicted is sent
 //! again before it is believed. If the second measurement agrees with the first, the Jacobian is to blame: it learns, and if
 //! that does not help antennae are put out again. If it agrees with the prediction, the first was an outlier. If it
-//! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there.
+//! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there. How
+//! noisy the sensor is to begin with, three measurements of the start tell.
 
+use super::noise::{ABOVE_NOISE, Noise, median};
 use super::{Tick, Verdict, distance};
 use crate::math::box_step::ROWS;
 use crate::math::secant::{LEAST_DAMPING, Secant, antenna};
@@ -15,8 +17,8 @@ use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
 /// A measurement that misses the prediction by more than this share of the predicted motion is sent for again.
 const SURPRISING: f64 = 1.0;
 
-/// Steps are believed from this many noise levels on.
-const ABOVE_NOISE: f64 = 3.0;
+/// Steps in a row that came no nearer, before antennae are put out again: they shake the tool.
+const FAILED_STEPS: usize = 2;
 
 /// What the controller remembers.
 #[derive(Debug)]
@@ -32,8 +34,9 @@ pub(super) struct Memory {
     purpose: Purpose,
     next: Next,
     damping: f64,
-    /// Steps in a row that left more than half of the error.
+    /// Steps in a row that left more than half of the error, and steps in a row that came no nearer at all.
     slow: usize,
+    failed: usize,
     /// No step was accepted since antennae were out.
     fresh: bool,
     noise: Noise,
@@ -46,6 +49,10 @@ pub(super) struct Memory {
 /// What a command is for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
+    Repeat {
+        first: [f64; 3],
+        second: Option<[f64; 3]>,
+    },
     Stand,
     Antenna {
         joint: usize,
@@ -60,6 +67,11 @@ enum Purpose {
 /// What to do next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Next {
+    /// Measure at the start again, which was at `first` before, and then at `second` (m).
+    Repeat {
+        first: [f64; 3],
+        second: Option<[f64; 3]>,
+    },
     /// Measure at the accepted configuration, then put out antennae.
     Stand,
     /// Put out the antenna of this joint, if there is one, then that of the next.
@@ -85,6 +97,7 @@ impl Memory {
             next: Next::Antenna { joint: 0 },
             damping: LEAST_DAMPING,
             slow: 0,
+            failed: 0,
             fresh: false,
             noise: Noise::default(),
             due: 0,
@@ -94,6 +107,7 @@ impl Memory {
 
     pub fn begin(&mut self, position: [f64; 3]) {
         self.position = position;
+        self.next = Next::Repeat { first: position, second: None };
     }
 
     pub fn accepted(&self) -> &[f64] {
@@ -113,6 +127,7 @@ impl Memory {
         self.return_to_box(tick);
         self.sent.copy_from_slice(&self.q);
         self.purpose = match self.next {
+            Next::Repeat { first, second } => Purpose::Repeat { first, second },
             Next::Stand => Purpose::Stand,
             Next::Antenna { joint } => self.put_out_antenna(joint, tick),
             Next::Step => self.step(tick),
@@ -147,13 +162,16 @@ impl Memory {
     }
 
     fn antennae_are_out(&mut self) {
-        (self.next, self.slow, self.fresh) = (Next::Step, 0, true);
+        (self.next, self.slow, self.failed, self.fresh) = (Next::Step, 0, 0, true);
     }
 
     fn step(&mut self, tick: Tick<'_>) -> Purpose {
         let residual = rows(self.position, tick.target);
         let bounds = [tick.bounds.lower(), tick.bounds.upper()];
-        self.jacobian.step(&residual, self.damping, &self.q, bounds, &mut self.sent);
+        // What noise has left of a column in the dark must not be taken for a way to move.
+        let doubt = self.noise.level() / self.options.antenna_length;
+        let damping = self.damping + doubt * doubt / self.jacobian.size(self.q.len()).max(f64::MIN_POSITIVE);
+        self.jacobian.step(&residual, damping, &self.q, bounds, &mut self.sent);
         Purpose::Step
     }
 
@@ -172,6 +190,14 @@ impl Memory {
     /// The answer to the last command was `position`.
     fn learn(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
         let verdict = match self.purpose {
+            Purpose::Repeat { first, second: None } => {
+                self.next = Next::Repeat { first, second: Some(position) };
+                Verdict::GoOn
+            }
+            Purpose::Repeat { first, second: Some(second) } => {
+                self.know_start([first, second, position]);
+                Verdict::GoOn
+            }
             Purpose::Stand => {
                 (self.position, self.next) = (position, Next::Antenna { joint: 0 });
                 Verdict::GoOn
@@ -186,6 +212,15 @@ impl Memory {
         let near_enough = self.tolerance.max(2.0 * self.noise.level());
         let arrived = self.next == Next::Step && distance(self.position, tick.target) <= near_enough;
         if arrived { Verdict::TickOver } else { verdict }
+    }
+
+    /// Where the start is, and how noisy the sensor: one of the three measurements may be an outlier.
+    fn know_start(&mut self, [a, b, c]: [[f64; 3]; 3]) {
+        self.position = std::array::from_fn(|k| median(a[k], b[k], c[k]));
+        let nearest = distance(a, b).min(distance(b, c)).min(distance(a, c));
+        self.noise.note(nearest);
+        self.noise.note(nearest);
+        self.next = Next::Antenna { joint: 0 };
     }
 
     fn feel(&mut self, joint: usize, position: [f64; 3]) {
@@ -231,7 +266,7 @@ impl Memory {
             self.q.copy_from_slice(&self.sent);
             self.position = position;
             self.damping = (self.damping * 0.1).max(LEAST_DAMPING);
-            self.fresh = false;
+            (self.fresh, self.failed) = (false, 0);
             self.slow = if after > 0.5 * before && !noisy { self.slow + 1 } else { 0 };
             if self.slow >= SLOW_STEPS {
                 self.next = Next::Stand;
@@ -241,8 +276,12 @@ impl Memory {
         if noisy {
             return Verdict::TickOver;
         }
+        self.failed += 1;
         if !self.fresh {
-            self.next = Next::Stand;
+            // The first failure has taught the Jacobian something, and may have been noise.
+            if self.failed >= FAILED_STEPS {
+                self.next = Next::Stand;
+            }
             return Verdict::GoOn;
         }
         self.damping = (self.damping * 10.0).max(FIRST_DAMPING);
@@ -252,33 +291,6 @@ impl Memory {
         // Nothing more to gain in this tick; the next one starts as carefully as this one did.
         self.damping = FIRST_DAMPING;
         Verdict::TickOver
-    }
-}
-
-/// How far apart two measurements of the same command lie (m): the median of the last three that could tell, so that an
-/// outlier counts for nothing.
-#[derive(Debug, Default)]
-struct Noise {
-    repeats: [f64; 3],
-    noted: usize,
-}
-
-impl Noise {
-    fn note(&mut self, repeat: f64) {
-        self.repeats[self.noted % 3] = repeat;
-        self.noted += 1;
-    }
-
-    /// The noise of one measurement (m); zero until there is evidence.
-    fn level(&self) -> f64 {
-        let [a, b, c] = self.repeats;
-        a.max(b).min(a.min(b).max(c)) * std::f64::consts::FRAC_1_SQRT_2
-    }
-
-    /// How much of a surprise to learn from a step that moves the tip by `motion` (m).
-    fn share(&self, motion: f64) -> f64 {
-        let noise = ABOVE_NOISE * self.level();
-        if noise == 0.0 { 1.0 } else { motion * motion / (motion * motion + noise * noise) }
     }
 }
 

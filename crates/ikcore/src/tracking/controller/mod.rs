@@ -7,6 +7,7 @@
 //! | [`znnbas`] | a random antenna a tick and the sign of what it brought (Khan et al. 2022) | exactly 1 | to repeat the paper; it learns nothing, needs a fast clock, and its antennae shake the tool |
 
 pub mod broyden_bas;
+mod noise;
 mod session;
 pub mod znnbas;
 
@@ -75,7 +76,7 @@ enum Verdict {
 #[derive(Debug)]
 enum Running {
     BroydenBas(Box<broyden_bas::Memory>),
-    Znnbas(znnbas::Memory),
+    Znnbas(Box<znnbas::Memory>),
 }
 
 impl Running {

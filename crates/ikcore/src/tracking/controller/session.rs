@@ -203,18 +203,18 @@ impl Session {
         }
     }
 
-    /// By how much (rad, m) the last command broke a limit at its worst, with the joint and where it was sent; zero or
-    /// less where none was broken.
-    pub(in crate::tracking) fn excess(&self) -> (f64, usize, f64) {
-        let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
-        let mut worst = (f64::NEG_INFINITY, 0, 0.0);
-        for (j, (sent, q)) in self.command.iter().zip(&self.q).enumerate() {
-            let [lower, upper] = self.limits.position_range(j, from, to);
-            let excess = ((sent - q).abs() - self.velocity_limit()[j] * self.dt).max(lower - sent).max(sent - upper);
-            if excess > worst.0 {
-                worst = (excess, j, *sent);
-            }
+    /// By how much (rad, m) the last command broke a limit at its worst, with the joint and where it was sent; None where it
+    /// broke none: the tick's box is within the limits, unless they cannot be kept.
+    pub(in crate::tracking) fn excess(&self) -> Option<(f64, usize, f64)> {
+        if self.inside_limits && self.tick_box.bounds.contains(&self.command) {
+            return None;
         }
-        worst
+        let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
+        let excesses = self.command.iter().zip(&self.q).enumerate().map(|(j, (sent, q))| {
+            let [lower, upper] = self.limits.position_range(j, from, to);
+            let too_far = (sent - q).abs() - self.velocity_limit()[j] * self.dt;
+            (too_far.max(lower - sent).max(sent - upper), j, *sent)
+        });
+        excesses.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 }

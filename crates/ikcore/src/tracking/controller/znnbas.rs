@@ -165,9 +165,9 @@ struct Past {
 }
 
 impl Memory {
-    pub fn new(options: &Znnbas, start: &[f64], dt: f64) -> Self {
+    pub fn new(options: &Znnbas, start: &[f64], dt: f64) -> Box<Self> {
         let (n, delay) = (start.len(), options.delay_steps);
-        Self {
+        Box::new(Self {
             gain: options.gain * dt,
             antenna: options.antenna.clone(),
             delay: options.delay,
@@ -184,7 +184,7 @@ impl Memory {
                 ticks: 0,
             },
             past: Past { sent: vec![0.0; delay * n], values: vec![0.0; delay], ticks: 0 },
-        }
+        })
     }
 
     pub fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {

@@ -1,19 +1,19 @@
 //! Any solver as a tick rule: begun anew from the accepted configuration, in the box of the tick.
 
 use super::{Found, Tick};
-use crate::objective::LeastSquares;
+use crate::objective::Differentiable;
 use crate::problem::Problem;
 use crate::solver::{AnySolver, Evaluator, Halt, Stop};
 
 pub fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> Found {
-    let Tick { robot, target, tolerance, tick_box, last_value, rng, monitor } = tick;
-    let mut problem = Problem::new(robot, target, tolerance);
-    let objective: &mut dyn LeastSquares = &mut problem;
+    let Tick { robot, target, criterion, tick_box, last_value, rng, monitor, .. } = tick;
+    let mut problem = Problem::new(robot, target, *criterion);
+    let objective: &mut dyn Differentiable = &mut problem;
     let mut evaluator = Evaluator::new(objective, tick_box, stop(solver, last_value), rng, monitor);
     let outcome = solver.run(&mut evaluator, q);
     let best = evaluator.best().x.clone();
     Found {
-        error: target.error(robot, &best),
+        assessment: target.assess(robot, &best, criterion),
         position: robot.tip_position(&best),
         q: best,
         evaluations: evaluator.evaluations(),
@@ -22,16 +22,14 @@ pub fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> Found {
     }
 }
 
-/// When a tick's search ends short of its band. A single solver ends by its own rule, a multi-start by its budget.
+/// When a tick's search ends short of its band. Some solvers end by their own rule, the others by
+/// their budget.
 fn stop(solver: &AnySolver, last_value: Option<f64>) -> Stop {
     let standard = Stop::default();
     Stop {
         // Line 16 of Algorithm 1: a random search may go on to the next tick once it beats the last one.
         value_below: if solver.settles_for_improvement() { last_value } else { None },
-        max_evaluations: match solver {
-            AnySolver::Single(_) => usize::MAX,
-            AnySolver::MultiStart(_) => standard.max_evaluations,
-        },
+        max_evaluations: if solver.ends_by_itself() { usize::MAX } else { standard.max_evaluations },
         // Lines 5 to 15 come before line 16: an arm that waited until it is out of its band would move in jerks.
         min_iterations: 1,
         ..standard

@@ -7,17 +7,17 @@
 //! ever lowers it, takes over for the tick.
 
 use super::{Found, Tick};
-use crate::math::{Frame, MAX_DOF, box_step::box_step};
-use crate::objective::{LeastSquares, Linearization, Point};
+use crate::math::{
+    Frame, MAX_DOF,
+    box_step::{box_step, box_step_near, least_damping},
+};
+use crate::objective::{Differentiable, Linearization, Point};
 use crate::problem::Problem;
 use crate::robot::{Columns, Robot};
 use crate::solver::{Evaluator, Halt, LevenbergMarquardt, Stop, run};
 
 /// Steps by the model in one tick; they converge quadratically, so that more would not help.
 const MOST_STEPS: usize = 10;
-
-/// Damping over the squared size of the Jacobian: enough to keep a singular system solvable.
-const DAMPING: f64 = 1e-10;
 
 /// What the rule remembers from tick to tick. Boxed, so that handing a Jacobian on is handing on a pointer.
 #[derive(Debug, Default)]
@@ -52,7 +52,7 @@ impl Kinematics {
     }
 }
 
-pub fn advance(memory: &mut Memory, q: &[f64], tick: Tick<'_>) -> Found {
+pub fn advance(memory: &mut Memory, q: &[f64], mut tick: Tick<'_>) -> Found {
     let mut x = Point::from_slice(q);
     tick.tick_box.clip(&mut x);
     let mut found = Found::at(x);
@@ -62,9 +62,9 @@ pub fn advance(memory: &mut Memory, q: &[f64], tick: Tick<'_>) -> Found {
         memory.before_known = false;
         found.evaluations += 1;
     }
-    found.arrive(&memory.begin.tip, tick.target);
-    let mut moved = memory.gauss_newton(&mut found, &tick);
-    if !found.error.within(&tick.tolerance) {
+    found.arrive(&memory.begin.tip, &tick);
+    let mut moved = memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick);
+    if !found.is_solved() {
         moved = true;
         memory.levenberg_marquardt(&mut found, tick);
     }
@@ -73,30 +73,37 @@ pub fn advance(memory: &mut Memory, q: &[f64], tick: Tick<'_>) -> Found {
 }
 
 impl Memory {
+    /// A step on which the freedom that the target leaves goes down the gradient of the goals, for the length of the tick,
+    /// and steps by the model from there. Whether that ended in the band; if not, nothing was done.
+    fn towards_goals(&mut self, found: &mut Found, tick: &mut Tick<'_>) -> bool {
+        if tick.goals.is_empty() {
+            return false;
+        }
+        let mut trial = found.clone();
+        let mut wished = found.q.clone();
+        tick.goals.cost(tick.robot, &found.q, &mut wished);
+        for (wished, q) in wished.iter_mut().zip(&found.q) {
+            *wished = q - tick.dt * *wished;
+        }
+        tick.tick_box.clip(&mut wished);
+        self.step(&mut trial, tick, self.before_known, false, Some(&wished));
+        std::mem::swap(&mut self.here, &mut self.trial);
+        trial.arrive(&self.here.tip, tick);
+        while !trial.is_solved() && trial.iterations < MOST_STEPS && self.lowers(&mut trial, tick, false, true) {}
+        found.evaluations = trial.evaluations;
+        if trial.is_solved() {
+            *found = trial;
+        }
+        found.is_solved() && found.iterations > 0
+    }
+
     /// Steps by the model while they lower the error; whether one did.
     fn gauss_newton(&mut self, found: &mut Found, tick: &Tick<'_>) -> bool {
-        let (n, mut moved) = (found.q.len(), false);
+        let mut moved = false;
         let mut extrapolate = self.before_known;
         // One step at least: an arm that waited until it is out of its band would move in jerks.
-        while found.iterations == 0 || (found.iterations < MOST_STEPS && !found.error.within(&tick.tolerance)) {
-            let current = if moved { &self.here } else { &self.begin };
-            let Linearization { columns, .. } = &mut *self.linearization;
-            columns[..n].copy_from_slice(&current.columns[..n]);
-            if extrapolate {
-                towards_middle(&mut columns[..n], &self.before.columns);
-            }
-            tick.target.complete(&current.tip, n, &mut self.linearization);
-            let Linearization { columns, residual } = &*self.linearization;
-            let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
-            let mut x = found.q.clone();
-            box_step(columns, residual, DAMPING * size(&columns[..n]), &found.q, lower, upper, &mut x);
-            self.trial.update(tick.robot, &x);
-            found.evaluations += 1;
-            found.iterations += 1;
-            if tick.target.error_of(&self.trial.tip).sum() < found.error.sum() {
-                std::mem::swap(&mut self.here, &mut self.trial);
-                found.q = x;
-                found.arrive(&self.here.tip, tick.target);
+        while found.iterations == 0 || (found.iterations < MOST_STEPS && !found.is_solved()) {
+            if self.lowers(found, tick, extrapolate, moved) {
                 moved = true;
             } else if !extrapolate {
                 break;
@@ -106,17 +113,56 @@ impl Memory {
         moved
     }
 
+    /// One step from where `found` is: at `here` once the arm `moved`, before that at `begin`. It is kept if it lowers the
+    /// error; whether it did.
+    fn lowers(&mut self, found: &mut Found, tick: &Tick<'_>, extrapolate: bool, moved: bool) -> bool {
+        let from = found.q.clone();
+        self.step(found, tick, extrapolate, moved, None);
+        if tick.target.assess_tip(&self.trial.tip, tick.criterion).score.value < found.value() {
+            std::mem::swap(&mut self.here, &mut self.trial);
+            found.arrive(&self.here.tip, tick);
+            return true;
+        }
+        found.q = from;
+        false
+    }
+
+    /// Moves `found.q` to where the linearised target is met, as near as can be to `wished`, and leaves its kinematics in
+    /// `trial`.
+    fn step(&mut self, found: &mut Found, tick: &Tick<'_>, extrapolate: bool, moved: bool, wished: Option<&[f64]>) {
+        let n = found.q.len();
+        let current = if moved { &self.here } else { &self.begin };
+        let Linearization { columns, .. } = &mut *self.linearization;
+        columns[..n].copy_from_slice(&current.columns[..n]);
+        if extrapolate {
+            towards_middle(&mut columns[..n], &self.before.columns);
+        }
+        tick.target.complete(&current.tip, n, tick.criterion, &mut self.linearization);
+        let Linearization { columns, residual } = &*self.linearization;
+        let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
+        let damping = least_damping(&columns[..n]);
+        let from = found.q.clone();
+        match wished {
+            None => box_step(columns, residual, damping, &from, lower, upper, &mut found.q),
+            Some(wished) => box_step_near(columns, residual, damping, &from, wished, lower, upper, &mut found.q),
+        }
+        self.trial.update(tick.robot, &found.q);
+        found.evaluations += 1;
+        found.iterations += 1;
+    }
+
     /// What the model's steps could not do, as far as it can be done.
     fn levenberg_marquardt(&mut self, found: &mut Found, tick: Tick<'_>) {
-        let Tick { robot, target, tolerance, tick_box, rng, monitor, .. } = tick;
-        let mut problem = Problem::new(robot, target, tolerance);
-        let objective: &mut dyn LeastSquares = &mut problem;
-        let mut evaluator = Evaluator::new(objective, tick_box, Stop::default(), rng, monitor);
+        let mut problem = Problem::new(tick.robot, tick.target, *tick.criterion);
+        let objective: &mut dyn Differentiable = &mut problem;
+        let mut evaluator = Evaluator::new(objective, tick.tick_box, Stop::default(), tick.rng, tick.monitor);
         let outcome = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
+        let evaluations = evaluator.evaluations();
         found.q.copy_from_slice(&evaluator.best().x);
-        self.here.update(robot, &found.q);
-        found.arrive(&self.here.tip, target);
-        found.evaluations += evaluator.evaluations() + 1;
+        self.here.update(tick.robot, &found.q);
+        (found.assessment, found.position) =
+            (tick.target.assess_tip(&self.here.tip, tick.criterion), self.here.tip.origin);
+        found.evaluations += evaluations + 1;
         found.iterations += outcome.iterations;
         found.interrupted = outcome.halt == Halt::Interrupted;
     }
@@ -138,9 +184,4 @@ fn towards_middle(columns: &mut [[f64; 6]], before: &Columns) {
             column[k] += 0.5 * (column[k] - old[k]);
         }
     }
-}
-
-/// The sum of squares of all entries.
-fn size(columns: &[[f64; 6]]) -> f64 {
-    columns.as_flattened().iter().map(|entry| entry * entry).sum()
 }

@@ -2,14 +2,17 @@
 
 mod each_tick;
 mod mid_step;
+mod weighted_pseudo_inverse;
+
+pub use weighted_pseudo_inverse::{Integrator, WeightedPseudoInverse};
 
 use crate::error::Result;
 use crate::math::Frame;
-use crate::objective::{Bounds, Point};
+use crate::objective::{Bounds, Point, Score};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Monitor};
-use crate::task::{SquaredError, Target, Tolerance};
+use crate::task::{Assessment, Criterion, Goals, SquaredError, Target, TargetMotion};
 
 /// What runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,13 +22,25 @@ pub enum TickRule {
     MidStep,
     /// A solver, begun anew from the accepted configuration.
     EachTick(AnySolver),
+    /// Velocities by the weighted pseudo-inverse of the Jacobian.
+    WeightedPseudoInverse(WeightedPseudoInverse),
 }
 
 /// One tick, as a rule sees it.
 pub(super) struct Tick<'a> {
     pub robot: &'a Robot,
     pub target: &'a Target,
-    pub tolerance: Tolerance,
+    pub criterion: &'a Criterion,
+    /// What to do with the freedom that the target leaves.
+    pub goals: &'a mut Goals,
+    /// How the target comes to where it is to be met, for rules that work with velocities.
+    pub motion: TargetMotion,
+    /// When the tick begins (s).
+    pub time: f64,
+    /// Length of the tick (s).
+    pub dt: f64,
+    /// The velocity limits of the tick (n,) (rad/s, m/s).
+    pub velocity_limit: &'a [f64],
     /// Where the tick may end.
     pub tick_box: &'a Bounds,
     /// The value accepted in the tick before, if any.
@@ -35,10 +50,10 @@ pub(super) struct Tick<'a> {
 }
 
 /// Where a rule would end the tick.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Found {
     pub q: Point,
-    pub error: SquaredError,
+    pub assessment: Assessment,
     /// Position of the tip there (m).
     pub position: [f64; 3],
     pub evaluations: usize,
@@ -50,13 +65,22 @@ pub(super) struct Found {
 impl Found {
     /// At `q`, with nothing known of it yet.
     fn at(q: Point) -> Self {
-        let error = SquaredError { position: f64::INFINITY, rotation: None };
-        Self { q, error, position: [f64::NAN; 3], evaluations: 0, iterations: 0, interrupted: false }
+        let score = Score { value: f64::INFINITY, solved: false };
+        let assessment = Assessment { score, error: SquaredError { position: None, rotation: None } };
+        Self { q, assessment, position: [f64::NAN; 3], evaluations: 0, iterations: 0, interrupted: false }
     }
 
     /// The tip is there.
-    fn arrive(&mut self, tip: &Frame, target: &Target) {
-        (self.error, self.position) = (target.error_of(tip), tip.origin);
+    fn arrive(&mut self, tip: &Frame, tick: &Tick<'_>) {
+        (self.assessment, self.position) = (tick.target.assess_tip(tip, tick.criterion), tip.origin);
+    }
+
+    fn value(&self) -> f64 {
+        self.assessment.score.value
+    }
+
+    fn is_solved(&self) -> bool {
+        self.assessment.score.solved
     }
 }
 
@@ -65,6 +89,7 @@ impl Found {
 pub(super) enum Running {
     MidStep(mid_step::Memory),
     EachTick(AnySolver),
+    WeightedPseudoInverse(WeightedPseudoInverse, weighted_pseudo_inverse::Scratch),
 }
 
 impl TickRule {
@@ -76,13 +101,35 @@ impl TickRule {
         match self {
             Self::MidStep => Ok(()),
             Self::EachTick(solver) => solver.validate(),
+            Self::WeightedPseudoInverse(rule) => rule.validate(),
         }
+    }
+
+    /// Checks them for `robot` and ticks of `dt` (s).
+    pub(super) fn validate_for(&self, robot: &Robot, dt: f64) -> Result<()> {
+        match self {
+            Self::MidStep | Self::EachTick(_) => Ok(()),
+            Self::WeightedPseudoInverse(rule) => rule.validate_for(robot, dt),
+        }
+    }
+
+    /// Whether goals beside the path are served.
+    pub(super) fn serves_goals(&self) -> bool {
+        !matches!(self, Self::EachTick(_))
+    }
+
+    /// Whether the velocity of the target makes a difference.
+    pub fn uses_velocities(&self) -> bool {
+        matches!(self, Self::WeightedPseudoInverse(_))
     }
 
     pub(super) fn start(&self) -> Running {
         match self {
             Self::MidStep => Running::MidStep(mid_step::Memory::default()),
             Self::EachTick(solver) => Running::EachTick(solver.clone()),
+            Self::WeightedPseudoInverse(rule) => {
+                Running::WeightedPseudoInverse(rule.clone(), weighted_pseudo_inverse::Scratch::default())
+            }
         }
     }
 }
@@ -93,6 +140,7 @@ impl Running {
         match self {
             Self::MidStep(memory) => mid_step::advance(memory, q, tick),
             Self::EachTick(solver) => each_tick::advance(solver, q, tick),
+            Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, q, tick),
         }
     }
 }

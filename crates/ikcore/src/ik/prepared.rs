@@ -1,0 +1,340 @@
+//! A robot and options that were found in order, and how one target is solved with them.
+
+use std::borrow::Cow;
+
+use super::nearest::bring_near;
+use super::solution::Solution;
+use super::unreached::obstruction;
+use super::{Prefer, SolveOptions};
+use crate::error::{Error, Result};
+use crate::limits::{Field, Limits};
+use crate::math::MAX_DOF;
+use crate::objective::{Bounds, Differentiable, Objective, Point};
+use crate::problem::Problem;
+use crate::rng::{self, LazyRng};
+use crate::robot::Robot;
+use crate::solver::stop::Stopwatch;
+use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, Status, Stop, run};
+use crate::task::{Criterion, Goals, Target, Task};
+
+/// Evaluations kept back for going on from the best miss: attempts are abandoned long before they are as near as they get.
+const RESERVE: usize = 200;
+
+/// Starts from which a target beyond the reach is approached.
+const APPROACHES: usize = 8;
+
+/// A robot and options that were found in order, ready for any number of targets.
+#[derive(Debug)]
+pub(crate) struct Prepared<'a> {
+    robot: Cow<'a, Robot>,
+    options: &'a SolveOptions,
+    criterion: Criterion,
+    goals: Goals,
+    bounds: Bounds,
+}
+
+impl<'a> Prepared<'a> {
+    /// Checks what all targets have in common, but for [`SolveOptions::start`]: that is an argument of each.
+    ///
+    /// # Errors
+    /// Any [`Error`] for wrong options.
+    pub(crate) fn new(robot: &'a Robot, options: &'a SolveOptions) -> Result<Self> {
+        options.solver.validate()?;
+        options.stop.validate()?;
+        options.task.as_ref().map_or(Ok(()), Task::validate)?;
+        let components = options.task.and_then(|task| task.components);
+        let criterion = Criterion { tolerance: options.tolerance, components };
+        criterion.validate()?;
+        options.goals.iter().try_for_each(|goal| goal.validate(robot))?;
+        if options.prefer == Prefer::Nearest && !options.goals.is_empty() {
+            return Err(Error::Contradiction {
+                problem: "prefer=\"nearest\" is a goal itself: leave goals out".into(),
+            });
+        }
+        if options.prefer == Prefer::Best && options.goals.is_empty() {
+            return Err(Error::Contradiction { problem: "prefer=\"best\" needs goals: best for what?".into() });
+        }
+        let bounds = position_box(robot, options.limits.as_ref())?;
+        let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;
+        let robot = with_tool.map_or(Cow::Borrowed(robot), Cow::Owned);
+        let goals = Goals::new(&options.goals, &robot, &bounds);
+        Ok(Self { robot, options, criterion, goals, bounds })
+    }
+
+    pub(super) fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    pub(super) fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    pub(super) fn goals(&self) -> &Goals {
+        &self.goals
+    }
+
+    pub(super) fn options(&self) -> &SolveOptions {
+        self.options
+    }
+
+    pub(super) fn problem<'p>(&'p self, target: &'p Target) -> Problem<'p> {
+        Problem::new(&self.robot, target, self.criterion).disregarding_turns()
+    }
+
+    /// What of `wanted` the task asks for, checked.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::WrongTarget`].
+    pub(crate) fn read(&self, wanted: &Target) -> Result<Target> {
+        wanted.validate()?;
+        self.options.task.map_or(Ok(*wanted), |task| task.target(wanted))
+    }
+
+    /// Checks a start.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::NotFinite`] or [`Error::OutsideLimits`].
+    pub(crate) fn check_start(&self, q: &[f64]) -> Result<()> {
+        self.robot.check("start", q)?;
+        require_inside(&self.robot, "start", q, &self.bounds)
+    }
+
+    /// Checks that there is a start where the nearest solution is asked for.
+    ///
+    /// # Errors
+    /// [`Error::Contradiction`].
+    pub(crate) fn require_reference(&self, start: Option<&[f64]>) -> Result<()> {
+        match (self.options.prefer, start) {
+            (Prefer::Nearest, None) => {
+                Err(Error::Contradiction { problem: "prefer=\"nearest\" needs a start: nearest to what?".into() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Solves for a target and a start that are in order, drawing from `stream` of the seed.
+    pub(crate) fn run(
+        &self,
+        target: &Target,
+        start: Option<&[f64]>,
+        stream: u64,
+        monitor: &mut dyn Monitor,
+    ) -> Solution {
+        let mut rng = rng::stream(self.options.seed, stream);
+        if let (Prefer::Nearest, Some(start)) = (self.options.prefer, start) {
+            return self.run_nearest(target, start, &mut rng, monitor);
+        }
+        if self.options.prefer == Prefer::Best {
+            return self.run_best(target, start, &mut rng, monitor);
+        }
+        let mut problem = self.problem(target);
+        let mut buffer = [0.0; MAX_DOF];
+        let x0 = &mut buffer[..self.robot.dof()];
+        match start {
+            Some(q) => x0.copy_from_slice(q),
+            None => problem.propose_start(0, &self.bounds, &mut rng, x0),
+        }
+        let mut run = Run::new(self.options.stop);
+        let mut solution = run.attempt(self, &mut problem, x0, &mut rng, monitor);
+        if solution.status == Status::Solved && !self.goals.is_empty() {
+            let q = &mut solution.q;
+            if let Some(start) = start {
+                bring_near(&self.robot, &self.bounds, start, q);
+            }
+            self.descend_to(&mut problem, &mut self.goals.clone(), &mut run, q);
+            return run.solution(Status::Solved, solution.q, &problem);
+        }
+        solution
+    }
+
+    /// How far the target is beyond the reach (m), where it is.
+    fn excess(&self, target: &Target) -> Option<f64> {
+        let position = target.position().filter(|_| self.criterion.components.is_none())?;
+        let excess = self.robot.reach(self.bounds.lower(), self.bounds.upper()).excess(&position);
+        (excess > self.criterion.tolerance.position).then_some(excess)
+    }
+}
+
+/// What one target has cost so far.
+pub(super) struct Run {
+    stop: Stop,
+    stopwatch: Stopwatch,
+    iterations: usize,
+    restarts: usize,
+    evaluations: usize,
+}
+
+impl Run {
+    /// Nothing spent yet.
+    pub fn new(stop: Stop) -> Self {
+        Self { stop, stopwatch: Stopwatch::start(), iterations: 0, restarts: 0, evaluations: 0 }
+    }
+
+    /// Evaluations that may still be made.
+    pub fn left(&self) -> usize {
+        self.stop.max_evaluations.saturating_sub(self.evaluations)
+    }
+
+    /// Counts evaluations made elsewhere.
+    pub fn count(&mut self, evaluations: usize) {
+        self.evaluations += evaluations;
+    }
+
+    /// Whether a budget is used up.
+    pub fn is_spent(&self) -> bool {
+        self.left() == 0
+            || self.iterations >= self.stop.max_iterations
+            || self.stop.max_time.is_some_and(|limit| self.stopwatch.elapsed() >= limit)
+    }
+
+    /// One run of the solver from `x0`, and, where it missed, on from its best point; a target that is provably beyond the
+    /// reach is only approached.
+    pub fn attempt(
+        &mut self,
+        prepared: &Prepared<'_>,
+        problem: &mut Problem<'_>,
+        x0: &[f64],
+        rng: &mut LazyRng,
+        monitor: &mut dyn Monitor,
+    ) -> Solution {
+        let Some(descent) = prepared.options.solver.restarted_descent() else {
+            let (status, q) = self.search(prepared, problem, x0, 0, rng, monitor);
+            return self.explained(status, q, prepared, problem);
+        };
+        let reserve = if self.left() > 10 * RESERVE { RESERVE } else { 0 };
+        if prepared.criterion.components.is_none() && prepared.excess(problem.target()).is_some() {
+            let q = self.approach(prepared, problem, descent, x0, rng, monitor);
+            return self.explained(Status::OutOfReach, q, prepared, problem);
+        }
+        let (status, q) = self.search(prepared, problem, x0, reserve, rng, monitor);
+        if !matches!(status, Status::BudgetSpent | Status::Stalled) {
+            return self.explained(status, q, prepared, problem);
+        }
+        let (solved, q) = self.descend(prepared, problem, descent, q, rng, monitor);
+        self.explained(if solved { Status::Solved } else { status }, q, prepared, problem)
+    }
+
+    /// The solver's own run, leaving `reserve` evaluations.
+    fn search(
+        &mut self,
+        prepared: &Prepared<'_>,
+        problem: &mut Problem<'_>,
+        x0: &[f64],
+        reserve: usize,
+        rng: &mut LazyRng,
+        monitor: &mut dyn Monitor,
+    ) -> (Status, Point) {
+        let stop = self.rest(reserve);
+        let objective: &mut dyn Differentiable = problem;
+        let mut evaluator = Evaluator::new(objective, &prepared.bounds, stop, rng, monitor);
+        let outcome = prepared.options.solver.run(&mut evaluator, x0);
+        self.evaluations += evaluator.evaluations();
+        self.restarts += evaluator.attempts() - 1;
+        self.iterations += outcome.iterations;
+        (outcome.status(), evaluator.best().x.clone())
+    }
+
+    /// One descent to its end from `q`: whether it solved, and the best point.
+    fn descend(
+        &mut self,
+        prepared: &Prepared<'_>,
+        problem: &mut Problem<'_>,
+        descent: &LevenbergMarquardt,
+        q: Point,
+        rng: &mut LazyRng,
+        monitor: &mut dyn Monitor,
+    ) -> (bool, Point) {
+        if self.is_spent() {
+            return (false, q);
+        }
+        let objective: &mut dyn Differentiable = problem;
+        let mut evaluator = Evaluator::new(objective, &prepared.bounds, self.rest(0), rng, monitor);
+        let outcome = run(descent, &mut evaluator, &q);
+        self.evaluations += evaluator.evaluations();
+        self.iterations += outcome.iterations;
+        (evaluator.best().solved, evaluator.best().x.clone())
+    }
+
+    /// The nearest of a few descents towards what cannot be reached.
+    fn approach(
+        &mut self,
+        prepared: &Prepared<'_>,
+        problem: &mut Problem<'_>,
+        descent: &LevenbergMarquardt,
+        x0: &[f64],
+        rng: &mut LazyRng,
+        monitor: &mut dyn Monitor,
+    ) -> Point {
+        let mut best: Option<(f64, Point)> = None;
+        let mut x = Point::from_slice(x0);
+        for approach in 0..APPROACHES {
+            if approach > 0 {
+                problem.propose_start(approach, &prepared.bounds, rng, &mut x);
+                self.restarts += 1;
+            }
+            let (_, q) = self.descend(prepared, problem, descent, x.clone(), rng, monitor);
+            let value = problem.assess(&q).score.value;
+            if best.as_ref().is_none_or(|(least, _)| value < *least) {
+                best = Some((value, q));
+            }
+        }
+        best.map_or(x, |(_, q)| q)
+    }
+
+    /// What is left of the budgets, less `reserve` evaluations.
+    fn rest(&self, reserve: usize) -> Stop {
+        Stop {
+            max_evaluations: self.left() - reserve,
+            max_iterations: self.stop.max_iterations.saturating_sub(self.iterations),
+            max_time: self.stop.max_time.map(|limit| limit.saturating_sub(self.stopwatch.elapsed())),
+            ..self.stop
+        }
+    }
+
+    fn explained(&self, status: Status, q: Point, prepared: &Prepared<'_>, problem: &Problem<'_>) -> Solution {
+        let mut solution = self.solution(status, q, problem);
+        if status != Status::Solved {
+            let excess = prepared.excess(problem.target());
+            solution.obstruction = obstruction(&prepared.robot, &prepared.bounds, &solution.q, excess);
+        }
+        solution
+    }
+
+    /// The result at `q`.
+    pub fn solution(&self, status: Status, q: Point, problem: &Problem<'_>) -> Solution {
+        Solution {
+            status,
+            error: problem.assess(&q).error.into(),
+            obstruction: String::new(),
+            iterations: self.iterations,
+            restarts: self.restarts,
+            evaluations: self.evaluations,
+            elapsed: self.stopwatch.elapsed(),
+            q,
+        }
+    }
+}
+
+/// The position limits as a box. Velocities do not matter to a single configuration.
+fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
+    let Some(limits) = limits else {
+        return Ok(Bounds::from_ranges(robot.joints().iter().map(|joint| (joint.lower, joint.upper))));
+    };
+    let remedy = "a single configuration has no motion; leave it out";
+    limits.require_for(robot)?;
+    limits.require_none(&[Field::Acceleration, Field::Jerk], "solve", remedy)?;
+    limits.position_box()
+}
+
+fn require_inside(robot: &Robot, what: &str, q: &[f64], bounds: &Bounds) -> Result<()> {
+    match (0..q.len()).find(|i| q[*i] < bounds.lower()[*i] || bounds.upper()[*i] < q[*i]) {
+        None => Ok(()),
+        Some(i) => Err(Error::OutsideLimits {
+            what: what.into(),
+            joint: robot.joints()[i].name.clone(),
+            value: q[i],
+            lower: bounds.lower()[i],
+            upper: bounds.upper()[i],
+        }),
+    }
+}

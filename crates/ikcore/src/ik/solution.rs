@@ -1,0 +1,51 @@
+//! What became of one target.
+
+use std::time::Duration;
+
+use crate::objective::Point;
+use crate::solver::Status;
+use crate::task::TipError;
+
+/// The best configuration found, and what became of the search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// The configuration (n,) (rad, m), inside the limits.
+    pub q: Point,
+    /// Why the search ended.
+    pub status: Status,
+    /// Errors at `q`, by forward kinematics.
+    pub error: TipError,
+    /// What is in the way of a target that was not reached, in words; empty where nothing is known.
+    pub obstruction: String,
+    /// Iterations over all starts.
+    pub iterations: usize,
+    /// Starts beyond the first.
+    pub restarts: usize,
+    /// Evaluations of the forward kinematics.
+    pub evaluations: usize,
+    /// Time taken.
+    pub elapsed: Duration,
+}
+
+impl Solution {
+    /// What happened, and what to try.
+    pub fn message(&self) -> String {
+        let Self { error, obstruction, status, .. } = self;
+        if error.position.is_nan() && error.rotation.is_nan() {
+            return format!("not solved: {}", status.advice());
+        }
+        let ended = match status {
+            Status::Solved => return format!("solved to {error}"),
+            Status::Improved => return format!("below the value asked for, {error} away"),
+            Status::OutOfReach => "as near as it gets",
+            Status::BelowThreshold => "error_threshold met",
+            Status::OutsideLimits => "reached outside the limits only, inside them",
+            Status::Stalled => "no further progress",
+            Status::BudgetSpent => "budget spent",
+            Status::TimeUp => "time limit over",
+            _ => "stopped",
+        };
+        let why = if obstruction.is_empty() { String::new() } else { format!(" ({obstruction})") };
+        format!("{ended} {error} away{why}: {}", status.advice())
+    }
+}

@@ -1,0 +1,79 @@
+//! The exact gradient of Yoshikawa's index.
+//!
+//! With J = sum of s_i u_i v_i', the product of the singular values changes by dw = <G, dJ>, G = sum of
+//! (product of the others) u_i v_i'. The Jacobian changes by cross products of its own columns: turning about an element
+//! carries all elements behind it along, and moves the tip as seen from all before it.
+
+use super::Manipulability;
+use crate::math::MAX_DOF;
+use crate::math::singular::SingularValues;
+use crate::math::so3::cross;
+use crate::robot::{Columns, Robot, Screw};
+
+/// The index at `q` and its gradient.
+pub(super) fn index(measure: &Manipulability, robot: &Robot, q: &[f64], out: &mut [f64]) -> f64 {
+    let screws = robot.screws(q);
+    let Some(tip) = screws.last().map(|screw| screw.end) else { return 0.0 };
+    out.fill(0.0);
+    add(measure, &screws, &tip, out)
+}
+
+/// The index of the point `tip` behind `screws`; its gradient is added to `out` (n,).
+pub(super) fn add(measure: &Manipulability, screws: &[Screw], tip: &[f64; 3], out: &mut [f64]) -> f64 {
+    // Mimics: several elements may share a joint, so that their columns are summed.
+    let mut shares = [[0.0; 6]; MAX_DOF];
+    let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+    for (share, screw) in shares.iter_mut().zip(screws) {
+        *share = screw.column(tip);
+        columns[screw.joint].iter_mut().zip(&*share).for_each(|(sum, entry)| *sum += entry);
+    }
+    let (index, sensitivity) = sensitivity(measure, &mut columns[..out.len()]);
+    for (b, (moved, moving)) in shares.iter().zip(screws).enumerate() {
+        for (a, (share, screw)) in shares.iter().zip(screws).enumerate() {
+            let change = change_of(share, moved, a >= b);
+            out[moving.joint] += inner(&sensitivity[screw.joint], &change);
+        }
+    }
+    index
+}
+
+/// w and dw/dJ, column by column.
+fn sensitivity(measure: &Manipulability, columns: &mut [[f64; 6]]) -> (f64, Columns) {
+    let mut sensitivity: Columns = [[0.0; 6]; MAX_DOF];
+    if let Some(regular) = measure.regular(columns) {
+        regular.sensitivity(columns, &mut sensitivity);
+        return (regular.index(), sensitivity);
+    }
+    measure.motion().select(columns);
+    let values = SingularValues::of(columns);
+    let (n, directions) = (columns.len(), measure.directions());
+    for i in 0..directions {
+        let others: f64 = (0..directions).filter(|k| *k != i).map(|k| values.lengths[k]).product();
+        for (column, right) in sensitivity[..n].iter_mut().zip(&values.right[i]) {
+            for (entry, left) in column.iter_mut().zip(&values.left[i]) {
+                *entry += others * left * right;
+            }
+        }
+    }
+    (measure.product(&values), sensitivity)
+}
+
+/// The derivative of one element's column by the motion of another: `carried` along if it is that one or behind it,
+/// else only the tip moves as seen from it.
+#[inline]
+fn change_of(column: &[f64; 6], moving: &[f64; 6], carried: bool) -> [f64; 6] {
+    let ([v, w], [moving_v, moving_w]) = (halves(column), halves(moving));
+    let [x, y, z] = if carried { cross(&moving_w, &v) } else { cross(&w, &moving_v) };
+    let [a, b, c] = if carried { cross(&moving_w, &w) } else { [0.0; 3] };
+    [x, y, z, a, b, c]
+}
+
+fn halves(column: &[f64; 6]) -> [[f64; 3]; 2] {
+    let [x, y, z, a, b, c] = *column;
+    [[x, y, z], [a, b, c]]
+}
+
+/// The sum of products; the sensitivity is zero in rows that do not count.
+fn inner(a: &[f64; 6], b: &[f64; 6]) -> f64 {
+    (0..6).map(|k| a[k] * b[k]).sum()
+}

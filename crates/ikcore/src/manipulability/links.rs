@@ -1,0 +1,65 @@
+//! The index of every link's tip, and their sum: the tracking indices SM_i and SM of "Trajectory tracking of redundant
+//! manipulator based on PSO algorithm optimization", eq. (15) and (16).
+
+use std::f64::consts::PI;
+
+use super::{Manipulability, gradient};
+use crate::math::MAX_DOF;
+use crate::robot::{Columns, Robot};
+
+/// At most so many links move.
+pub const MAX_LINKS: usize = MAX_DOF;
+
+/// The indices of all moving links, base to tip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinkIndices {
+    values: [f64; MAX_LINKS],
+    count: usize,
+}
+
+impl LinkIndices {
+    /// One per moving link; the last is the tip's. Links with fewer joints before them than directions have zero.
+    pub fn values(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+
+    /// Eq. (16): their sum.
+    pub fn sum(&self) -> f64 {
+        self.values().iter().sum()
+    }
+}
+
+impl Manipulability {
+    /// Eq. (15), SM_i = k_m w_i, at `q`, which has one finite entry per joint: w_i is the index of the tip of link i
+    /// moved by the joints before it, k_m w_i the area or volume of its ellipsoid.
+    pub fn link_indices(&self, robot: &Robot, q: &[f64]) -> LinkIndices {
+        let screws = robot.screws(q);
+        let mut indices = LinkIndices { values: [0.0; MAX_LINKS], count: screws.len() };
+        for (i, link) in screws.iter().enumerate() {
+            let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+            for screw in &screws[..=i] {
+                let share = screw.column(&link.end);
+                columns[screw.joint].iter_mut().zip(share).for_each(|(sum, entry)| *sum += entry);
+            }
+            indices.values[i] = self.unit_ball() * self.index_of(&mut columns[..q.len()]);
+        }
+        indices
+    }
+
+    /// SM = sum of SM_i at `q`, and its gradient (n,) in `out`. `q` and `out` have one entry per joint.
+    pub fn overall_gradient(&self, robot: &Robot, q: &[f64], out: &mut [f64]) -> f64 {
+        let screws = robot.screws(q);
+        out.fill(0.0);
+        let sum: f64 = (1..=screws.len()).map(|i| gradient::add(self, &screws[..i], &screws[i - 1].end, out)).sum();
+        out.iter_mut().for_each(|entry| *entry *= self.unit_ball());
+        self.unit_ball() * sum
+    }
+
+    /// k_m of eq. (15): the volume of the unit ball in as many dimensions as there are directions; pi in the plane.
+    pub fn unit_ball(&self) -> f64 {
+        // V_m = V_{m-2} 2 pi / m, from V_0 = 1 and V_1 = 2.
+        let m = self.directions();
+        let (first, from) = if m.is_multiple_of(2) { (1.0, 2) } else { (2.0, 3) };
+        (from..=m).step_by(2).fold(first, |volume, m| volume * 2.0 * PI / m as f64)
+    }
+}

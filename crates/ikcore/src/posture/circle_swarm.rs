@@ -1,0 +1,161 @@
+//! Particle swarm with a constriction factor over joint points on circles: section 2.3 and 2.5, eq. (17) and (18), of
+//! "Trajectory tracking of redundant manipulator based on PSO algorithm optimization".
+
+use super::linkage::{Linkage, Point2};
+use crate::error::{Error, Result, require_positive};
+use crate::rng::LazyRng;
+
+/// The options, as far as they are published.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CircleSwarm {
+    /// Particles; published 5.
+    pub population: usize,
+    /// Generations, the first draw included; published 10.
+    pub generations: usize,
+    /// Attraction to the particle's own best place. phi = c1 + c2 must be above 4: eq. (18) has no root below, for all
+    /// that the paper says "phi > 3".
+    pub c1: f64,
+    /// Attraction to the swarm's best place; printed as the particle's own in eq. (17).
+    pub c2: f64,
+    /// Vm: largest velocity of a coordinate (m a generation); not published.
+    pub velocity_limit: f64,
+    /// Random factors from [-1, 1], as printed, instead of [0, 1].
+    pub signed: bool,
+}
+
+impl Default for CircleSwarm {
+    fn default() -> Self {
+        Self { population: 5, generations: 10, c1: 2.05, c2: 2.05, velocity_limit: 0.2, signed: false }
+    }
+}
+
+/// Draws of a particle before no posture is taken to exist.
+const DRAWS: usize = 10_000;
+
+/// What a swarm has found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flight {
+    /// The best posture (n,).
+    pub q: Vec<f64>,
+    /// Its index.
+    pub index: f64,
+    /// The best index after each generation.
+    pub history: Vec<f64>,
+    /// Postures whose index was computed.
+    pub evaluations: usize,
+}
+
+struct Particle {
+    points: Vec<Point2>,
+    velocities: Vec<Point2>,
+    best: (f64, Vec<Point2>),
+}
+
+struct Swarm<'a> {
+    options: &'a CircleSwarm,
+    linkage: &'a Linkage,
+    rng: &'a mut LazyRng,
+    q: Vec<f64>,
+    /// Index, points and configuration.
+    best: (f64, Vec<Point2>, Vec<f64>),
+    evaluations: usize,
+}
+
+impl CircleSwarm {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        for (what, count) in [("population", self.population), ("generations", self.generations)] {
+            if count == 0 {
+                return Err(Error::out_of_range(what, "at least 1", 0.0));
+            }
+        }
+        for (what, value) in [("c1", self.c1), ("c2", self.c2), ("velocity_limit", self.velocity_limit)] {
+            require_positive(what, value)?;
+        }
+        let phi = self.c1 + self.c2;
+        if phi > 4.0 { Ok(()) } else { Err(Error::out_of_range("c1 + c2", "above 4", phi)) }
+    }
+
+    /// chi of eq. (18), which lacks the bars.
+    fn constriction(&self) -> f64 {
+        let phi = self.c1 + self.c2;
+        2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs()
+    }
+
+    /// Flies over the postures of `linkage`; None where no posture was found.
+    pub fn fly(&self, linkage: &Linkage, rng: &mut LazyRng) -> Option<Flight> {
+        let n = linkage.links();
+        let best = (f64::NEG_INFINITY, vec![], vec![]);
+        let mut swarm = Swarm { options: self, linkage, rng, q: vec![0.0; n], best, evaluations: 0 };
+        let mut particles = (0..self.population).map(|_| swarm.draw()).collect::<Option<Vec<_>>>()?;
+        let mut history = vec![swarm.best.0];
+        for _ in 1..self.generations {
+            for particle in &mut particles {
+                swarm.advance(particle)?;
+            }
+            history.push(swarm.best.0);
+        }
+        let (index, _, q) = swarm.best;
+        Some(Flight { q, index, history, evaluations: swarm.evaluations })
+    }
+}
+
+impl Swarm<'_> {
+    /// A particle somewhere on the circles, steps (1) and (2) of the paper.
+    fn draw(&mut self) -> Option<Particle> {
+        let links = self.linkage.links();
+        for _ in 0..DRAWS {
+            let mut angle = || self.rng.uniform_in(-std::f64::consts::PI, std::f64::consts::PI);
+            let headings: Vec<f64> = (2..links).map(|_| angle()).collect();
+            let side = angle();
+            let Some(points) = self.linkage.close(&headings, side) else { continue };
+            let Some(index) = self.evaluate(&points) else { continue };
+            let limit = self.options.velocity_limit;
+            let velocities = points.iter().map(|_| [0; 2].map(|_| self.rng.uniform_in(-limit, limit))).collect();
+            return Some(Particle { best: (index, points.clone()), points, velocities });
+        }
+        None
+    }
+
+    /// One generation of a particle: eq. (17), back onto the circles, and anew where that fails (step 5).
+    fn advance(&mut self, particle: &mut Particle) -> Option<()> {
+        let CircleSwarm { c1, c2, velocity_limit, signed, .. } = *self.options;
+        let chi = self.options.constriction();
+        let lowest = if signed { -1.0 } else { 0.0 };
+        for (i, (point, velocity)) in particle.points.iter_mut().zip(&mut particle.velocities).enumerate() {
+            for k in 0..2 {
+                let [r1, r2] = [0; 2].map(|_| self.rng.uniform_in(lowest, 1.0));
+                let own = c1 * r1 * (particle.best.1[i][k] - point[k]);
+                let common = c2 * r2 * (self.best.1[i][k] - point[k]);
+                velocity[k] = (chi * (velocity[k] + own + common)).clamp(-velocity_limit, velocity_limit);
+                point[k] += velocity[k];
+            }
+        }
+        let index = if self.linkage.repair(&mut particle.points) { self.evaluate(&particle.points) } else { None };
+        match index {
+            Some(index) if index > particle.best.0 => particle.best = (index, particle.points.clone()),
+            Some(_) => {}
+            None => {
+                let drawn = self.draw()?;
+                (particle.points, particle.velocities) = (drawn.points, drawn.velocities);
+                if drawn.best.0 > particle.best.0 {
+                    particle.best = drawn.best;
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// The index of a posture, kept where it is the best.
+    fn evaluate(&mut self, points: &[Point2]) -> Option<f64> {
+        let index = self.linkage.index(points, &mut self.q)?;
+        self.evaluations += 1;
+        if index > self.best.0 {
+            self.best = (index, points.to_vec(), self.q.clone());
+        }
+        Some(index)
+    }
+}

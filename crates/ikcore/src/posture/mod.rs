@@ -1,0 +1,19 @@
+//! Postures of planar arms as points on circles: the best one for a tip position, as published and by our own search.
+//!
+//! "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", section 2.5: with the tip at E, the
+//! first joint point lies on the circle about the base, the last on the circle about E, each with its link for radius. For
+//! any arm, and for poses, see [`Prefer::Best`](crate::ik::Prefer::Best).
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | [`linkage`] | joint points, their circles, the index of a posture |
+//! | [`circle_swarm`] | particle swarm over joint points, as published |
+//! | [`search`] | the call, and our own search over the directions of the links |
+
+pub mod circle_swarm;
+pub mod linkage;
+pub mod search;
+
+pub use circle_swarm::CircleSwarm;
+pub use linkage::{Linkage, Measure, Region};
+pub use search::{Posture, SearchOptions, best_posture};

@@ -1,0 +1,51 @@
+//! How far the tip can be from the base at most.
+
+use super::Robot;
+use super::chain::Motion;
+use crate::math::Frame;
+use crate::math::arithmetic::Separate;
+use crate::math::so3::norm;
+
+/// A ball that the tip cannot leave. Not all of it can be reached.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// On the axis of the first joint (m).
+    pub center: [f64; 3],
+    /// Infinite where a sliding joint has no limit (m).
+    pub radius: f64,
+}
+
+impl Reach {
+    /// How far `position` is outside the ball (m); negative inside.
+    pub fn excess(&self, position: &[f64; 3]) -> f64 {
+        norm(&std::array::from_fn(|k| position[k] - self.center[k])) - self.radius
+    }
+}
+
+impl Robot {
+    /// The reach between these joint limits: the lengths of all links, stretched out.
+    ///
+    /// A first joint that turns keeps the height at which the second one begins, so that only the distance from its axis
+    /// counts; of every other link all its length does.
+    pub fn reach(&self, lower: &[f64], upper: &[f64]) -> Reach {
+        let chain = self.chain();
+        let links: Vec<[f64; 3]> =
+            chain.stages[1..].iter().chain([&chain.tip]).map(|frame: &Frame| frame.origin).collect();
+        let slides: f64 = chain.motions.iter().map(|motion| longest_slide(motion, lower, upper)).sum();
+        let [x, y, height] = links[0];
+        let (on_axis, first) = match chain.motions[0].slide_scale {
+            0.0 => (height, x.hypot(y)),
+            _ => (0.0, norm(&links[0])),
+        };
+        let center = chain.stages[0].place::<Separate>(&[0.0, 0.0, on_axis]);
+        Reach { center, radius: first + slides + links[1..].iter().map(norm).sum::<f64>() }
+    }
+}
+
+fn longest_slide(motion: &Motion, lower: &[f64], upper: &[f64]) -> f64 {
+    if motion.slide_scale == 0.0 {
+        return 0.0;
+    }
+    let at = |q: f64| (motion.slide_scale * q + motion.slide_offset).abs();
+    at(lower[motion.joint]).max(at(upper[motion.joint]))
+}

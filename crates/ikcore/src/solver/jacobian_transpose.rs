@@ -1,0 +1,101 @@
+//! Jacobian transpose: the steepest descent on r'r. No inverse, so that singular configurations do no harm; many small
+//! steps instead.
+
+use super::driver::Solver;
+use super::evaluator::{Evaluator, Halt};
+use crate::error::{Result, require_positive};
+use crate::objective::{LeastSquares, Linearization, Point};
+
+/// How far a step goes along -J'r.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StepSize {
+    /// Where the linearised residual would be smallest: |g|^2 / |J g|^2 with g = J'r (Buss 2004, Introduction to inverse
+    /// kinematics, section 6, which writes it <e, JJ'e> / <JJ'e, JJ'e>).
+    Auto,
+    /// The same everywhere.
+    Fixed(f64),
+}
+
+/// The Jacobian transpose method.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JacobianTranspose {
+    /// How far a step goes.
+    pub step_size: StepSize,
+}
+
+impl Default for JacobianTranspose {
+    fn default() -> Self {
+        Self { step_size: StepSize::Auto }
+    }
+}
+
+impl JacobianTranspose {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        match self.step_size {
+            StepSize::Auto => Ok(()),
+            StepSize::Fixed(size) => require_positive("step_size", size),
+        }
+    }
+
+    fn size(&self, linearization: &Linearization, gradient: &[f64]) -> f64 {
+        match self.step_size {
+            StepSize::Fixed(size) => size,
+            StepSize::Auto => {
+                let mut change = [0.0; 6];
+                for (column, slope) in linearization.columns.iter().zip(gradient) {
+                    change.iter_mut().zip(column).for_each(|(sum, entry)| *sum += entry * slope);
+                }
+                squared_norm(gradient) / squared_norm(&change)
+            }
+        }
+    }
+}
+
+fn squared_norm(v: &[f64]) -> f64 {
+    v.iter().map(|entry| entry * entry).sum()
+}
+
+/// Where the descent stands.
+#[derive(Debug, Clone)]
+pub struct State {
+    x: Point,
+    value: f64,
+    linearization: Linearization,
+    gradient: Point,
+}
+
+impl<O: LeastSquares + ?Sized> Solver<O> for JacobianTranspose {
+    type State = State;
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+        let mut x = Point::from_slice(x0);
+        let mut linearization = Linearization::default();
+        let value = evaluator.linearize(&mut x, &mut linearization)?;
+        Ok(State { gradient: Point::from_elem(0.0, x.len()), x, value, linearization })
+    }
+
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+        let State { x, value, linearization, gradient } = state;
+        if !value.is_finite() {
+            return Err(Halt::Stalled);
+        }
+        linearization.gradient(gradient);
+        let size = self.size(linearization, gradient);
+        let mut next = x.clone();
+        next.iter_mut().zip(&*gradient).for_each(|(x, slope)| *x -= size * slope);
+        // Without any slope the size is NaN; a step that is not finite leads nowhere.
+        if next.iter().any(|x| !x.is_finite()) {
+            return Err(Halt::Stalled);
+        }
+        *value = evaluator.linearize(&mut next, linearization)?;
+        if next == *x {
+            return Err(Halt::Stalled);
+        }
+        *x = next;
+        Ok(())
+    }
+}

@@ -1,0 +1,70 @@
+//! Newton-Raphson: the step that the Jacobian's pseudo-inverse says would reach the target at once. Quick where it works;
+//! nothing keeps it from stepping too far, or from circling, and it says so by spending its budget.
+
+use super::driver::Solver;
+use super::evaluator::{Evaluator, Halt};
+use crate::error::{Error, Result};
+use crate::math::box_step::box_step;
+use crate::objective::{LeastSquares, Linearization, Point};
+
+/// Newton-Raphson by the pseudo-inverse.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewtonRaphson {
+    /// Share of the full step that is taken, above 0 and at most 1.
+    pub step_fraction: f64,
+}
+
+impl Default for NewtonRaphson {
+    fn default() -> Self {
+        Self { step_fraction: 1.0 }
+    }
+}
+
+impl NewtonRaphson {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        if self.step_fraction > 0.0 && self.step_fraction <= 1.0 {
+            return Ok(());
+        }
+        Err(Error::out_of_range("step_fraction", "above 0 and at most 1", self.step_fraction))
+    }
+}
+
+/// Where the iteration stands.
+#[derive(Debug, Clone)]
+pub struct State {
+    x: Point,
+    value: f64,
+    linearization: Linearization,
+}
+
+impl<O: LeastSquares + ?Sized> Solver<O> for NewtonRaphson {
+    type State = State;
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+        let mut x = Point::from_slice(x0);
+        let mut linearization = Linearization::default();
+        let value = evaluator.linearize(&mut x, &mut linearization)?;
+        Ok(State { x, value, linearization })
+    }
+
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+        let State { x, value, linearization } = state;
+        if !value.is_finite() {
+            return Err(Halt::Stalled);
+        }
+        let bounds = evaluator.bounds();
+        let aim = linearization.residual.map(|r| self.step_fraction * r);
+        let mut next = x.clone();
+        box_step(&linearization.columns, &aim, 0.0, x, bounds.lower(), bounds.upper(), &mut next);
+        if next == *x {
+            return Err(Halt::Stalled);
+        }
+        *value = evaluator.linearize(&mut next, linearization)?;
+        *x = next;
+        Ok(())
+    }
+}

@@ -1,0 +1,145 @@
+//! What counts of a target's six components, and when it is reached.
+
+use super::{SquaredError, Target, Tolerance};
+use crate::error::{Error, Result};
+use crate::math::box_step::ROWS;
+use crate::objective::{Linearization, Score};
+
+/// When a target is reached, and what its components weigh.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Criterion {
+    /// Largest distance and angle.
+    pub tolerance: Tolerance,
+    /// Where components are told apart.
+    pub components: Option<Components>,
+}
+
+impl From<Tolerance> for Criterion {
+    fn from(tolerance: Tolerance) -> Self {
+        Self { tolerance, components: None }
+    }
+}
+
+/// Weights and tolerances of the components: x, y, z (m) and the rotation vector's three (rad), along the axes of the
+/// target's frame; along those of the base for a target that is a position alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Components {
+    /// Factors on the residuals; a component of weight zero is left free.
+    pub weights: [f64; ROWS],
+    /// Largest error of each component (m, rad), instead of those of [`Tolerance`]. Of a pointing target, the fourth is
+    /// the angle between the axes.
+    pub tolerance: Option<[f64; ROWS]>,
+}
+
+/// What a criterion makes of a tip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Assessment {
+    /// The weighted sum of squares, and whether the target is reached.
+    pub score: Score,
+    /// The errors of the components that count, unweighted.
+    pub error: SquaredError,
+}
+
+impl Components {
+    /// Checks weights and tolerances.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the entry.
+    pub fn validate(&self) -> Result<()> {
+        check_weights(&self.weights)?;
+        self.tolerance.as_ref().map_or(Ok(()), |tolerance| check_tolerances(tolerance))
+    }
+}
+
+/// Checks that weights are not negative, and one is positive.
+pub(super) fn check_weights(weights: &[f64]) -> Result<()> {
+    match weights.iter().position(|weight| !(*weight >= 0.0 && weight.is_finite())) {
+        Some(i) => Err(Error::out_of_range(format!("weights[{i}]"), "zero or more, and finite", weights[i])),
+        None if weights.iter().all(|weight| *weight == 0.0) => {
+            Err(Error::out_of_range("the largest of weights", "positive", 0.0))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Checks that tolerances are positive; infinite ones are.
+pub(super) fn check_tolerances(tolerances: &[f64]) -> Result<()> {
+    match tolerances.iter().position(|tolerance| !(*tolerance > 0.0)) {
+        Some(i) => Err(Error::out_of_range(format!("tolerance[{i}]"), "positive", tolerances[i])),
+        None => Ok(()),
+    }
+}
+
+impl Criterion {
+    /// Checks tolerances and weights.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the entry.
+    pub fn validate(&self) -> Result<()> {
+        self.tolerance.validate()?;
+        self.components.as_ref().map_or(Ok(()), Components::validate)
+    }
+
+    /// What `error`, with the sum of squares `value`, comes to where components are not told apart.
+    #[inline(always)]
+    pub(super) fn of_whole(&self, error: SquaredError, value: f64) -> Assessment {
+        Assessment { score: Score { value, solved: error.within(&self.tolerance) }, error }
+    }
+
+    /// What the residual of `target`, in base coordinates, comes to by `components`.
+    pub(super) fn of_components(
+        &self,
+        components: &Components,
+        target: &Target,
+        residual: &[f64; ROWS],
+        error: SquaredError,
+    ) -> Assessment {
+        let Components { weights, tolerance } = components;
+        let turned = turned_into_frame(target, residual);
+        let mut entries: [f64; ROWS] = std::array::from_fn(|k| if weights[k] == 0.0 { 0.0 } else { turned[k] });
+        let value = (0..ROWS).map(|k| (weights[k] * turned[k]).powi(2)).sum();
+        if let (Target::Pointing { .. }, Some(squared)) = (target, error.rotation) {
+            let angle = if weights[3] == 0.0 { 0.0 } else { squared.sqrt() };
+            entries[3..].copy_from_slice(&[angle, 0.0, 0.0]);
+        }
+        let counted = |rows: std::ops::Range<usize>, asked: Option<f64>| {
+            let counts = asked.is_some() && weights[rows.clone()].iter().any(|weight| *weight != 0.0);
+            counts.then(|| entries[rows].iter().map(|entry| entry * entry).sum())
+        };
+        let error = SquaredError { position: counted(0..3, error.position), rotation: counted(3..6, error.rotation) };
+        let solved = match tolerance {
+            Some(tolerance) => entries.iter().zip(tolerance).all(|(entry, tolerance)| entry.abs() <= *tolerance),
+            None => error.within(&self.tolerance),
+        };
+        Assessment { score: Score { value, solved }, error }
+    }
+}
+
+impl Components {
+    /// Turns residual and columns, in base coordinates, into the target's frame and weights them.
+    pub(super) fn apply(&self, target: &Target, dof: usize, out: &mut Linearization) {
+        let weighted = |vector: &[f64; ROWS]| {
+            let turned = turned_into_frame(target, vector);
+            std::array::from_fn(|k| self.weights[k] * turned[k])
+        };
+        out.residual = weighted(&out.residual);
+        for column in &mut out.columns[..dof] {
+            *column = weighted(column);
+        }
+    }
+}
+
+/// Both halves of a vector in base coordinates as components along the axes of the target's frame. The difference of two
+/// axes stays as it is: only its length counts.
+fn turned_into_frame(target: &Target, vector: &[f64; ROWS]) -> [f64; ROWS] {
+    let along = |frame: &crate::math::Frame, half: usize| -> [f64; 3] {
+        frame.axes.map(|axis| (0..3).map(|k| axis[k] * vector[3 * half + k]).sum())
+    };
+    let rest = [vector[3], vector[4], vector[5]];
+    let ([x, y, z], [u, v, w]) = match target {
+        Target::Position(_) => return *vector,
+        Target::Pointing { frame, .. } => (along(frame, 0), rest),
+        Target::Pose(frame) | Target::Orientation(frame) => (along(frame, 0), along(frame, 1)),
+    };
+    [x, y, z, u, v, w]
+}

@@ -1,0 +1,41 @@
+//! E of Yuan et al. 2016, eq. (11): half the sum of squared differences between the entries of the wanted matrix and the
+//! tip's, and the wrench that pulls the tip down its gradient.
+//!
+//! Moved by v and turned by w, the tip changes E by -(f . v + m . w). Here f = p_d - p, and, since a turn moves the axis
+//! r_c by w x r_c, m is the sum of r_c x d_c over the columns r_c of its rotation and d_c of the wanted one.
+
+use super::{Target, position};
+use crate::math::Frame;
+use crate::math::arithmetic::Separate;
+use crate::math::so3::cross;
+use crate::robot::Wrench;
+
+/// E: of a pose over three axes and the position, of other targets over what they ask for.
+#[inline]
+pub fn error(target: &Target, tip: &Frame) -> f64 {
+    let away = target.position().map_or(0.0, |wanted| position::error(&wanted, &tip.origin));
+    0.5 * (axes(target, tip).map(|(r, d)| position::error(&d, &r)).sum::<f64>() + away)
+}
+
+/// The wrench (f, m), minus the derivative of E.
+#[inline]
+pub fn pull(target: &Target, tip: &Frame) -> Wrench {
+    let [fx, fy, fz] = target.position().map_or([0.0; 3], |wanted| position::residual(&tip.origin, &wanted));
+    let mut moment = [0.0; 3];
+    for (r, d) in axes(target, tip) {
+        let share = cross(&r, &d);
+        (0..3).for_each(|k| moment[k] += share[k]);
+    }
+    [fx, fy, fz, moment[0], moment[1], moment[2]]
+}
+
+/// The axes of the tip that have a direction to take, and that direction.
+#[inline]
+fn axes(target: &Target, tip: &Frame) -> impl Iterator<Item = ([f64; 3], [f64; 3])> {
+    let (pairs, count) = match target {
+        Target::Position(_) => ([([0.0; 3], [0.0; 3]); 3], 0),
+        Target::Pose(frame) | Target::Orientation(frame) => (std::array::from_fn(|c| (tip.axes[c], frame.axes[c])), 3),
+        Target::Pointing { frame, axis } => ([(tip.turn::<Separate>(axis), frame.turn::<Separate>(axis)); 3], 1),
+    };
+    pairs.into_iter().take(count)
+}

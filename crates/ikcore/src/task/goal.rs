@@ -1,0 +1,170 @@
+//! Goals beside the task: what the joints should do where the task leaves them free.
+
+use crate::error::{Result, require_positive};
+use crate::manipulability::{Manipulability, Motion};
+use crate::objective::{Bounds, Point};
+use crate::robot::Robot;
+
+/// One goal, as a cost to be lowered along the self-motion. Weights (positive) compare goals with each other.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Goal {
+    /// Near a posture: |q - posture|^2.
+    Posture {
+        /// (n,) (rad, m).
+        posture: Vec<f64>,
+        /// Share among several goals.
+        weight: f64,
+    },
+    /// Away from the limits: the sum of ((q - middle) / range)^2 over the joints that have limits.
+    Centring {
+        /// Share among several goals.
+        weight: f64,
+    },
+    /// Far from singularities: -ln w, with w Yoshikawa's index.
+    Manipulability {
+        /// Which motion of the tip counts.
+        motion: Motion,
+        /// Share among several goals.
+        weight: f64,
+    },
+    /// The whole arm far from singularities: -ln of the sum of the indices of all links
+    /// ([`Manipulability::link_indices`]).
+    LinkManipulability {
+        /// Which motion of the links' tips counts.
+        motion: Motion,
+        /// Share among several goals.
+        weight: f64,
+    },
+}
+
+/// Goals made ready for one robot between its limits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Goals {
+    terms: Vec<Term>,
+    gradient: Point,
+}
+
+/// A goal as it is computed.
+#[derive(Debug, Clone, PartialEq)]
+enum Term {
+    /// The sum of stiffness * (q - rest)^2.
+    Springs { stiffness: Point, rest: Point },
+    /// -weight * ln of an index.
+    Manipulability { measure: Manipulability, of: Part, weight: f64 },
+}
+
+/// What an index is taken of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Tip,
+    AllLinks,
+}
+
+/// An index below this counts as this: a singular posture has no logarithm.
+const SINGULAR: f64 = 1e-12;
+
+impl Goal {
+    /// Share among several goals.
+    pub fn weight(&self) -> f64 {
+        match self {
+            Self::Posture { weight, .. }
+            | Self::Centring { weight }
+            | Self::Manipulability { weight, .. }
+            | Self::LinkManipulability { weight, .. } => *weight,
+        }
+    }
+
+    /// Checks the weight.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a weight that is not positive.
+    pub fn validate_weight(&self) -> Result<()> {
+        require_positive("weight of a goal", self.weight())
+    }
+
+    /// Checks the goal against the robot.
+    ///
+    /// # Errors
+    /// As [`validate_weight`](Self::validate_weight) and, for the posture, [`Robot::check`].
+    pub fn validate(&self, robot: &Robot) -> Result<()> {
+        self.validate_weight()?;
+        match self {
+            Self::Posture { posture, .. } => robot.check("posture", posture),
+            Self::Centring { .. } | Self::Manipulability { .. } | Self::LinkManipulability { .. } => Ok(()),
+        }
+    }
+
+    fn term(&self, robot: &Robot, bounds: &Bounds) -> Term {
+        match self {
+            Self::Posture { posture, weight } => {
+                Term::Springs { stiffness: Point::from_elem(*weight, posture.len()), rest: posture.as_slice().into() }
+            }
+            Self::Centring { weight } => {
+                let ranges = bounds.lower().iter().zip(bounds.upper());
+                // A joint without an end, or without room, has no middle to go to.
+                let springs = ranges.map(|(lower, upper)| match upper - lower {
+                    range if range.is_finite() && range > 0.0 => (weight / (range * range), 0.5 * (lower + upper)),
+                    _ => (0.0, 0.0),
+                });
+                let (stiffness, rest) = springs.unzip();
+                Term::Springs { stiffness, rest }
+            }
+            Self::Manipulability { motion, weight } => {
+                Term::Manipulability { measure: Manipulability::of(robot, *motion), of: Part::Tip, weight: *weight }
+            }
+            Self::LinkManipulability { motion, weight } => Term::Manipulability {
+                measure: Manipulability::of(robot, *motion),
+                of: Part::AllLinks,
+                weight: *weight,
+            },
+        }
+    }
+}
+
+impl Goals {
+    /// `goals`, which were found in order, for `robot` within `bounds`.
+    pub fn new(goals: &[Goal], robot: &Robot, bounds: &Bounds) -> Self {
+        let terms = goals.iter().map(|goal| goal.term(robot, bounds)).collect();
+        Self { terms, gradient: Point::from_elem(0.0, robot.dof()) }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    /// Writes the gradient at `q` into `gradient` and returns the cost.
+    pub fn cost(&mut self, robot: &Robot, q: &[f64], gradient: &mut [f64]) -> f64 {
+        gradient.fill(0.0);
+        let one = &mut self.gradient;
+        self.terms.iter().map(|term| term.add(robot, q, one, gradient)).sum()
+    }
+}
+
+impl Term {
+    /// Adds the gradient at `q` to `gradient`; the cost. `one` is scratch.
+    fn add(&self, robot: &Robot, q: &[f64], one: &mut [f64], gradient: &mut [f64]) -> f64 {
+        match self {
+            Self::Springs { stiffness, rest } => {
+                let mut cost = 0.0;
+                for (j, slope) in gradient.iter_mut().enumerate() {
+                    let offset = q[j] - rest[j];
+                    *slope += 2.0 * stiffness[j] * offset;
+                    cost += stiffness[j] * offset * offset;
+                }
+                cost
+            }
+            Self::Manipulability { measure, of, weight } => {
+                let index = match of {
+                    Part::Tip => measure.gradient(robot, q, one),
+                    Part::AllLinks => measure.overall_gradient(robot, q, one),
+                };
+                let index = index.max(SINGULAR);
+                for (slope, one) in gradient.iter_mut().zip(one) {
+                    *slope -= weight * *one / index;
+                }
+                -weight * index.ln()
+            }
+        }
+    }
+}

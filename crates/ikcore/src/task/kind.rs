@@ -1,0 +1,166 @@
+//! What a caller asks of the tip, apart from where: the kind of task, its components, the tool that it is for.
+
+use std::ops::Range;
+
+use super::criterion::{check_tolerances, check_weights};
+use super::{Components, Target};
+use crate::error::{Error, Result, require_finite};
+use crate::math::Pose;
+use crate::math::box_step::ROWS;
+use crate::math::so3::norm;
+use crate::robot::Robot;
+
+/// Which part of a pose matters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// All of it.
+    Pose,
+    /// The position; the orientation is left free.
+    Position,
+    /// The orientation; the position is left free.
+    Orientation,
+    /// The position, and the direction of one axis of the tip; the spin about it is left free.
+    Pointing {
+        /// In the tip's own coordinates, of any length but zero.
+        axis: [f64; 3],
+    },
+}
+
+/// A task of the tip, or of a tool at the tip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Task {
+    /// Which part of a pose matters.
+    pub kind: Kind,
+    /// Weights and tolerances by component.
+    pub components: Option<Components>,
+    /// From the tip to what is to reach the target; None: the tip itself.
+    pub tool: Option<Pose>,
+}
+
+impl Kind {
+    /// The name as Python shows it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Pose => "Pose",
+            Self::Position => "Position",
+            Self::Orientation => "Orientation",
+            Self::Pointing { .. } => "Pointing",
+        }
+    }
+}
+
+impl Kind {
+    /// Where the entries of its weights and tolerances stand among the six components; the angle of a pointing task stands
+    /// for three.
+    fn rows(&self) -> &'static [Range<usize>] {
+        match self {
+            Self::Pose => &[0..1, 1..2, 2..3, 3..4, 4..5, 5..6],
+            Self::Position => &[0..1, 1..2, 2..3],
+            Self::Orientation => &[3..4, 4..5, 5..6],
+            Self::Pointing { .. } => &[0..1, 1..2, 2..3, 3..6],
+        }
+    }
+
+    /// The six components from one entry for each that this kind has; `rest` for the others.
+    fn expand(&self, what: &str, entries: &[f64], rest: f64) -> Result<[f64; ROWS]> {
+        let rows = self.rows();
+        if entries.len() != rows.len() {
+            let meaning = match self {
+                Self::Pose => "x, y, z and the rotation's three",
+                Self::Position => "x, y, z",
+                Self::Orientation => "the rotation's three",
+                Self::Pointing { .. } => "x, y, z and the angle",
+            };
+            let expected = format!("{} entries ({meaning})", rows.len());
+            let what = format!("{what} of task {}", self.name());
+            return Err(Error::WrongLength { what, expected, got: entries.len() });
+        }
+        let mut all = [rest; ROWS];
+        for (rows, entry) in rows.iter().zip(entries) {
+            all[rows.clone()].fill(*entry);
+        }
+        Ok(all)
+    }
+}
+
+impl From<Kind> for Task {
+    fn from(kind: Kind) -> Self {
+        Self { kind, components: None, tool: None }
+    }
+}
+
+impl Task {
+    /// The task with weights and tolerances (m, rad), one entry for each component that its kind has: six for a pose, three
+    /// for a position or an orientation, x, y, z and the angle for pointing. None leaves weights of one, and the tolerances
+    /// of the call.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; as [`validate`](Self::validate).
+    pub fn new(kind: Kind, weights: Option<&[f64]>, tolerance: Option<&[f64]>, tool: Option<Pose>) -> Result<Self> {
+        weights.map_or(Ok(()), check_weights)?;
+        tolerance.map_or(Ok(()), check_tolerances)?;
+        let ones = vec![1.0; kind.rows().len()];
+        let components = match (weights, tolerance) {
+            (None, None) => None,
+            (weights, tolerance) => Some(Components {
+                weights: kind.expand("weights", weights.unwrap_or(&ones), 0.0)?,
+                tolerance: tolerance.map(|entries| kind.expand("tolerance", entries, f64::INFINITY)).transpose()?,
+            }),
+        };
+        let task = Self { kind, components, tool };
+        task.validate().map(|()| task)
+    }
+
+    /// The weights, one for each component that the kind has; None where they are all one by default.
+    pub fn weights(&self) -> Option<Vec<f64>> {
+        self.components.map(|components| self.contract(&components.weights))
+    }
+
+    /// The tolerances (m, rad), one for each component that the kind has.
+    pub fn tolerance(&self) -> Option<Vec<f64>> {
+        self.components.and_then(|components| components.tolerance).map(|tolerance| self.contract(&tolerance))
+    }
+
+    fn contract(&self, all: &[f64; ROWS]) -> Vec<f64> {
+        self.kind.rows().iter().map(|rows| all[rows.start]).collect()
+    }
+
+    /// Checks axis, weights, tolerances and tool.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::OutOfRange`] names the entry.
+    pub fn validate(&self) -> Result<()> {
+        if let Kind::Pointing { axis } = &self.kind {
+            require_finite("axis", axis, |i| format!("entry {i}"))?;
+            if norm(axis) == 0.0 {
+                return Err(Error::out_of_range("the length of axis", "positive", 0.0));
+            }
+        }
+        self.components.as_ref().map_or(Ok(()), Components::validate)
+    }
+
+    /// What of `wanted`, a position or a pose, this task asks for.
+    ///
+    /// # Errors
+    /// [`Error::WrongTarget`] for a position where the task needs an orientation too.
+    pub fn target(&self, wanted: &Target) -> Result<Target> {
+        match (&self.kind, wanted) {
+            (Kind::Position, Target::Pose(frame)) => Ok(Target::Position(frame.origin)),
+            (Kind::Position, Target::Position(_)) | (Kind::Pose, Target::Pose(_)) => Ok(*wanted),
+            (Kind::Orientation, Target::Pose(frame)) => Ok(Target::Orientation(*frame)),
+            (Kind::Pointing { axis }, Target::Pose(frame)) => {
+                let length = norm(axis);
+                Ok(Target::Pointing { frame: *frame, axis: axis.map(|entry| entry / length) })
+            }
+            _ => Err(Error::WrongTarget { task: self.kind.name().into() }),
+        }
+    }
+
+    /// `robot` with this task's tool at its tip.
+    ///
+    /// # Errors
+    /// As [`Robot::with_tool`].
+    pub fn robot(&self, robot: &Robot) -> Result<Option<Robot>> {
+        self.tool.map(|tool| robot.with_tool(robot.tool() * tool)).transpose()
+    }
+}

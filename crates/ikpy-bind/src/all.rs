@@ -1,0 +1,149 @@
+//! `solve_all` and `SolutionSet`.
+
+use ikcore::ik::{self, AllOptions, SolveOptions};
+use ikcore::solver::{AnySolver, Status, Stop};
+use ikcore::task::Tolerance;
+use numpy::PyArrayDyn;
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+
+use crate::convert::{count, position_in, table, vector};
+use crate::error::raise;
+use crate::ik::{PySolution, read_target};
+use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::monitor::Watcher;
+use crate::robot::PyRobot;
+use crate::solver::{PyStop, any_solver, status};
+use crate::task::read_task;
+
+/// Distinct solutions of one target: a sequence of `Solution`.
+#[pyclass(name = "SolutionSet", module = "beetle_ik", frozen, sequence)]
+pub struct PySolutionSet {
+    core: ik::Found,
+    /// The configurations (k, n) (rad, m), inside the limits.
+    #[pyo3(get)]
+    q: Py<PyArrayDyn<f64>>,
+    /// The limits in force.
+    #[pyo3(get)]
+    limits: Py<PyLimits>,
+}
+
+#[pymethods]
+impl PySolutionSet {
+    /// Whether there is a solution.
+    #[getter]
+    fn success(&self) -> bool {
+        !self.core.solutions.is_empty()
+    }
+
+    /// SOLVED where there is a solution; else why the last search ended.
+    #[getter]
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        status(py, self.core.miss.as_ref().map_or(Status::Solved, |miss| miss.status))
+    }
+
+    /// How many there are, or why there are none.
+    #[getter]
+    fn message(&self) -> String {
+        self.core.message()
+    }
+
+    /// The best miss, a `Solution`, where there is no solution; else None.
+    #[getter]
+    fn miss(&self, py: Python<'_>) -> Option<PySolution> {
+        self.core.miss.as_ref().map(|miss| PySolution::new(py, miss.clone(), self.limits.clone_ref(py)))
+    }
+
+    /// Evaluations of the forward kinematics.
+    #[getter]
+    fn evaluations(&self) -> usize {
+        self.core.evaluations
+    }
+
+    /// Time taken (s).
+    #[getter]
+    fn elapsed(&self) -> f64 {
+        self.core.elapsed.as_secs_f64()
+    }
+
+    fn __len__(&self) -> usize {
+        self.core.solutions.len()
+    }
+
+    fn __getitem__(&self, py: Python<'_>, index: isize) -> PyResult<PySolution> {
+        let len = self.core.solutions.len();
+        match position_in(index, len) {
+            Some(i) => Ok(PySolution::new(py, self.core.solutions[i].clone(), self.limits.clone_ref(py))),
+            None => Err(PyIndexError::new_err(format!("index {index} is outside a set of {len}"))),
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<SolutionSet: {}>", self.core.message())
+    }
+}
+
+/// Looks for distinct solutions until a hundred in a row were known already, or the budget is spent.
+///
+/// Each is returned at the whole turns nearest to the start, without one nearest to the middle of the limits. A redundant arm
+/// has endlessly many solutions: those returned lie at least `separation` apart.
+///
+/// Args:
+///     robot: the arm.
+///     target: pose (4, 4), or position (3,) (m).
+///     start: (n,): solutions come nearest to it first, by |q - start| (rad, m). None: in the order in which they were found.
+///     limit: solutions to return at most.
+///     separation: solutions count as one where no joint differs by as much (rad, m), whole turns aside.
+///     task: of `tasks`, what of the target matters; None: all that it says.
+///     solver: None: Levenberg-Marquardt from many starts.
+///     position_tolerance: m.
+///     rotation_tolerance: rad, geodesic angle.
+///     limits: position limits to keep; None keeps the robot's.
+///     stop: budgets of the whole search; None: as for `solve`.
+///     seed: of the random draws: the same seed, the same bits.
+///
+/// Returns:
+///     A `SolutionSet`; without a solution it is empty and has the best `miss`.
+///
+/// Raises:
+///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform.
+///     LimitError: a start outside the limits.
+#[pyfunction]
+#[pyo3(signature = (robot, target, *, start=None, limit=16, separation=0.1, task=None, solver=None,
+                    position_tolerance=1e-6, rotation_tolerance=1e-6, limits=None, stop=None, seed=0))]
+#[allow(clippy::too_many_arguments)]
+pub fn solve_all(
+    py: Python<'_>,
+    robot: &PyRobot,
+    target: &Bound<'_, PyAny>,
+    start: Option<&Bound<'_, PyAny>>,
+    limit: i128,
+    separation: f64,
+    task: Option<&Bound<'_, PyAny>>,
+    solver: Option<&Bound<'_, PyAny>>,
+    position_tolerance: f64,
+    rotation_tolerance: f64,
+    limits: Option<&PyLimits>,
+    stop: Option<&PyStop>,
+    seed: i128,
+) -> PyResult<PySolutionSet> {
+    let target = read_target(target)?;
+    let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
+    let each = SolveOptions {
+        solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
+        task: read_task(task)?,
+        start: start.map(|start| vector("start", start)).transpose()?,
+        tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
+        limits: resolved,
+        stop: stop.map_or(Stop::default(), PyStop::core),
+        seed: count("seed", seed)?,
+        ..SolveOptions::default()
+    };
+    let options = AllOptions { each, limit: count("limit", limit)?, separation };
+    let mut watcher = Watcher::new();
+    let core = py.detach(|| ik::solve_all(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;
+    watcher.finish()?;
+    let rows: Vec<f64> = core.solutions.iter().flat_map(|solution| solution.q.iter().copied()).collect();
+    let q = table(py, rows, &[core.solutions.len(), robot.core.dof()])?.unbind();
+    Ok(PySolutionSet { core, q, limits: in_force })
+}

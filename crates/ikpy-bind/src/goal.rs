@@ -1,0 +1,159 @@
+//! `goals`: what the joints should do where the task leaves them free.
+
+use ikcore::manipulability::Motion;
+use ikcore::task::Goal;
+use numpy::PyArray1;
+use pyo3::PyClassInitializer;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::convert::{row, summary, vector};
+use crate::error::{invalid, raise};
+
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<PyGoal>()?;
+    module.add_class::<PyPosture>()?;
+    module.add_class::<PyCentring>()?;
+    module.add_class::<PyManipulability>()?;
+    module.add_class::<PyLinkManipulability>()
+}
+
+/// What the joints should do where the task leaves them free: one of `Posture`, `Centring`, `Manipulability` and
+/// `LinkManipulability`.
+#[pyclass(name = "Goal", module = "beetle_ik.goals", frozen, subclass, eq)]
+#[derive(Clone, PartialEq)]
+pub struct PyGoal {
+    core: Goal,
+}
+
+#[pymethods]
+impl PyGoal {
+    /// Share among several goals.
+    #[getter]
+    fn weight(&self) -> f64 {
+        self.core.weight()
+    }
+
+    fn __repr__(&self) -> String {
+        let weight = self.core.weight();
+        match &self.core {
+            Goal::Posture { posture, .. } => format!("goals.Posture({posture:?}, weight={weight})"),
+            Goal::Centring { .. } => format!("goals.Centring(weight={weight})"),
+            Goal::Manipulability { motion, .. } => format!("goals.Manipulability(motion='{motion}', weight={weight})"),
+            Goal::LinkManipulability { motion, .. } => {
+                format!("goals.LinkManipulability(motion='{motion}', weight={weight})")
+            }
+        }
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let options = PyDict::new(py);
+        options.set_item("weight", self.core.weight())?;
+        let arguments = match &self.core {
+            Goal::Posture { posture, .. } => PyTuple::new(py, [row(py, posture.clone())])?,
+            Goal::Centring { .. } => PyTuple::empty(py),
+            Goal::Manipulability { motion, .. } | Goal::LinkManipulability { motion, .. } => {
+                options.set_item("motion", motion.name())?;
+                PyTuple::empty(py)
+            }
+        };
+        Ok((arguments, options))
+    }
+}
+
+fn goal(core: Goal) -> PyResult<PyGoal> {
+    core.validate_weight().map_err(raise)?;
+    Ok(PyGoal { core })
+}
+
+/// Near a posture: lowers |q - posture|^2.
+///
+/// Args:
+///     posture: (n,) (rad, m).
+///     weight: share among several goals.
+#[pyclass(name = "Posture", module = "beetle_ik.goals", extends = PyGoal, frozen)]
+pub struct PyPosture;
+
+#[pymethods]
+impl PyPosture {
+    #[new]
+    #[pyo3(signature = (posture, *, weight=1.0))]
+    fn new(posture: &Bound<'_, PyAny>, weight: f64) -> PyResult<PyClassInitializer<Self>> {
+        Ok(PyClassInitializer::from(goal(Goal::Posture { posture: vector("posture", posture)?, weight })?)
+            .add_subclass(Self))
+    }
+
+    /// (n,) (rad, m).
+    #[getter]
+    fn posture<'py>(self_: PyRef<'py, Self>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let py = self_.py();
+        match &self_.as_super().core {
+            Goal::Posture { posture, .. } => Some(row(py, posture.clone())),
+            _ => None,
+        }
+    }
+}
+
+/// Away from the limits: lowers the sum of ((q - middle) / range)^2 over the joints that have limits.
+///
+/// Args:
+///     weight: share among several goals.
+#[pyclass(name = "Centring", module = "beetle_ik.goals", extends = PyGoal, frozen)]
+pub struct PyCentring;
+
+#[pymethods]
+impl PyCentring {
+    #[new]
+    #[pyo3(signature = (*, weight=1.0))]
+    fn new(weight: f64) -> PyResult<PyClassInitializer<Self>> {
+        Ok(PyClassInitializer::from(goal(Goal::Centring { weight })?).add_subclass(Self))
+    }
+}
+
+/// Far from singularities: lowers -ln w, with w Yoshikawa's index.
+///
+/// Args:
+///     motion: of the tip, as in `Robot.manipulability`: "pose", "position" or "rotation".
+///     weight: share among several goals.
+#[pyclass(name = "Manipulability", module = "beetle_ik.goals", extends = PyGoal, frozen)]
+pub struct PyManipulability;
+
+#[pymethods]
+impl PyManipulability {
+    #[new]
+    #[pyo3(signature = (*, motion="pose", weight=1.0))]
+    fn new(motion: &str, weight: f64) -> PyResult<PyClassInitializer<Self>> {
+        let motion = motion.parse::<Motion>().map_err(raise)?;
+        Ok(PyClassInitializer::from(goal(Goal::Manipulability { motion, weight })?).add_subclass(Self))
+    }
+}
+
+/// The whole arm far from singularities: lowers -ln of the sum of `Robot.link_manipulability`, so that no link comes near
+/// a straight line with the one before it.
+///
+/// Args:
+///     motion: of the links' tips, as in `Robot.manipulability`: "pose", "position" or "rotation".
+///     weight: share among several goals.
+#[pyclass(name = "LinkManipulability", module = "beetle_ik.goals", extends = PyGoal, frozen)]
+pub struct PyLinkManipulability;
+
+#[pymethods]
+impl PyLinkManipulability {
+    #[new]
+    #[pyo3(signature = (*, motion="position", weight=1.0))]
+    fn new(motion: &str, weight: f64) -> PyResult<PyClassInitializer<Self>> {
+        let motion = motion.parse::<Motion>().map_err(raise)?;
+        Ok(PyClassInitializer::from(goal(Goal::LinkManipulability { motion, weight })?).add_subclass(Self))
+    }
+}
+
+/// The goals of a call: one, or several.
+pub fn read_goals(value: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Goal>> {
+    let Some(value) = value else { return Ok(vec![]) };
+    let core = |goal: &Bound<'_, PyAny>| goal.cast::<PyGoal>().map(|goal| goal.get().core.clone()).ok();
+    if let Some(goal) = core(value) {
+        return Ok(vec![goal]);
+    }
+    let wrong = || invalid(format!("goals must be of beetle_ik.goals, one or several, got {}", summary(value)));
+    value.try_iter().map_err(|_| wrong())?.map(|goal| core(&goal?).ok_or_else(wrong)).collect()
+}

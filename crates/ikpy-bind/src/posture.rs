@@ -1,0 +1,220 @@
+//! `planar_posture`, `PlanarPosture` and `CircleSwarm`.
+
+use ikcore::posture::{CircleSwarm, Posture, Region, SearchOptions, best_posture};
+use ikcore::solver::Status;
+use numpy::{PyArray1, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::convert::{array, count, point, row, shape_text};
+use crate::error::{invalid, raise};
+use crate::limits::PyLimits;
+use crate::monitor::Watcher;
+use crate::robot::PyRobot;
+use crate::solver::status;
+
+/// The particle swarm of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization": over joint
+/// points on circles, with a constriction factor (eq. 17, 18).
+///
+/// Args:
+///     population: particles.
+///     generations: the first draw included.
+///     c1, c2: attraction to the particle's own best place and to the swarm's; together above 4.
+///     velocity_limit: largest velocity of a coordinate (m a generation); not published.
+///     signed: random factors from [-1, 1], as printed, instead of [0, 1].
+#[pyclass(name = "CircleSwarm", module = "beetle_ik", frozen, eq)]
+#[derive(PartialEq)]
+pub struct PyCircleSwarm(CircleSwarm);
+
+#[pymethods]
+impl PyCircleSwarm {
+    #[new]
+    #[pyo3(signature = (*, population=5, generations=10, c1=2.05, c2=2.05, velocity_limit=0.2, signed=false))]
+    fn new(population: i128, generations: i128, c1: f64, c2: f64, velocity_limit: f64, signed: bool) -> PyResult<Self> {
+        let (population, generations) = (count("population", population)?, count("generations", generations)?);
+        let swarm = CircleSwarm { population, generations, c1, c2, velocity_limit, signed };
+        swarm.validate().map_err(raise)?;
+        Ok(Self(swarm))
+    }
+
+    /// Particles.
+    #[getter]
+    fn population(&self) -> usize {
+        self.0.population
+    }
+
+    /// Generations, the first draw included.
+    #[getter]
+    fn generations(&self) -> usize {
+        self.0.generations
+    }
+
+    /// Attraction to the particle's own best place.
+    #[getter]
+    fn c1(&self) -> f64 {
+        self.0.c1
+    }
+
+    /// Attraction to the swarm's best place.
+    #[getter]
+    fn c2(&self) -> f64 {
+        self.0.c2
+    }
+
+    /// Largest velocity of a coordinate (m a generation).
+    #[getter]
+    fn velocity_limit(&self) -> f64 {
+        self.0.velocity_limit
+    }
+
+    /// Whether random factors come from [-1, 1].
+    #[getter]
+    fn signed(&self) -> bool {
+        self.0.signed
+    }
+
+    fn __repr__(&self) -> String {
+        let CircleSwarm { population, generations, c1, c2, velocity_limit, signed } = self.0;
+        let signed = if signed { "True" } else { "False" };
+        format!(
+            "CircleSwarm(population={population}, generations={generations}, c1={c1}, c2={c2}, \
+             velocity_limit={velocity_limit}, signed={signed})"
+        )
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let options = PyDict::new(py);
+        options.set_item("population", self.0.population)?;
+        options.set_item("generations", self.0.generations)?;
+        options.set_item("c1", self.0.c1)?;
+        options.set_item("c2", self.0.c2)?;
+        options.set_item("velocity_limit", self.0.velocity_limit)?;
+        options.set_item("signed", self.0.signed)?;
+        Ok((PyTuple::empty(py), options))
+    }
+}
+
+/// The best posture of a planar arm for a tip position.
+#[pyclass(name = "PlanarPosture", module = "beetle_ik", frozen)]
+pub struct PyPlanarPosture {
+    core: Posture,
+    limits: Py<PyLimits>,
+}
+
+#[pymethods]
+impl PyPlanarPosture {
+    /// The configuration (n,) (rad); as near as the tip gets where there is no posture.
+    #[getter]
+    fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.core.q.clone())
+    }
+
+    /// Its index: `Robot.manipulability(q, motion="position")`, or for measure "overall" the sum of
+    /// `Robot.link_manipulability(q)`; NaN where there is no posture.
+    #[getter]
+    fn index(&self) -> f64 {
+        self.core.index
+    }
+
+    /// The best index after each generation of a `CircleSwarm` (generations,); empty for the library's own search.
+    #[getter]
+    fn history<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.core.history.clone())
+    }
+
+    /// Whether a posture was found.
+    #[getter]
+    fn success(&self) -> bool {
+        self.core.status == Status::Solved
+    }
+
+    /// Why the search ended, a `Status`.
+    #[getter]
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        status(py, self.core.status)
+    }
+
+    /// What happened, and what to try.
+    #[getter]
+    fn message(&self) -> String {
+        self.core.message()
+    }
+
+    /// Distance of the tip from the target (m).
+    #[getter]
+    fn position_error(&self) -> f64 {
+        self.core.error.position
+    }
+
+    /// Postures whose index was computed.
+    #[getter]
+    fn evaluations(&self) -> usize {
+        self.core.evaluations
+    }
+
+    /// Time taken (s).
+    #[getter]
+    fn elapsed(&self) -> f64 {
+        self.core.elapsed.as_secs_f64()
+    }
+
+    /// The limits in force: the robot's.
+    #[getter]
+    fn limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyLimits> {
+        self.limits.bind(py).clone()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<PlanarPosture {}: {}>", self.core.status.name(), self.core.message())
+    }
+}
+
+/// The posture of a planar arm with the best manipulability for a tip position, of all that there are.
+///
+/// For any arm, and for poses: `solve(robot, target, goals=goals.Manipulability(...), prefer="best")`.
+///
+/// Args:
+///     robot: an arm of 3 or more joints that turn about z in one plane, such as `Robot.planar([...])`.
+///     target: position of the tip (3,) (m).
+///     measure: "tip", Yoshikawa's index of the tip, or "overall", the sum of those of all links.
+///     region: ((x, y), (x, y)), least and largest coordinates of the joint points (m); None: anywhere.
+///     swarm: a `CircleSwarm` to search as published; None: differential evolution over the directions of the links.
+///     seed: of the random draws: the same seed, the same bits.
+///
+/// Returns:
+///     A `PlanarPosture`. A target out of reach is a status, not an error.
+///
+/// Raises:
+///     InvalidInputError: an arm that is not planar or has fewer than 3 links, wrong shape, NaN.
+#[pyfunction]
+#[pyo3(signature = (robot, target, *, measure="tip", region=None, swarm=None, seed=0))]
+pub fn planar_posture(
+    py: Python<'_>,
+    robot: &PyRobot,
+    target: &Bound<'_, PyAny>,
+    measure: &str,
+    region: Option<&Bound<'_, PyAny>>,
+    swarm: Option<&PyCircleSwarm>,
+    seed: i128,
+) -> PyResult<PyPlanarPosture> {
+    let target = point("target", target)?;
+    let options = SearchOptions {
+        measure: measure.parse().map_err(raise)?,
+        region: region.map(read_region).transpose()?,
+        swarm: swarm.map(|swarm| swarm.0),
+        seed: count("seed", seed)?,
+    };
+    let mut watcher = Watcher::new();
+    let core = py.detach(|| best_posture(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;
+    watcher.finish()?;
+    Ok(PyPlanarPosture { core, limits: robot.limits(py)? })
+}
+
+/// Least and largest coordinates, (2, 2).
+fn read_region(value: &Bound<'_, PyAny>) -> PyResult<Region> {
+    let numbers = array("region", value)?;
+    match (numbers.shape(), numbers.as_slice()?) {
+        ([2, 2], &[x, y, to_x, to_y]) => Ok(Region { lower: [x, y], upper: [to_x, to_y] }),
+        (shape, _) => Err(invalid(format!("region: expected shape (2, 2), got {}", shape_text(shape)))),
+    }
+}

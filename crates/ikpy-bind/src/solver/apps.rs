@@ -1,0 +1,83 @@
+//! `APPS`.
+
+use ikcore::solver::{Apps, LearningRate};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::error::raise;
+use crate::solver::rate::{Rate, number_or_auto};
+
+/// Autonomous path planning solution (Yuan et al. 2016): descent down the gradient of the error by steps that are cut off
+/// joint by joint. No Jacobian and no inverse.
+///
+/// The error is E of eq. (11): half the sum of squared differences between the entries of the target's matrix and the
+/// tip's (of the positions, for a position). The search may leave the limits; whole turns bring revolute joints back,
+/// eq. (12). Where they cannot, the status is `OUTSIDE_LIMITS` and the best configuration inside is returned.
+///
+/// Args:
+///     learning_rate: eta of eq. (13); "auto": from the curvature along the last step (Barzilai and Borwein 1988).
+///     step_limit: largest change of a joint in an iteration, eq. (20) (rad or m).
+///     error_threshold: E_0; the search ends after the first update from an E of at most this much, whether the
+///         tolerances of the call are met or not. None: it ends when they are met.
+#[pyclass(name = "APPS", module = "beetle_ik", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub struct PyApps(pub Apps);
+
+#[pymethods]
+impl PyApps {
+    #[new]
+    #[pyo3(
+        signature = (*, learning_rate=None, step_limit=Apps::default().step_limit, error_threshold=None),
+        text_signature = "(*, learning_rate='auto', step_limit=0.2, error_threshold=None)"
+    )]
+    fn new(learning_rate: Option<&Bound<'_, PyAny>>, step_limit: f64, error_threshold: Option<f64>) -> PyResult<Self> {
+        let rate = number_or_auto("learning_rate", learning_rate)?;
+        let learning_rate = rate.map_or(LearningRate::Auto, LearningRate::Fixed);
+        let solver = Apps { learning_rate, step_limit, error_threshold };
+        solver.validate().map_err(raise)?;
+        Ok(Self(solver))
+    }
+
+    /// The paper's parameters, in the scale of its eq. (11): rate 0.2, step limit one degree, threshold 5e-10. Its budget
+    /// is `Stop(max_iterations=1000)`.
+    #[staticmethod]
+    fn paper() -> Self {
+        Self(Apps::paper())
+    }
+
+    /// eta of eq. (13), or "auto".
+    #[getter]
+    fn learning_rate(&self) -> Rate {
+        Rate::from(match self.0.learning_rate {
+            LearningRate::Auto => None,
+            LearningRate::Fixed(rate) => Some(rate),
+        })
+    }
+
+    /// Largest change of a joint in an iteration (rad or m).
+    #[getter]
+    fn step_limit(&self) -> f64 {
+        self.0.step_limit
+    }
+
+    /// E_0, or None.
+    #[getter]
+    fn error_threshold(&self) -> Option<f64> {
+        self.0.error_threshold
+    }
+
+    fn __repr__(&self) -> String {
+        let Apps { step_limit, error_threshold, .. } = self.0;
+        let threshold = error_threshold.map_or_else(|| "None".into(), |threshold| format!("{threshold:?}"));
+        let rate = self.learning_rate();
+        format!("APPS(learning_rate={rate}, step_limit={step_limit:?}, error_threshold={threshold})")
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let options = PyDict::new(py);
+        options.set_item("learning_rate", self.learning_rate())?;
+        options.set_item("step_limit", self.0.step_limit)?;
+        options.set_item("error_threshold", self.0.error_threshold)?;
+        Ok((PyTuple::empty(py), options))
+    }
+}

@@ -1,0 +1,41 @@
+//! `NewtonRaphson`.
+
+use ikcore::solver::NewtonRaphson;
+use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
+
+use crate::error::raise;
+
+/// Newton-Raphson by the pseudo-inverse of the Jacobian, on the box of the limits. Very quick from a start that is near
+/// enough; from others it may jump about until its budget is spent.
+///
+/// Args:
+///     step_fraction: share of the full step that is taken, above 0 and at most 1.
+#[pyclass(name = "NewtonRaphson", module = "beetle_ik", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub struct PyNewtonRaphson(pub NewtonRaphson);
+
+#[pymethods]
+impl PyNewtonRaphson {
+    #[new]
+    #[pyo3(signature = (*, step_fraction=NewtonRaphson::default().step_fraction))]
+    fn new(step_fraction: f64) -> PyResult<Self> {
+        let solver = NewtonRaphson { step_fraction };
+        solver.validate().map_err(raise)?;
+        Ok(Self(solver))
+    }
+
+    /// Share of the full step that is taken.
+    #[getter]
+    fn step_fraction(&self) -> f64 {
+        self.0.step_fraction
+    }
+
+    fn __repr__(&self) -> String {
+        format!("NewtonRaphson(step_fraction={:?})", self.0.step_fraction)
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        Ok((PyTuple::empty(py), [("step_fraction", self.0.step_fraction)].into_py_dict(py)?))
+    }
+}

@@ -1,0 +1,200 @@
+//! `tasks`: what of a target matters.
+
+use ikcore::math::{Pose, pose};
+use ikcore::task::{Kind, Task};
+use numpy::{PyArray1, PyArray2};
+use pyo3::PyClassInitializer;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::convert::{point, pose_array, rigid, row, summary, vector};
+use crate::error::{invalid, raise};
+
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<PyTask>()?;
+    module.add_class::<PyPose>()?;
+    module.add_class::<PyPosition>()?;
+    module.add_class::<PyOrientation>()?;
+    module.add_class::<PyPointing>()
+}
+
+/// What of a target matters: one of `Pose`, `Position`, `Orientation` and `Pointing`.
+#[pyclass(name = "Task", module = "beetle_ik.tasks", frozen, subclass, eq)]
+#[derive(Clone, PartialEq)]
+pub struct PyTask {
+    core: Task,
+}
+
+#[pymethods]
+impl PyTask {
+    /// Factors on the components; None: all one. A component of weight zero is left free.
+    #[getter]
+    fn weights<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.core.weights().map(|weights| row(py, weights))
+    }
+
+    /// Largest error of each component (m, rad); None: the tolerances of the call.
+    #[getter]
+    fn tolerance<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.core.tolerance().map(|tolerance| row(py, tolerance))
+    }
+
+    /// From the tip to what is to reach the target (4, 4); None: the tip itself.
+    #[getter]
+    fn tool<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.core.tool.as_ref().map(|tool| pose_array(py, tool)).transpose()
+    }
+
+    fn __repr__(&self) -> String {
+        let list = |entries: &[f64]| format!("{entries:?}");
+        let axis = match &self.core.kind {
+            Kind::Pointing { axis } => Some(format!("axis={}", list(axis))),
+            _ => None,
+        };
+        let matrix = |tool: &Pose| format!("tool={:?}", pose::rows(tool).as_chunks::<4>().0);
+        let options = [
+            axis,
+            self.core.weights().map(|weights| format!("weights={}", list(&weights))),
+            self.core
+                .tolerance()
+                .map(|tolerance| format!("tolerance={}", list(&tolerance).replace("inf", "float('inf')"))),
+            self.core.tool.as_ref().map(matrix),
+        ];
+        let given: Vec<_> = options.into_iter().flatten().collect();
+        format!("tasks.{}({})", self.core.kind.name(), given.join(", "))
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let options = PyDict::new(py);
+        if let Kind::Pointing { axis } = self.core.kind {
+            options.set_item("axis", axis)?;
+        }
+        options.set_item("weights", self.weights(py))?;
+        options.set_item("tolerance", self.tolerance(py))?;
+        options.set_item("tool", self.tool(py)?)?;
+        Ok((PyTuple::empty(py), options))
+    }
+}
+
+/// What every task takes besides its kind.
+type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+
+fn task(kind: Kind, weights: Given<'_, '_>, tolerance: Given<'_, '_>, tool: Given<'_, '_>) -> PyResult<PyTask> {
+    let weights = weights.map(|value| vector("weights", value)).transpose()?;
+    let tolerance = tolerance.map(|value| vector("tolerance", value)).transpose()?;
+    let tool = tool.map(|value| rigid("tool", value)).transpose()?;
+    let core = Task::new(kind, weights.as_deref(), tolerance.as_deref(), tool).map_err(raise)?;
+    Ok(PyTask { core })
+}
+
+/// The whole pose.
+///
+/// Args:
+///     weights: (6,), factors on x, y, z and on the three components of the rotation vector, along the axes of the target;
+///         zero leaves a component free.
+///     tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
+///     tool: (4, 4), from the tip to what is to reach the target.
+#[pyclass(name = "Pose", module = "beetle_ik.tasks", extends = PyTask, frozen)]
+pub struct PyPose;
+
+#[pymethods]
+impl PyPose {
+    #[new]
+    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None))]
+    fn new(
+        weights: Given<'_, '_>,
+        tolerance: Given<'_, '_>,
+        tool: Given<'_, '_>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        Ok(PyClassInitializer::from(task(Kind::Pose, weights, tolerance, tool)?).add_subclass(Self))
+    }
+}
+
+/// The position alone; the orientation is left free. Takes the position of a target that is a pose.
+///
+/// Args:
+///     weights: (3,), factors on x, y and z of the base; zero leaves a component free.
+///     tolerance: (3,) (m), largest error of each component, instead of the tolerance of the call.
+///     tool: (4, 4), from the tip to what is to reach the target.
+#[pyclass(name = "Position", module = "beetle_ik.tasks", extends = PyTask, frozen)]
+pub struct PyPosition;
+
+#[pymethods]
+impl PyPosition {
+    #[new]
+    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None))]
+    fn new(
+        weights: Given<'_, '_>,
+        tolerance: Given<'_, '_>,
+        tool: Given<'_, '_>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        Ok(PyClassInitializer::from(task(Kind::Position, weights, tolerance, tool)?).add_subclass(Self))
+    }
+}
+
+/// The orientation alone; the position is left free.
+///
+/// Args:
+///     weights: (3,), factors on the components of the rotation vector along the axes of the target; zero leaves one free.
+///     tolerance: (3,) (rad), largest error of each component, instead of the tolerance of the call.
+///     tool: (4, 4), from the tip to what is to reach the target.
+#[pyclass(name = "Orientation", module = "beetle_ik.tasks", extends = PyTask, frozen)]
+pub struct PyOrientation;
+
+#[pymethods]
+impl PyOrientation {
+    #[new]
+    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None))]
+    fn new(
+        weights: Given<'_, '_>,
+        tolerance: Given<'_, '_>,
+        tool: Given<'_, '_>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        Ok(PyClassInitializer::from(task(Kind::Orientation, weights, tolerance, tool)?).add_subclass(Self))
+    }
+}
+
+/// The position, and the direction of one axis of the tip; the spin about it is left free. `rotation_error` is the angle
+/// between that axis and the same one of the target.
+///
+/// Args:
+///     axis: (3,), in the tip's coordinates, of any length but zero.
+///     weights: (4,), factors on x, y and z along the axes of the target, and on the angle; zero leaves a component free.
+///     tolerance: (4,) (m, m, m, rad), largest error of each component, instead of the tolerances of the call.
+///     tool: (4, 4), from the tip to what is to reach the target.
+#[pyclass(name = "Pointing", module = "beetle_ik.tasks", extends = PyTask, frozen)]
+pub struct PyPointing;
+
+#[pymethods]
+impl PyPointing {
+    #[new]
+    #[pyo3(signature = (*, axis=None, weights=None, tolerance=None, tool=None))]
+    fn new(
+        axis: Given<'_, '_>,
+        weights: Given<'_, '_>,
+        tolerance: Given<'_, '_>,
+        tool: Given<'_, '_>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let axis = axis.map_or(Ok([0.0, 0.0, 1.0]), |axis| point("axis", axis))?;
+        Ok(PyClassInitializer::from(task(Kind::Pointing { axis }, weights, tolerance, tool)?).add_subclass(Self))
+    }
+
+    /// In the tip's coordinates (3,).
+    #[getter]
+    fn axis<'py>(self_: PyRef<'py, Self>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let py = self_.py();
+        match self_.as_super().core.kind {
+            Kind::Pointing { axis } => Some(row(py, axis.to_vec())),
+            _ => None,
+        }
+    }
+}
+
+/// The task of a call, if one is given.
+pub fn read_task(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Task>> {
+    let Some(value) = value else { return Ok(None) };
+    match value.cast::<PyTask>() {
+        Ok(task) => Ok(Some(task.get().core)),
+        Err(_) => Err(invalid(format!("task must be of beetle_ik.tasks, got {}", summary(value)))),
+    }
+}

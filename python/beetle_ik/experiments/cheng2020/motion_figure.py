@@ -1,0 +1,65 @@
+"""One arm on its circle in four panels, as Figures 2 and 3 have them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import beetle_ik as bik
+
+from ...report import BLUE, SKY, VERMILION, draw_error, draw_velocities, drawing, line
+from .settings import FIVE_LINK, Task
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+_POSTURES = 6
+
+
+def draw_motion(task: Task, result: bik.TrackResult) -> Drawing:
+    """Arm and circle, joint positions, error and velocities within their limit."""
+    planar = task is FIVE_LINK
+    with drawing(6.2) as figure:
+        grid = figure.add_gridspec(2, 2, width_ratios=[1.0, 1.15])
+        space = figure.add_subplot(grid[0, 0], projection=None if planar else "3d")
+        (_draw_planar_arm if planar else _draw_arm)(space, result)
+        joints, error, velocities = (figure.add_subplot(grid[place]) for place in ((0, 1), (1, 0), (1, 1)))
+        for j, q in enumerate(result.q.T):
+            joints.plot(result.time, q, label=f"joint {j + 1}", **line(j))
+        joints.set_ylabel("joint position [rad]")
+        joints.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
+        draw_error(error, result.time, result.position_error, band=result.position_tolerance, color=BLUE)
+        error.legend(loc="upper right")
+        draw_velocities(velocities, result.time[1:], result.qd[1:], result.velocity_limit[1:, 0])
+        for axes in (joints, error, velocities):
+            axes.set(xlim=(0.0, result.time[-1]), xlabel="time [s]")
+    return figure
+
+
+def _postures(result: bik.TrackResult) -> list[Any]:
+    """Positions of the joints (links, 3) at a few moments, evenly spread."""
+    rows = np.linspace(0, len(result.q) - 1, _POSTURES, endpoint=False).astype(int)
+    return [result.robot.link_poses(result.q[row])[:, :3, 3] for row in rows]
+
+
+def _draw_planar_arm(axes: Axes, result: bik.TrackResult) -> None:
+    for i, origins in enumerate(_postures(result)):
+        axes.plot(*origins[:, :2].T, color=SKY, marker="o", markersize=3, linewidth=1.0, label=None if i else "arm")
+    axes.plot(*result.reference[:, :2].T, color=VERMILION, linewidth=4.0, alpha=0.45, label="circle")
+    axes.plot(*result.position[:, :2].T, color=BLUE, label="tip")
+    axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+
+
+def _draw_arm(axes: Any, result: bik.TrackResult) -> None:
+    for i, origins in enumerate(_postures(result)):
+        axes.plot(*origins.T, color=SKY, marker="o", markersize=3, linewidth=1.0, label=None if i else "arm")
+    axes.plot(*result.reference.T, color=VERMILION, linewidth=4.0, alpha=0.45, label="circle")
+    axes.plot(*result.position.T, color=BLUE, label="tip")
+    axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+    spans = [np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())]
+    axes.set_box_aspect(spans, zoom=0.9)  # one scale along all axes, and room for the labels
+    axes.locator_params(nbins=4)
+    axes.legend(loc="upper left", bbox_to_anchor=(-0.1, 1.0))

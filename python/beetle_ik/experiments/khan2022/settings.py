@@ -1,0 +1,97 @@
+"""What the paper sets, and what we had to choose because it does not.
+
+The paper states the paths, 50 s, lambda = 0.1, k = -10, alpha = 10 and the home position as the start. It does not
+state the time step, the times of the strokes of the M, the radii of the star, or c1.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+import beetle_ik as bik
+
+Array = NDArray[np.float64]
+
+IIWA = bik.Robot.named("iiwa14")
+HOME = np.zeros(7)
+DURATION = 50.0  # s, section 4
+DT = 1e-3  # s
+LATE = slice(40_000, None)  # rows of 40 to 50 s
+ARRIVED = 1e-3  # m^2: where "approaches zero" is taken to begin
+
+PUBLISHED = bik.ZNNBAS(gain=10.0, antenna_length=0.1, delay_steps=10)  # Algorithm 1, its gain with the sign of eq. (14)
+ADAPTIVE = bik.ZNNBAS(gain=100.0, c1=0.3)  # eq. (16)
+FAST = bik.ZNNBAS(gain=300.0, c1=0.3)
+
+POSITION_LIMITS = bik.Limits(lower=IIWA.lower, upper=IIWA.upper)
+
+M = bik.paths.letter_m((0.1, 0.4, 0.3), DURATION, width=0.4, height=0.4)  # eq. (19), strokes of equal time
+VERTICES = np.array([[0.1, 0.2, 0.1], [0.1, 0.2, 0.5], [0.1, 0.4, 0.3], [0.1, 0.6, 0.5], [0.1, 0.6, 0.1]])
+_CENTER = (0.1, 0.3, 0.2)  # of the star, eq. (20)
+_LARGE = (0.10, 0.06, 0.10)  # R, r and d (m) of a star of a size to look at
+_SMALL = (0.04, 0.024, 0.04)  # of one that the arm can follow within its limits
+
+
+def _star(radii: tuple[float, float, float]) -> bik.Path:
+    outer, inner, distance = radii
+    return bik.paths.hypotrochoid(_CENTER, DURATION, outer_radius=outer, inner_radius=inner, distance=distance)
+
+
+STAR = _star(_LARGE)
+SMALL_STAR = _star(_SMALL)
+
+
+def star_as_printed(t: float) -> Array:
+    """Eq. (20) to the letter: with a = (0, 1, 0) and b = (0, 0, 1), b_y and a_z are zero."""
+    outer, inner, distance = _LARGE
+    arm, u = outer - inner, 6.0 * np.pi * t / DURATION
+    x, y, z = _CENTER
+    return np.array([x, y + arm * np.cos(u), z - distance * np.sin(arm / inner * u)])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """A track without a model, seen by someone who has one."""
+
+    result: bik.ModelFreeResult
+
+    @property
+    def time(self) -> Array:
+        """S."""
+        return self.result.time
+
+    @cached_property
+    def tip(self) -> Array:
+        """Where the tip would be at theta (k, 3) (m): what the paper's figures must show."""
+        return np.asarray(IIWA.fk(self.result.q)[:, :3, 3])
+
+    @cached_property
+    def h(self) -> Array:
+        """Eq. (12) at theta (k,) (m^2)."""
+        return np.asarray(((self.tip - self.result.reference) ** 2).sum(axis=1))
+
+    @property
+    def sent_h(self) -> Array:
+        """The same at theta', where the arm is sent and stands (k,) (m^2)."""
+        return self.result.position_error**2
+
+    @property
+    def late_h(self) -> float:
+        """Mean from 40 to 50 s (m^2)."""
+        return float(self.h[LATE].mean())
+
+    @property
+    def arrival(self) -> float:
+        """When h first falls below 1e-3 m^2 (s); infinite if never."""
+        below = np.flatnonzero(self.h < ARRIVED)
+        return float(self.time[below[0]]) if len(below) else np.inf
+
+
+def follow(
+    path: bik.Path, controller: bik.ZNNBAS, *, seed: int, limits: bik.Limits | None = None, dt: float = DT
+) -> Run:
+    """From home along `path` on the exact arm: it is its own plant, and the controller knows nothing of it."""
+    plant = bik.KinematicPlant(IIWA)
+    return Run(result=bik.track_model_free(plant, path, HOME, dt=dt, controller=controller, limits=limits, seed=seed))

@@ -1,0 +1,145 @@
+"""One joint with a velocity servo, and the three controllers that the paper compares with: our own baselines.
+
+The paper gives neither plant nor gains, so that nothing of its Figure 8 can be met by number. All three drive the same
+plant, and the same disturbance acts on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import BeeColony, Genetic, Stop, minimize
+
+_Array = NDArray[np.float64]
+
+DT = 1e-3  # s
+TIME_CONSTANT = 0.05  # s, of the servo
+MOST = 2.0  # rad/s, of the command
+DISTURBANCE = 0.05  # rad/s, amplitude; 3 rad/s
+CENTRES = np.array([(q, qd) for q in (-0.5, 0.0, 0.5) for qd in (-0.8, 0.0, 0.8)])
+WIDTH = 0.45
+ADAPTATION = 200.0  # 1/s^2, of the network's weights while it runs
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a joint is to do: positions and velocities at the steps (rad, rad/s)."""
+
+    time: _Array
+    q: _Array
+    qd: _Array
+
+
+def paper_motion(duration: float) -> Motion:
+    """Joints 1 and 2 of the paper: 0.5 cos(pi t / 2)."""
+    time = np.arange(0.0, duration, DT)
+    return Motion(time, 0.5 * np.cos(np.pi / 2 * time), -np.pi / 4 * np.sin(np.pi / 2 * time))
+
+
+@dataclass(frozen=True)
+class Gains:
+    """Of a PID controller."""
+
+    proportional: float = 20.0
+    integral: float = 10.0
+    derivative: float = 0.0
+
+
+def features(motion: Motion) -> _Array:
+    """Gaussian radial basis functions of the wanted position and velocity: (steps, 9)."""
+    wanted = np.stack((motion.q, motion.qd), axis=1)[:, None, :]
+    return np.asarray(np.exp(-np.sum((wanted - CENTRES) ** 2, axis=2) / (2 * WIDTH**2)))
+
+
+def simulate(
+    motion: Motion, gains: Gains, *, weights: _Array | None = None, basis: _Array | None = None, adaptation: float = 0.0
+) -> _Array:
+    """Errors (steps,) (rad) of a PID, and where there are `weights` of a network that is added to it and adapts.
+
+    Plant: q' = v, T v' = -v + u + d, |u| bounded, by Euler steps; it begins at the wanted position at rest.
+    """
+    q, v, sum_of_errors, before = float(motion.q[0]), 0.0, 0.0, 0.0
+    errors = np.empty(len(motion.time))
+    network = None if weights is None else weights.copy()
+    disturbance = DISTURBANCE * np.sin(3.0 * motion.time)
+    for i in range(len(motion.time)):
+        error = motion.q[i] - q
+        errors[i] = error
+        sum_of_errors += DT * error
+        u = gains.proportional * error + gains.integral * sum_of_errors + gains.derivative * (error - before) / DT
+        before = error
+        if network is not None and basis is not None:
+            u += network @ basis[i]
+            network += DT * adaptation * error * basis[i]
+        u = min(max(u, -MOST), MOST)
+        v += DT / TIME_CONSTANT * (u + disturbance[i] - v)
+        q += DT * v
+    return errors
+
+
+def pid(motion: Motion, _short: bool, _seed: int) -> _Array:
+    """A PID by hand."""
+    return simulate(motion, Gains())
+
+
+def bee_pid(motion: Motion, short: bool, seed: int) -> _Array:
+    """A PID whose gains an artificial bee colony has tuned, on the first two seconds."""
+    trial = _beginning(motion)
+
+    def cost(gains: _Array) -> float:
+        return float(np.sqrt(np.mean(simulate(trial, Gains(*gains)) ** 2)))
+
+    found = _least(cost, [0.0] * 3, [60.0, 120.0, 2.0], BeeColony(), 60 if short else 400, seed)
+    return simulate(motion, Gains(*found))
+
+
+def genetic_network(motion: Motion, short: bool, seed: int) -> _Array:
+    """A PID and a radial-basis network: weights by a genetic algorithm, then adapted while it runs."""
+    trial, gains = _beginning(motion), Gains()
+    basis = features(trial)
+
+    def cost(weights: _Array) -> float:
+        return float(np.sqrt(np.mean(simulate(trial, gains, weights=weights, basis=basis, adaptation=ADAPTATION) ** 2)))
+
+    size = len(CENTRES)
+    found = _least(cost, [-1.0] * size, [1.0] * size, Genetic(), 60 if short else 300, seed)
+    return simulate(motion, gains, weights=found, basis=features(motion), adaptation=ADAPTATION)
+
+
+CONTROLLERS: dict[str, Callable[[Motion, bool, int], _Array]] = {
+    "PID": pid,
+    "artificial bee colony": bee_pid,
+    "GA-RBF": genetic_network,
+}
+
+
+def _beginning(motion: Motion) -> Motion:
+    """The first two seconds: what is tuned on."""
+    steps = min(len(motion.time), round(2.0 / DT))
+    return Motion(motion.time[:steps], motion.q[:steps], motion.qd[:steps])
+
+
+def _least(
+    cost: Callable[[_Array], float],
+    lower: list[float],
+    upper: list[float],
+    solver: BeeColony | Genetic,
+    evaluations: int,
+    seed: int,
+) -> _Array:
+    # From no network at all, or from the gains of the PID by hand: what is tuned is never worse than that.
+    begin = [Gains().proportional, Gains().integral, Gains().derivative] if len(lower) == 3 else np.zeros(len(lower))
+    stop = Stop(max_evaluations=evaluations)
+    return np.array(minimize(cost, lower, upper, solver=solver, start=begin, stop=stop, seed=seed).x)
+
+
+def settled(errors: _Array, band: float = 2e-3) -> float:
+    """When the error came into `band` (rad) for good (s); NaN if it did not."""
+    outside = np.flatnonzero(np.abs(errors) > band)
+    if len(outside) == 0:
+        return 0.0
+    return float("nan") if outside[-1] == len(errors) - 1 else (outside[-1] + 1) * DT

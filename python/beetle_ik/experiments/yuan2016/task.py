@@ -1,0 +1,74 @@
+"""The paper's robot, its targets, and the solvers that are sent to them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+import beetle_ik as bik
+
+from .published import BUDGET, MOTIONS, ROTATION, START, TARGETS, Array
+
+ROBOT = bik.Robot.named("kr210_yuan2016")
+TOLERANCE = 1e-4  # m and rad
+
+
+def home() -> Array:
+    """The pose of motion 0, to whose orientation the last motion returns: eq. (22) does not hold there."""
+    return ROBOT.fk(np.radians(START))
+
+
+def target(motion: int, position: Sequence[float] | Array | None = None) -> Array:
+    """The pose (4, 4) that a motion, by its number from 0, leads to."""
+    pose = np.eye(4)
+    pose[:3, :3] = home()[:3, :3] if motion == len(MOTIONS) - 1 else ROTATION
+    pose[:3, 3] = TARGETS[motion] if position is None else position
+    return pose
+
+
+def error(q: Array, goal: Array) -> float:
+    """E of eq. (11)."""
+    return float(0.5 * np.sum((goal - ROBOT.fk(q)) ** 2))
+
+
+def reach(goal: Array, start: Array, solver: bik.APPS, *, budget: int = BUDGET) -> bik.Solution:
+    """Send APPS from `start` (rad) to `goal`; more than its threshold asks is not needed to count as solved."""
+    return bik.solve(
+        ROBOT,
+        goal,
+        start=start,
+        solver=solver,
+        position_tolerance=TOLERANCE,
+        rotation_tolerance=TOLERANCE,
+        stop=bik.Stop(max_iterations=budget, max_evaluations=2 * budget),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion:
+    """One motion as APPS makes it."""
+
+    name: str
+    goal: Array
+    """(4, 4)"""
+    start: Array
+    """rad"""
+    solution: bik.Solution
+
+    @property
+    def rounded(self) -> Array:
+        """R_2: the angles to 0.01 degrees, as sent to the robot."""
+        rounded: Array = np.degrees(self.solution.q).round(2)
+        return rounded
+
+
+def run_all(solver: bik.APPS) -> list[Motion]:
+    """All motions, each from where the robot stands after the last."""
+    start = START
+    motions = []
+    for i, name in enumerate(MOTIONS):
+        goal, begin = target(i), np.radians(start)
+        motion = Motion(name=name, goal=goal, start=begin, solution=reach(goal, begin, solver))
+        motions.append(motion)
+        start = motion.rounded
+    return motions

@@ -1,0 +1,288 @@
+"""A simulated arm to try controllers on: MuJoCo, position servos, gravity, and a sensor at the tip.
+
+It needs the extra `sim`. Only the kinematics is the robot's own: descriptions without masses or meshes will
+do, since every link is a rod of a stated mass.
+
+    from beetle_ik.sim import MujocoPlant
+
+    plant = MujocoPlant.from_urdf("iiwa14.urdf", noise=1e-4)
+    controller = bik.BroydenBAS(max_evaluations_per_step=1)
+    result = bik.track_model_free(plant, path, start, dt=plant.dt, controller=controller)
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+from xml.etree.ElementTree import Element, SubElement, tostring
+
+import numpy as np
+
+from ._core import BeetleIkError, InvalidInputError, Robot
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from numpy.typing import ArrayLike, NDArray
+
+_TIMESTEP = 1e-3  # s, of the simulation
+_RADIUS = 0.035  # m, of the rods
+_SHORTEST = 1e-3  # m: a rod is no shorter
+_SAME = 1e-9  # m and rad: how exactly the simulated arm must stand where the robot does
+_COLOURS = ("0.90 0.62 0.00 1", "0.75 0.75 0.78 1")
+
+
+class MujocoPlant:
+    """An arm in MuJoCo that is moved by position servos, and a sensor that says where its tip is.
+
+    A servo gives way under gravity, so the arm does not come to rest where it is sent: that, besides errors of its
+    model, is what a controller without a model has to get along with.
+
+    Args:
+        robot: the arm as it is, which need not be the arm as it was drawn.
+        dt: time from a command to its measurement (s).
+        stiffness: of the servos (N m/rad, N/m).
+        mass: of the arm (kg), shared out to the links by their lengths.
+        gravity: m/s^2, downwards.
+        noise: standard deviation of the sensor on each axis (m).
+        seed: of the noise.
+
+    Raises:
+        BeetleIkError: MuJoCo is not installed.
+        InvalidInputError: a number out of range, or a robot with joints that move several elements.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        *,
+        dt: float = 0.2,
+        stiffness: float = 2e4,
+        mass: float = 20.0,
+        gravity: float = 9.81,
+        noise: float = 0.0,
+        seed: int = 0,
+    ) -> None:
+        """At rest at zero, or at the limit nearest to it."""
+        for name, value in (("dt", dt), ("stiffness", stiffness), ("mass", mass)):
+            if not (np.isfinite(value) and value > 0.0):
+                raise InvalidInputError(f"{name} must be positive and finite, got {value}")
+        if not (np.isfinite(noise) and noise >= 0.0):
+            raise InvalidInputError(f"noise must be zero or more and finite, got {noise}")
+        self._mujoco = _mujoco()
+        self.robot = robot
+        self.dt = dt
+        self.noise = noise
+        self._random = np.random.default_rng(seed)
+        self._model = self._mujoco.MjModel.from_xml_string(_description(robot, stiffness, mass, gravity))
+        self._data = self._mujoco.MjData(self._model)
+        self._check()
+
+    @classmethod
+    def from_urdf(
+        cls, path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None, **options: Any
+    ) -> MujocoPlant:
+        """The arm of a URDF; its meshes, if it names any, are not looked for.
+
+        Args:
+            path_or_xml: file, or text that contains "<".
+            base: link in whose frame everything is; None takes the root.
+            tip: link that is moved; None takes the only leaf.
+            **options: those of the class.
+        """
+        return cls(Robot.from_urdf(path_or_xml, base=base, tip=tip), **options)
+
+    def reset(self, q: ArrayLike) -> None:
+        """Stand at rest at `q` (n,), and let the arm settle under gravity."""
+        command = self._command(q)
+        self._mujoco.mj_resetData(self._model, self._data)
+        self._data.qpos[:] = command
+        self._data.ctrl[:] = command
+        self._run(2.0)
+
+    def move(self, q: ArrayLike) -> NDArray[np.float64]:
+        """Send the servos to `q` (n,), wait for `dt`, and measure the tip (3,) (m)."""
+        self._data.ctrl[:] = self._command(q)
+        self._run(self.dt)
+        return self.tip + self.noise * self._random.standard_normal(3)
+
+    @property
+    def tip(self) -> NDArray[np.float64]:
+        """Where the tip is (3,) (m), without noise."""
+        return np.array(self._data.site_xpos[0])
+
+    @property
+    def q(self) -> NDArray[np.float64]:
+        """Where the joints are (n,) (rad, m), which is not quite where they were sent."""
+        return np.array(self._data.qpos)
+
+    @property
+    def time(self) -> float:
+        """Simulated time (s) since the last reset."""
+        return float(self._data.time)
+
+    def picture(
+        self,
+        *,
+        width: int = 640,
+        height: int = 480,
+        azimuth: float = -40.0,
+        elevation: float = -35.0,
+        distance: float | None = None,
+        look_at: ArrayLike | None = None,
+        trail: ArrayLike = (),
+        target: ArrayLike = (),
+    ) -> NDArray[np.uint8]:
+        """The arm as it stands, (height, width, 3), drawn without a screen.
+
+        Args:
+            width: pixels.
+            height: pixels.
+            azimuth: direction to look in (degrees about the vertical).
+            elevation: of that direction (degrees); negative looks down.
+            distance: from where to look (m); None: far enough to see all of the arm.
+            look_at: the point in the middle (3,) (m); None: that of the arm.
+            trail: points (k, 3) where the tip was, drawn in blue.
+            target: points (k, 3) of the path it follows, drawn in red.
+        """
+        mujoco = self._mujoco
+        camera = mujoco.MjvCamera()
+        camera.azimuth, camera.elevation = azimuth, elevation
+        reach = np.linalg.norm(self._model.body_pos, axis=1).sum() + np.linalg.norm(self._model.site_pos[0])
+        camera.distance = 1.5 * reach if distance is None else distance
+        camera.lookat[:] = self._data.xpos[1:].mean(axis=0) if look_at is None else np.asarray(look_at, dtype=float)
+        with mujoco.Renderer(self._model, height, width) as renderer:
+            renderer.update_scene(self._data, camera)
+            for points, colour in ((target, (0.84, 0.37, 0.0, 1.0)), (trail, (0.0, 0.45, 0.7, 1.0))):
+                for point in np.asarray(points, dtype=float).reshape(-1, 3):
+                    self._draw_point(renderer.scene, point, colour)
+            pixels: NDArray[np.uint8] = renderer.render()
+        return pixels
+
+    def _draw_point(self, scene: Any, point: NDArray[np.float64], colour: tuple[float, ...]) -> None:
+        if scene.ngeom >= scene.maxgeom:
+            return
+        sphere = self._mujoco.mjtGeom.mjGEOM_SPHERE
+        size, turn = np.full(3, 0.008), np.eye(3).ravel()
+        self._mujoco.mjv_initGeom(scene.geoms[scene.ngeom], sphere, size, point, turn, np.array(colour, np.float32))
+        scene.ngeom += 1
+
+    def _command(self, q: ArrayLike) -> NDArray[np.float64]:
+        command = np.asarray(q, dtype=float)
+        if command.shape != (self.robot.dof,):
+            raise InvalidInputError(f"q of the plant: expected shape ({self.robot.dof},), got {command.shape}")
+        return command
+
+    def _run(self, seconds: float) -> None:
+        self._mujoco.mj_step(self._model, self._data, max(1, round(seconds / _TIMESTEP)))
+        # Where the joints are now, the tip's position follows only in the next step.
+        self._mujoco.mj_kinematics(self._model, self._data)
+
+    def _check(self) -> None:
+        """The simulated chain is the robot's: seen at two configurations that have nothing in common."""
+        for q in self.robot.random_configurations(2, seed=1):
+            self._data.qpos[:] = q
+            self._mujoco.mj_kinematics(self._model, self._data)
+            if not np.allclose(self.tip, self.robot.fk(q)[:3, 3], rtol=0.0, atol=_SAME):
+                raise InvalidInputError(
+                    f"robot '{self.robot.name}' has joints that move several elements, which is not simulated"
+                )
+        self.reset(np.clip(np.zeros(self.robot.dof), self.robot.lower, self.robot.upper))
+
+
+def _mujoco() -> ModuleType:
+    # Without a screen only EGL can draw; MuJoCo asks when it is loaded.
+    if sys.platform == "linux" and not os.environ.get("DISPLAY"):
+        os.environ.setdefault("MUJOCO_GL", "egl")
+    try:
+        return import_module("mujoco")
+    except ImportError as error:
+        raise BeetleIkError("simulation needs the extra 'sim': pip install 'beetle-ik[sim]'") from error
+
+
+def _description(robot: Robot, stiffness: float, mass: float, gravity: float) -> str:
+    """The robot in MuJoCo's own format: a rod from each joint to the next, all frames parallel to the base at q = 0."""
+    kinds, axes, anchors, tip = _joints(robot)
+    ends = [*anchors[1:], tip]
+    lengths = [max(float(np.linalg.norm(end - start)), _SHORTEST) for start, end in zip(anchors, ends, strict=True)]
+    root = Element("mujoco", model=robot.name)
+    SubElement(root, "compiler", angle="radian")
+    SubElement(root, "option", timestep=str(_TIMESTEP), gravity=f"0 0 {-gravity}", integrator="implicitfast")
+    visual = SubElement(root, "visual")
+    SubElement(visual, "global", offwidth="1920", offheight="1080")
+    SubElement(visual, "map", znear="0.02", zfar="12")
+    SubElement(visual, "headlight", ambient="0.45 0.45 0.45", diffuse="0.5 0.5 0.5")
+    _add_scene(root)
+    body = _add_world(root, anchors[0])
+    actuators = SubElement(root, "actuator")
+    origin = np.zeros(3)
+    for i, (kind, axis, anchor, end) in enumerate(zip(kinds, axes, anchors, ends, strict=True)):
+        body = SubElement(body, "body", pos=_text(anchor - origin))
+        origin = anchor
+        # Reflected inertia of the gears, and damping that lets the servo arrive without overshooting.
+        inertia = 0.1
+        lever = float(np.linalg.norm(tip - anchor)) + 0.1
+        critical = 2.0 * np.sqrt(stiffness * (inertia + mass * lever**2 / 3.0))
+        SubElement(
+            body, "joint", name=f"joint_{i}", type="slide" if kind == "prismatic" else "hinge", axis=_text(axis),
+            armature=str(inertia), damping=str(critical),
+        )  # fmt: skip
+        share = mass * lengths[i] / sum(lengths)
+        _add_rod(body, end - anchor, share, _COLOURS[i % 2])
+        SubElement(actuators, "position", joint=f"joint_{i}", kp=str(stiffness))
+    SubElement(body, "site", name="tip", pos=_text(tip - origin), size="0.012", rgba="0.84 0.37 0 1")
+    return tostring(root, encoding="unicode")
+
+
+def _joints(
+    robot: Robot,
+) -> tuple[list[str], list[NDArray[np.float64]], list[NDArray[np.float64]], NDArray[np.float64]]:
+    """Kinds, axes and points on them, and the tip, at q = 0: from the Jacobian, which knows of no format of files."""
+    zero = np.zeros(robot.dof)
+    jacobian, tip = robot.jacobian(zero), robot.fk(zero)[:3, 3]
+    origins = robot.link_poses(zero)[:, :3, 3]
+    axes, anchors = [], []
+    for i, kind in enumerate(robot.joint_kinds):
+        linear, angular = jacobian[:3, i], jacobian[3:, i]
+        near = origins[min(i + 1, len(origins) - 1)]
+        if kind == "prismatic":
+            axes.append(linear / np.linalg.norm(linear))
+            anchors.append(near)
+            continue
+        axis = angular / np.linalg.norm(angular)
+        on_axis = tip - np.cross(linear, axis)  # v = w x (tip - p), solved for p
+        axes.append(axis)
+        anchors.append(on_axis + axis * (axis @ (near - on_axis)))
+    return robot.joint_kinds, axes, anchors, tip
+
+
+def _add_scene(root: Element) -> None:
+    assets = SubElement(root, "asset")
+    SubElement(assets, "texture", type="skybox", builtin="gradient", rgb1="0.95 0.97 1", rgb2="0.75 0.8 0.88",
+               width="64", height="64")  # fmt: skip
+    SubElement(assets, "texture", name="floor", type="2d", builtin="checker", rgb1="0.86 0.86 0.86",
+               rgb2="0.78 0.78 0.78", width="128", height="128")  # fmt: skip
+    SubElement(assets, "material", name="floor", texture="floor", texrepeat="8 8")
+
+
+def _add_world(root: Element, first: NDArray[np.float64]) -> Element:
+    world = SubElement(root, "worldbody")
+    SubElement(world, "light", pos="1 1 3", dir="-0.3 -0.3 -1", directional="true", castshadow="false")
+    SubElement(world, "geom", type="plane", size="2 2 0.1", material="floor", contype="0", conaffinity="0")
+    if np.linalg.norm(first) > _SHORTEST:
+        _add_rod(world, first, 1.0, _COLOURS[1])
+    return world
+
+
+def _add_rod(body: Element, end: NDArray[np.float64], mass: float, colour: str) -> None:
+    reach = end if np.linalg.norm(end) >= _SHORTEST else np.array([0.0, 0.0, _SHORTEST])
+    SubElement(
+        body, "geom", type="capsule", size=str(_RADIUS), fromto=f"0 0 0 {_text(reach)}", mass=str(max(mass, 0.05)),
+        contype="0", conaffinity="0", rgba=colour,
+    )  # fmt: skip
+
+
+def _text(vector: NDArray[np.float64]) -> str:
+    return " ".join(repr(float(value)) for value in vector)

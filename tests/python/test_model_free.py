@@ -1,0 +1,281 @@
+"""Tracking without a model, from Python: plants of all kinds, sessions, and what goes wrong."""
+
+import pickle
+from collections.abc import Callable
+from typing import Any
+
+import matplotlib.figure
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import beetle_ik as bik
+
+Array = NDArray[np.float64]
+
+ARM = bik.Robot.named("iiwa14")
+START = [0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.6179441060, 0.0]
+CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
+SHORT = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=2.0)
+LIMITS = bik.Limits(lower=ARM.lower, upper=ARM.upper, velocity=2.0)
+
+
+def tip(q: Array) -> Array:
+    return np.asarray(ARM.fk(q)[:3, 3])
+
+
+class Mover:
+    def __init__(self) -> None:
+        self.calls = 0
+
+    def move(self, q: Array) -> tuple[float, float, float]:
+        self.calls += 1
+        x, y, z = tip(q)
+        return float(x), float(y), float(z)
+
+
+def track(plant: Any = tip, path: bik.Path = CIRCLE, start: Any = START, **options: Any) -> bik.ModelFreeResult:
+    return bik.track_model_free(plant, path, start, **{"dt": 0.2, **options})
+
+
+def test_all_kinds_of_plants_give_the_same_track() -> None:
+    mover = Mover()
+    native = track(bik.KinematicPlant(ARM), limits=LIMITS)
+    assert native.success, native.message
+    assert len(native) == 151
+    assert native.evaluations <= 700
+    assert native.max_violation == 0.0
+    np.testing.assert_allclose(native.position, native.reference, atol=1e-9)
+    np.testing.assert_array_equal(native.command, native.q)
+    np.testing.assert_allclose(native.qd[1:], np.diff(native.q, axis=0) / 0.2)
+    for plant in (tip, mover, lambda q: list(tip(q)), lambda q: np.float32(tip(q))):
+        result = track(plant, limits=LIMITS, position_tolerance=1e-6)
+        assert result.success, result.message
+    assert mover.calls == track(mover, limits=LIMITS, position_tolerance=1e-6).evaluations
+
+
+def test_a_wrong_model_and_a_noisy_sensor() -> None:
+    wrong = ARM.with_errors(length=0.02, angle=np.radians(2.0), seed=4)
+    assert np.linalg.norm(wrong.fk(START)[:3, 3] - tip(np.array(START))) > 1e-3
+    plant = bik.KinematicPlant(wrong, noise=1e-4, seed=2)
+    result = track(plant, limits=LIMITS)
+    error = np.linalg.norm(wrong.fk(result.q)[20:150, :3, 3] - result.reference[20:150], axis=1)
+    assert np.sqrt((error**2).mean()) <= 3e-4 * np.sqrt(3.0)
+    np.testing.assert_array_equal(track(plant, limits=LIMITS).q, result.q)  # every run begins the noise anew
+    assert not np.array_equal(plant.move(START), plant.move(START))
+
+
+def test_znnbas_measures_once_a_step() -> None:
+    controller = bik.ZNNBAS(gain=10, antenna_length=0.1, delay_steps=10)
+    result = track(bik.KinematicPlant(ARM), SHORT, dt=1e-3, controller=controller, position_tolerance=0.3, seed=3)
+    assert set(result.step_evaluations.tolist()) == {1}
+    assert result.success, result.message
+    assert 1e-3 < np.abs(result.command - result.q).max() <= 0.1 + 0.01
+    again = track(bik.KinematicPlant(ARM), SHORT, dt=1e-3, controller=controller, position_tolerance=0.3, seed=3)
+    np.testing.assert_array_equal(again.command, result.command)
+
+
+def test_dt_that_does_not_divide_the_duration_ends_at_the_paths_end() -> None:
+    result = track(dt=0.7, path=SHORT, position_tolerance=1e-6)
+    np.testing.assert_allclose(result.time, [0.0, 0.7, 1.4, 2.1])
+    np.testing.assert_allclose(result.reference[-1], SHORT.position(2.0))
+
+
+@pytest.mark.parametrize("controller", [bik.BroydenBAS(), bik.ZNNBAS(), bik.BroydenBAS(max_evaluations_per_step=1)])
+def test_a_session_gives_the_same_commands(controller: bik.BroydenBAS | bik.ZNNBAS) -> None:
+    result = track(path=SHORT, controller=controller, limits=LIMITS, seed=7)
+    session = controller.session(START, dt=0.2, limits=LIMITS, seed=7)
+    np.testing.assert_array_equal(session.limits.velocity, 2.0)
+    for row, target in enumerate(result.reference):
+        step = None
+        while step is None:
+            step = session.observe(tip(session.command(target)))
+        np.testing.assert_array_equal(step.q, result.q[row])
+        assert step.evaluations == result.step_evaluations[row]
+        assert session.time == pytest.approx(result.time[row])
+    assert repr(session) == "<ControlSession of 7 joints at t = 2 s, dt = 0.2 s>"
+
+
+def after(calls: int, then: Callable[[], Any]) -> Callable[[Array], Any]:
+    """A plant that works for so many calls."""
+    made = 0
+
+    def move(q: Array) -> Any:
+        nonlocal made
+        made += 1
+        return tip(q) if made <= calls else then()
+
+    return move
+
+
+def broken() -> Array:
+    raise RuntimeError("the arm is off")
+
+
+@pytest.mark.parametrize(
+    ("then", "reason"),
+    [
+        (broken, "the plant raised RuntimeError: the arm is off"),
+        (lambda: None, "the plant returned None, not a position (3,)"),
+        (lambda: "here", "the plant returned 'here', not a position (3,)"),
+        (lambda: np.zeros(2), "the plant returned shape (2,), not a position (3,)"),
+        (lambda: np.eye(4), "the plant returned shape (4, 4), not a position (3,)"),
+        (lambda: (0.0, np.nan, 0.0), "the plant returned a position that is not finite: [0.0, NaN, 0.0]"),
+    ],
+)
+def test_a_plant_that_fails_ends_the_run_with_what_was_recorded(then: Callable[[], Any], reason: str) -> None:
+    result = track(after(21, then), controller=bik.ZNNBAS())
+    assert (result.success, result.status, len(result)) == (False, bik.Status.PLANT_FAILED, 21)
+    assert result.message == f"{reason} at t = 4.2 s; the 21 rows before are recorded"
+    assert isinstance(result.exception, RuntimeError) == (then is broken)
+    # At the very start there is nothing to keep: the mistake comes out as what it is.
+    with pytest.raises((RuntimeError, bik.InvalidInputError)) as raised:
+        track(after(0, then))
+    assert reason in f"the plant raised RuntimeError: {raised.value}" or str(raised.value) == reason
+
+
+def interrupted() -> Array:
+    raise KeyboardInterrupt
+
+
+def test_an_interrupt_in_the_plant_comes_out() -> None:
+    with pytest.raises(KeyboardInterrupt):
+        track(after(30, interrupted))
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (
+            lambda: track(controller=bik.ZNNBAS(delay_steps=150)),
+            bik.InvalidInputError,
+            "delay_steps must be less than the 150 steps of the run, got 150",
+        ),
+        (
+            lambda: bik.ZNNBAS(gain=0),
+            bik.InvalidInputError,
+            "gain must be finite and not zero (positive to converge), got 0",
+        ),
+        (
+            lambda: bik.ZNNBAS(antenna_length=0.1, c1=0.3),
+            bik.InvalidInputError,
+            "antenna_length and c1 exclude each other: a constant antenna, or one of c1 sqrt(h)",
+        ),
+        (
+            lambda: track(controller=bik.ZNNBAS(antenna_length=[0.1, 0.2])),
+            bik.InvalidInputError,
+            "antenna_length: expected one number, or 7 (one per joint), got 2",
+        ),
+        (
+            lambda: bik.ZNNBAS(delay="late"),
+            bik.InvalidInputError,
+            "delay must be one of 'sliding', 'held', got 'late'",
+        ),
+        (
+            lambda: bik.ZNNBAS(accept="never"),
+            bik.InvalidInputError,
+            "accept must be one of 'always', 'improving', got 'never'",
+        ),
+        (
+            lambda: bik.BroydenBAS(max_evaluations_per_step=0),
+            bik.InvalidInputError,
+            "max_evaluations_per_step must be at least 1, got 0",
+        ),
+        (
+            lambda: track(limits=bik.Limits(upper=0.5)),
+            bik.LimitError,
+            "start: joint '0' at 0.5449219327 is outside its limits [-inf, 0.5]",
+        ),
+        (
+            lambda: track(limits=bik.Limits(acceleration=1.0)),
+            bik.UnsupportedLimit,
+            "track_model_free cannot honour acceleration limits: a controller keeps position and velocity limits; "
+            "leave it out",
+        ),
+        (
+            lambda: bik.ZNNBAS().session(START, dt=0.1, limits=bik.Limits(velocity=lambda t: t)),
+            bik.UnsupportedLimit,
+            "session cannot honour callable velocity limits: it has no end to be sampled to; give numbers or a "
+            "Sinusoid, or use track_model_free",
+        ),
+        (lambda: track(dt=0.0), bik.InvalidInputError, "dt must be positive and finite, got 0"),
+        (lambda: track(start=[]), bik.InvalidInputError, "start: expected 1 to 32 joints, got 0"),
+        (
+            lambda: track(bik.KinematicPlant(ARM), start=[0.0]),
+            bik.InvalidInputError,
+            "start of robot 'iiwa14': expected 7 joints, got 1",
+        ),
+        (
+            lambda: track(controller="znnbas"),
+            bik.InvalidInputError,
+            "controller must be BroydenBAS or ZNNBAS, got 'znnbas'",
+        ),
+        (
+            lambda: track(3),
+            bik.InvalidInputError,
+            "plant must be a KinematicPlant, a callable of q or an object with move(q), got 3",
+        ),
+        (
+            lambda: track(path=CIRCLE.with_orientation(np.eye(3))),
+            bik.InvalidInputError,
+            "path: it has orientations, which track_model_free does not follow; give positions alone",
+        ),
+        (
+            lambda: bik.KinematicPlant(ARM, noise=-1.0),
+            bik.InvalidInputError,
+            "noise must be zero or more and finite, got -1",
+        ),
+        (
+            lambda: ARM.with_errors(length=np.nan),
+            bik.InvalidInputError,
+            "length must be zero or more and finite, got NaN",
+        ),
+        (
+            lambda: bik.BroydenBAS().session(START, dt=0.1).observe((0.0, 0.0, 0.0)),
+            bik.InvalidInputError,
+            "observe: there is no command to answer; call command(target) first",
+        ),
+    ],
+)
+def test_wrong_input_is_named(call: Callable[[], Any], error: type[Exception], message: str) -> None:
+    with pytest.raises(error) as raised:
+        call()
+    assert str(raised.value) == message
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        bik.BroydenBAS(antenna_length=0.02, max_evaluations_per_step=3, sensor_delay=1),
+        bik.ZNNBAS(),
+        bik.ZNNBAS(gain=-10.0, antenna_length=0.1, delay_steps=10, delay="held", accept="improving", sensor_delay=2),
+        bik.ZNNBAS(antenna_length=[0.1, 0.2, 0.3]),
+    ],
+)
+def test_controllers_are_values(value: Any) -> None:
+    assert pickle.loads(pickle.dumps(value)) == value
+    assert eval(repr(value), {"BroydenBAS": bik.BroydenBAS, "ZNNBAS": bik.ZNNBAS}) == value
+
+
+def test_plants_are_values_too() -> None:
+    plant = bik.KinematicPlant(ARM, noise=1e-4, seed=3)
+    assert pickle.loads(pickle.dumps(plant)) == plant
+    assert plant != bik.KinematicPlant(ARM)
+    assert repr(plant) == "<KinematicPlant of 'iiwa14': noise=0.0001, seed=3>"
+
+
+def test_broyden_solves_and_tracks() -> None:
+    solution = bik.solve(ARM, ARM.fk(START), solver=bik.BroydenBAS(), start=np.array(START) + 0.1)
+    assert solution.success, solution.message
+    result = bik.track(ARM, SHORT, START, dt=0.2, solver=bik.BroydenBAS(), position_tolerance=1e-9)
+    assert result.success, result.message
+    many = bik.MultiStart(bik.BroydenBAS())
+    assert many.solver == bik.BroydenBAS()
+    assert bik.solve(ARM, (0.4, 0.3, 0.8), solver=many).success
+
+
+def test_a_run_is_drawn() -> None:
+    result = track(path=SHORT)
+    figure = result.plot()
+    assert isinstance(figure, matplotlib.figure.Figure)
+    matplotlib.pyplot.close(figure)

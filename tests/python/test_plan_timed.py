@@ -1,0 +1,83 @@
+"""Planning along a path with redundancy and timing found together, the default of `plan_along_path`."""
+
+import re
+
+import numpy as np
+import pytest
+
+import beetle_ik as bik
+
+ACCELERATION = bik.Limits(acceleration=10.0)
+FREE = bik.Limits(lower=-np.inf, upper=np.inf, velocity=np.pi, acceleration=4 * np.pi)
+
+
+def pentagram() -> np.ndarray:
+    """51 points of Wang et al. (2019)'s star about (1, 1)."""
+    angles = np.pi / 2 + 4 * np.pi * np.arange(6) / 5
+    u = np.linspace(0, 5, 51)
+    x, y = (np.interp(u, range(6), 1 + 0.5 * wave(angles)) for wave in (np.cos, np.sin))
+    return np.column_stack((x, y, 0 * u))
+
+
+def circle(poses: bool) -> np.ndarray:
+    """41 points or poses in front of a seven-joint arm."""
+    angles = np.linspace(0, 2 * np.pi, 41)
+    points = np.column_stack((0.6 + 0 * angles, 0.2 * np.cos(angles), 0.5 + 0.2 * np.sin(angles)))
+    return np.array([bik.pose(point, rpy=(0, np.pi / 2, 0)) for point in points]) if poses else points
+
+
+def test_planar_arm_is_much_faster_than_in_uniform_time() -> None:
+    plan = bik.plan_along_path(bik.Robot.planar([1, 1, 1]), pentagram(), limits=FREE)
+    assert plan.success
+    assert plan.cost == plan.trajectory.duration < 5.501 / 1.9  # the optimum in uniform time takes 5.501 s
+    assert np.all(plan.trajectory.max_velocity() <= np.pi * (1 + 1e-9))
+    assert np.all(plan.trajectory.max_acceleration() <= 4 * np.pi * (1 + 1e-9))
+
+
+@pytest.mark.parametrize("poses", [True, False])
+def test_seven_joints_follow_a_circle(poses: bool) -> None:
+    robot = bik.Robot.named("iiwa14")
+    plan = bik.plan_along_path(robot, circle(poses), limits=ACCELERATION, stop=bik.Stop(max_evaluations=300))
+    assert plan.success, plan.message
+    _, q, _, _ = plan.trajectory.sample(0.01)
+    tips = robot.fk(q)
+    radius = np.hypot(tips[:, 1, 3], tips[:, 2, 3] - 0.5)
+    np.testing.assert_allclose(radius, 0.2, atol=0.01)
+    np.testing.assert_allclose(tips[:, 0, 3], 0.6, atol=0.01)
+    assert np.all((robot.lower <= q) & (q <= robot.upper))
+    if poses:
+        np.testing.assert_allclose(tips[:, :3, :3], np.broadcast_to(circle(True)[0, :3, :3], (len(q), 3, 3)), atol=0.03)
+
+
+def test_same_seed_same_bits_and_a_given_start_is_kept() -> None:
+    robot = bik.Robot.named("iiwa14")
+    start = bik.solve(robot, circle(False)[0]).q
+    plans = [
+        bik.plan_along_path(
+            robot, circle(False), start_q=start, limits=ACCELERATION, seed=3, stop=bik.Stop(max_evaluations=60)
+        )
+        for _ in range(2)
+    ]
+    np.testing.assert_array_equal(plans[0].trajectory.coefficients, plans[1].trajectory.coefficients)
+    np.testing.assert_array_equal(plans[0].trajectory.q[0], start)
+
+
+def test_an_arm_without_redundancy_is_timed() -> None:
+    plan = bik.plan_along_path(bik.Robot.named("ur5e"), circle(True), limits=ACCELERATION)
+    assert plan.success, plan.message
+    assert plan.evaluations == 1
+
+
+def test_mistakes_are_named() -> None:
+    robot = bik.Robot.named("iiwa14")
+    message = (
+        "method=\"timed\" cannot honour infinite acceleration limits: joint 'joint_1' could start at any speed; give "
+        "acceleration limits"
+    )
+    with pytest.raises(bik.UnsupportedLimit, match=f"^{re.escape(message)}$"):
+        bik.plan_along_path(robot, circle(False))
+    far = circle(False) + [3.0, 0.0, 0.0]
+    with pytest.raises(bik.InvalidInputError, match=r"^point 0 of the path cannot be reached: the nearest configuration"):
+        bik.plan_along_path(robot, far, limits=ACCELERATION)
+    with pytest.raises(bik.InfeasibleError, match=r"^infeasible: start_q has the tip .* m from the path's first point"):
+        bik.plan_along_path(robot, circle(False), start_q=np.full(7, 0.5), limits=ACCELERATION)

@@ -1,0 +1,62 @@
+"""The rivals of the BAS paper in its setting: the circle of the iiwa under limits, to a millimetre in every step.
+
+Each is tuned over a small grid of populations (and, for PSO and GA, of weights and decays) for the fewest evaluations;
+each begins in every tick with the arm's configuration and uniform draws in the whole box that the limits leave.
+"""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beetle_ik as bik
+
+IIWA = bik.Robot.named("iiwa14")
+ON_CIRCLE = [0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.6179441060, 0.0]
+LIMITS = bik.Limits(velocity=bik.Sinusoid(mean=2.0, amplitude=0.004, angular_frequency=1.0))
+CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
+BEETLE = bik.BAS(variant="chain", explorations=5)
+RIVALS = [
+    bik.PSO(population=6, form="inertia", inertia=0.6, c1=1.7, c2=1.7),
+    bik.Firefly(population=6),
+    bik.QPSO(population=20),
+    bik.Genetic(population=20, mutation_decay=0.9),
+]
+
+
+def evaluations_per_step(solver: Any) -> float:
+    tracks = [
+        bik.track(IIWA, CIRCLE, ON_CIRCLE, dt=0.2, solver=solver, limits=LIMITS, position_tolerance=1e-3, seed=seed)
+        for seed in (1, 2, 3)
+    ]
+    for track in tracks:
+        assert np.all(track.step_status == bik.Status.SOLVED), track.message
+        assert track.max_violation <= 1e-12
+    return float(np.mean([track.step_evaluations[1:].mean() for track in tracks]))
+
+
+@pytest.mark.parametrize("rival", RIVALS, ids=repr)
+def test_a_beetle_needs_a_third_of_the_evaluations_or_fewer(rival: Any) -> None:
+    assert 3.0 * evaluations_per_step(BEETLE) < evaluations_per_step(rival)
+
+
+@pytest.mark.parametrize("solver", [*RIVALS, bik.BeeColony(), bik.BeetleSwarm(), bik.DifferentialEvolution()], ids=repr)
+def test_swarms_keep_the_limits_of_a_path_they_cannot_follow(solver: Any) -> None:
+    limits = bik.Limits(velocity=0.05)
+    circle = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=2.0)
+    track = bik.track(IIWA, circle, ON_CIRCLE, dt=0.2, solver=solver, limits=limits, position_tolerance=1e-3)
+    assert not track.success
+    assert track.max_violation <= 1e-12
+
+
+@pytest.mark.parametrize("swarm", [*RIVALS, bik.BeetleSwarm(), bik.DifferentialEvolution()], ids=repr)
+def test_swarms_solve_for_positions(swarm: Any) -> None:
+    found = bik.solve(IIWA, [0.4, 0.3, 0.8], solver=bik.MultiStart(swarm), position_tolerance=1e-4)
+    assert found.success, found.message
+
+
+def test_a_solve_may_stop_at_a_value() -> None:
+    found = bik.solve(IIWA, [0.4, 0.3, 0.8], start=[0.1] * 7, solver=bik.PSO(), stop=bik.Stop(value_below=1e-2))
+    assert found.status == bik.Status.IMPROVED
+    assert not found.success
+    assert found.message.startswith("below the value asked for, ")

@@ -1,0 +1,256 @@
+"""What of a target matters, what the freedom is used for, and which solution is returned."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+from mistakes import Invalid, Limit, assert_told, told, with_entry
+
+import beetle_ik as bik
+from beetle_ik import goals, tasks
+
+IIWA = bik.Robot.named("iiwa14")
+UR = bik.Robot.named("ur5e")
+Q = np.array([0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1])
+POSE = IIWA.fk(Q)
+TOOL = bik.pose([0.0, 0.05, 0.1], rpy=[0.1, 0.2, 0.3])
+TASKS = [
+    tasks.Pose(),
+    tasks.Pose(weights=[1, 1, 1, 1, 1, 0], tolerance=[1e-3, 1e-3, 1e-3, 1e-2, 1e-2, np.inf], tool=TOOL),
+    tasks.Position(weights=[1, 0, 2]),
+    tasks.Orientation(tolerance=[1e-2, 1e-3, 1e-3]),
+    tasks.Pointing(),
+    tasks.Pointing(axis=[1, 0, 1], tolerance=[1e-3, 1e-3, 1e-3, 1e-2]),
+]
+GOALS = [
+    goals.Posture(Q, weight=2.0),
+    goals.Centring(),
+    goals.Manipulability(motion="position", weight=0.5),
+]
+
+
+@pytest.mark.parametrize("value", [*TASKS, *GOALS], ids=repr)
+def test_values_copy_pickle_and_show_how_to_rebuild_them(value: tasks.Task | goals.Goal) -> None:
+    names = {"tasks": tasks, "goals": goals}
+    for same in (copy.deepcopy(value), pickle.loads(pickle.dumps(value)), eval(repr(value), names)):
+        assert same == value
+        assert type(same) is type(value)
+    assert [other == value for other in [*TASKS, *GOALS]].count(True) == 1
+
+
+def test_properties_say_what_was_given() -> None:
+    task = TASKS[1]
+    np.testing.assert_array_equal(task.weights, [1, 1, 1, 1, 1, 0])
+    np.testing.assert_array_equal(task.tolerance, [1e-3, 1e-3, 1e-3, 1e-2, 1e-2, np.inf])
+    np.testing.assert_allclose(task.tool, TOOL, atol=1e-15)
+    assert (tasks.Pose().weights, tasks.Pose().tolerance, tasks.Pose().tool) == (None, None, None)
+    np.testing.assert_array_equal(tasks.Pointing().axis, [0, 0, 1])
+    np.testing.assert_array_equal(goals.Posture(Q).posture, Q)
+    assert isinstance(task, tasks.Task)
+    assert isinstance(goals.Centring(), goals.Goal)
+
+
+def test_a_tool_may_do_part_of_a_pose() -> None:
+    found = bik.solve(IIWA, POSE, task=tasks.Pointing(tool=TOOL))
+    assert found.success, found.message
+    tip = IIWA.fk(found.q) @ TOOL
+    np.testing.assert_allclose(tip[:3, 3], POSE[:3, 3], atol=1.1e-6)
+    np.testing.assert_allclose(tip[:3, 2], POSE[:3, 2], atol=2e-6)
+    assert not np.allclose(tip[:3, 0], POSE[:3, 0], atol=1e-3)
+
+
+def test_what_was_not_asked_is_nan() -> None:
+    orientation = bik.solve(IIWA, POSE, task=tasks.Orientation())
+    assert orientation.success
+    assert np.isnan(orientation.position_error)
+    assert orientation.message.startswith("solved to ")
+    assert orientation.message.endswith(" rad")
+    position = bik.solve(IIWA, POSE, task=tasks.Position())
+    assert np.isnan(position.rotation_error)
+
+
+def test_one_batch_of_every_task_agrees_with_solve() -> None:
+    poses = IIWA.fk(IIWA.random_configurations(5, seed=3) * 0.8)
+    for task in TASKS:
+        batch = bik.solve_batch(IIWA, poses, task=task, threads=1)
+        assert batch.success.all(), batch.message
+        np.testing.assert_array_equal(batch.q[0], bik.solve(IIWA, poses[0], task=task).q)
+
+
+def test_the_nearest_solution_is_nearest() -> None:
+    start = Q + 0.1
+    nearest = bik.solve(IIWA, POSE, start=start, prefer="nearest")
+    assert nearest.success
+    assert np.linalg.norm(nearest.q - start) <= np.linalg.norm(Q - start) + 1e-6
+    batch = bik.solve_batch(IIWA, POSE[None], starts=start, prefer="nearest")
+    np.testing.assert_array_equal(batch.q[0], nearest.q)
+
+
+def test_goals_are_served() -> None:
+    posture = Q + 0.2
+    plain = bik.solve(IIWA, POSE, start=Q)
+    near = bik.solve(IIWA, POSE, start=Q, goals=goals.Posture(posture))
+    best = bik.solve(IIWA, POSE, start=Q, goals=[goals.Manipulability()])
+    assert near.success
+    assert best.success
+    assert np.linalg.norm(near.q - posture) < np.linalg.norm(plain.q - posture)
+    assert IIWA.manipulability(best.q) > IIWA.manipulability(plain.q)
+
+
+def test_a_tracker_drifts_towards_its_goal() -> None:
+    posture = Q + 0.2 * np.linalg.svd(IIWA.jacobian(Q))[2][-1]  # along the self-motion
+    tracker = bik.Tracker(IIWA, Q, dt=0.01, goals=goals.Posture(posture))
+    steps = [tracker.step(POSE) for _ in range(200)]
+    assert all(step.success for step in steps)
+    assert np.linalg.norm(tracker.q - posture) < 0.3 * np.linalg.norm(Q - posture)
+
+
+def test_a_path_is_followed_as_far_as_the_task_asks() -> None:
+    circle = bik.paths.circle(POSE[:3, 3], diameter=0.05, duration=2.0).with_orientation(POSE[:3, :3])
+    track = bik.track(IIWA, circle, dt=0.02, task=tasks.Pointing(), goals=goals.Centring())
+    assert track.success, track.message
+    assert np.nanmax(track.rotation_error) <= 1e-6
+    only = bik.track(IIWA, circle, dt=0.02, task=tasks.Position())
+    assert np.isnan(only.rotation_error).all()
+
+
+def test_all_solutions_of_a_six_joint_arm() -> None:
+    q = np.array([0.4, -1.1, 1.3, 0.2, 0.9, -0.5])
+    pose = UR.fk(q)
+    found = bik.solve_all(UR, pose, start=q)
+    assert len(found) == 8, found.message
+    assert found.success
+    assert found.status == bik.Status.SOLVED
+    assert found.miss is None
+    assert repr(found) == "<SolutionSet: 8 distinct solutions>"
+    assert found.q.shape == (8, 6)
+    assert found.evaluations > 8
+    np.testing.assert_allclose(UR.fk(found.q), np.broadcast_to(pose, (8, 4, 4)), atol=3e-6)
+    np.testing.assert_allclose(found[0].q, q, atol=1e-6)
+    assert [solution.success for solution in found] == [True] * 8
+    distances = np.linalg.norm(found.q - q, axis=1)
+    assert (np.diff(distances) >= 0).all()
+    np.testing.assert_array_equal(found[-1].q, found.q[-1])
+    with pytest.raises(IndexError, match="index 8 is outside a set of 8"):
+        found[8]
+
+
+def test_no_solution_comes_with_the_best_miss() -> None:
+    found = bik.solve_all(UR, [3.0, 0.0, 0.5])
+    assert (len(found), found.success, found.q.shape) == (0, False, (0, 6))
+    assert found.status == bik.Status.OUT_OF_REACH
+    assert found.miss is not None
+    assert found.message.startswith("none found; the best miss: as near as it gets ")
+    assert "(out of reach by " in found.message
+
+
+def test_out_of_reach_says_by_how_much() -> None:
+    found = bik.solve(IIWA, [0.0, 0.0, 0.36 + 0.946 + 0.21])
+    assert found.status == bik.Status.OUT_OF_REACH
+    np.testing.assert_allclose(found.position_error, 0.21, rtol=1e-2)
+    assert "(out of reach by 0.2100 m" in found.message
+    assert "(out of reach by 8." in bik.solve_batch(IIWA, [[9.0, 0, 0]])[0].message
+
+
+def test_a_start_is_brought_inside_where_the_user_says_so() -> None:
+    outside = with_entry(0, 3.0)
+    inside = IIWA.clip(outside)
+    np.testing.assert_array_equal(inside, [IIWA.upper[0], 0, 0, 0, 0, 0, 0])
+    assert bik.solve(IIWA, POSE, start=inside).success
+    both = IIWA.clip([outside, with_entry(1, -9.0)])
+    np.testing.assert_array_equal(both[1], [0, IIWA.lower[1], 0, 0, 0, 0, 0])
+
+
+def solve(**options: object) -> bik.Solution:
+    return bik.solve(IIWA, POSE, **options)
+
+
+@told(
+    [
+        (
+            lambda: bik.solve(IIWA, [0.3, 0.3, 0.5], task=tasks.Pose()),
+            Invalid,
+            "task Pose needs a target pose (4, 4), got a position (3,)",
+        ),
+        (lambda: solve(task="Pose"), Invalid, "task must be of beetle_ik.tasks, got 'Pose'"),
+        (
+            lambda: solve(task=tasks.Pose),
+            Invalid,
+            "task must be of beetle_ik.tasks, got <class 'beetle_ik.tasks.Pose'>",
+        ),
+        (
+            lambda: tasks.Pose(weights=[1, 1, 1]),
+            Invalid,
+            "weights of task Pose: expected 6 entries (x, y, z and the rotation's three), got 3",
+        ),
+        (
+            lambda: tasks.Pointing(tolerance=[1e-3]),
+            Invalid,
+            "tolerance of task Pointing: expected 4 entries (x, y, z and the angle), got 1",
+        ),
+        (
+            lambda: tasks.Orientation(weights=[1, 0, -2]),
+            Invalid,
+            "weights[2] must be zero or more, and finite, got -2",
+        ),
+        (lambda: tasks.Position(weights=[0, 0, 0]), Invalid, "the largest of weights must be positive, got 0"),
+        (lambda: tasks.Position(tolerance=[1e-3, 0, 1e-3]), Invalid, "tolerance[1] must be positive, got 0"),
+        (lambda: tasks.Orientation(tolerance=[1e-3, 1e-3, np.nan]), Invalid, "tolerance[2] must be positive, got NaN"),
+        (lambda: tasks.Pointing(axis=[0, 0, 0]), Invalid, "the length of axis must be positive, got 0"),
+        (lambda: tasks.Pointing(axis=[0, np.nan, 0]), Invalid, "axis must be finite, but entry 1 is NaN"),
+        (
+            lambda: tasks.Pose(tool=2 * np.eye(4)),
+            Invalid,
+            "tool is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)",
+        ),
+        (lambda: goals.Centring(weight=0.0), Invalid, "weight of a goal must be positive and finite, got 0"),
+        (
+            lambda: goals.Manipulability(motion="up"),
+            Invalid,
+            "motion must be one of 'pose', 'position', 'rotation', got 'up'",
+        ),
+        (
+            lambda: solve(goals=goals.Posture([0.0] * 6)),
+            Invalid,
+            "posture of robot 'iiwa14': expected 7 joints, got 6",
+        ),
+        (
+            lambda: solve(goals=goals.Posture(with_entry(2, np.inf))),
+            Invalid,
+            "posture must be finite, but joint 'joint_3' is inf",
+        ),
+        (
+            lambda: solve(goals="Centring"),
+            Invalid,
+            "goals must be of beetle_ik.goals, one or several, got 'Centring'",
+        ),
+        (lambda: solve(goals=3), Invalid, "goals must be of beetle_ik.goals, one or several, got 3"),
+        (lambda: solve(prefer="near"), Invalid, "prefer must be one of 'any', 'nearest', got 'near'"),
+        (lambda: solve(prefer="nearest"), Invalid, 'prefer="nearest" needs a start: nearest to what?'),
+        (
+            lambda: solve(prefer="nearest", start=Q, goals=goals.Centring()),
+            Invalid,
+            'prefer="nearest" is a goal itself: leave goals out',
+        ),
+        (
+            lambda: bik.Tracker(IIWA, Q, dt=0.1, solver=bik.BAS(), goals=goals.Centring()),
+            Invalid,
+            "goals beside the path are served by the library's own rule: leave solver out",
+        ),
+        (lambda: bik.solve_all(IIWA, POSE, limit=0), Invalid, "limit must be at least 1, got 0"),
+        (
+            lambda: bik.solve_all(IIWA, POSE, separation=0.0),
+            Invalid,
+            "separation must be positive and finite, got 0",
+        ),
+        (
+            lambda: bik.solve_all(IIWA, POSE, start=with_entry(1, 2.5)),
+            Limit,
+            "start: joint 'joint_2' at 2.5 is outside its limits [-2.0943951023931953, 2.0943951023931953]",
+        ),
+        (lambda: IIWA.clip([0.0] * 3), Invalid, "joint angles of robot 'iiwa14': expected 7 joints, got 3"),
+    ]
+)
+def test_mistakes_are_told(call: object, error: type[Exception], message: str) -> None:
+    assert_told(call, error, message)

@@ -1,0 +1,121 @@
+//! The best posture for a target, over all of its self-motion, against dense scans.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
+mod common;
+
+use std::f64::consts::PI;
+
+use common::{message, robot};
+use ikcore::ik::{AllOptions, Prefer, SolveOptions, solve, solve_all};
+use ikcore::manipulability::{Manipulability, Motion};
+use ikcore::math::so3::rotation_between;
+
+use ikcore::nalgebra::{DMatrix, DVector};
+use ikcore::rng;
+use ikcore::robot::Robot;
+use ikcore::solver::{Status, Unattended};
+use ikcore::task::{Goal, Target};
+
+fn best(robot: &Robot, target: &Target, goal: Goal) -> ikcore::ik::Solution {
+    let options = SolveOptions { goals: vec![goal], prefer: Prefer::Best, ..SolveOptions::default() };
+    solve(robot, target, &options, &mut Unattended).unwrap()
+}
+
+/// SM_3 = pi w of the tip, and SM, with the tip at (0.5, 0.5): links of `length`; scan by 4e6 points (independent, numpy).
+#[test]
+fn planar_optima_are_those_of_the_scan() {
+    for (length, tip, overall) in [(0.3, 0.727905, 0.947446), (0.5, 1.720667, 2.488703), (1.0, 4.403020, 7.503629)] {
+        let arm = Robot::planar(&[length; 3]).unwrap();
+        let target = Target::Position([0.5, 0.5, 0.0]);
+        let measure = Manipulability::of(&arm, Motion::Position);
+        let motion = Motion::Position;
+        let found = best(&arm, &target, Goal::Manipulability { motion, weight: 1.0 });
+        let index = PI * measure.index(&arm, &found.q);
+        assert!((index / tip - 1.0).abs() < 1e-5, "{length}: {index} {tip}");
+        let found = best(&arm, &target, Goal::LinkManipulability { motion, weight: 1.0 });
+        let index = measure.link_indices(&arm, &found.q).sum();
+        assert!((index / overall - 1.0).abs() < 1e-5, "{length}: {index} {overall}");
+    }
+}
+
+/// The largest index over the self-motion: from many solutions, along the null space both ways, in steps of 0.01 rad, to
+/// the limits or all the way round.
+fn scan(robot: &Robot, target: &Target) -> f64 {
+    let measure = Manipulability::of(robot, Motion::Pose);
+    let options = AllOptions { limit: 200, separation: 0.3, ..AllOptions::default() };
+    let found = solve_all(robot, target, &options, &mut Unattended).unwrap();
+    let mut largest = 0.0_f64;
+    for solution in &found.solutions {
+        for sign in [1.0, -1.0] {
+            let mut q = DVector::from_row_slice(&solution.q);
+            let mut last: Option<DVector<f64>> = None;
+            for _ in 0..1500 {
+                let inside = |(j, q): (usize, &f64)| (robot.joints()[j].lower..=robot.joints()[j].upper).contains(q);
+                if !q.iter().enumerate().all(inside) {
+                    break;
+                }
+                largest = largest.max(measure.index(robot, q.as_slice()));
+                let along = null_vector(robot, &q);
+                let turn = last.as_ref().map_or(sign, |last| along.dot(last).signum());
+                last = Some(turn * &along);
+                q += 0.01 * turn * along;
+                for _ in 0..2 {
+                    q += back_to(robot, target, &q);
+                }
+            }
+        }
+    }
+    largest
+}
+
+fn jacobian(robot: &Robot, q: &DVector<f64>) -> DMatrix<f64> {
+    let jacobian = robot.jacobian(q.as_slice()).unwrap();
+    DMatrix::from_fn(6, q.len(), |i, j| jacobian[(i, j)])
+}
+
+fn null_vector(robot: &Robot, q: &DVector<f64>) -> DVector<f64> {
+    let j = jacobian(robot, q);
+    let values = (j.transpose() * j).symmetric_eigen();
+    values.eigenvectors.column(values.eigenvalues.imin()).into_owned()
+}
+
+/// One Newton step back to the target.
+fn back_to(robot: &Robot, target: &Target, q: &DVector<f64>) -> DVector<f64> {
+    let Target::Pose(target) = target else { panic!("a pose") };
+    let tip = robot.tip(q.as_slice());
+    let turn = rotation_between(target, &tip);
+    let residual = DVector::from_fn(6, |i, _| if i < 3 { tip.origin[i] - target.origin[i] } else { turn[i - 3] });
+    let j = jacobian(robot, q);
+    let normal = &j * j.transpose() + DMatrix::identity(6, 6) * 1e-9;
+    -j.transpose() * normal.lu().solve(&residual).unwrap()
+}
+
+#[test]
+fn seven_joint_arms_find_the_best_of_the_scan() {
+    for name in ["iiwa14", "panda"] {
+        let arm = robot(name);
+        let measure = Manipulability::of(&arm, Motion::Pose);
+        for q in arm.random_configurations(3, &mut rng::stream(5, 0)).unwrap().chunks(7) {
+            let target = Target::from(&arm.fk(q).unwrap());
+            let found = best(&arm, &target, Goal::Manipulability { motion: Motion::Pose, weight: 1.0 });
+            assert_eq!(found.status, Status::Solved);
+            let (index, scanned) = (measure.index(&arm, &found.q), scan(&arm, &target));
+            assert!(index > 0.999 * scanned, "{name} {q:?}: {index} {scanned}");
+        }
+    }
+}
+
+#[test]
+fn the_best_needs_to_know_for_what() {
+    let options = SolveOptions { prefer: Prefer::Best, ..SolveOptions::default() };
+    let error = message(solve(&robot("iiwa14"), &Target::Position([0.4, 0.0, 0.5]), &options, &mut Unattended));
+    assert_eq!(error, "prefer=\"best\" needs goals: best for what?");
+}
+
+#[test]
+fn a_target_beyond_the_reach_is_a_status() {
+    let goal = Goal::Manipulability { motion: Motion::Position, weight: 1.0 };
+    let found = best(&Robot::planar(&[0.5; 3]).unwrap(), &Target::Position([2.0, 0.0, 0.0]), goal);
+    assert_eq!(found.status, Status::OutOfReach, "{}", found.message());
+}
