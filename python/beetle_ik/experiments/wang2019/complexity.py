@@ -93,7 +93,7 @@ def complexity(context: Context) -> tuple[Section, list[Claim]]:
             "evaluations grow in exact proportion; exponents of time between "
             f"{number(min(exponents), 2)} and {number(max(exponents), 2)}, which depend on what else the machine does"
         ),
-        holds=all(_in_proportion(row) for row in rows if "n_p" in str(row[0]) or "n_i" in str(row[0])),
+        holds=all(_in_proportion(row) for row in rows if "members" in str(row[0]) or "iterations" in str(row[0])),
         section=TITLE,
     )
     return Section(TITLE, [_TEXT, table]), [claim]
