@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use super::SolveOptions;
 use super::nearest::{bring_near, distance};
-use super::prepared::{Prepared, Run};
+use super::prepared::Prepared;
+use super::run::Run;
 use super::solution::Solution;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Objective, Point};
