@@ -19,7 +19,7 @@ mod nearer;
 mod pace;
 mod travel;
 
-pub(super) use self::around::{DEFAULT_MARGIN, refuse_collision, too_near};
+pub(super) use self::around::{refuse_collision, too_near};
 pub(super) use self::clear::InTime;
 use self::ends::{Pair, Search};
 use self::pace::Polyline;
