@@ -228,6 +228,12 @@ impl PyLimits {
         }
     }
 
+    /// A box.
+    pub fn of_box(lower: Vec<f64>, upper: Vec<f64>) -> Self {
+        let numbers = |values: Vec<f64>| Some(Given::Numbers(Numbers { values, single: false }));
+        Self { given: [numbers(lower), numbers(upper), None, None, None] }
+    }
+
     /// No limits, for `n` joints.
     fn none(n: usize) -> Self {
         let free = |limit: f64| Some(Given::Numbers(Numbers { values: vec![limit; n], single: false }));
