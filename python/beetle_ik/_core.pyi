@@ -255,6 +255,9 @@ class BroydenBAS:
         position_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class JacobianTranspose:
     def __new__(cls, *, step_size: float | Literal["auto"] = "auto") -> JacobianTranspose: ...
     @property
@@ -752,7 +755,9 @@ class Minimum:
     @property
     def restarts(self) -> int: ...
     @property
-    def elapsed(self) -> float: ...
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # the box
 
 # --- postures -----------------------------------------------------------------------------------
 
@@ -982,6 +987,10 @@ class Step:
     def rotation_error(self) -> float: ...  # rad; NaN where no orientation was asked
     @property
     def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
     @property
     def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
 
