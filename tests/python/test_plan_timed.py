@@ -76,7 +76,7 @@ def test_mistakes_are_named() -> None:
     )
     with pytest.raises(bik.UnsupportedLimit, match=f"^{re.escape(message)}$"):
         bik.plan_along_path(robot, circle(False))
-    far = [*circle(False), 3.0, 0.0, 0.0]
+    far = circle(False) + np.array([3.0, 0.0, 0.0])
     with pytest.raises(
         bik.InvalidInputError, match=r"^point 0 of the path cannot be reached: the nearest configuration"
     ):
