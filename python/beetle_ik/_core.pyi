@@ -599,6 +599,10 @@ class Centring(Goal):
 class Manipulability(Goal):
     def __new__(cls, *, motion: _Motion = "pose", weight: float = 1.0) -> Manipulability: ...
 
+@final
+class LinkManipulability(Goal):
+    def __new__(cls, *, motion: _Motion = "position", weight: float = 1.0) -> LinkManipulability: ...
+
 # --- inverse kinematics -------------------------------------------------------------------------
 
 def solve(
@@ -616,10 +620,6 @@ def solve(
     stop: Stop | None = None,
     seed: int = 0,
 ) -> Solution: ...
-
-@final
-class LinkManipulability(Goal):
-    def __new__(cls, *, motion: _Motion = "position", weight: float = 1.0) -> LinkManipulability: ...
 
 @final
 class Solution:
@@ -764,7 +764,9 @@ class Minimum:
     @property
     def restarts(self) -> int: ...
     @property
-    def elapsed(self) -> float: ...
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # the box
 
 # --- postures -----------------------------------------------------------------------------------
 
@@ -994,6 +996,10 @@ class Step:
     def rotation_error(self) -> float: ...  # rad; NaN where no orientation was asked
     @property
     def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
     @property
     def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
 

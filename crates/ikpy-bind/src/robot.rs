@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyBytes;
 
-use crate::convert::{self, Rows, count, pose_array, row, rows, table, vector};
+use crate::convert::{self, Rows, count, pose_array, row, rows, summary, table, vector};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
 use crate::manipulability::PyVelocityEllipsoid;
@@ -73,7 +73,13 @@ impl PyRobot {
     fn from_urdf(path_or_xml: &Bound<'_, PyAny>, base: Option<&str>, tip: Option<&str>) -> PyResult<Self> {
         let source = match path_or_xml.extract::<String>() {
             Ok(text) => text,
-            Err(_) => path_or_xml.extract::<PathBuf>()?.to_string_lossy().into_owned(),
+            Err(_) => match path_or_xml.extract::<PathBuf>() {
+                Ok(path) => path.to_string_lossy().into_owned(),
+                Err(_) => {
+                    let got = summary(path_or_xml);
+                    return Err(invalid(format!("path_or_xml must be a path, or XML as text, got {got}")));
+                }
+            },
         };
         Robot::from_urdf(&source, base, tip).map(Self::from).map_err(raise)
     }
@@ -409,7 +415,7 @@ fn read_capsule(i: usize, value: &Bound<'_, PyAny>) -> PyResult<LinkCapsule> {
     type Parts<'py> = (String, Bound<'py, PyAny>, Bound<'py, PyAny>, f64);
     let (link, a, b, radius) = value
         .extract::<Parts<'_>>()
-        .map_err(|_| invalid(format!("capsule {i} must be (link, a, b, radius), got {}", convert::summary(value))))?;
+        .map_err(|_| invalid(format!("capsule {i} must be (link, a, b, radius), got {}", summary(value))))?;
     let end = |name: &str, value: &Bound<'_, PyAny>| convert::point(&format!("{name} of capsule {i}"), value);
     Ok(LinkCapsule { link, a: end("a", &a)?, b: end("b", &b)?, radius })
 }

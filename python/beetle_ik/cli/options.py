@@ -22,6 +22,7 @@ UrdfFile = Annotated[
 TipLink = Annotated[str | None, typer.Option("--tip", help="The link that is to move.", rich_help_panel=_ROBOT)]
 BaseLink = Annotated[str | None, typer.Option("--base", help="The link that stands still.", rich_help_panel=_ROBOT)]
 Start = Annotated[str | None, typer.Option(help="Joint positions to start from: q1,q2,...")]
+StartQ = Annotated[str | None, typer.Option("--start-q", help="Joint positions to start from: q1,q2,...")]
 Seed = Annotated[int, typer.Option(help="Seed of all random draws: the same seed gives the same bits.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for machines instead of tables.")]
 

@@ -88,6 +88,7 @@ pub fn track(
     let stopwatch = Stopwatch::start();
     let limits = options.limits_for(robot);
     limits.validate(reference.dt(), reference.len() - 1)?;
+    options.criterion()?; // before a start is solved for by other tolerances
     let start = match start {
         Some(q) => q.to_vec(),
         None => first_configuration(robot, reference, &limits, options, monitor)?,

@@ -86,6 +86,8 @@ macro_rules! swarm {
 swarm! {
     /// Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): uses values alone.
     ///
+    /// Defaults: `QPSO(population=40, expansion=0.75, max_generations=None, stall_generations=50)`.
+    ///
     /// Args:
     ///     population: particles.
     ///     expansion: contraction-expansion coefficient alpha; 0.75 is the fixed value of Sun et al. (2012).
@@ -97,6 +99,9 @@ swarm! {
 
 swarm! {
     /// Firefly algorithm (Yang 2009): uses values alone. Fireflies have turns to attract all that are less bright.
+    ///
+    /// Defaults: `Firefly(population=25, attractiveness=1, absorption=1, randomness=0.2, randomness_decay=0.97,
+    /// max_generations=None, stall_generations=50)`.
     ///
     /// Args:
     ///     population: fireflies.
@@ -119,6 +124,9 @@ swarm! {
 swarm! {
     /// Genetic algorithm with the operators of MATLAB's `ga`: elite, tournaments, scattered crossover, Gaussian mutation.
     /// Uses values alone.
+    ///
+    /// Defaults: `Genetic(population=50, elite_share=0.05, crossover_share=0.8, tournament=2, mutation_scale=0.1,
+    /// mutation_decay=0.97, max_generations=None, stall_generations=50)`.
     ///
     /// Args:
     ///     population: members of a generation.
@@ -144,6 +152,8 @@ swarm! {
 swarm! {
     /// Artificial bee colony (Karaboga 2005): uses values alone.
     ///
+    /// Defaults: `BeeColony(population=20, limit=None, max_generations=None, stall_generations=50)`.
+    ///
     /// Args:
     ///     population: food sources; there are as many employed bees, and as many onlookers.
     ///     limit: trials in vain after which a source is abandoned; None: sources times dimensions.
@@ -156,6 +166,10 @@ swarm! {
 swarm! {
     /// Beetle swarm optimisation (Wang et al. 2019, eq. 26-32), particles with antennae: uses values alone. The equations
     /// need an inertia weight and a limit on velocities to converge; with inertia=1 and velocity_limit=1 they are literal.
+    ///
+    /// Defaults: `BeetleSwarm(population=50, inertia=0.729, c1=1.494, c2=1.494, velocity_limit=0.2, velocity_share=0.9,
+    /// step=1, step_decay=0.97, step_over_antennae=5, direction='printed', max_generations=None,
+    /// stall_generations=50)`.
     ///
     /// Args:
     ///     population: beetles; each takes three evaluations a generation.
@@ -192,6 +206,9 @@ swarm! {
 
 swarm! {
     /// Differential evolution, DE/rand/1/bin (Storn and Price 1997): uses values alone.
+    ///
+    /// Defaults: `DifferentialEvolution(population=50, weight=0.5, crossover_rate=0.9, max_generations=None,
+    /// stall_generations=50)`.
     ///
     /// Args:
     ///     population: vectors.
