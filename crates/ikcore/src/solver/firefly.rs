@@ -9,7 +9,7 @@ use super::evaluator::{Evaluator, Halt};
 use super::population::{Members, Population, Schedule};
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Objective, Point};
-use crate::rng::LazyRng;
+use crate::rng::split;
 
 /// Firefly algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,6 +81,7 @@ pub struct State {
     randomness: f64,
     /// One over the widths of the box; zero for a locked coordinate, along which there is no distance.
     scales: Point,
+    draws: Vec<f64>,
 }
 
 impl<O: Objective + ?Sized> Solver<O> for Firefly {
@@ -96,11 +97,12 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
             moved: Members::new(fireflies, x0.len()),
             attractor: 0,
             randomness: self.randomness,
+            draws: vec![0.0; fireflies * x0.len().div_ceil(2)],
         })
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
-        let State { population, moving, moved, attractor, randomness, scales } = state;
+        let State { population, moving, moved, attractor, randomness, scales, draws } = state;
         if population.is_drawn(&self.turns(), evaluator)? {
             return Ok(());
         }
@@ -108,11 +110,13 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
         let (light, x_j) = (members.values[*attractor], members.point(*attractor));
         moving.clear();
         moving.extend((0..members.values.len()).filter(|i| members.values[*i] > light));
-        for (place, i) in moving.iter().enumerate() {
-            let x = moved.point_mut(place);
-            x.copy_from_slice(members.point(*i));
+        let pairs = x_j.len().div_ceil(2);
+        evaluator.rng().fill(&mut draws[..pairs * moving.len()]);
+        let draws = draws.chunks_exact(pairs);
+        for ((i, to), draws) in moving.iter().zip(moved.points.chunks_exact_mut(x_j.len())).zip(draws) {
+            let x = members.point(*i);
             let beta = self.attractiveness_at(x, x_j, scales);
-            fly(x, x_j, beta, *randomness, widths, evaluator.rng());
+            fly(x, x_j, beta, *randomness, widths, draws, to);
         }
         moved.evaluate_first(moving.len(), evaluator)?;
         for (place, i) in moving.iter().enumerate() {
@@ -134,12 +138,17 @@ impl Firefly {
     }
 }
 
-/// x = x + beta (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009).
+/// x + beta (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009); a draw makes two of u.
 #[inline]
-fn fly(x: &mut [f64], x_j: &[f64], beta: f64, randomness: f64, widths: &[f64], rng: &mut LazyRng) {
-    for ((x, x_j), widths) in x.chunks_mut(2).zip(x_j.chunks(2)).zip(widths.chunks(2)) {
-        for (((x, x_j), width), u) in x.iter_mut().zip(x_j).zip(widths).zip(rng.uniform_pair()) {
-            *x += beta * (x_j - *x) + randomness * width * (u - 0.5);
-        }
+fn fly(x: &[f64], x_j: &[f64], beta: f64, randomness: f64, widths: &[f64], draws: &[f64], to: &mut [f64]) {
+    let n = to.len();
+    let (x, x_j, widths) = (&x[..n], &x_j[..n], &widths[..n]);
+    let moved = |k: usize, u: f64| x[k] + (beta * (x_j[k] - x[k]) + randomness * widths[k] * (u - 0.5));
+    for (j, draw) in draws[..n / 2].iter().enumerate() {
+        let [u, v] = split(*draw);
+        (to[2 * j], to[2 * j + 1]) = (moved(2 * j, u), moved(2 * j + 1, v));
+    }
+    if n % 2 == 1 {
+        to[n - 1] = moved(n - 1, split(draws[n / 2])[0]);
     }
 }
