@@ -149,5 +149,20 @@ CLERC = Pyswarms({"c1": 1.49445, "c2": 1.49445, "w": 0.729})
 GREEDY = Mealpy("OriginalPSO", {"c1": 2.05, "c2": 2.05, "w": 0.4})
 GA = Mealpy("BaseGA", {"pc": 0.95, "pm": 0.025})
 ABC = Mealpy("OriginalABC", {"n_limits": 25})
-FFA = Mealpy("OriginalFFA", {"gamma": 1.0, "beta_base": 1.0, "alpha": 0.2, "alpha_damp": 0.97})
+FFA = Mealpy("OriginalFFA", {"gamma": 0.999, "beta_base": 1.0, "alpha": 0.2, "alpha_damp": 0.97})
 DE = Mealpy("OriginalDE", {"wf": 0.5, "cr": 0.9, "strategy": 0})
+PAIRS = [
+    Pair("PSO", bik.PSO(form="inertia", inertia=0.4, c1=2.05, c2=2.05, accept="improving", **SAME), GREEDY),
+    Pair("PSO", bik.PSO(form="inertia", **SAME), CLERC),
+    Pair("QPSO", bik.QPSO(**SAME), CLERC),
+    # A beetle takes three evaluations a generation: a third of the particles for equal generations.
+    Pair("BeetleSwarm", bik.BeetleSwarm(**{**SAME, "population": POPULATION // 3 + 1}), CLERC),
+    Pair(
+        "Genetic",
+        bik.Genetic(crossover_share=0.5, mutation_rate=0.1, mutation_scale=0.2, mutation_decay=0.98, **SAME),
+        GA,
+    ),
+    Pair("BeeColony", bik.BeeColony(limit=25, **SAME), ABC),
+    Pair("Firefly", bik.Firefly(absorption=0.999, **SAME), FFA),
+    Pair("DifferentialEvolution", bik.DifferentialEvolution(update="immediate", **SAME), DE),
+]

@@ -333,6 +333,7 @@ class DifferentialEvolution:
         population: int = ...,
         weight: float = ...,
         crossover_rate: float = ...,
+        update: Literal["generation", "immediate"] = ...,
         max_generations: int | None = ...,
         stall_generations: int | None = ...,
     ) -> DifferentialEvolution: ...
@@ -342,6 +343,8 @@ class DifferentialEvolution:
     def weight(self) -> float: ...
     @property
     def crossover_rate(self) -> float: ...
+    @property
+    def update(self) -> str: ...
     @property
     def max_generations(self) -> int | None: ...
     @property
@@ -386,6 +389,7 @@ class Genetic:
         elite_share: float = ...,
         crossover_share: float = ...,
         tournament: int = ...,
+        mutation_rate: float = ...,
         mutation_scale: float = ...,
         mutation_decay: float = ...,
         max_generations: int | None = ...,
@@ -399,6 +403,8 @@ class Genetic:
     def crossover_share(self) -> float: ...
     @property
     def tournament(self) -> int: ...
+    @property
+    def mutation_rate(self) -> float: ...
     @property
     def mutation_scale(self) -> float: ...
     @property

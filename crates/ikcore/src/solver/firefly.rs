@@ -72,7 +72,7 @@ impl Firefly {
 #[derive(Debug, Clone)]
 pub struct State {
     population: Population,
-    /// Those who move in a turn, and where to.
+    /// Those who move in a turn, the first so many of the list, and where to.
     moving: Vec<usize>,
     moved: Members,
     /// Whose turn it is.
@@ -93,7 +93,7 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
         Ok(State {
             scales: population.widths.iter().map(|width| if *width > 0.0 { 1.0 / width } else { 0.0 }).collect(),
             population,
-            moving: Vec::with_capacity(fireflies),
+            moving: vec![0; fireflies],
             moved: Members::new(fireflies, x0.len()),
             attractor: 0,
             randomness: self.randomness,
@@ -108,8 +108,8 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
         }
         let Population { members, widths, .. } = population;
         let (light, x_j) = (members.values[*attractor], members.point(*attractor));
-        moving.clear();
-        moving.extend((0..members.values.len()).filter(|i| members.values[*i] > light));
+        let count = list_dimmer(&members.values, light, moving);
+        let moving = &moving[..count];
         let pairs = x_j.len().div_ceil(2);
         evaluator.rng().fill(&mut draws[..pairs * moving.len()]);
         let draws = draws.chunks_exact(pairs);
@@ -126,6 +126,16 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
         *randomness *= self.randomness_decay;
         Ok(())
     }
+}
+
+/// Lists in `moving` who is less bright than `light`, and counts them. Without a branch, which nobody could predict.
+fn list_dimmer(values: &[f64], light: f64, moving: &mut [usize]) -> usize {
+    let mut count = 0;
+    for (i, value) in values.iter().enumerate() {
+        moving[count] = i;
+        count += usize::from(*value > light);
+    }
+    count
 }
 
 impl Firefly {
