@@ -336,6 +336,7 @@ class DifferentialEvolution:
         population: int = ...,
         weight: float = ...,
         crossover_rate: float = ...,
+        update: Literal["generation", "immediate"] = ...,
         max_generations: int | None = ...,
         stall_generations: int | None = ...,
     ) -> DifferentialEvolution: ...
@@ -345,6 +346,8 @@ class DifferentialEvolution:
     def weight(self) -> float: ...
     @property
     def crossover_rate(self) -> float: ...
+    @property
+    def update(self) -> str: ...
     @property
     def max_generations(self) -> int | None: ...
     @property
@@ -389,6 +392,7 @@ class Genetic:
         elite_share: float = ...,
         crossover_share: float = ...,
         tournament: int = ...,
+        mutation_rate: float = ...,
         mutation_scale: float = ...,
         mutation_decay: float = ...,
         max_generations: int | None = ...,
@@ -402,6 +406,8 @@ class Genetic:
     def crossover_share(self) -> float: ...
     @property
     def tournament(self) -> int: ...
+    @property
+    def mutation_rate(self) -> float: ...
     @property
     def mutation_scale(self) -> float: ...
     @property

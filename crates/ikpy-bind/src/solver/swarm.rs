@@ -1,6 +1,7 @@
 //! Swarms and evolution: classes that are a population and a list of options.
 
 use ikcore::solver::beetle_swarm::Direction;
+use ikcore::solver::differential_evolution::Update;
 use ikcore::solver::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Qpso};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -133,6 +134,7 @@ swarm! {
     ///     elite_share: share that survives unchanged, rounded up.
     ///     crossover_share: share of the others that is born by crossover; the rest by mutation.
     ///     tournament: members of a tournament, the best of which becomes a parent.
+    ///     mutation_rate: probability that a coordinate of a mutant moves, one in any case; 1 moves all, as MATLAB does.
     ///     mutation_scale: standard deviation of mutations at first, as a share of the box's width.
     ///     mutation_decay: what it is multiplied by in a generation.
     PyGenetic, "Genetic", Genetic {
@@ -142,6 +144,8 @@ swarm! {
         crossover_share: f64,
         /// Members of a tournament.
         tournament: usize,
+        /// Probability that a coordinate of a mutant moves.
+        mutation_rate: f64,
         /// Standard deviation of mutations at first, as a share of the box's width.
         mutation_scale: f64,
         /// What it is multiplied by in a generation.
@@ -214,10 +218,14 @@ swarm! {
     ///     population: vectors.
     ///     weight: F, weight of the difference of two vectors.
     ///     crossover_rate: CR, probability that a coordinate comes from the mutant.
+    ///     update: "generation", better trials take their vectors' places after all of them, evaluated together (as
+    ///         published); "immediate", at once: fewer evaluations, but one by one.
     PyDifferentialEvolution, "DifferentialEvolution", DifferentialEvolution {
         /// Weight of the difference of two vectors.
         weight: f64,
         /// Probability that a coordinate comes from the mutant.
         crossover_rate: f64,
+        /// "generation" or "immediate".
+        update: Update,
     }
 }
