@@ -103,6 +103,15 @@ class Robot:
         self, capsules: list[tuple[str, ArrayLike, ArrayLike, float]] | None = None, *, radius: float | None = None
     ) -> Robot: ...
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot: ...  # up to, m and rad
+    # For interop. Elements: ("fixed", pose), ("moving", joint, turns, axis, scale, offset) or ("link", name).
+    def _chain(self) -> tuple[_Array, list[tuple[Any, ...]], _Array]: ...  # base, elements, tool
+    @staticmethod
+    def _from_chain(
+        name: str,
+        base: str,
+        joints: Sequence[tuple[str, str, float, float, float]],  # name, kind, lower, upper, velocity
+        elements: Sequence[tuple[object, ...]],
+    ) -> Robot: ...
     def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
     def clip(self, q: ArrayLike) -> _Array: ...  # (n,) or (m, n)
     def link_poses(self, q: ArrayLike) -> _Array: ...  # (links, 4, 4), in the order of link_names
@@ -255,6 +264,7 @@ class BroydenBAS:
         position_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession: ...
+
 class JacobianTranspose:
     def __new__(cls, *, step_size: float | Literal["auto"] = "auto") -> JacobianTranspose: ...
     @property

@@ -45,6 +45,15 @@ impl Given {
         }
     }
 
+    fn same(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        match (self, other) {
+            (Self::Numbers(mine), Self::Numbers(theirs)) => Ok(mine == theirs),
+            (Self::Sinusoid(mine), Self::Sinusoid(theirs)) => Ok(mine == theirs),
+            (Self::Function(mine), Self::Function(theirs)) => mine.bind(py).eq(theirs),
+            _ => Ok(false),
+        }
+    }
+
     fn profiles(&self, py: Python<'_>, field: Field, sampling: &Sampling, n: usize) -> PyResult<Vec<Profile>> {
         match self {
             Self::Numbers(numbers) => Ok(numbers.values.iter().map(|value| Profile::Constant(*value)).collect()),
@@ -175,6 +184,21 @@ impl PyLimits {
             }
         }
         Ok(format!("Limits({})", shown.join(", ")))
+    }
+
+    /// As given: a number for all joints differs from that number for each.
+    fn __eq__(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        for (mine, theirs) in self.given.iter().zip(&other.given) {
+            let same = match (mine, theirs) {
+                (None, None) => true,
+                (Some(mine), Some(theirs)) => mine.same(py, theirs)?,
+                _ => false,
+            };
+            if !same {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyDict>)> {

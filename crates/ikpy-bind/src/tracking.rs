@@ -2,11 +2,13 @@
 
 use ikcore::limits::LimitAt;
 use ikcore::solver::Status;
+use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
 use ikcore::tracking::{self, Record, TickRule, TrackOptions};
 use ikcore::trajectory::Trajectory;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use crate::convert::{count, row, table, vector};
 use crate::error::raise;
@@ -16,6 +18,7 @@ use crate::monitor::{Progress, Watcher};
 use crate::path::PyPath;
 use crate::robot::PyRobot;
 use crate::solver::{any_solver, status};
+use crate::stored::{self, Reduced};
 use crate::task::read_task;
 use crate::trajectory::PyTrajectory;
 use crate::upward;
@@ -214,6 +217,27 @@ impl PyTrackResult {
     fn __repr__(&self) -> String {
         format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.time.len(), self.core.message())
     }
+
+    #[allow(clippy::type_complexity)]
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Reduced<'py, (Bound<'py, PyBytes>, Py<PyRobot>, Py<PyLimits>)>> {
+        let core = stored::bytes(py, to_bytes("track", &self.core))?;
+        stored::restored_from::<Self, _>(py, (core, self.robot.clone_ref(py), self.limits.clone_ref(py)))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, bytes: &[u8], robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
+        Self::new(py, from_bytes("track", bytes).map_err(raise)?, robot, limits)
+    }
+}
+
+impl PyTrackResult {
+    fn new(py: Python<'_>, core: Record, robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
+        Ok(Self { tables: Tables::new(py, &core)?, robot, limits, core })
+    }
 }
 
 /// Follows `path` with the tip of `robot`, tick by tick, inside the limits.
@@ -286,8 +310,7 @@ pub fn track(
     let record = py.detach(|| tracking::track(&arm, &reference, start.as_deref(), &options, &mut watcher));
     progress.close(py)?;
     watcher.finish()?;
-    let core = record.map_err(raise)?;
-    Ok(PyTrackResult { tables: Tables::new(py, &core)?, robot: robot.clone().unbind(), limits: in_force, core })
+    PyTrackResult::new(py, record.map_err(raise)?, robot.clone().unbind(), in_force)
 }
 
 /// A rule, a solver, or the library's own rule.
