@@ -129,7 +129,7 @@ def test_ros_message() -> None:
     assert message["header"] == {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "base"}
     assert message["joint_names"] == NAMES
     assert message["points"][2] == {
-        "positions": [0.25, 2.0],
+        "positions": pytest.approx([0.25, 2.0], abs=1e-12),
         "velocities": pytest.approx([1.25, 3.0], abs=1e-12),
         "accelerations": [],
         "effort": [],
@@ -323,10 +323,25 @@ def test_roboticstoolbox_there_and_back(robot: bik.Robot) -> None:
 
 @pytest.mark.filterwarnings("ignore")
 def test_roboticstoolbox_models(rtb: object) -> None:
-    for model in (rtb.models.DH.Puma560(), rtb.models.DH.Stanford(), rtb.models.DH.Panda(), rtb.models.ETS.Planar_Y()):
+    placed = rtb.Robot(rtb.ETS(rtb.ET.Rz()) * rtb.ET.ty(flip=True), base=rtb.ET.SE3(TURN).A(), tool=rtb.ET.SE3(TIP).A())
+    for model in (
+        rtb.models.DH.Puma560(),
+        rtb.models.DH.Stanford(),
+        rtb.models.DH.Panda(),
+        rtb.models.ETS.Panda(),
+        placed,
+    ):
         robot = bik.interop.from_roboticstoolbox(model)
         for q in robot.random_configurations(3, seed=1):
             np.testing.assert_allclose(robot.fk(q), model.fkine(q).A, rtol=0, atol=1e-12)
+    transforms = rtb.ETS(rtb.ET.Rz()) * rtb.ET.tx(1.0)
+    np.testing.assert_allclose(bik.interop.from_roboticstoolbox(transforms).fk([0.5]), transforms.fkine([0.5]).A)
+    tree = rtb.models.ETS.Planar_Y()
+    branch = bik.interop.from_roboticstoolbox(tree, tip="link1")
+    assert branch.dof == len([transform for transform in tree.ets(end="link1") if transform.isjoint])
+    with pytest.raises(bik.InvalidInputError) as caught:
+        bik.interop.from_roboticstoolbox(transforms, tip="link1")
+    assert str(caught.value) == "tip: only a Robot of the Robotics Toolbox has named links, got ETS"
     with pytest.raises(bik.InvalidInputError, match=r"^expected a robot or an ETS of the Robotics Toolbox, got 'puma'"):
         bik.interop.from_roboticstoolbox("puma")
 

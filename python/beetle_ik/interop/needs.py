@@ -7,8 +7,8 @@ from .._core import BeetleIkError
 
 
 def library(module: str, package: str, purpose: str) -> Any:
-    """The module, or an error that says what to install."""
+    """The module, or an error that says what to install; one that is broken speaks for itself."""
     try:
         return import_module(module)
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         raise BeetleIkError(f"{purpose} needs {package}: pip install {package}") from error

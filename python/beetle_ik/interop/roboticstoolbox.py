@@ -18,36 +18,26 @@ def from_roboticstoolbox(robot: "rtb.Robot | rtb.DHRobot | rtb.ETS", *, tip: str
     """The chain of a robot of the Robotics Toolbox: a `DHRobot`, a `Robot` (`ERobot`) or an `ETS`.
 
     Args:
-        robot: revolute and prismatic joints; base and tool of a `DHRobot` go along.
-        tip: name of the link at the end, for robots with several; None: the toolbox's own choice.
+        robot: revolute and prismatic joints; its base and tool go along.
+        tip: name of the link at the end, for a `Robot` with several, without its tool; None: the toolbox's own choice.
 
     A joint without limits in the toolbox has none here. It knows no velocity limits.
 
     Raises:
-        InvalidInputError: an object without elementary transforms.
+        InvalidInputError: something else, or a tip for what has one end.
     """
-    if hasattr(robot, "ets"):
-        transforms = robot.ets() if tip is None else robot.ets(end=tip)
-    elif tip is None and hasattr(robot, "joints") and hasattr(robot, "qlim"):
-        transforms = robot
-    else:
-        raise InvalidInputError(f"expected a robot or an ETS of the Robotics Toolbox, got {robot!r}")
+    transforms, base, tool = _transforms(robot, tip)
     chain = ChainReader(getattr(robot, "name", "") or "roboticstoolbox", "base")
-    # A DHRobot's transforms are those of its links alone.
-    with_ends = hasattr(robot, "links") and type(robot).__name__ not in ("ERobot", "Robot")
-    if with_ends and hasattr(robot, "base"):
-        chain.fixed(robot.base.A)
     count = 0
     for transform in transforms:
         if transform.isjoint:
-            _add_joint(chain, transform, count)
             count += 1
+            _add_joint(chain, transform, count)
             chain.link(f"link_{count}")
         else:
             chain.fixed(transform.A())
     chain.link("tip")
-    made = chain.robot()
-    return made.with_tool(robot.tool.A) if with_ends and hasattr(robot, "tool") else made
+    return chain.robot().with_base(base).with_tool(tool)
 
 
 def to_roboticstoolbox(robot: Robot) -> "rtb.Robot":
@@ -72,13 +62,30 @@ def to_roboticstoolbox(robot: Robot) -> "rtb.Robot":
     return rtb.Robot(transforms * rtb.ET.SE3(tool), name=robot.name)
 
 
-def _add_joint(chain: ChainReader, transform: Any, index: int) -> None:
+def _transforms(robot: Any, tip: str | None) -> tuple[Any, Matrix, Matrix]:
+    """The elementary transforms, and base and tool where they are not among them."""
+    rtb = library("roboticstoolbox", "roboticstoolbox-python", "a model of the Robotics Toolbox")
+    nowhere = np.eye(4)
+    if not isinstance(robot, rtb.DHRobot) and isinstance(robot, rtb.Robot):
+        return robot.ets(end=tip), robot.base.A, robot.tool.A if tip is None else nowhere
+    if tip is not None:
+        raise InvalidInputError(
+            f"tip: only a Robot of the Robotics Toolbox has named links, got {type(robot).__name__}"
+        )
+    if isinstance(robot, rtb.DHRobot):
+        return robot.ets(), nowhere, nowhere
+    if isinstance(robot, rtb.ETS):
+        return robot, nowhere, nowhere
+    raise InvalidInputError(f"expected a robot or an ETS of the Robotics Toolbox, got {robot!r}")
+
+
+def _add_joint(chain: ChainReader, transform: Any, number: int) -> None:
     kind: str = transform.kind if hasattr(transform, "kind") else transform.axis  # before 1.4 it was called so
     axis = np.array(_AXES[kind[1]]) * (-1.0 if transform.isflip else 1.0)
     limits = transform.qlim
     lower, upper = (-np.inf, np.inf) if limits is None else limits
     joint: Kind = "prismatic" if kind[0] == "t" else "revolute"
-    chain.moving(f"joint_{index + 1}", joint, axis, lower=lower, upper=upper)
+    chain.moving(f"joint_{number}", joint, axis, lower=lower, upper=upper)
 
 
 def _turning_z_onto(axis: Matrix) -> Matrix:
