@@ -264,7 +264,9 @@ class BroydenBAS:
         position_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
+@final
 class JacobianTranspose:
     def __new__(cls, *, step_size: float | Literal["auto"] = "auto") -> JacobianTranspose: ...
     @property
@@ -545,6 +547,7 @@ class Stop:
 
 # --- tasks and goals ----------------------------------------------------------------------------
 
+@disjoint_base
 class Task:
     @property
     def weights(self) -> _Array | None: ...
@@ -554,21 +557,25 @@ class Task:
     def tool(self) -> _Array | None: ...  # (4, 4)
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
+@final
 class Pose(Task):
     def __new__(
         cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
     ) -> Pose: ...
 
+@final
 class Position(Task):
     def __new__(
         cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
     ) -> Position: ...
 
+@final
 class Orientation(Task):
     def __new__(
         cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
     ) -> Orientation: ...
 
+@final
 class Pointing(Task):
     def __new__(
         cls,
@@ -581,19 +588,23 @@ class Pointing(Task):
     @property
     def axis(self) -> _Array: ...  # (3,)
 
+@disjoint_base
 class Goal:
     @property
     def weight(self) -> float: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
+@final
 class Posture(Goal):
     def __new__(cls, posture: ArrayLike, *, weight: float = 1.0) -> Posture: ...
     @property
     def posture(self) -> _Array: ...  # (n,)
 
+@final
 class Centring(Goal):
     def __new__(cls, *, weight: float = 1.0) -> Centring: ...
 
+@final
 class Manipulability(Goal):
     def __new__(cls, *, motion: _Motion = "pose", weight: float = 1.0) -> Manipulability: ...
 
@@ -679,7 +690,7 @@ class SolutionSet:
     @property
     def limits(self) -> Limits: ...  # those in force
     def __len__(self) -> int: ...
-    def __getitem__(self, index: int) -> Solution: ...
+    def __getitem__(self, index: int, /) -> Solution: ...
 
 def solve_batch(
     robot: Robot,

@@ -2,8 +2,8 @@
 
 npz keeps the polynomial pieces themselves. CSV keeps samples at the knots, with as many derivatives as determine the
 pieces: positions for straight lines, velocities too up to cubics, accelerations too up to quintics. Samples at knots do
-not determine pieces of degree 6, such as the fastest timing of a spline has: CSV then keeps positions and velocities, and
-reads back as the cubics that meet them.
+not determine pieces of degree 6, such as the fastest timing of a spline has: CSV then keeps positions and velocities,
+and reads back as the cubics that meet them.
 """
 
 import os

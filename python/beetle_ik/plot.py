@@ -102,7 +102,7 @@ def plan(plan: Plan) -> Figure:
 def animation(plan: Plan) -> FuncAnimation:
     """The arm on its planned way, in its own time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
     with style():
-        return _plan_figure.animate(_new_figure(6.0, 6.0), plan)
+        return _plan_figure.animate(_new_figure(5.0, 5.0), plan)
 
 
 def trajectory(trajectory: Trajectory) -> Figure:
