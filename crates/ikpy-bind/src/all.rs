@@ -7,7 +7,6 @@ use ikcore::task::Tolerance;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
 
 use crate::convert::{count, position_in, table, vector};
 use crate::error::raise;
@@ -85,10 +84,10 @@ impl PySolutionSet {
         format!("<SolutionSet: {}>", self.core.message())
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Bound<'py, PyBytes>, usize, Py<PyLimits>)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = stored::bytes(py, to_bytes("set of solutions", &self.core))?;
         let dof = self.q.bind(py).shape()[1];
-        stored::restored_from::<Self, _>(py, (core, dof, self.limits.clone_ref(py)))
+        stored::restored_from::<Self>(py, (core, dof, self.limits.clone_ref(py)))
     }
 
     /// What pickle stored.

@@ -10,7 +10,6 @@ use ikcore::task::Tolerance;
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
 
 use crate::convert::{Rows, array, count, optional_count, position_in, row, rows, shape_text, table};
 use crate::error::{invalid, raise};
@@ -89,11 +88,11 @@ impl PyBatchSolution {
         format!("<BatchSolution: {}>", self.message)
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Bound<'py, PyBytes>, Py<PyLimits>)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let q = self.q.bind(py).readonly().as_slice()?.to_vec();
         let core = Batch { dof: self.dof, q, items: self.items.clone(), elapsed: self.elapsed };
         let core = stored::bytes(py, to_bytes("batch of solutions", &core))?;
-        stored::restored_from::<Self, _>(py, (core, self.limits.clone_ref(py)))
+        stored::restored_from::<Self>(py, (core, self.limits.clone_ref(py)))
     }
 
     /// What pickle stored.

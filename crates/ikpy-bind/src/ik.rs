@@ -7,7 +7,6 @@ use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::{Target, TipError, Tolerance};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
 
 use crate::convert::{array, count, point, rigid_rows, row, shape_text, vector};
 use crate::error::{invalid, raise};
@@ -101,9 +100,9 @@ impl PySolution {
         format!("<Solution {}: position_error={position:.3e}{rotation}>", self.core.status.name())
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Bound<'py, PyBytes>, Bound<'py, PyLimits>)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = stored::bytes(py, to_bytes("solution", &self.core))?;
-        stored::restored_from::<Self, _>(py, (core, self.limits(py)))
+        stored::restored_from::<Self>(py, (core, self.limits(py)))
     }
 
     /// What pickle stored.

@@ -6,7 +6,6 @@ use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::tracking::{self, ModelFreeOptions, ModelFreeRecord};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
 
 use crate::control::controller;
 use crate::convert::{count, row, table, vector};
@@ -191,13 +190,9 @@ impl PyModelFreeResult {
     }
 
     /// What the plant raised goes along as far as it pickles itself.
-    #[allow(clippy::type_complexity)]
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<Reduced<'py, (Bound<'py, PyBytes>, Py<PyLimits>, Option<Bound<'py, PyAny>>)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = stored::bytes(py, to_bytes("track without a model", &self.core))?;
-        stored::restored_from::<Self, _>(py, (core, self.limits.clone_ref(py), self.exception(py)))
+        stored::restored_from::<Self>(py, (core, self.limits.clone_ref(py), self.exception(py)))
     }
 
     /// What pickle stored.

@@ -113,8 +113,8 @@ impl PyPath {
     }
 
     /// Functions go along as far as they pickle themselves: those that a module names do, lambdas do not.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, Bound<'py, PyTuple>>> {
-        stored::restored_from::<Self, _>(py, self.state(py)?)
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::restored_from::<Self>(py, self.state(py)?)
     }
 
     /// What pickle stored.

@@ -8,7 +8,7 @@ use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Target;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyTuple};
+use pyo3::types::PyTuple;
 
 use crate::convert::{array, count, point, rigid_rows, shape_text, table, vector};
 use crate::error::{invalid, raise};
@@ -68,8 +68,8 @@ impl PyViolation {
         format!("<Violation: {}>", self.0)
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Bound<'py, PyBytes>,)>> {
-        stored::restored_from::<Self, _>(py, (stored::bytes(py, to_bytes("violation", &self.0))?,))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::restored_from::<Self>(py, (stored::bytes(py, to_bytes("violation", &self.0))?,))
     }
 
     /// What pickle stored.
@@ -191,10 +191,9 @@ impl PyPlan {
         format!("<Plan {}: {}>", self.core.status.name(), self.core.message())
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, Bound<'py, PyTuple>>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = stored::bytes(py, to_bytes("plan", &self.core))?;
-        let parts = (core, &self.reference, &self.robot, &self.limits, &self.obstacles).into_pyobject(py)?;
-        stored::restored_from::<Self, _>(py, parts)
+        stored::restored_from::<Self>(py, (core, &self.reference, &self.robot, &self.limits, &self.obstacles))
     }
 
     /// What pickle stored.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ikcore::manipulability::{self, Motion};
 use ikcore::rng;
 use ikcore::robot::{Dh, DhTable, Joint, JointKind, LinkCapsule, Robot};
-use numpy::{PyArray1, PyArray2, PyArrayDyn};
+use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyTuple};
@@ -390,13 +390,9 @@ impl PyRobot {
     }
 
     /// For `beetle_ik.interop`: (base (4, 4), elements, tool (4, 4)), as in `_from_chain`.
-    #[allow(clippy::type_complexity)]
-    fn _chain<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Vec<Bound<'py, PyTuple>>, Bound<'py, PyArray2<f64>>)> {
+    fn _chain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let [base, tool] = chain::ends(py, &self.core)?;
-        Ok((base, chain::elements(py, &self.core)?, tool))
+        (base, chain::elements(py, &self.core)?, tool).into_pyobject(py)
     }
 
     /// For `beetle_ik.interop`: joints are (name, kind, lower, upper, velocity), elements ("fixed", pose (4, 4)), ("moving",

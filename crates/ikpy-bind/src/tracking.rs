@@ -8,7 +8,6 @@ use ikcore::tracking::{self, Record, TickRule, TrackOptions};
 use ikcore::trajectory::Trajectory;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
 
 use crate::convert::{count, row, table, vector};
 use crate::error::raise;
@@ -218,13 +217,9 @@ impl PyTrackResult {
         format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.time.len(), self.core.message())
     }
 
-    #[allow(clippy::type_complexity)]
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<Reduced<'py, (Bound<'py, PyBytes>, Py<PyRobot>, Py<PyLimits>)>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = stored::bytes(py, to_bytes("track", &self.core))?;
-        stored::restored_from::<Self, _>(py, (core, self.robot.clone_ref(py), self.limits.clone_ref(py)))
+        stored::restored_from::<Self>(py, (core, self.robot.clone_ref(py), self.limits.clone_ref(py)))
     }
 
     /// What pickle stored.
