@@ -12,7 +12,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
     result.trajectory.to_csv("trajectory.csv")
 """
 
-from . import goals, obstacles, paths, plot, tasks, vision
+from . import goals, interop, obstacles, paths, plot, tasks, vision
 from ._core import (
     APPS,
     BAS,
@@ -121,6 +121,7 @@ __all__ = [
     "WeightedPseudoInverse",
     "__version__",
     "goals",
+    "interop",
     "minimize",
     "obstacles",
     "paths",

@@ -16,6 +16,8 @@ from typing_extensions import disjoint_base
 __version__: str
 
 _Array: TypeAlias = NDArray[np.float64]
+_Transform: TypeAlias = _Homogeneous | _AsMatrix
+_Pose: TypeAlias = ArrayLike | _Transform | Sequence[_Transform]  # a matrix, or what another library makes of it
 _DerivativeFree: TypeAlias = BAS | BeeColony | BeetleSwarm | DifferentialEvolution | Firefly | Genetic | PSO | QPSO
 _Single: TypeAlias = _DerivativeFree | APPS | BroydenBAS | JacobianTranspose | LevenbergMarquardt | NewtonRaphson
 _Solver: TypeAlias = _Single | MultiStart
@@ -25,6 +27,15 @@ _Motion: TypeAlias = Literal["pose", "position", "rotation"]
 _Goals: TypeAlias = Goal | Iterable[Goal] | None
 _Plant: TypeAlias = KinematicPlant | Callable[[_Array], ArrayLike] | _Mover
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
+
+@type_check_only
+class _Homogeneous(Protocol):  # Pinocchio's SE3
+    @property
+    def homogeneous(self) -> Any: ...
+
+@type_check_only
+class _AsMatrix(Protocol):  # scipy's RigidTransform and Rotation
+    def as_matrix(self) -> Any: ...
 
 @type_check_only
 class _Mover(Protocol):
@@ -58,8 +69,8 @@ class Robot:
         lower: ArrayLike | None = None,
         upper: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
-        base: ArrayLike | None = None,
-        tool: ArrayLike | None = None,
+        base: _Pose | None = None,
+        tool: _Pose | None = None,
         name: str | None = None,
     ) -> Robot: ...
     @staticmethod
@@ -92,8 +103,8 @@ class Robot:
     def velocity_limit(self) -> _Array: ...  # (n,), inf where unknown
     @property
     def limits(self) -> Limits: ...
-    def with_tool(self, tool: ArrayLike) -> Robot: ...
-    def with_base(self, base: ArrayLike) -> Robot: ...
+    def with_tool(self, tool: _Pose) -> Robot: ...
+    def with_base(self, base: _Pose) -> Robot: ...
     def with_limits(
         self, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None, velocity: ArrayLike | None = None
     ) -> Robot: ...
@@ -103,6 +114,15 @@ class Robot:
         self, capsules: list[tuple[str, ArrayLike, ArrayLike, float]] | None = None, *, radius: float | None = None
     ) -> Robot: ...
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot: ...  # up to, m and rad
+    # For interop. Elements: ("fixed", pose), ("moving", joint, turns, axis, scale, offset) or ("link", name).
+    def _chain(self) -> tuple[_Array, list[tuple[Any, ...]], _Array]: ...  # base, elements, tool
+    @staticmethod
+    def _from_chain(
+        name: str,
+        base: str,
+        joints: Sequence[tuple[str, str, float, float, float]],  # name, kind, lower, upper, velocity
+        elements: Sequence[tuple[object, ...]],
+    ) -> Robot: ...
     def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
     def clip(self, q: ArrayLike) -> _Array: ...  # (n,) or (m, n)
     def link_poses(self, q: ArrayLike) -> _Array: ...  # (links, 4, 4), in the order of link_names
@@ -133,7 +153,7 @@ def pose(
     wxyz: ArrayLike | None = None,
     rpy: ArrayLike | None = None,
     rotvec: ArrayLike | None = None,
-    matrix: ArrayLike | None = None,
+    matrix: _Pose | None = None,
 ) -> _Array: ...
 
 # --- limits -------------------------------------------------------------------------------------
@@ -557,19 +577,19 @@ class Task:
 @final
 class Pose(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
     ) -> Pose: ...
 
 @final
 class Position(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
     ) -> Position: ...
 
 @final
 class Orientation(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
     ) -> Orientation: ...
 
 @final
@@ -580,7 +600,7 @@ class Pointing(Task):
         axis: ArrayLike | None = None,  # None: (0, 0, 1)
         weights: ArrayLike | None = None,
         tolerance: ArrayLike | None = None,
-        tool: ArrayLike | None = None,
+        tool: _Pose | None = None,
     ) -> Pointing: ...
     @property
     def axis(self) -> _Array: ...  # (3,)
@@ -613,10 +633,10 @@ class LinkManipulability(Goal):
 
 def solve(
     robot: Robot,
-    target: ArrayLike,  # (4, 4) pose or (3,) position
+    target: _Pose,  # (4, 4) pose or (3,) position
     *,
     task: Task | None = None,
-    start: ArrayLike | None = None,
+    start: _Pose | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
@@ -654,9 +674,9 @@ class Solution:
 
 def solve_all(
     robot: Robot,
-    target: ArrayLike,  # (4, 4) pose or (3,) position
+    target: _Pose,  # (4, 4) pose or (3,) position
     *,
-    start: ArrayLike | None = None,
+    start: _Pose | None = None,
     limit: int = 16,
     separation: float = 0.1,  # rad, m
     task: Task | None = None,
@@ -691,7 +711,7 @@ class SolutionSet:
 
 def solve_batch(
     robot: Robot,
-    targets: ArrayLike,  # (m, 4, 4) poses or (m, 3) positions
+    targets: _Pose,  # (m, 4, 4) poses or (m, 3) positions
     *,
     starts: ArrayLike | None = None,  # (m, n), or (n,) for all
     threads: int | None = None,  # None: one per core
@@ -743,7 +763,7 @@ def minimize(
     upper: ArrayLike,
     *,
     solver: _DerivativeFree | MultiStart,
-    start: ArrayLike | None = None,
+    start: _Pose | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     vectorized: bool = False,
@@ -845,7 +865,7 @@ class Path:
     def velocity(self, t: ArrayLike) -> _Array: ...  # number -> (3,); (k,) -> (k, 3)
     def pose(self, t: ArrayLike) -> _Array: ...  # number -> (4, 4); (k,) -> (k, 4, 4)
     def sample(self, dt: float) -> tuple[_Array, _Array]: ...  # time (k,), positions (k, 3)
-    def with_orientation(self, orientation: ArrayLike | Callable[[float], ArrayLike]) -> Path: ...  # (3, 3)
+    def with_orientation(self, orientation: _Pose | Callable[[float], _Pose]) -> Path: ...  # (3, 3)
 
 def circle(
     center: ArrayLike, diameter: float, duration: float, *, a: ArrayLike = (1, 0, 0), b: ArrayLike = (0, 1, 0)
@@ -882,7 +902,7 @@ def rose(
     b: ArrayLike = (0, 1, 0),
 ) -> Path: ...
 def polyline(points: ArrayLike, duration: float) -> Path: ...
-def from_samples(time: ArrayLike, positions_or_poses: ArrayLike) -> Path: ...  # (k,) and (k, 3) or (k, 4, 4)
+def from_samples(time: ArrayLike, positions_or_poses: _Pose) -> Path: ...  # (k,) and (k, 3) or (k, 4, 4)
 def from_function(function: Callable[[float], ArrayLike], duration: float) -> Path: ...
 
 # --- tracking -----------------------------------------------------------------------------------
@@ -971,7 +991,7 @@ class Tracker:
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
     ) -> Tracker: ...
-    def step(self, target: ArrayLike, *, velocity: ArrayLike | None = None) -> Step: ...  # (4, 4) or (3,); m/s
+    def step(self, target: _Pose, *, velocity: ArrayLike | None = None) -> Step: ...  # (4, 4) or (3,); m/s
     def reset(self, q: ArrayLike) -> None: ...
     @property
     def q(self) -> _Array: ...  # (n,)
@@ -1027,7 +1047,7 @@ class Sphere(Obstacle):
 
 @final
 class Box(Obstacle):
-    def __new__(cls, center: ArrayLike, size: ArrayLike, rotation: ArrayLike | None = None) -> Box: ...
+    def __new__(cls, center: ArrayLike, size: ArrayLike, rotation: _Pose | None = None) -> Box: ...
     @property
     def center(self) -> _Array: ...
     @property
@@ -1047,7 +1067,7 @@ class Capsule(Obstacle):
 
 @final
 class Ellipsoid(Obstacle):
-    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, rotation: ArrayLike | None = None) -> Ellipsoid: ...
+    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, rotation: _Pose | None = None) -> Ellipsoid: ...
     @property
     def center(self) -> _Array: ...
     @property
@@ -1078,8 +1098,8 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
 
 def plan_point_to_point(
     robot: Robot,
-    start: ArrayLike | None = None,  # (4, 4) pose or (3,) position
-    end: ArrayLike | None = None,
+    start: _Pose | None = None,  # (4, 4) pose or (3,) position
+    end: _Pose | None = None,
     *,
     start_q: ArrayLike | None = None,  # (n,), instead of start
     end_q: ArrayLike | None = None,
@@ -1108,7 +1128,7 @@ def time_optimal(
 ) -> Trajectory: ...
 def plan_along_path(
     robot: Robot,
-    path: Path | ArrayLike,  # or (k, 3) points or (k, 4, 4) poses
+    path: Path | _Pose,  # or (k, 3) points or (k, 4, 4) poses
     *,
     start_q: ArrayLike | None = None,  # (n,)
     limits: Limits | None = None,

@@ -9,8 +9,9 @@ use ikcore::robot::{Dh, DhTable, Joint, JointKind, LinkCapsule, Robot};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyTuple};
 
+use crate::chain;
 use crate::convert::{self, Rows, count, pose_array, row, rows, summary, table, vector};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
@@ -392,6 +393,24 @@ impl PyRobot {
     #[pyo3(signature = (q, *, motion="position"))]
     fn velocity_ellipsoid(&self, q: &Bound<'_, PyAny>, motion: &str) -> PyResult<PyVelocityEllipsoid> {
         crate::manipulability::ellipsoid(&self.core, q, motion)
+    }
+
+    /// For `beetle_ik.interop`: (base (4, 4), elements, tool (4, 4)), as in `_from_chain`.
+    fn _chain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let [base, tool] = chain::ends(py, &self.core)?;
+        (base, chain::elements(py, &self.core)?, tool).into_pyobject(py)
+    }
+
+    /// For `beetle_ik.interop`: joints are (name, kind, lower, upper, velocity), elements ("fixed", pose (4, 4)), ("moving",
+    /// joint, turns, axis (3,), scale, offset) or ("link", name).
+    #[staticmethod]
+    fn _from_chain(
+        name: &str,
+        base: &str,
+        joints: Vec<chain::JointParts>,
+        elements: Vec<Bound<'_, PyTuple>>,
+    ) -> PyResult<Self> {
+        chain::built(name, base, joints, &elements).map(Self::from)
     }
 
     fn __repr__(&self) -> String {

@@ -207,7 +207,7 @@ fn finish(
 /// A distance below the margin, by name.
 pub(in crate::planning) fn too_near(contact: &Contact, margin: f64) -> Violation {
     let what = format!("distance of link '{}' from {}", contact.link, contact.other);
-    Violation { what, value: contact.distance, bound: margin, unit: "m" }
+    Violation { what, value: contact.distance, bound: margin, unit: "m".into() }
 }
 
 /// Err for a configuration nearer to something than the margin.
