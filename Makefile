@@ -36,9 +36,9 @@ bench: $(VENV)/wheel  ## criterion benchmarks of the core, then the comparison w
 	.venv-bench/bin/pip install --quiet --disable-pip-version-check --requirement benches/requirements.txt dist/*.whl
 	.venv-bench/bin/python benches/compare.py --out target/compare
 
-docs: $(VENV)/with-docs  ## the Rust pages in target/doc, the Python pages in docs/build
+docs: $(VENV)/with-docs  ## the site in docs/build/html, the Rust pages in target/doc
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked
-	$(BIN)/pdoc --output-directory docs/build beetle_ik
+	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs docs/build/html
 
 SOURCES := Cargo.toml Cargo.lock pyproject.toml README.md \
     $(shell find crates python -type f -not -name '*.pyc' -not -name '*.so' -not -name '*.pyd')

@@ -82,16 +82,18 @@ class Scene:
 
 
 def draw(figure: Figure, plan: Plan) -> None:
-    """The arm on its way and the search on the left; positions, velocities, accelerations on the right."""
+    """The arm on its way, and the search where there was one, on the left; motions of the joints on the right."""
     grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.15])
-    scene = Scene(figure, grid[:2, 0], plan)
+    searched = len(plan.history) > 1
+    scene = Scene(figure, grid[: 2 if searched else 3, 0], plan)
     for i in range(_SNAPSHOTS):
         share = i / (_SNAPSHOTS - 1)
         label = "arm" if i == _SNAPSHOTS - 1 else None
         scene.draw_arm(share, color=SKY, alpha=0.25 + 0.75 * share, label=label)
     scene.draw_way()
     scene.axes.legend(loc="upper right", bbox_to_anchor=(-0.12, 1.0), fontsize="small")
-    _draw_search(figure.add_subplot(grid[2, 0]), plan)
+    if searched:
+        _draw_search(figure.add_subplot(grid[2, 0]), plan)
     time = np.linspace(0.0, plan.trajectory.duration, _SAMPLES)
     labels = ("position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]")
     panels = [figure.add_subplot(grid[row, 1]) for row in range(3)]

@@ -1,4 +1,4 @@
-"""The README's Python and the examples in docstrings run as they stand."""
+"""The Python of README and site, and the examples in docstrings, run as they stand."""
 
 import doctest
 import inspect
@@ -13,7 +13,9 @@ import pytest
 
 import beetle_ik as bik
 
-README = Path(__file__).parents[2] / "README.md"
+ROOT = Path(__file__).parents[2]
+README = ROOT / "README.md"
+PAGES = sorted(page for page in (ROOT / "docs").rglob("*.md") if "```python\n" in page.read_text(encoding="utf-8"))
 FENCED = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 # An indented block that begins with the import every example begins with.
 INDENTED = re.compile(r"^( +)import beetle_ik as bik\n(?:\1.*\n|\s*\n)*", re.MULTILINE)
@@ -51,8 +53,22 @@ def test_the_readme_runs_from_top_to_bottom(tmp_path: Path) -> None:
     run("\n".join(blocks_of_readme()), tmp_path)
 
 
-def test_every_fence_of_the_readme_says_what_it_holds() -> None:
-    opened = re.findall(r"^```(\w*)\n.*?^```", README.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_the_pages_of_the_site_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    program = "\n".join(FENCED.findall(page.read_text(encoding="utf-8")))
+    exec(compile(program, page.name, "exec"), {"__name__": "__main__"})
+
+
+def test_the_reference_has_everything_public() -> None:
+    listed = "\n".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs" / "api").glob("*.md"))
+    missing = [name for name in bik.__all__ if not name.startswith("_") and f":: beetle_ik.{name}\n" not in listed]
+    assert not missing
+
+
+@pytest.mark.parametrize("page", [README, *sorted((ROOT / "docs").rglob("*.md"))], ids=lambda page: page.stem)
+def test_every_fence_says_what_it_holds(page: Path) -> None:
+    opened = re.findall(r"^```(\S*).*?\n.*?^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
     assert "" not in opened
 
 

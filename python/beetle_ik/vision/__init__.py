@@ -1,9 +1,11 @@
 """Finding a planar arm in a picture (extra `vision`, on scikit-image).
 
-camera = bik.vision.Camera(pixels_per_metre=80.0, origin=(128.0, 128.0), link_width=0.2)
-found = bik.vision.locate_arm(image, robot, guess, camera=camera)
-if found.success:
-    start = found.q
+The camera says where pixels are in the plane of the arm, the guess about where the arm is:
+
+    camera = bik.vision.Camera(pixels_per_metre=80.0, origin=(128.0, 128.0), link_width=0.2)
+    found = bik.vision.locate_arm(image, robot, guess, camera=camera)
+    if found.success:
+        start = found.q
 """
 
 from .camera import Camera

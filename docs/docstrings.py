@@ -1,0 +1,44 @@
+"""Docstrings are written to be read in a terminal: here they become reStructuredText."""
+
+import re
+from typing import Any
+
+_CODE = re.compile(r"(`[^`]*`)")
+_SPECIAL = re.compile(r"[\\*|]|(?<=\w)_(?!\w)")
+_SECTION = re.compile(r"^(Args|Returns|Raises|Yields):$")
+
+
+def escaped(line: str) -> str:
+    """The line, with what reStructuredText would take for markup escaped, except in backquotes."""
+    parts = _CODE.split(line)
+    parts[::2] = [_SPECIAL.sub(lambda found: "\\" + found[0], part) for part in parts[::2]]
+    for i in range(2, len(parts), 2):
+        if parts[i][:1].isalnum():
+            parts[i] = "\\ " + parts[i]  # the s of several `Sinusoid`s
+    return "".join(parts)
+
+
+def converted(lines: list[str]) -> list[str]:
+    """The lines of a docstring, with indented examples marked as code."""
+    result: list[str] = []
+    code = section = False
+    for i, line in enumerate(lines):
+        if line and not line.startswith(" "):
+            code, section = False, bool(_SECTION.match(line))
+        elif line and not (code or section or lines[i - 1].strip()):
+            code = True
+            result += [".. code-block:: python", ""]
+        result.append(line if code else escaped(line))
+    return result
+
+
+def convert(_app: Any, _what: str, _name: str, _subject: Any, _options: Any, lines: list[str]) -> None:
+    """Listens to autodoc."""
+    lines[:] = converted(lines)
+
+
+def setup(app: Any) -> dict[str, bool]:
+    """A Sphinx extension; it runs before napoleon."""
+    app.setup_extension("sphinx.ext.autodoc")
+    app.connect("autodoc-process-docstring", convert, priority=100)
+    return {"parallel_read_safe": True}

@@ -1,0 +1,25 @@
+"""Every example runs, without a warning, and draws at least one picture."""
+
+import runpy
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+NEEDS_MUJOCO = {"wrong_model"}  # a program with an argument; the plant it drives has tests of its own
+GALLERY = sorted(path.stem for path in EXAMPLES.glob("*.py") if path.stem not in NEEDS_MUJOCO)
+
+
+@pytest.mark.filterwarnings("ignore:FigureCanvasAgg is non-interactive")
+@pytest.mark.parametrize("name", GALLERY)
+def test_the_example_runs(name: str) -> None:
+    runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
+    assert plt.get_fignums()
+
+
+def test_every_example_has_a_title_that_the_gallery_shows() -> None:
+    for name in GALLERY:
+        _, title, line, *_ = (EXAMPLES / f"{name}.py").read_text(encoding="utf-8").splitlines()
+        assert title
+        assert line == "=" * len(title)
