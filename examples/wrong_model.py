@@ -10,6 +10,7 @@ millimetre.
 """
 
 import argparse
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,9 @@ START = np.array([0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.102
 CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
 SETTLED = 20  # ticks: what the first antennae and the way to the circle take
 EVERY = 5  # ticks a frame
-VIEW = {"width": 400, "height": 360, "azimuth": -60.0, "elevation": -50.0, "distance": 1.3, "look_at": (0.2, 0.2, 0.8)}
+VIEW = partial(
+    MujocoPlant.picture, width=400, height=360, azimuth=-60.0, elevation=-50.0, distance=1.3, look_at=(0.2, 0.2, 0.8)
+)
 
 Array = NDArray[np.float64]
 
@@ -56,7 +59,7 @@ class Filmed:
         self.tips.append(self.plant.tip)
         if len(self.tips) % EVERY == 0:
             path = CIRCLE.position(np.linspace(0.0, CIRCLE.duration, 90))
-            self.frames.append(self.plant.picture(trail=self.tips, target=path, **VIEW))
+            self.frames.append(VIEW(self.plant, trail=self.tips, target=path))
         return measured
 
     @property

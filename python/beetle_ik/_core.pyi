@@ -16,6 +16,8 @@ from typing_extensions import disjoint_base
 __version__: str
 
 _Array: TypeAlias = NDArray[np.float64]
+_Transform: TypeAlias = _Homogeneous | _AsMatrix
+_Pose: TypeAlias = ArrayLike | _Transform | Sequence[_Transform]  # a matrix, or what another library makes of it
 _DerivativeFree: TypeAlias = BAS | BeeColony | BeetleSwarm | DifferentialEvolution | Firefly | Genetic | PSO | QPSO
 _Single: TypeAlias = _DerivativeFree | APPS | BroydenBAS | JacobianTranspose | LevenbergMarquardt | NewtonRaphson
 _Solver: TypeAlias = _Single | MultiStart
@@ -25,6 +27,15 @@ _Motion: TypeAlias = Literal["pose", "position", "rotation"]
 _Goals: TypeAlias = Goal | Iterable[Goal] | None
 _Plant: TypeAlias = KinematicPlant | Callable[[_Array], ArrayLike] | _Mover
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
+
+@type_check_only
+class _Homogeneous(Protocol):  # Pinocchio's SE3
+    @property
+    def homogeneous(self) -> Any: ...
+
+@type_check_only
+class _AsMatrix(Protocol):  # scipy's RigidTransform and Rotation
+    def as_matrix(self) -> Any: ...
 
 @type_check_only
 class _Mover(Protocol):
@@ -58,8 +69,8 @@ class Robot:
         lower: ArrayLike | None = None,
         upper: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
-        base: ArrayLike | None = None,
-        tool: ArrayLike | None = None,
+        base: _Pose | None = None,
+        tool: _Pose | None = None,
         name: str | None = None,
     ) -> Robot: ...
     @staticmethod
@@ -92,8 +103,8 @@ class Robot:
     def velocity_limit(self) -> _Array: ...  # (n,), inf where unknown
     @property
     def limits(self) -> Limits: ...
-    def with_tool(self, tool: ArrayLike) -> Robot: ...
-    def with_base(self, base: ArrayLike) -> Robot: ...
+    def with_tool(self, tool: _Pose) -> Robot: ...
+    def with_base(self, base: _Pose) -> Robot: ...
     def with_limits(
         self, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None, velocity: ArrayLike | None = None
     ) -> Robot: ...
@@ -103,6 +114,15 @@ class Robot:
         self, capsules: list[tuple[str, ArrayLike, ArrayLike, float]] | None = None, *, radius: float | None = None
     ) -> Robot: ...
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot: ...  # up to, m and rad
+    # For interop. Elements: ("fixed", pose), ("moving", joint, turns, axis, scale, offset) or ("link", name).
+    def _chain(self) -> tuple[_Array, list[tuple[Any, ...]], _Array]: ...  # base, elements, tool
+    @staticmethod
+    def _from_chain(
+        name: str,
+        base: str,
+        joints: Sequence[tuple[str, str, float, float, float]],  # name, kind, lower, upper, velocity
+        elements: Sequence[tuple[object, ...]],
+    ) -> Robot: ...
     def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
     def clip(self, q: ArrayLike) -> _Array: ...  # (n,) or (m, n)
     def link_poses(self, q: ArrayLike) -> _Array: ...  # (links, 4, 4), in the order of link_names
@@ -133,7 +153,7 @@ def pose(
     wxyz: ArrayLike | None = None,
     rpy: ArrayLike | None = None,
     rotvec: ArrayLike | None = None,
-    matrix: ArrayLike | None = None,
+    matrix: _Pose | None = None,
 ) -> _Array: ...
 
 # --- limits -------------------------------------------------------------------------------------
@@ -255,7 +275,9 @@ class BroydenBAS:
         position_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
+@final
 class JacobianTranspose:
     def __new__(cls, *, step_size: float | Literal["auto"] = "auto") -> JacobianTranspose: ...
     @property
@@ -334,6 +356,7 @@ class DifferentialEvolution:
         population: int = ...,
         weight: float = ...,
         crossover_rate: float = ...,
+        update: Literal["generation", "immediate"] = ...,
         max_generations: int | None = ...,
         stall_generations: int | None = ...,
     ) -> DifferentialEvolution: ...
@@ -343,6 +366,8 @@ class DifferentialEvolution:
     def weight(self) -> float: ...
     @property
     def crossover_rate(self) -> float: ...
+    @property
+    def update(self) -> str: ...
     @property
     def max_generations(self) -> int | None: ...
     @property
@@ -387,6 +412,7 @@ class Genetic:
         elite_share: float = ...,
         crossover_share: float = ...,
         tournament: int = ...,
+        mutation_rate: float = ...,
         mutation_scale: float = ...,
         mutation_decay: float = ...,
         max_generations: int | None = ...,
@@ -400,6 +426,8 @@ class Genetic:
     def crossover_share(self) -> float: ...
     @property
     def tournament(self) -> int: ...
+    @property
+    def mutation_rate(self) -> float: ...
     @property
     def mutation_scale(self) -> float: ...
     @property
@@ -536,6 +564,7 @@ class Stop:
 
 # --- tasks and goals ----------------------------------------------------------------------------
 
+@disjoint_base
 class Task:
     @property
     def weights(self) -> _Array | None: ...
@@ -545,21 +574,25 @@ class Task:
     def tool(self) -> _Array | None: ...  # (4, 4)
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
+@final
 class Pose(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
     ) -> Pose: ...
 
+@final
 class Position(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
     ) -> Position: ...
 
+@final
 class Orientation(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: ArrayLike | None = None
+        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
     ) -> Orientation: ...
 
+@final
 class Pointing(Task):
     def __new__(
         cls,
@@ -567,35 +600,43 @@ class Pointing(Task):
         axis: ArrayLike | None = None,  # None: (0, 0, 1)
         weights: ArrayLike | None = None,
         tolerance: ArrayLike | None = None,
-        tool: ArrayLike | None = None,
+        tool: _Pose | None = None,
     ) -> Pointing: ...
     @property
     def axis(self) -> _Array: ...  # (3,)
 
+@disjoint_base
 class Goal:
     @property
     def weight(self) -> float: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
+@final
 class Posture(Goal):
     def __new__(cls, posture: ArrayLike, *, weight: float = 1.0) -> Posture: ...
     @property
     def posture(self) -> _Array: ...  # (n,)
 
+@final
 class Centring(Goal):
     def __new__(cls, *, weight: float = 1.0) -> Centring: ...
 
+@final
 class Manipulability(Goal):
     def __new__(cls, *, motion: _Motion = "pose", weight: float = 1.0) -> Manipulability: ...
+
+@final
+class LinkManipulability(Goal):
+    def __new__(cls, *, motion: _Motion = "position", weight: float = 1.0) -> LinkManipulability: ...
 
 # --- inverse kinematics -------------------------------------------------------------------------
 
 def solve(
     robot: Robot,
-    target: ArrayLike,  # (4, 4) pose or (3,) position
+    target: _Pose,  # (4, 4) pose or (3,) position
     *,
     task: Task | None = None,
-    start: ArrayLike | None = None,
+    start: _Pose | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
@@ -605,10 +646,6 @@ def solve(
     stop: Stop | None = None,
     seed: int = 0,
 ) -> Solution: ...
-
-@final
-class LinkManipulability(Goal):
-    def __new__(cls, *, motion: _Motion = "position", weight: float = 1.0) -> LinkManipulability: ...
 
 @final
 class Solution:
@@ -637,9 +674,9 @@ class Solution:
 
 def solve_all(
     robot: Robot,
-    target: ArrayLike,  # (4, 4) pose or (3,) position
+    target: _Pose,  # (4, 4) pose or (3,) position
     *,
-    start: ArrayLike | None = None,
+    start: _Pose | None = None,
     limit: int = 16,
     separation: float = 0.1,  # rad, m
     task: Task | None = None,
@@ -670,11 +707,11 @@ class SolutionSet:
     @property
     def limits(self) -> Limits: ...  # those in force
     def __len__(self) -> int: ...
-    def __getitem__(self, index: int) -> Solution: ...
+    def __getitem__(self, index: int, /) -> Solution: ...
 
 def solve_batch(
     robot: Robot,
-    targets: ArrayLike,  # (m, 4, 4) poses or (m, 3) positions
+    targets: _Pose,  # (m, 4, 4) poses or (m, 3) positions
     *,
     starts: ArrayLike | None = None,  # (m, n), or (n,) for all
     threads: int | None = None,  # None: one per core
@@ -726,7 +763,7 @@ def minimize(
     upper: ArrayLike,
     *,
     solver: _DerivativeFree | MultiStart,
-    start: ArrayLike | None = None,
+    start: _Pose | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     vectorized: bool = False,
@@ -753,7 +790,9 @@ class Minimum:
     @property
     def restarts(self) -> int: ...
     @property
-    def elapsed(self) -> float: ...
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # the box
 
 # --- postures -----------------------------------------------------------------------------------
 
@@ -826,7 +865,7 @@ class Path:
     def velocity(self, t: ArrayLike) -> _Array: ...  # number -> (3,); (k,) -> (k, 3)
     def pose(self, t: ArrayLike) -> _Array: ...  # number -> (4, 4); (k,) -> (k, 4, 4)
     def sample(self, dt: float) -> tuple[_Array, _Array]: ...  # time (k,), positions (k, 3)
-    def with_orientation(self, orientation: ArrayLike | Callable[[float], ArrayLike]) -> Path: ...  # (3, 3)
+    def with_orientation(self, orientation: _Pose | Callable[[float], _Pose]) -> Path: ...  # (3, 3)
 
 def circle(
     center: ArrayLike, diameter: float, duration: float, *, a: ArrayLike = (1, 0, 0), b: ArrayLike = (0, 1, 0)
@@ -863,7 +902,7 @@ def rose(
     b: ArrayLike = (0, 1, 0),
 ) -> Path: ...
 def polyline(points: ArrayLike, duration: float) -> Path: ...
-def from_samples(time: ArrayLike, positions_or_poses: ArrayLike) -> Path: ...  # (k,) and (k, 3) or (k, 4, 4)
+def from_samples(time: ArrayLike, positions_or_poses: _Pose) -> Path: ...  # (k,) and (k, 3) or (k, 4, 4)
 def from_function(function: Callable[[float], ArrayLike], duration: float) -> Path: ...
 
 # --- tracking -----------------------------------------------------------------------------------
@@ -952,7 +991,7 @@ class Tracker:
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
     ) -> Tracker: ...
-    def step(self, target: ArrayLike, *, velocity: ArrayLike | None = None) -> Step: ...  # (4, 4) or (3,); m/s
+    def step(self, target: _Pose, *, velocity: ArrayLike | None = None) -> Step: ...  # (4, 4) or (3,); m/s
     def reset(self, q: ArrayLike) -> None: ...
     @property
     def q(self) -> _Array: ...  # (n,)
@@ -984,6 +1023,10 @@ class Step:
     @property
     def evaluations(self) -> int: ...
     @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+    @property
     def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
 
 # --- obstacles ----------------------------------------------------------------------------------
@@ -1004,7 +1047,7 @@ class Sphere(Obstacle):
 
 @final
 class Box(Obstacle):
-    def __new__(cls, center: ArrayLike, size: ArrayLike, rotation: ArrayLike | None = None) -> Box: ...
+    def __new__(cls, center: ArrayLike, size: ArrayLike, rotation: _Pose | None = None) -> Box: ...
     @property
     def center(self) -> _Array: ...
     @property
@@ -1024,7 +1067,7 @@ class Capsule(Obstacle):
 
 @final
 class Ellipsoid(Obstacle):
-    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, rotation: ArrayLike | None = None) -> Ellipsoid: ...
+    def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, rotation: _Pose | None = None) -> Ellipsoid: ...
     @property
     def center(self) -> _Array: ...
     @property
@@ -1055,8 +1098,8 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
 
 def plan_point_to_point(
     robot: Robot,
-    start: ArrayLike | None = None,  # (4, 4) pose or (3,) position
-    end: ArrayLike | None = None,
+    start: _Pose | None = None,  # (4, 4) pose or (3,) position
+    end: _Pose | None = None,
     *,
     start_q: ArrayLike | None = None,  # (n,), instead of start
     end_q: ArrayLike | None = None,
@@ -1085,7 +1128,7 @@ def time_optimal(
 ) -> Trajectory: ...
 def plan_along_path(
     robot: Robot,
-    path: Path | ArrayLike,  # or (k, 3) points or (k, 4, 4) poses
+    path: Path | _Pose,  # or (k, 3) points or (k, 4, 4) poses
     *,
     start_q: ArrayLike | None = None,  # (n,)
     limits: Limits | None = None,

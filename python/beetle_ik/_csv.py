@@ -4,13 +4,12 @@ import csv
 import io
 import os
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._core import InvalidInputError
-from ._files import whole_file
+from ._files import path_of, whole_file
 
 
 def write_table(file: str | os.PathLike[str], columns: Sequence[str], rows: NDArray[np.float64]) -> None:
@@ -45,7 +44,7 @@ def read_table(file: str | os.PathLike[str], required: Sequence[str]) -> dict[st
 
 
 def _text(file: str | os.PathLike[str]) -> str:
-    content = Path(file).read_bytes()
+    content = path_of(file).read_bytes()
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -10,10 +10,25 @@ from typing import BinaryIO
 from ._core import InvalidInputError
 
 
+def path_of(file: str | os.PathLike[str]) -> Path:
+    """The path that an argument `file` names.
+
+    Raises:
+        InvalidInputError: it names none.
+    """
+    try:
+        path = Path(file)
+    except TypeError:
+        raise InvalidInputError(f"file must be a path, got {file!r:.60}") from None
+    if not path.name or "\0" in str(path):
+        raise InvalidInputError(f"file must be the path of a file, got {file!r:.60}")
+    return path
+
+
 @contextmanager
 def whole_file(file: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     """Open `file` for writing: it appears when the block ends well; otherwise what was there before stays."""
-    path = Path(file)
+    path = path_of(file)
     unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with unfinished.open("wb") as stream:

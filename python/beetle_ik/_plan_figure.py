@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 _SAMPLES = 801
 _SNAPSHOTS = 6
 _FLAT = 1e-9  # m
-_FRAMES_A_SECOND = 25
-_PAUSE = 15  # frames at the end
+_FRAMES_A_SECOND = 15
+_PAUSE = 10  # frames at the end
 
 
 class Scene:
@@ -38,7 +38,7 @@ class Scene:
         self.axes = figure.add_subplot(place, projection=None if self._flat else "3d")
 
     def draw_way(self) -> None:
-        """The tip's way, beginning and end, the points that it was to follow, and what it had to keep clear of."""
+        """Obstacles, the tip's way with beginning and end, and the points that it was to follow."""
         draw_obstacles(self.axes, self._plan.obstacles)
         if self._plan.reference is not None:
             points = np.asarray(self._plan.reference)
@@ -91,7 +91,7 @@ def draw(figure: Figure, plan: Plan) -> None:
         label = "arm" if i == _SNAPSHOTS - 1 else None
         scene.draw_arm(share, color=SKY, alpha=0.25 + 0.75 * share, label=label)
     scene.draw_way()
-    scene.axes.legend(loc="upper left", fontsize="small")
+    scene.axes.legend(loc="upper right", bbox_to_anchor=(-0.12, 1.0), fontsize="small")
     if searched:
         _draw_search(figure.add_subplot(grid[2, 0]), plan)
     time = np.linspace(0.0, plan.trajectory.duration, _SAMPLES)

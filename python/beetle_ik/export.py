@@ -2,13 +2,12 @@
 
 npz keeps the polynomial pieces themselves. CSV keeps samples at the knots, with as many derivatives as determine the
 pieces: positions for straight lines, velocities too up to cubics, accelerations too up to quintics. Samples at knots do
-not determine pieces of degree 6, such as the fastest timing of a spline has: CSV then keeps positions and velocities, and
-reads back as the cubics that meet them.
+not determine pieces of degree 6, such as the fastest timing of a spline has: CSV then keeps positions and velocities,
+and reads back as the cubics that meet them.
 """
 
 import os
 import zipfile
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 
 from ._core import InvalidInputError, Trajectory
 from ._csv import read_table, write_table
-from ._files import whole_file
+from ._files import path_of, whole_file
 
 # Columns are named "q:joint", "qd:joint", "qdd:joint": position, velocity and acceleration of each joint.
 _DERIVATIVES = ("q", "qd", "qdd")
@@ -106,7 +105,7 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
 
 
 def _arrays(file: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
-    with Path(file).open("rb") as stream:
+    with path_of(file).open("rb") as stream:
         if not zipfile.is_zipfile(stream):
             raise InvalidInputError(f"{os.fspath(file)}: not an npz file")
         stream.seek(0)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _plan_figure
+from . import _core, _plan_figure
 from ._shapes import draw_capsules, draw_obstacles
 from ._style import BLUE, FORBIDDEN, GREEN, VERMILION, line, style
 from ._text import counted
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
     from ._core import Limits, ModelFreeResult, Obstacle, Plan, Robot, TrackResult, Trajectory
 
+__all__ = ["animation", "model_free", "plan", "robot", "saturation", "track", "trajectory"]
+
 _ROW_HEIGHT = 2.4  # inches, of a panel over time
 _VELOCITY_PANELS_A_ROW = 7
 _VELOCITY_ROW_HEIGHT = 2.0
@@ -30,8 +32,14 @@ _LEGEND_ROWS = 10
 _TRAJECTORY_SAMPLES = 2001
 
 
-def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] = ()) -> Figure:
+def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = None) -> Figure:
     """The robot as a stick figure at the configuration `q` (n,), with its capsules, among `obstacles`."""
+    _require("robot", robot, _core.Robot)
+    obstacles = () if obstacles is None else obstacles
+    _require("obstacles", obstacles, Iterable)
+    obstacles = list(obstacles)
+    for i, obstacle in enumerate(obstacles):
+        _require(f"obstacles[{i}]", obstacle, _core.Obstacle)
     origins = robot.link_poses(q)[:, :3, 3]
     with style():
         figure = _new_figure(6.0, 6.0)
@@ -47,6 +55,7 @@ def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] = ()) -> 
 
 def track(result: TrackResult) -> Figure:
     """A tracked path: tip and target in space, errors, joint positions, evaluations, velocities within their limits."""
+    _require("result", result, _core.TrackResult)
     panels = [_draw_position_error, _draw_joint_positions, _draw_evaluations]
     if np.isfinite(result.rotation_error).any():
         panels.insert(1, _draw_rotation_error)
@@ -71,6 +80,7 @@ def track(result: TrackResult) -> Figure:
 
 def model_free(result: ModelFreeResult) -> Figure:
     """A path tracked without a model: tip and target in space, error, joint positions, measurements."""
+    _require("result", result, _core.ModelFreeResult)
     names = [f"joint {j + 1}" for j in range(result.q.shape[1])]
     with style():
         figure = _new_figure(13.0, 3 * _ROW_HEIGHT + 0.3)
@@ -93,6 +103,7 @@ def model_free(result: ModelFreeResult) -> Figure:
 
 def plan(plan: Plan) -> Figure:
     """A planned motion: the arm on its way, the search, and the joints over time."""
+    _require("plan", plan, _core.Plan)
     with style():
         figure = _new_figure(13.0, 3 * _ROW_HEIGHT + 0.4)
         _plan_figure.draw(figure, plan)
@@ -101,12 +112,14 @@ def plan(plan: Plan) -> Figure:
 
 def animation(plan: Plan) -> FuncAnimation:
     """The arm on its planned way, in its own time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
+    _require("plan", plan, _core.Plan)
     with style():
-        return _plan_figure.animate(_new_figure(6.0, 6.0), plan)
+        return _plan_figure.animate(_new_figure(5.0, 5.0), plan)
 
 
 def trajectory(trajectory: Trajectory) -> Figure:
     """Position, velocity and, where the pieces are curved, acceleration of each joint over time."""
+    _require("trajectory", trajectory, _core.Trajectory)
     curved = trajectory.coefficients.shape[2] > 2
     labels = ["position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]"][: 3 if curved else 2]
     time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
@@ -127,6 +140,8 @@ def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
 
     Of the fastest timing of a path some joint is always at 1; `limits` are numbers, as `time_optimal` takes them.
     """
+    _require("trajectory", trajectory, _core.Trajectory)
+    _require("limits", limits, _core.Limits)
     time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
     _, velocity, acceleration = trajectory.at(time)
     shares = {
@@ -150,6 +165,11 @@ def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
         columns = _legend_columns(trajectory.joint_names)
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper", ncols=columns)
     return figure
+
+
+def _require(name: str, value: object, kind: type) -> None:
+    if not isinstance(value, kind):
+        raise _core.InvalidInputError(f"{name} must be a {kind.__name__}, got {value!r:.60}")
 
 
 def _slopes(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -77,7 +77,7 @@ def test_joint_angles(call: Callable[[], object], error: type[Exception], messag
             f"no robot is named 'Panda' (did you mean 'panda'?); known robots: {NAMES}",
         ),
         (lambda: bik.Robot.named("zzz"), Unknown, f"no robot is named 'zzz'; known robots: {NAMES}"),
-        (lambda: bik.Robot.planar([]), Invalid, "robot 'planar0': no joint moves between base and tip"),
+        (lambda: bik.Robot.planar([]), Invalid, "lengths of a planar arm: expected at least 1, got 0"),
         (lambda: bik.Robot.planar([1, -1]), Invalid, "length 1 of a planar arm must be positive and finite, got -1"),
         (
             lambda: bik.Robot.planar([1] * 33),

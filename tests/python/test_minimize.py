@@ -18,8 +18,10 @@ SOLVERS = [
     bik.BeeColony(),
     bik.BeetleSwarm(),
     bik.DifferentialEvolution(),
+    bik.DifferentialEvolution(update="immediate"),
     bik.Firefly(),
     bik.Genetic(),
+    bik.Genetic(mutation_rate=0.5),
     bik.PSO(),
     bik.PSO(form="inertia"),
     bik.QPSO(),
@@ -221,6 +223,7 @@ MISTAKES: list[Case] = [
         Invalid,
         "tournament must be between 1 and the population of 50, got 51",
     ),
+    (lambda: bik.Genetic(mutation_rate=0.0), Invalid, "mutation_rate must be above 0 and at most 1, got 0"),
     (lambda: bik.BeeColony(limit=0), Invalid, "limit must be at least 1, got 0"),
     (lambda: bik.BeetleSwarm(velocity_share=2.0), Invalid, "velocity_share must be between 0 and 1, got 2"),
     (
@@ -229,6 +232,11 @@ MISTAKES: list[Case] = [
         "direction must be one of 'printed', 'downhill', got 'up'",
     ),
     (lambda: bik.DifferentialEvolution(weight=3.0), Invalid, "weight must be above 0 and at most 2, got 3"),
+    (
+        lambda: bik.DifferentialEvolution(update="later"),  # type: ignore[arg-type]
+        Invalid,
+        "update must be one of 'generation', 'immediate', got 'later'",
+    ),
     (lambda: bik.QPSO(stall_generations=0), Invalid, "stall_generations must be at least 1, got 0"),
     (lambda: bik.QPSO(max_generations=-1), Invalid, "max_generations must be zero or more, got -1"),
 ]

@@ -33,12 +33,12 @@ SOLVERS = [
     bik.PSO(population=20, form="inertia", inertia=0.5, c1=1.5, c2=1.25, velocity_limit=0.25, accept="improving"),
     bik.QPSO(expansion=0.5, max_generations=9, stall_generations=None),
     bik.Firefly(population=20, attractiveness=0.5, absorption=2.0, randomness=0.1, randomness_decay=0.9),
-    bik.Genetic(elite_share=0.1, crossover_share=0.5, tournament=2, mutation_scale=0.2, mutation_decay=0.9),
+    bik.Genetic(elite_share=0.1, crossover_share=0.5, mutation_rate=0.25, mutation_scale=0.2, mutation_decay=0.9),
     bik.BeeColony(),
     bik.BeeColony(limit=25),
     bik.BeetleSwarm(),
     bik.BeetleSwarm(inertia=1.0, velocity_limit=1.0, direction="downhill"),
-    bik.DifferentialEvolution(weight=0.75, crossover_rate=0.5),
+    bik.DifferentialEvolution(weight=0.75, crossover_rate=0.5, update="immediate"),
     bik.MultiStart(bik.Firefly()),
     bik.MultiStart(bik.BAS(variant="greedy")),
     bik.MultiStart(bik.LevenbergMarquardt(initial_damping=0.5), max_starts=3),
@@ -134,11 +134,30 @@ def test_damaged_robots_are_refused(damaged: bytes) -> None:
 
 
 def test_limits_come_back(again: Callable[[bik.Limits], bik.Limits]) -> None:
-    other = again(bik.Limits(lower=-1.0, upper=[1.0, 2.0], velocity=SINUSOIDS[1]))
+    limits = bik.Limits(lower=-1.0, upper=[1.0, 2.0], velocity=SINUSOIDS[1])
+    other = again(limits)
+    assert other == limits
     assert (other.lower, other.acceleration, other.jerk) == (-1.0, None, None)
     np.testing.assert_array_equal(other.upper, [1.0, 2.0])
     assert other.velocity == SINUSOIDS[1]
     assert repr(other).startswith("Limits(lower=-1.0, upper=array([1., 2.]), velocity=Sinusoid(mean=[1.0, 2.0], ")
+
+
+def test_limits_compare_as_given() -> None:
+    limits = bik.Limits(lower=-1.0, upper=[1.0, 2.0], velocity=SINUSOIDS[1], acceleration=ramp)
+    assert limits == bik.Limits(lower=-1.0, upper=[1.0, 2.0], velocity=SINUSOIDS[1], acceleration=ramp)
+    assert bik.Limits() == bik.Limits()
+    for other in (
+        bik.Limits(),
+        bik.Limits(lower=-1.5, upper=[1.0, 2.0], velocity=SINUSOIDS[1], acceleration=ramp),
+        bik.Limits(lower=[-1.0, -1.0], upper=[1.0, 2.0], velocity=SINUSOIDS[1], acceleration=ramp),
+        bik.Limits(lower=-1.0, upper=[1.0, 2.0], velocity=SINUSOIDS[0], acceleration=ramp),
+        bik.Limits(lower=-1.0, upper=[1.0, 2.0], velocity=SINUSOIDS[1], acceleration=line),
+        bik.Limits(lower=-1.0, upper=[1.0, 2.0], velocity=SINUSOIDS[1], acceleration=ramp, jerk=1.0),
+    ):
+        assert limits != other
+    assert limits != -1.0
+    assert bik.Robot.named("iiwa14").limits == bik.Robot.named("iiwa14").limits
 
 
 def ramp(t: float) -> float:
@@ -157,6 +176,155 @@ def test_trajectories_come_back(again: Callable[[bik.Trajectory], bik.Trajectory
     assert other.joint_names == ["a", "b"]
     np.testing.assert_array_equal(other.coefficients, trajectory.coefficients)
     assert other != bik.Trajectory.from_samples([0.0, 1.0, 3.0], q, joint_names=["a", "b"])
+
+
+def turned(t: float) -> np.ndarray:
+    return bik.pose([0, 0, 0], rpy=[0.0, 0.0, t])[:3, :3]
+
+
+def line(t: float) -> tuple[float, float, float]:
+    return (0.1 * t, 0.2, 0.3)
+
+
+POSES = np.stack([bik.pose([0, 0, 0], rpy=[0.1, 0.2, 0.3]), bik.pose([1, 0, 0], rpy=[0.4, 0.2, -0.3])])
+PATHS = {
+    "circle": bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0),
+    "letter m": bik.paths.letter_m((0.4, 0.1, 0.5), 4.0, width=0.2, height=0.3),
+    "hypotrochoid": bik.paths.hypotrochoid((0, 0, 0), 4.0, outer_radius=0.5, inner_radius=0.3, distance=0.2),
+    "pentagram": bik.paths.pentagram((0, 0, 0), 4.0, radius=0.3),
+    "rose": bik.paths.rose((0, 0, 0), 4.0, radius=0.3, k=4),
+    "polyline": bik.paths.polyline([(0, 0, 0), (1, 0, 0), (1, 2, 0)], 3.0),
+    "positions": bik.paths.from_samples([0, 1, 2], [(0, 0, 0), (1, 0, 0), (1, 1, 0)]),
+    "poses": bik.paths.from_samples([0, 1], POSES),
+    "turned circle": bik.paths.circle((0, 0, 1), diameter=0.2, duration=3.0).with_orientation(TURN),
+    "turning circle": bik.paths.circle((0, 0, 1), diameter=0.2, duration=3.0).with_orientation(turned),
+    "function": bik.paths.from_function(line, 3.0),
+    "turned function": bik.paths.from_function(line, 3.0).with_orientation(TURN),
+}
+
+
+@pytest.mark.parametrize("path", PATHS.values(), ids=PATHS)
+def test_paths_come_back(path: bik.Path, again: Callable[[bik.Path], bik.Path]) -> None:
+    other = again(path)
+    assert other == path
+    assert (other.duration, repr(other)) == (path.duration, repr(path))
+    t = np.linspace(-0.5, path.duration + 0.5, 23)
+    np.testing.assert_array_equal(other.position(t), path.position(t))
+    np.testing.assert_array_equal(other.velocity(t), path.velocity(t))
+    if "with orientation" in repr(path):
+        np.testing.assert_array_equal(other.pose(t), path.pose(t))
+
+
+def test_different_paths_differ() -> None:
+    for i, one in enumerate(PATHS.values()):
+        for j, other in enumerate(PATHS.values()):
+            assert (one == other) == (i == j)
+    assert PATHS["circle"] != "circle"
+
+
+def test_a_path_along_a_lambda_does_not_pickle_but_copies() -> None:
+    path = bik.paths.from_function(lambda t: (t, 0.0, 0.0), 1.0)
+    with pytest.raises((pickle.PicklingError, AttributeError), match="lambda"):
+        pickle.dumps(path)
+    assert copy.copy(path) == path
+
+
+def failing_plant() -> Callable[[np.ndarray], np.ndarray]:
+    plant = bik.KinematicPlant(bik.Robot.planar([1.0] * 3))
+    calls = iter(range(30))
+
+    def move(q: np.ndarray) -> np.ndarray:
+        if next(calls, None) is None:
+            raise OSError(5, "the cable came off")
+        return plant.move(q)
+
+    return move
+
+
+def results() -> dict[str, object]:
+    arm, planar = bik.Robot.named("iiwa14"), bik.Robot.planar([1.0] * 3, velocity=1.0)
+    q = arm.random_configurations(4, seed=3)
+    limits = bik.Limits(lower=-2.0, velocity=SINUSOIDS[0])
+    circle = bik.paths.circle((1.5, 1.0, 0.0), diameter=0.4, duration=2.0)
+    plane = bik.Limits(velocity=2.0, acceleration=4.0)
+    obstacle = bik.obstacles.Sphere([5.0, 5.0, 0.0], 0.1)
+    targets = np.concatenate((arm.fk(q), np.full((1, 4, 4), np.nan)))
+    return {
+        "solution": bik.solve(arm, arm.fk(q[0]), limits=limits),
+        "position": bik.solve(arm, (0.4, 0.1, 0.5)),
+        "miss": bik.solve(arm, (9.0, 0.0, 0.0)),
+        "batch": bik.solve_batch(arm, targets, on_invalid="skip", threads=1),
+        "set": bik.solve_all(arm, arm.fk(q[0]), limit=3),
+        "empty set": bik.solve_all(arm, (9.0, 0.0, 0.0), stop=bik.Stop(max_evaluations=500)),
+        "track": bik.track(planar, circle, dt=0.1, limits=limits),
+        "plan": bik.plan_point_to_point(
+            planar.with_capsules(radius=0.05), start_q=[0.1, 0.2, 0.3], end_q=[0.5, 0.2, -0.3], limits=plane,
+            obstacles=[obstacle],
+        ),
+        "plan along": bik.plan_along_path(planar, [(1.5, 1.0, 0.0), (1.4, 1.2, 0.0)], limits=plane),
+        "model free": bik.track_model_free(bik.KinematicPlant(planar), circle, [0.1, 0.2, 0.3], dt=0.1),
+        "failed plant": bik.track_model_free(failing_plant(), circle, [0.1, 0.2, 0.3], dt=0.1),
+    }  # fmt: skip
+
+
+RESULTS = results()
+
+
+def properties(value: object) -> dict[str, object]:
+    """All that a result says, methods aside."""
+    names = [name for name in dir(value) if not name.startswith("_")]
+    return {name: shown for name in names if not callable(shown := getattr(value, name))}
+
+
+def assert_same(one: object, other: object) -> None:
+    assert type(one) is type(other)
+    if isinstance(one, np.ndarray):
+        np.testing.assert_array_equal(one, other)
+        assert (one.dtype, one.flags.writeable) == (other.dtype, False)
+    elif isinstance(one, BaseException):
+        assert repr(one) == repr(other)
+    elif isinstance(one, bik.Solution):
+        assert_same(properties(one), properties(other))
+    elif isinstance(one, dict):
+        assert one.keys() == other.keys()
+        for name in one:
+            assert_same(one[name], other[name])
+    elif isinstance(one, float):
+        np.testing.assert_array_equal(one, other)
+    else:
+        assert one == other
+
+
+@pytest.mark.parametrize("result", RESULTS.values(), ids=RESULTS)
+def test_results_come_back_with_every_property(result: object, again: Callable[[object], object]) -> None:
+    other = again(result)
+    assert repr(other) == repr(result)
+    assert_same(properties(result), properties(other))
+    if hasattr(result, "__len__"):
+        assert len(other) == len(result)
+    if isinstance(result, bik.BatchSolution | bik.SolutionSet):
+        for one, item in zip(result, other, strict=True):
+            assert_same(one, item)
+
+
+DAMAGED = "the bytes were damaged: their checksum differs"
+
+
+@pytest.mark.parametrize(
+    ("damage", "problem"),
+    [
+        (lambda stored: stored[:0], "no bytes"),
+        (lambda stored: b"\x63" + stored[1:], "format version 99, this library reads version 1"),
+        (lambda stored: stored[:-1], DAMAGED),
+        (lambda stored: stored[:20] + bytes([stored[20] ^ 1]) + stored[21:], DAMAGED),
+        (lambda stored: stored[:5], DAMAGED),
+    ],
+)  # fmt: skip
+def test_damaged_results_are_refused(damage: Callable[[bytes], bytes], problem: str) -> None:
+    restore, (stored, *others) = RESULTS["solution"].__reduce__()
+    with pytest.raises(bik.InvalidInputError) as caught:
+        restore(damage(stored), *others)
+    assert str(caught.value) == f"cannot restore solution: {problem}"
 
 
 @pytest.mark.parametrize("status", bik.Status)

@@ -120,7 +120,7 @@ MISTAKES: list[tuple[Callable[[], Any], str]] = [
         lambda: between(start=None, start_q=[0, 0, 4]),
         "start: joint 'joint_3' at 4 is outside its limits [-3.141592653589793, 3.141592653589793]",
     ),
-    (lambda: between(start=None, start_q=[0, 0]), "start of robot 'planar3': expected 3 joints, got 2"),
+    (lambda: between(start=None, start_q=[0, 0]), "start_q of robot 'planar3': expected 3 joints, got 2"),
     (lambda: between(limits=None), f"velocity limit of joint 'joint_1' must be {NOT_FINITE}, got inf"),
     (
         lambda: between(limits=bik.Limits(velocity=[1, 0, 1])),

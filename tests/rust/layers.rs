@@ -4,13 +4,14 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const FOUNDATION: &[&str] = &["error", "rng", "math", "wording"];
+const FOUNDATION: &[&str] = &["error", "rng", "math", "stored", "wording"];
 
 /// Which modules a module may use, besides itself and those of [`FOUNDATION`]. No solver knows of robots, no robot of solvers.
 const LAYERS: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("rng", &[]),
     ("math", &[]),
+    ("stored", &[]),
     ("wording", &[]),
     ("robot", &[]),
     ("path", &[]),

@@ -233,7 +233,7 @@ fn a_limit_that_closes_in_is_followed_and_told() {
     let record = on_circle(&mut exact_plant(), &options);
     assert_eq!(record.track.status, Status::Lost);
     assert!(record.track.max_violation > 0.1);
-    assert!(record.message().contains("beyond its position limit"), "{}", record.message());
+    assert!(record.message().contains("beyond its limits at t = "), "{}", record.message());
 }
 
 /// Answers so many times, then fails in one way or another.

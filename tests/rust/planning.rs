@@ -20,16 +20,16 @@ use ikcore::task::Target;
 
 /// The paper's arm with `k` links of 2 m in all, at pi rad/s and `acceleration` rad/s^2, turning freely.
 fn arm(k: usize, acceleration: f64) -> (Robot, Limits) {
-    let robot = Robot::planar(&vec![2.0 / k as f64; k]).unwrap();
+    let robot = Robot::planar(&vec![2.0 / k as f64; k]).expect("valid input");
     (robot.clone(), limits(&robot, acceleration))
 }
 
 fn limits(robot: &Robot, acceleration: f64) -> Limits {
     let constant = |value: f64| vec![Profile::Constant(value)];
-    let limits = Limits::of(robot).replace(Field::Velocity, constant(PI)).unwrap();
-    let limits = limits.replace(Field::Acceleration, constant(acceleration)).unwrap();
-    let limits = limits.replace(Field::Lower, constant(f64::NEG_INFINITY)).unwrap();
-    limits.replace(Field::Upper, constant(f64::INFINITY)).unwrap()
+    let limits = Limits::of(robot).replace(Field::Velocity, constant(PI)).expect("valid input");
+    let limits = limits.replace(Field::Acceleration, constant(acceleration)).expect("valid input");
+    let limits = limits.replace(Field::Lower, constant(f64::NEG_INFINITY)).expect("valid input");
+    limits.replace(Field::Upper, constant(f64::INFINITY)).expect("valid input")
 }
 
 fn at(x: f64, y: f64) -> End {
@@ -40,7 +40,7 @@ fn at(x: f64, y: f64) -> End {
 fn plan(k: usize, options: PointToPointOptions) -> Plan {
     let (robot, limits) = arm(k, 2.0 * PI);
     let options = PointToPointOptions { method: PointToPointMethod::Tpbso, limits: Some(limits), ..options };
-    plan_point_to_point(&robot, &at(1.0, 0.0), &at(0.5, 1.5), &options, &mut Unattended).unwrap()
+    plan_point_to_point(&robot, &at(1.0, 0.0), &at(0.5, 1.5), &options, &mut Unattended).expect("valid input")
 }
 
 fn evolution() -> Option<AnySolver<DerivativeFree>> {
@@ -189,21 +189,24 @@ fn robots_in_space_reach_both_poses() {
 
 /// The paper's star about (1, 1), and a closed curve of three lobes there, at 51 points.
 fn paths() -> [Reference; 2] {
-    let star = Polyline::pentagram(&Plane::xy([1.0, 1.0, 0.0]).unwrap(), 0.5, 1.0).unwrap();
+    let star = Polyline::pentagram(&Plane::xy([1.0, 1.0, 0.0]).expect("valid input"), 0.5, 1.0).expect("valid input");
     let lobes = (0..=50).map(|i| {
         let angle = 2.0 * PI * f64::from(i) / 50.0;
         let radius = (1.0 + 0.35 * (3.0 * angle).cos()) * 0.6 / 1.35;
         [1.0 + radius * angle.cos(), 1.0 + radius * angle.sin(), 0.0]
     });
-    [Path::new(star).sample(0.02).unwrap(), Reference::new(0.02, lobes.collect(), None).unwrap()]
+    [
+        Path::new(star).sample(0.02).expect("valid input"),
+        Reference::new(0.02, lobes.collect(), None).expect("valid input"),
+    ]
 }
 
 fn follow(path: &Reference, options: AlongPathOptions) -> Plan {
-    let robot = Robot::planar(&[1.0, 1.0, 1.0]).unwrap();
+    let robot = Robot::planar(&[1.0, 1.0, 1.0]).expect("valid input");
     let limits = Some(limits(&robot, 4.0 * PI));
     let stop = Some(Stop { max_evaluations: 50 * 301, ..Stop::default() });
     let options = AlongPathOptions { method: AlongPathMethod::Tpbso, limits, stop, ..options };
-    plan_along_path(&robot, path, &options, &mut Unattended).unwrap()
+    plan_along_path(&robot, path, &options, &mut Unattended).expect("valid input")
 }
 
 #[test]

@@ -8,7 +8,7 @@ use ikcore::planning::{End, Plan, PointToPointOptions, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Stop, Unattended};
-use ikcore::task::Target;
+use ikcore::task::{Target, Tolerance};
 
 fn limits(robot: &Robot, velocity: Option<f64>, acceleration: f64) -> Limits {
     let limits = Limits::of(robot).replace(Field::Acceleration, vec![Profile::Constant(acceleration)]).unwrap();
@@ -92,7 +92,9 @@ fn arms_find_their_way_around_a_box() {
                 assert!(0.001 <= clearance && clearance <= sampled + 1e-9, "{clearance} {sampled}");
                 let reached = states(&plan, 1).last().unwrap();
                 if let End::Target(target) = end {
-                    let error = ikcore::task::TipError::from(target.error(&robot, &reached));
+                    let error = ikcore::task::TipError::from(
+                        target.assess(&robot, &reached, &Tolerance::default().into()).error,
+                    );
                     assert!(error.position < 2e-6 && error.rotation < 2e-6, "{error}");
                 }
             } else {

@@ -176,5 +176,5 @@ fn planar_arms() {
         Robot::planar(&[1.0, 0.0]).unwrap_err().to_string(),
         "length 1 of a planar arm must be positive and finite, got 0"
     );
-    assert_eq!(Robot::planar(&[]).unwrap_err().to_string(), "robot 'planar0': no joint moves between base and tip");
+    assert_eq!(Robot::planar(&[]).unwrap_err().to_string(), "lengths of a planar arm: expected at least 1, got 0");
 }

@@ -211,13 +211,15 @@ fn mistakes_are_named() {
             timed(&[(Field::Acceleration, vec![1.0; 3])], TimingOptions::default()).map(drop),
             "acceleration limit: expected one number, or 2 (one per joint), got 3",
         ),
-        (timed(&[standard.clone()], on_grid(2)).map(drop), "gridpoints must be from 3 to 200000, got 2"),
+        (timed(std::slice::from_ref(&standard), on_grid(2)).map(drop), "gridpoints must be from 3 to 200000, got 2"),
         (
-            timed(&[standard.clone()], TimingOptions { end_speed: 9.0, ..TimingOptions::default() }).map(drop),
+            timed(std::slice::from_ref(&standard), TimingOptions { end_speed: 9.0, ..TimingOptions::default() })
+                .map(drop),
             "infeasible: the speed at the end of the path is beyond what the limits allow there",
         ),
         (
-            timed(&[standard.clone()], TimingOptions { start_speed: -1.0, ..TimingOptions::default() }).map(drop),
+            timed(std::slice::from_ref(&standard), TimingOptions { start_speed: -1.0, ..TimingOptions::default() })
+                .map(drop),
             "start_speed must be zero or more and finite, got -1",
         ),
         (

@@ -422,5 +422,9 @@ fn collision_shapes_become_capsules_that_hold_them() {
     assert!(
         message.starts_with("robot 'arm' has collision shapes that cannot be read (a mesh of link 'hand', a sphere")
     );
-    assert!(ikcore::obstacle::Scene::new(&robot.with_capsules_along_links(0.1).unwrap(), &[]).is_ok());
+    let given = robot.with_capsules(vec![cylinder.clone()]).unwrap();
+    assert!(
+        ikcore::obstacle::Scene::new(&given, &[]).is_ok(),
+        "capsules that are given replace what could not be read"
+    );
 }

@@ -69,6 +69,7 @@ pub mod problem;
 pub mod rng;
 pub mod robot;
 pub mod solver;
+pub mod stored;
 pub mod task;
 pub mod tracking;
 pub mod trajectory;

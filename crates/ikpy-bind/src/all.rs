@@ -2,8 +2,9 @@
 
 use ikcore::ik::{self, AllOptions, SolveOptions};
 use ikcore::solver::{AnySolver, Status, Stop};
+use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
-use numpy::PyArrayDyn;
+use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
@@ -14,6 +15,7 @@ use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::Watcher;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, any_solver, status};
+use crate::stored::{self, Reduced};
 use crate::task::read_task;
 
 /// Distinct solutions of one target: a sequence of `Solution`.
@@ -81,6 +83,26 @@ impl PySolutionSet {
     fn __repr__(&self) -> String {
         format!("<SolutionSet: {}>", self.core.message())
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let core = stored::bytes(py, to_bytes("set of solutions", &self.core))?;
+        let dof = self.q.bind(py).shape()[1];
+        stored::restored_from::<Self>(py, (core, dof, self.limits.clone_ref(py)))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, bytes: &[u8], dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
+        Self::new(py, from_bytes("set of solutions", bytes).map_err(raise)?, dof, limits)
+    }
+}
+
+impl PySolutionSet {
+    fn new(py: Python<'_>, core: ik::Found, dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
+        let rows: Vec<f64> = core.solutions.iter().flat_map(|solution| solution.q.iter().copied()).collect();
+        let q = table(py, rows, &[core.solutions.len(), dof])?.unbind();
+        Ok(Self { core, q, limits })
+    }
 }
 
 /// Looks for distinct solutions until a hundred in a row were known already, or the budget is spent.
@@ -143,7 +165,5 @@ pub fn solve_all(
     let mut watcher = Watcher::new();
     let core = py.detach(|| ik::solve_all(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;
     watcher.finish()?;
-    let rows: Vec<f64> = core.solutions.iter().flat_map(|solution| solution.q.iter().copied()).collect();
-    let q = table(py, rows, &[core.solutions.len(), robot.core.dof()])?.unbind();
-    Ok(PySolutionSet { core, q, limits: in_force })
+    PySolutionSet::new(py, core, robot.core.dof(), in_force)
 }

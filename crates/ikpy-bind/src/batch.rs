@@ -1,8 +1,11 @@
 //! `solve_batch` and `BatchSolution`.
 
+use std::time::Duration;
+
 use ikcore::batch::{self, Batch, BatchOptions, Item, OnInvalid, Targets};
 use ikcore::ik::SolveOptions;
 use ikcore::solver::{AnySolver, Status, Stop};
+use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
@@ -16,6 +19,7 @@ use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::{Progress, Watcher};
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, any_solver};
+use crate::stored::{self, Reduced};
 use crate::task::read_task;
 
 /// Solutions in the order of the targets, as columns; `b[i]` is one of them as a `Solution`.
@@ -47,9 +51,7 @@ pub struct PyBatchSolution {
     /// Evaluations of the forward kinematics (m,).
     #[pyo3(get)]
     evaluations: Py<PyArray1<i64>>,
-    /// Time taken in all (s).
-    #[pyo3(get)]
-    elapsed: f64,
+    elapsed: Duration,
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
@@ -60,6 +62,12 @@ pub struct PyBatchSolution {
 
 #[pymethods]
 impl PyBatchSolution {
+    /// Time taken in all (s).
+    #[getter]
+    fn elapsed(&self) -> f64 {
+        self.elapsed.as_secs_f64()
+    }
+
     fn __len__(&self) -> usize {
         self.items.len()
     }
@@ -79,6 +87,19 @@ impl PyBatchSolution {
     fn __repr__(&self) -> String {
         format!("<BatchSolution: {}>", self.message)
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let q = self.q.bind(py).readonly().as_slice()?.to_vec();
+        let core = Batch { dof: self.dof, q, items: self.items.clone(), elapsed: self.elapsed };
+        let core = stored::bytes(py, to_bytes("batch of solutions", &core))?;
+        stored::restored_from::<Self>(py, (core, self.limits.clone_ref(py)))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
+        Self::new(py, from_bytes("batch of solutions", bytes).map_err(raise)?, limits)
+    }
 }
 
 impl PyBatchSolution {
@@ -95,7 +116,7 @@ impl PyBatchSolution {
             iterations: column(py, &items, |item| item.iterations as i64),
             restarts: column(py, &items, |item| item.restarts as i64),
             evaluations: column(py, &items, |item| item.evaluations as i64),
-            elapsed: elapsed.as_secs_f64(),
+            elapsed,
             limits,
             message,
             items,

@@ -2,6 +2,7 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use ikcore::solver::stop::Stopwatch;
 use ikcore::tracking::Controller;
 use ikcore::tracking::controller::Session;
 use numpy::PyArray1;
@@ -45,9 +46,9 @@ impl PyControlSession {
     /// goes on.
     fn observe(&self, py: Python<'_>, position: &Bound<'_, PyAny>) -> PyResult<Option<PyStep>> {
         let position = point("position", position)?;
-        let mut session = self.session();
+        let (watch, mut session) = (Stopwatch::start(), self.session());
         let step = session.observe(position).map_err(raise)?;
-        Ok(step.map(|step| PyStep::new(py, step, session.q(), session.qd())))
+        Ok(step.map(|step| PyStep::new(py, step, (session.q(), session.qd()), &self.limits, watch)))
     }
 
     /// The configuration accepted last (n,) (rad, m).

@@ -9,6 +9,7 @@ use numpy::{
 use pyo3::exceptions::PyException;
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyList, PyTuple};
 
 use crate::error::{invalid, raise};
 
@@ -26,17 +27,42 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyA
     if value.is_none() {
         return Err(no_numbers()); // numpy would read NaN
     }
-    let py = value.py();
-    let numpy = py.import(intern!(py, "numpy"))?;
-    let options = [("dtype", "float64"), ("order", "C")];
-    let converted =
-        numpy.call_method(intern!(py, "asarray"), (value,), Some(&pyo3::types::IntoPyDict::into_py_dict(options, py)?));
+    let converted = float64(value).or_else(|error| match matrices(value)? {
+        Some(matrices) => float64(&matrices),
+        None => Err(error),
+    });
     match converted {
         Ok(array) => Ok(array.cast_into::<PyArrayDyn<f64>>()?.readonly()),
         // A Ctrl-C that falls into the conversion is not the value's fault.
-        Err(error) if error.is_instance_of::<PyException>(py) => Err(no_numbers()),
+        Err(error) if error.is_instance_of::<PyException>(value.py()) => Err(no_numbers()),
         Err(interrupt) => Err(interrupt),
     }
+}
+
+/// What numpy makes of the value.
+fn float64<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let py = value.py();
+    let options = [("dtype", "float64"), ("order", "C")].into_py_dict(py)?;
+    py.import(intern!(py, "numpy"))?.call_method(intern!(py, "asarray"), (value,), Some(&options))
+}
+
+/// The matrices of another library's poses and rotations, one or several in a list; None for anything else.
+fn matrices<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+        let each = value.try_iter()?.map(|item| matrix(&item?)).collect::<PyResult<Option<Vec<_>>>>()?;
+        return each.map(|each| Ok(PyList::new(value.py(), each)?.into_any())).transpose();
+    }
+    matrix(value)
+}
+
+/// The matrix of an object that is known by what it offers: `homogeneous` (Pinocchio's SE3) or `as_matrix()` (scipy's
+/// RigidTransform and Rotation).
+fn matrix<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let py = value.py();
+    if let Some(matrix) = value.getattr_opt(intern!(py, "homogeneous"))? {
+        return Ok(Some(matrix));
+    }
+    value.getattr_opt(intern!(py, "as_matrix"))?.map(|matrix| matrix.call0()).transpose()
 }
 
 /// A count or a seed. Taken as i128, because the overflow error of a narrower type would not say what was wrong.

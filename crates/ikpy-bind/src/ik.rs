@@ -3,6 +3,7 @@
 use ikcore::ik::{self, SolveOptions};
 use ikcore::math::Frame;
 use ikcore::solver::{AnySolver, Status, Stop};
+use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::{Target, TipError, Tolerance};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -14,6 +15,7 @@ use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::Watcher;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, any_solver, status};
+use crate::stored::{self, Reduced};
 use crate::task::read_task;
 
 /// The best configuration found, and what became of the search.
@@ -96,6 +98,17 @@ impl PySolution {
         let TipError { position, rotation } = self.core.error;
         let rotation = if rotation.is_nan() { String::new() } else { format!(", rotation_error={rotation:.3e}") };
         format!("<Solution {}: position_error={position:.3e}{rotation}>", self.core.status.name())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let core = stored::bytes(py, to_bytes("solution", &self.core))?;
+        stored::restored_from::<Self>(py, (core, self.limits(py)))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
+        Ok(Self::new(py, from_bytes("solution", bytes).map_err(raise)?, limits))
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod all;
 mod batch;
+mod chain;
 mod control;
 mod convert;
 mod error;
@@ -21,6 +22,7 @@ mod posture;
 mod robot;
 mod sinusoid;
 mod solver;
+mod stored;
 mod task;
 mod time_optimal;
 mod tracker;

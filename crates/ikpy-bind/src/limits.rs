@@ -37,6 +37,16 @@ impl Given {
         }
     }
 
+    /// Functions as Python compares them: two bound methods of one object are equal.
+    fn equals(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        match (self, other) {
+            (Self::Numbers(one), Self::Numbers(other)) => Ok(one == other),
+            (Self::Sinusoid(one), Self::Sinusoid(other)) => Ok(one == other),
+            (Self::Function(one), Self::Function(other)) => one.bind(py).eq(other),
+            _ => Ok(false),
+        }
+    }
+
     fn show<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         match self {
             Self::Numbers(numbers) => numbers.show(py),
@@ -177,6 +187,20 @@ impl PyLimits {
         Ok(format!("Limits({})", shown.join(", ")))
     }
 
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<bool> {
+        let Ok(other) = other.cast::<Self>() else { return Ok(false) };
+        for pair in self.given.iter().zip(&other.get().given) {
+            let equal = match pair {
+                (Some(one), Some(another)) => one.equals(other.py(), another)?,
+                (one, another) => one.is_none() && another.is_none(),
+            };
+            if !equal {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyDict>)> {
         let options = PyDict::new(py);
         for (given, field) in self.given.iter().zip(FIELDS) {
@@ -202,6 +226,12 @@ impl PyLimits {
                 None,
             ],
         }
+    }
+
+    /// A box.
+    pub fn of_box(lower: Vec<f64>, upper: Vec<f64>) -> Self {
+        let numbers = |values: Vec<f64>| Some(Given::Numbers(Numbers { values, single: false }));
+        Self { given: [numbers(lower), numbers(upper), None, None, None] }
     }
 
     /// No limits, for `n` joints.

@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 
 use crate::convert::{array, count, row, shape_text, summary, table, vector};
 use crate::error::{invalid, raise};
+use crate::limits::PyLimits;
 use crate::monitor::Watcher;
 use crate::solver::{PyStop, derivative_free_solver, status};
 
@@ -25,6 +26,9 @@ pub struct PyMinimum {
     /// (k, 2): evaluations made, and the best value then. A row for the start, for every improvement and for the end.
     #[pyo3(get)]
     history: Py<PyArrayDyn<f64>>,
+    /// The box, as `lower` and `upper`.
+    #[pyo3(get)]
+    limits: Py<PyLimits>,
 }
 
 #[pymethods]
@@ -84,9 +88,9 @@ impl PyMinimum {
 }
 
 impl PyMinimum {
-    fn new(py: Python<'_>, core: minimize::Minimum) -> PyResult<Self> {
+    fn new(py: Python<'_>, core: minimize::Minimum, limits: PyLimits) -> PyResult<Self> {
         let history = table(py, core.history.as_flattened().to_vec(), &[core.history.len(), 2])?.unbind();
-        Ok(Self { x: row(py, core.x.to_vec()).unbind(), history, core })
+        Ok(Self { x: row(py, core.x.to_vec()).unbind(), history, limits: Py::new(py, limits)?, core })
     }
 }
 
@@ -246,7 +250,7 @@ pub fn minimize_function(
     let mut objective = Function { function: function.clone(), dimension: lower.len(), vectorized, failure: &failure };
     let mut attendant = Attendant { watcher: Watcher::new(), failure: &failure };
     let core = minimize::minimize(&mut objective, &lower, &upper, &options, &mut attendant).map_err(raise)?;
-    let found = PyMinimum::new(py, core)?;
+    let found = PyMinimum::new(py, core, PyLimits::of_box(lower, upper))?;
     match attendant.watcher.finish().err().or(failure.into_inner()) {
         Some(error) => Err(with_best(py, error, found)?),
         None => Ok(found),

@@ -2,6 +2,7 @@
 
 use ikcore::path::Reference;
 use ikcore::solver::Status;
+use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::tracking::{self, ModelFreeOptions, ModelFreeRecord};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
@@ -14,6 +15,7 @@ use crate::monitor::{Progress, Watcher};
 use crate::path::PyPath;
 use crate::plant::{PyKinematicPlant, PythonPlant};
 use crate::solver::status;
+use crate::stored::{self, Reduced};
 use crate::upward;
 
 /// The record of a track without a model: k rows, row 0 the start at t = 0, row i the tick that ends at t_i = i dt; fewer than
@@ -186,6 +188,31 @@ impl PyModelFreeResult {
         let track = &self.core.track;
         format!("<ModelFreeResult {}: {} rows, {}>", track.status.name(), track.time.len(), self.core.message())
     }
+
+    /// What the plant raised goes along as far as it pickles itself.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let core = stored::bytes(py, to_bytes("track without a model", &self.core))?;
+        stored::restored_from::<Self>(py, (core, self.limits.clone_ref(py), self.exception(py)))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    #[pyo3(signature = (bytes, limits, exception))]
+    fn _restore(
+        py: Python<'_>,
+        bytes: &[u8],
+        limits: Py<PyLimits>,
+        exception: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let core = from_bytes("track without a model", bytes).map_err(raise)?;
+        Self::new(py, core, limits, exception.map(PyErr::from_value))
+    }
+}
+
+impl PyModelFreeResult {
+    fn new(py: Python<'_>, core: ModelFreeRecord, limits: Py<PyLimits>, exception: Option<PyErr>) -> PyResult<Self> {
+        Ok(Self { tables: Tables::new(py, &core)?, limits, exception, core })
+    }
 }
 
 /// Follows `path` with whatever `plant` moves, knowing nothing of it but what it returns.
@@ -242,7 +269,7 @@ pub fn track_model_free(
     progress.close(py)?;
     watcher.finish()?;
     let (core, exception) = run?;
-    Ok(PyModelFreeResult { tables: Tables::new(py, &core)?, limits: in_force, exception, core })
+    PyModelFreeResult::new(py, core, in_force, exception)
 }
 
 /// The record, and what a plant of Python's raised. The interpreter is kept where the plant needs it.

@@ -372,7 +372,7 @@ pub fn clearance<'py>(
     let obstacles = Given::read(py, obstacles)?.core;
     let scene = Scene::new(&robot.core, &obstacles).map_err(raise)?;
     match rows("joint angles", robot.core.name(), robot.core.dof(), q)? {
-        Rows::One(q) => Ok(scene.clearances(q.as_slice()?).map_err(raise)?[0].into_pyobject(py)?.into_any()),
+        Rows::One(q) => Ok(scene.clearance(q.as_slice()?).map_err(raise)?.into_pyobject(py)?.into_any()),
         Rows::Many(q, _) => {
             let (scene, q) = (&scene, q.as_slice()?);
             Ok(row(py, py.detach(|| scene.clearances(q)).map_err(raise)?).into_any())

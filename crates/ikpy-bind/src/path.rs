@@ -3,12 +3,15 @@
 use ikcore::math::ticks::ticks;
 use ikcore::nalgebra::Matrix3;
 use ikcore::path::{Circle, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples};
+use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
 
 use crate::convert::{Array, array, count, matrix3, point, rigid_rows, row, shape_text, summary, table, times, vector};
 use crate::error::{invalid, raise};
 use crate::limits::CALLS_BETWEEN_LOOKS;
+use crate::stored::{self, Reduced};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyPath>()?;
@@ -104,6 +107,33 @@ impl PyPath {
         };
         format!("<Path of {} s{}>", self.duration(), if oriented { ", with orientation" } else { "" })
     }
+
+    fn __eq__(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        self.state(py)?.eq(other.state(py)?)
+    }
+
+    /// Functions go along as far as they pickle themselves: those that a module names do, lambdas do not.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::restored_from::<Self>(py, self.state(py)?)
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    #[pyo3(signature = (curve, duration, orientation))]
+    fn _restore(curve: &Bound<'_, PyAny>, duration: f64, orientation: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let curve = match curve.cast::<PyBytes>() {
+            Ok(bytes) => Curve::Core(Path::from_bytes(bytes.as_bytes()).map_err(raise)?),
+            Err(_) => Curve::Function { function: curve.clone().unbind(), duration },
+        };
+        let orientation = match orientation {
+            None => Orientation::OfCurve,
+            Some(value) => match value.cast::<PyBytes>() {
+                Ok(bytes) => Orientation::Constant(from_bytes("orientation", bytes.as_bytes()).map_err(raise)?),
+                Err(_) => Orientation::Function(value.clone().unbind()),
+            },
+        };
+        Ok(Self { curve, orientation })
+    }
 }
 
 impl From<Path> for PyPath {
@@ -124,6 +154,20 @@ impl Curve {
 }
 
 impl PyPath {
+    /// What makes it what it is: (curve, duration, orientation), each as bytes or as the function that was given.
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let curve = match &self.curve {
+            Curve::Core(path) => stored::bytes(py, path.to_bytes())?.into_any(),
+            Curve::Function { function, .. } => function.bind(py).clone(),
+        };
+        let orientation = match &self.orientation {
+            Orientation::OfCurve => None,
+            Orientation::Constant(rotation) => Some(stored::bytes(py, to_bytes("orientation", rotation))?.into_any()),
+            Orientation::Function(function) => Some(function.bind(py).clone()),
+        };
+        (curve, self.duration(), orientation).into_pyobject(py)
+    }
+
     /// The path at all tick times; Python functions are called here, before the core runs.
     pub fn reference(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
         if let (Curve::Core(path), Orientation::OfCurve) = (&self.curve, &self.orientation) {

@@ -4,6 +4,7 @@ use ikcore::math::Frame;
 use ikcore::path::Reference;
 use ikcore::planning::{self, AlongPathOptions, Elbow, End, Plan, PointToPointOptions, Violation};
 use ikcore::solver::Status;
+use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Target;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -17,6 +18,7 @@ use crate::obstacle::Given;
 use crate::path::PyPath;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver, status};
+use crate::stored::{self, Reduced};
 use crate::trajectory::PyTrajectory;
 use crate::upward;
 
@@ -55,7 +57,7 @@ impl PyViolation {
     /// "rad/s" and so on.
     #[getter]
     fn unit(&self) -> &str {
-        self.0.unit
+        &self.0.unit
     }
 
     fn __str__(&self) -> String {
@@ -64,6 +66,16 @@ impl PyViolation {
 
     fn __repr__(&self) -> String {
         format!("<Violation: {}>", self.0)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::restored_from::<Self>(py, (stored::bytes(py, to_bytes("violation", &self.0))?,))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(bytes: &[u8]) -> PyResult<Self> {
+        from_bytes("violation", bytes).map(Self).map_err(raise)
     }
 }
 
@@ -178,12 +190,32 @@ impl PyPlan {
     fn __repr__(&self) -> String {
         format!("<Plan {}: {}>", self.core.status.name(), self.core.message())
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let core = stored::bytes(py, to_bytes("plan", &self.core))?;
+        stored::restored_from::<Self>(py, (core, &self.reference, &self.robot, &self.limits, &self.obstacles))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    #[pyo3(signature = (bytes, reference, robot, limits, obstacles))]
+    fn _restore(
+        bytes: &[u8],
+        reference: Option<&Bound<'_, PyAny>>,
+        robot: &Bound<'_, PyRobot>,
+        limits: Py<PyLimits>,
+        obstacles: Py<PyTuple>,
+    ) -> PyResult<Self> {
+        let reference =
+            reference.map(|rows| Ok::<_, PyErr>(array("reference", rows)?.as_slice()?.to_vec())).transpose()?;
+        Self::new(from_bytes("plan", bytes).map_err(raise)?, reference, robot, limits, obstacles)
+    }
 }
 
 impl PyPlan {
     fn new(
         core: Plan,
-        reference: Option<&Reference>,
+        reference: Option<Vec<f64>>,
         robot: &Bound<'_, PyRobot>,
         limits: Py<PyLimits>,
         obstacles: Py<PyTuple>,
@@ -193,9 +225,9 @@ impl PyPlan {
         let free = &core.redundancy;
         let orientations = free.iter().flatten().flat_map(|free| [free.value, free.lowest, free.highest]).collect();
         let shape = [free.len(), free.first().map_or(0, |links| links.len()), 3];
-        let reference = reference.map(|rows| {
-            let positions = (0..rows.len()).flat_map(|i| rows.position(i)).collect();
-            table(py, positions, &[rows.len(), 3]).map(Bound::unbind)
+        let reference = reference.map(|positions| {
+            let count = positions.len() / 3;
+            table(py, positions, &[count, 3]).map(Bound::unbind)
         });
         Ok(Self {
             trajectory: Py::new(py, PyTrajectory::from(core.trajectory.clone()))?,
@@ -344,7 +376,8 @@ pub fn plan_along_path(
     let plan = py.detach(|| planning::plan_along_path(&arm, &reference, &options, &mut watcher));
     progress.close(py)?;
     watcher.finish()?;
-    PyPlan::new(plan.map_err(raise)?, Some(&reference), robot, in_force, PyTuple::empty(py).unbind())
+    let positions = (0..reference.len()).flat_map(|i| reference.position(i)).collect();
+    PyPlan::new(plan.map_err(raise)?, Some(positions), robot, in_force, PyTuple::empty(py).unbind())
 }
 
 /// Which way a planar arm bends.

@@ -27,7 +27,8 @@ pub fn pose<'py>(
     rotvec: Option<&Bound<'py, PyAny>>,
     matrix: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let position_xyz = convert::point("position", position)?;
+    let finite = |name: &str, value| poses::finite(name, convert::point(name, value)?).map_err(raise);
+    let position_xyz = finite("position", position)?;
     let given: Vec<(&str, &Bound<'py, PyAny>)> =
         [("xyzw", xyzw), ("wxyz", wxyz), ("rpy", rpy), ("rotvec", rotvec), ("matrix", matrix)]
             .into_iter()
@@ -43,8 +44,8 @@ pub fn pose<'py>(
             let [w, x, y, z] = quaternion("wxyz", value)?;
             poses::from_quaternion([x, y, z, w], position_xyz).map_err(raise)?
         }
-        [("rpy", value)] => poses::from_rpy(convert::point("rpy", value)?, position_xyz),
-        [("rotvec", value)] => poses::from_rotation_vector(convert::point("rotvec", value)?, position_xyz),
+        [("rpy", value)] => poses::from_rpy(finite("rpy", value)?, position_xyz),
+        [("rotvec", value)] => poses::from_rotation_vector(finite("rotvec", value)?, position_xyz),
         [("matrix", value)] => {
             poses::from_rotation_matrix("matrix", convert::matrix3("matrix", value)?, position_xyz).map_err(raise)?
         }

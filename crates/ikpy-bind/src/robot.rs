@@ -9,12 +9,16 @@ use ikcore::robot::{Dh, DhTable, Joint, JointKind, LinkCapsule, Robot};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyTuple};
 
-use crate::convert::{self, Rows, count, pose_array, row, rows, table, vector};
+use crate::chain;
+use crate::convert::{self, Rows, count, pose_array, row, rows, summary, table, vector};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
 use crate::manipulability::PyVelocityEllipsoid;
+
+/// Link, a (3,), b (3,) and radius (m).
+type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);
 
 /// A robot arm: the chain of joints from a base link to a tip link. Immutable; make one with `from_urdf`, `from_dh`,
 /// `planar` or `named`.
@@ -70,7 +74,13 @@ impl PyRobot {
     fn from_urdf(path_or_xml: &Bound<'_, PyAny>, base: Option<&str>, tip: Option<&str>) -> PyResult<Self> {
         let source = match path_or_xml.extract::<String>() {
             Ok(text) => text,
-            Err(_) => path_or_xml.extract::<PathBuf>()?.to_string_lossy().into_owned(),
+            Err(_) => match path_or_xml.extract::<PathBuf>() {
+                Ok(path) => path.to_string_lossy().into_owned(),
+                Err(_) => {
+                    let got = summary(path_or_xml);
+                    return Err(invalid(format!("path_or_xml must be a path, or XML as text, got {got}")));
+                }
+            },
         };
         Robot::from_urdf(&source, base, tip).map(Self::from).map_err(raise)
     }
@@ -250,10 +260,7 @@ impl PyRobot {
     /// The room that the links take up: (link, a, b, radius) each, all points within `radius` (m) of the segment from a
     /// (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to a URDF's collision shapes.
     #[getter]
-    fn capsules<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> Vec<(String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64)> {
+    fn capsules<'py>(&self, py: Python<'py>) -> Vec<Capsule<'py>> {
         let capsules = self.core.capsules().iter();
         capsules.map(|c| (c.link.clone(), row(py, c.a.to_vec()), row(py, c.b.to_vec()), c.radius)).collect()
     }
@@ -388,6 +395,24 @@ impl PyRobot {
         crate::manipulability::ellipsoid(&self.core, q, motion)
     }
 
+    /// For `beetle_ik.interop`: (base (4, 4), elements, tool (4, 4)), as in `_from_chain`.
+    fn _chain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let [base, tool] = chain::ends(py, &self.core)?;
+        (base, chain::elements(py, &self.core)?, tool).into_pyobject(py)
+    }
+
+    /// For `beetle_ik.interop`: joints are (name, kind, lower, upper, velocity), elements ("fixed", pose (4, 4)), ("moving",
+    /// joint, turns, axis (3,), scale, offset) or ("link", name).
+    #[staticmethod]
+    fn _from_chain(
+        name: &str,
+        base: &str,
+        joints: Vec<chain::JointParts>,
+        elements: Vec<Bound<'_, PyTuple>>,
+    ) -> PyResult<Self> {
+        chain::built(name, base, joints, &elements).map(Self::from)
+    }
+
     fn __repr__(&self) -> String {
         format!("<Robot '{}': {} joints, {} to {}>", self.core.name(), self.core.dof(), self.end(true), self.end(false))
     }
@@ -409,7 +434,7 @@ fn read_capsule(i: usize, value: &Bound<'_, PyAny>) -> PyResult<LinkCapsule> {
     type Parts<'py> = (String, Bound<'py, PyAny>, Bound<'py, PyAny>, f64);
     let (link, a, b, radius) = value
         .extract::<Parts<'_>>()
-        .map_err(|_| invalid(format!("capsule {i} must be (link, a, b, radius), got {}", convert::summary(value))))?;
+        .map_err(|_| invalid(format!("capsule {i} must be (link, a, b, radius), got {}", summary(value))))?;
     let end = |name: &str, value: &Bound<'_, PyAny>| convert::point(&format!("{name} of capsule {i}"), value);
     Ok(LinkCapsule { link, a: end("a", &a)?, b: end("b", &b)?, radius })
 }

@@ -56,7 +56,7 @@ pub fn time_optimal(
         let got = shape_text(waypoints.shape());
         return Err(invalid(format!("waypoints_q: expected shape (k, n), a row for each waypoint, got {got}")));
     };
-    let joints = names(joint_names, n);
+    let joints = names(joint_names, n)?;
     let limits = limits.for_joints(py, &joints)?;
     let knots = knots.map(|knots| vector("knots", knots)).transpose()?;
     let waypoints = waypoints.as_slice()?;

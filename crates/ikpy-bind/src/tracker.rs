@@ -1,8 +1,10 @@
 //! `Tracker` and `Step`.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use ikcore::limits::LimitAt;
+use ikcore::solver::stop::Stopwatch;
 use ikcore::solver::{Status, Unattended};
 use ikcore::task::Tolerance;
 use ikcore::tracking::{self, Session, TrackOptions};
@@ -29,11 +31,23 @@ pub struct PyStep {
     /// The velocity that leads there (n,) (rad/s, m/s).
     #[pyo3(get)]
     qd: Py<PyArray1<f64>>,
+    /// The limits in force.
+    #[pyo3(get)]
+    limits: Py<PyLimits>,
+    elapsed: Duration,
 }
 
 impl PyStep {
-    pub fn new(py: Python<'_>, core: tracking::Step, q: &[f64], qd: &[f64]) -> Self {
-        Self { core, q: row(py, q.to_vec()).unbind(), qd: row(py, qd.to_vec()).unbind() }
+    pub fn new(
+        py: Python<'_>,
+        core: tracking::Step,
+        (q, qd): (&[f64], &[f64]),
+        limits: &Py<PyLimits>,
+        watch: Stopwatch,
+    ) -> Self {
+        let elapsed = watch.elapsed();
+        let [q, qd] = [q, qd].map(|values| row(py, values.to_vec()).unbind());
+        Self { core, q, qd, limits: limits.clone_ref(py), elapsed }
     }
 }
 
@@ -73,6 +87,12 @@ impl PyStep {
     #[getter]
     fn evaluations(&self) -> usize {
         self.core.evaluations
+    }
+
+    /// Time that the step took to compute (s).
+    #[getter]
+    fn elapsed(&self) -> f64 {
+        self.elapsed.as_secs_f64()
     }
 
     /// False where a joint cannot be brought within its position limits in this step.
@@ -155,9 +175,9 @@ impl PyTracker {
     fn step(&self, py: Python<'_>, target: &Bound<'_, PyAny>, velocity: Option<&Bound<'_, PyAny>>) -> PyResult<PyStep> {
         let target = read_target(target)?;
         let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
-        let mut session = self.session();
+        let (watch, mut session) = (Stopwatch::start(), self.session());
         let core = session.step_moving(&target, velocity, &mut Unattended).map_err(raise)?;
-        Ok(PyStep::new(py, core, session.q(), session.qd()))
+        Ok(PyStep::new(py, core, (session.q(), session.qd()), &self.limits, watch))
     }
 
     /// The configuration reached (n,) (rad, m).

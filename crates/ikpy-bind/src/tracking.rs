@@ -2,6 +2,7 @@
 
 use ikcore::limits::LimitAt;
 use ikcore::solver::Status;
+use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
 use ikcore::tracking::{self, Record, TickRule, TrackOptions};
 use ikcore::trajectory::Trajectory;
@@ -16,6 +17,7 @@ use crate::monitor::{Progress, Watcher};
 use crate::path::PyPath;
 use crate::robot::PyRobot;
 use crate::solver::{any_solver, status};
+use crate::stored::{self, Reduced};
 use crate::task::read_task;
 use crate::trajectory::PyTrajectory;
 use crate::upward;
@@ -214,6 +216,23 @@ impl PyTrackResult {
     fn __repr__(&self) -> String {
         format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.time.len(), self.core.message())
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let core = stored::bytes(py, to_bytes("track", &self.core))?;
+        stored::restored_from::<Self>(py, (core, self.robot.clone_ref(py), self.limits.clone_ref(py)))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, bytes: &[u8], robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
+        Self::new(py, from_bytes("track", bytes).map_err(raise)?, robot, limits)
+    }
+}
+
+impl PyTrackResult {
+    fn new(py: Python<'_>, core: Record, robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
+        Ok(Self { tables: Tables::new(py, &core)?, robot, limits, core })
+    }
 }
 
 /// Follows `path` with the tip of `robot`, tick by tick, inside the limits.
@@ -225,7 +244,8 @@ impl PyTrackResult {
 /// Args:
 ///     robot: the arm.
 ///     path: positions or poses over time.
-///     start: (n,), configuration at t = 0; None solves for the path's first point.
+///     start: (n,), configuration at t = 0; None solves for the path's first point, for the configuration that is best for
+///         the goals or, without goals, far from singularities and limits.
 ///     dt: time step (s).
 ///     task: of `tasks`, what of the path matters; None: all that it says.
 ///     solver: what runs in every tick: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule, which
@@ -286,8 +306,7 @@ pub fn track(
     let record = py.detach(|| tracking::track(&arm, &reference, start.as_deref(), &options, &mut watcher));
     progress.close(py)?;
     watcher.finish()?;
-    let core = record.map_err(raise)?;
-    Ok(PyTrackResult { tables: Tables::new(py, &core)?, robot: robot.clone().unbind(), limits: in_force, core })
+    PyTrackResult::new(py, record.map_err(raise)?, robot.clone().unbind(), in_force)
 }
 
 /// A rule, a solver, or the library's own rule.

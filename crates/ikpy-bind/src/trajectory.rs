@@ -31,9 +31,13 @@ impl PyTrajectory {
     }
 }
 
-/// The joints' names, or "q1", "q2", ... where none were given.
-pub fn names(given: Option<Vec<String>>, n: usize) -> Vec<String> {
-    given.unwrap_or_else(|| (1..=n).map(|i| format!("q{i}")).collect())
+/// The names of `n` joints, or "q1", "q2", ... where none were given.
+pub fn names(given: Option<Vec<String>>, n: usize) -> PyResult<Vec<String>> {
+    match given {
+        None => Ok((1..=n).map(|i| format!("q{i}")).collect()),
+        Some(names) if names.len() == n => Ok(names),
+        Some(names) => Err(invalid(format!("joint_names: expected {n}, one for each joint, got {}", names.len()))),
+    }
 }
 
 #[pymethods]
@@ -57,7 +61,7 @@ impl PyTrajectory {
             polynomial[..powers].copy_from_slice(given);
             polynomial
         });
-        let core = Trajectory::new(names(joint_names, n), vector("time", time)?, padded.collect());
+        let core = Trajectory::new(names(joint_names, n)?, vector("time", time)?, padded.collect());
         core.map(Self).map_err(raise)
     }
 
@@ -86,7 +90,7 @@ impl PyTrajectory {
         let (q, n) = read("q", q)?;
         let qd = qd.map(|value| read("qd", value)).transpose()?.map(|(values, _)| values);
         let qdd = qdd.map(|value| read("qdd", value)).transpose()?.map(|(values, _)| values);
-        let core = Trajectory::from_samples(names(joint_names, n), &time, &q, qd.as_deref(), qdd.as_deref());
+        let core = Trajectory::from_samples(names(joint_names, n)?, &time, &q, qd.as_deref(), qdd.as_deref());
         core.map(Self).map_err(raise)
     }
 

@@ -17,6 +17,9 @@ use crate::trajectory::PyTrajectory;
 ///
 /// with q0' down the gradient of the goals and towards `posture`. Joints at a limit leave their share to the others.
 ///
+/// Defaults: `WeightedPseudoInverse(gain=None, integrator='euler', weights=None, posture=None, posture_gain=20,
+/// damping=0)`.
+///
 /// Args:
 ///     gain: share of the error that is taken back per second (1/s); below 2 / dt. None: half of it in every tick.
 ///     integrator: "euler", the velocity at the beginning of a tick, or "rk4", four evaluations a tick and far smaller

@@ -24,8 +24,12 @@ class _TellMistakes(TyperGroup):
             return super().invoke(ctx)
         except BrokenPipeError:
             raise  # the reader of our output has gone: Typer leaves without a word
-        except (BeetleIkError, OSError) as error:
+        except BeetleIkError as error:
             typer.echo(f"Error: {error}", err=True)
+            raise typer.Exit(_WRONG_INPUT) from error
+        except OSError as error:
+            where = "" if error.filename is None else f"'{error.filename}': "
+            typer.echo(f"Error: {where}{error.strerror or error}", err=True)
             raise typer.Exit(_WRONG_INPUT) from error
 
 

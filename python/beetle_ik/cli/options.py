@@ -2,11 +2,16 @@
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .. import BAS, InvalidInputError, LevenbergMarquardt, Robot, Sinusoid
+import beetle_ik as bik
+
+from .. import InvalidInputError, Robot, Sinusoid
+
+if TYPE_CHECKING:
+    from .._core import _Single
 
 _ROBOT = "Robot"
 
@@ -17,6 +22,7 @@ UrdfFile = Annotated[
 TipLink = Annotated[str | None, typer.Option("--tip", help="The link that is to move.", rich_help_panel=_ROBOT)]
 BaseLink = Annotated[str | None, typer.Option("--base", help="The link that stands still.", rich_help_panel=_ROBOT)]
 Start = Annotated[str | None, typer.Option(help="Joint positions to start from: q1,q2,...")]
+StartQ = Annotated[str | None, typer.Option("--start-q", help="Joint positions to start from: q1,q2,...")]
 Seed = Annotated[int, typer.Option(help="Seed of all random draws: the same seed gives the same bits.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for machines instead of tables.")]
 
@@ -28,19 +34,41 @@ class SolverName(StrEnum):
     CHAIN = "chain"
     GREEDY = "greedy"
     LM = "lm"
+    NEWTON_RAPHSON = "newton-raphson"
+    JACOBIAN_TRANSPOSE = "jacobian-transpose"
+    APPS = "apps"
+    BROYDEN_BAS = "broyden-bas"
+    BEETLE_SWARM = "beetle-swarm"
+    PSO = "pso"
+    QPSO = "qpso"
+    FIREFLY = "firefly"
+    GENETIC = "genetic"
+    BEE_COLONY = "bee-colony"
+    DIFFERENTIAL_EVOLUTION = "differential-evolution"
 
 
-def make_solver(name: SolverName) -> BAS | LevenbergMarquardt:
+_SOLVERS: dict[SolverName, "_Single"] = {
+    SolverName.BAS: bik.BAS(variant="star"),
+    SolverName.CHAIN: bik.BAS(variant="chain"),
+    SolverName.GREEDY: bik.BAS(variant="greedy"),
+    SolverName.LM: bik.LevenbergMarquardt(),
+    SolverName.NEWTON_RAPHSON: bik.NewtonRaphson(),
+    SolverName.JACOBIAN_TRANSPOSE: bik.JacobianTranspose(),
+    SolverName.APPS: bik.APPS(),
+    SolverName.BROYDEN_BAS: bik.BroydenBAS(),
+    SolverName.BEETLE_SWARM: bik.BeetleSwarm(),
+    SolverName.PSO: bik.PSO(),
+    SolverName.QPSO: bik.QPSO(),
+    SolverName.FIREFLY: bik.Firefly(),
+    SolverName.GENETIC: bik.Genetic(),
+    SolverName.BEE_COLONY: bik.BeeColony(),
+    SolverName.DIFFERENTIAL_EVOLUTION: bik.DifferentialEvolution(),
+}
+
+
+def make_solver(name: SolverName) -> "_Single":
     """The solver of this name, with the library's settings."""
-    match name:
-        case SolverName.BAS:
-            return BAS(variant="star")
-        case SolverName.CHAIN:
-            return BAS(variant="chain")
-        case SolverName.GREEDY:
-            return BAS(variant="greedy")
-        case SolverName.LM:
-            return LevenbergMarquardt()
+    return _SOLVERS[name]
 
 
 def load_robot(name: str | None, urdf: Path | None, base: str | None, tip: str | None) -> Robot:

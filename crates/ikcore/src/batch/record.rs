@@ -2,13 +2,15 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use crate::ik::Solution;
 use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::TipError;
 
 /// What became of one target; its configuration is a row of [`Batch::q`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Item {
     /// Why the search ended.
     pub status: Status,
@@ -42,7 +44,7 @@ impl Item {
 }
 
 /// Solutions in the order of the targets.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Batch {
     /// Degrees of freedom, n.
     pub dof: usize,

@@ -2,9 +2,12 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use super::SolveOptions;
 use super::nearest::{bring_near, distance};
-use super::prepared::{Prepared, Run};
+use super::prepared::Prepared;
+use super::run::Run;
 use super::solution::Solution;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Objective, Point};
@@ -34,7 +37,7 @@ impl Default for AllOptions {
 }
 
 /// Distinct solutions, and what became of the search.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Found {
     /// The solutions, nearest to the start first; without a start in the order in which they were found.
     pub solutions: Vec<Solution>,

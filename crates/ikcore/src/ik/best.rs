@@ -2,7 +2,8 @@
 //! on each of them several places where nothing near is better.
 
 use super::nearest::bring_near;
-use super::prepared::{Prepared, Run};
+use super::prepared::Prepared;
+use super::run::Run;
 use super::solution::Solution;
 use crate::objective::{Objective, Point};
 use crate::rng::LazyRng;

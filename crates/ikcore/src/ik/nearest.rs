@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::prepared::{Prepared, Run};
+use super::prepared::Prepared;
+use super::run::Run;
 use super::self_motion::SelfMotion;
 use super::solution::Solution;
 use crate::objective::{Bounds, Point};

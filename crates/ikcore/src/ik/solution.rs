@@ -2,12 +2,14 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::TipError;
 
 /// The best configuration found, and what became of the search.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Solution {
     /// The configuration (n,) (rad, m), inside the limits.
     pub q: Point,

@@ -9,6 +9,8 @@ pub use tick_box::{LimitAt, TickBox};
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::{Error, Result};
 use crate::objective::Bounds;
 use crate::robot::Robot;
@@ -41,7 +43,7 @@ impl fmt::Display for Field {
 }
 
 /// The limits in force: per joint and field a function of time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
     joints: Vec<String>,
     lower: Vec<Profile>,

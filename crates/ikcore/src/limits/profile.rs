@@ -2,10 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::{Error, Result, require_finite, require_positive};
 
 /// mean + amplitude sin(angular_frequency t + phase): eq. (7) of Cheng et al. (2020), its sign mended.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sinusoid {
     /// The paper's H (rad/s).
     pub mean: f64,
@@ -36,7 +38,7 @@ impl Sinusoid {
 }
 
 /// A limit of one joint over time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Profile {
     /// The same at all times.
     Constant(f64),

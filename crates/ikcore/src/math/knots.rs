@@ -1,9 +1,11 @@
 //! Knots in time.
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::{Error, Result, require_finite};
 
 /// Times (s) that start at zero and increase: the ends of the segments of a piecewise function of time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Knots(Vec<f64>);
 
 impl Knots {

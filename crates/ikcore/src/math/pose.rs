@@ -70,6 +70,15 @@ pub fn checked(what: &str, pose: Pose) -> Result<Pose> {
     Ok(pose)
 }
 
+/// The same point or angles, if they are finite.
+///
+/// # Errors
+/// [`Error::NotFinite`]; `what` names them.
+pub fn finite(what: &str, values: [f64; 3]) -> Result<[f64; 3]> {
+    require_finite(what, &values, |i| format!("entry {i}"))?;
+    Ok(values)
+}
+
 /// The 16 numbers of a pose, row after row.
 pub fn rows(pose: &Pose) -> [f64; 16] {
     let (r, p) = (pose.rotation.matrix(), &pose.translation);

@@ -135,13 +135,20 @@ impl<'a> Scene<'a> {
         Ok(nearest.map(|(distance, pair)| self.contact(pair, distance)))
     }
 
-    /// The smallest distance (m) at each of the configurations stored one after another; infinite where nothing can touch.
+    /// The smallest distance (m) at `q` (n,); infinite where nothing can touch.
+    ///
+    /// # Errors
+    /// As [`nearest`](Self::nearest).
+    pub fn clearance(&self, q: &[f64]) -> Result<f64> {
+        Ok(self.nearest(q)?.map_or(f64::INFINITY, |contact| contact.distance))
+    }
+
+    /// [`clearance`](Self::clearance) at each of the configurations stored one after another.
     ///
     /// # Errors
     /// As [`nearest`](Self::nearest).
     pub fn clearances(&self, qs: &[f64]) -> Result<Vec<f64>> {
-        let distance = |contact: Option<Contact>| contact.map_or(f64::INFINITY, |contact| contact.distance);
-        qs.chunks(self.robot.dof()).map(|q| self.nearest(q).map(distance)).collect()
+        qs.chunks(self.robot.dof()).map(|q| self.clearance(q)).collect()
     }
 
     /// Whether everything is at least `margin` (m) apart at `q`.

@@ -2,13 +2,16 @@
 
 use std::f64::consts::TAU;
 
+use serde::{Deserialize, Serialize};
+
+use super::stored::StoredCurve;
 use super::{Curve, Plane};
 use crate::error::{Result, require_positive};
 
 /// A circle at constant speed, once round, from the axis a towards b:
 /// p(t) = p0 + D/2 cos(2 pi t/T) A + D/2 sin(2 pi t/T) B (Cheng et al. 2020, eq. (14), which does not say that its A
 /// and B must be orthonormal).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Circle {
     plane: Plane,
     radius: f64,
@@ -32,6 +35,10 @@ impl Circle {
 }
 
 impl Curve for Circle {
+    fn stored(&self) -> Option<StoredCurve> {
+        Some(StoredCurve::Circle(self.clone()))
+    }
+
     fn duration(&self) -> f64 {
         self.duration
     }

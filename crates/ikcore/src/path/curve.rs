@@ -4,6 +4,8 @@ use std::fmt::Debug;
 
 use nalgebra::Matrix3;
 
+use super::stored::StoredCurve;
+
 /// A curve that is passed through in time.
 ///
 /// Time `t` (s) is clamped to `[0, duration]`: before and after, the values are those of the ends.
@@ -19,6 +21,12 @@ pub trait Curve: Debug + Send + Sync {
 
     /// Orientation, for a curve that has its own.
     fn rotation(&self, _t: f64) -> Option<Matrix3<f64>> {
+        None
+    }
+
+    /// The curve in the form in which a path is stored; None for a curve of your own.
+    #[doc(hidden)]
+    fn stored(&self) -> Option<StoredCurve> {
         None
     }
 }

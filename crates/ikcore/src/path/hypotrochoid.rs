@@ -2,6 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use serde::{Deserialize, Serialize};
+
+use super::stored::StoredCurve;
 use super::{Curve, Plane};
 use crate::error::{Error, Result, require_positive};
 
@@ -14,7 +17,7 @@ const MAX_TURNS: u32 = 100;
 ///
 /// This is Khan et al. 2022, eq. (20), corrected: as printed, with its axes (0, 1, 0) and (0, 0, 1), the second term of
 /// the first line and the first of the second vanish, and no star remains.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Hypotrochoid {
     plane: Plane,
     /// R - r (m).
@@ -52,6 +55,10 @@ impl Hypotrochoid {
 }
 
 impl Curve for Hypotrochoid {
+    fn stored(&self) -> Option<StoredCurve> {
+        Some(StoredCurve::Hypotrochoid(self.clone()))
+    }
+
     fn duration(&self) -> f64 {
         self.duration
     }

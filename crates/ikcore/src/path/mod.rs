@@ -29,6 +29,7 @@ mod polyline;
 mod reference;
 mod rose;
 mod samples;
+mod stored;
 mod timed_path;
 
 pub use circle::Circle;

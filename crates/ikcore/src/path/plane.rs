@@ -1,6 +1,7 @@
 //! Where a plane curve lies in space.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require_finite};
 
@@ -8,7 +9,7 @@ use crate::error::{Error, Result, require_finite};
 const TOLERANCE: f64 = 1e-6;
 
 /// A plane in space: a centre and two orthonormal axes `a` and `b`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plane {
     center: Vector3<f64>,
     a: Vector3<f64>,

@@ -1,11 +1,14 @@
 //! Straight strokes.
 
+use serde::{Deserialize, Serialize};
+
 use super::Curve;
+use super::stored::StoredCurve;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Knots;
 
 /// Straight strokes from vertex to vertex, each at its own constant speed.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Polyline {
     knots: Knots,
     vertices: Vec<[f64; 3]>,
@@ -62,6 +65,10 @@ impl Polyline {
 }
 
 impl Curve for Polyline {
+    fn stored(&self) -> Option<StoredCurve> {
+        Some(StoredCurve::Polyline(self.clone()))
+    }
+
     fn duration(&self) -> f64 {
         self.knots.duration()
     }

@@ -2,12 +2,15 @@
 
 use std::f64::consts::{PI, TAU};
 
+use serde::{Deserialize, Serialize};
+
+use super::stored::StoredCurve;
 use super::{Curve, Plane};
 use crate::error::{Error, Result, require_positive};
 
 /// A rose: r = radius cos(k u) at the angle u from the axis a, which grows at a constant rate. It has k petals for odd
 /// k, drawn in half a turn, and 2 k petals for even k, drawn in a full one.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rose {
     plane: Plane,
     radius: f64,
@@ -37,6 +40,10 @@ impl Rose {
 }
 
 impl Curve for Rose {
+    fn stored(&self) -> Option<StoredCurve> {
+        Some(StoredCurve::Rose(self.clone()))
+    }
+
     fn duration(&self) -> f64 {
         self.duration
     }

@@ -1,8 +1,10 @@
 //! Positions or poses at given times.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
+use serde::{Deserialize, Serialize};
 
 use super::orientation::check_rotations;
+use super::stored::StoredCurve;
 use super::{Curve, Polyline};
 #[cfg(doc)]
 use crate::error::Error;
@@ -11,7 +13,7 @@ use crate::math::Pose;
 
 /// Positions, or poses, at given times; between them the position moves on a straight line and the orientation about a
 /// fixed axis, both at constant speed.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Samples {
     positions: Polyline,
     rotations: Option<Vec<UnitQuaternion<f64>>>,
@@ -41,6 +43,10 @@ impl Samples {
 }
 
 impl Curve for Samples {
+    fn stored(&self) -> Option<StoredCurve> {
+        Some(StoredCurve::Samples(self.clone()))
+    }
+
     fn duration(&self) -> f64 {
         self.positions.duration()
     }

@@ -15,8 +15,8 @@ use crate::math::{Pose, pose};
 /// As in [`Curve`], time `t` (s) is clamped to `[0, duration]`, and all is in the frame of the robot's base.
 #[derive(Debug, Clone)]
 pub struct Path {
-    curve: Arc<dyn Curve>,
-    orientation: Option<Matrix3<f64>>,
+    pub(super) curve: Arc<dyn Curve>,
+    pub(super) orientation: Option<Matrix3<f64>>,
 }
 
 impl Path {

@@ -3,12 +3,14 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
+
 use super::motion_limits::MotionLimits;
 use crate::error::{Error, Result};
 use crate::robot::Robot;
 
 /// What a plan minimises (Wang et al. 2019, eq. 8-10).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Cost {
     /// How long the motion takes (s): eq. (8) and (19).
     #[default]

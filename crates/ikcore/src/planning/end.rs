@@ -24,7 +24,7 @@ impl End {
                 Error::NotFinite { place, value, .. } => Error::NotFinite { what: what.into(), place, value },
                 other => other,
             }),
-            Self::Configuration(q) => robot.check(what, q),
+            Self::Configuration(q) => robot.check(&format!("{what}_q"), q),
         }
     }
 }

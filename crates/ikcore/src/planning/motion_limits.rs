@@ -146,7 +146,7 @@ impl MotionLimits {
             for (quantity, value, bound, excess, unit) in checks {
                 if excess > ROUNDING * bound.abs().max(1.0) {
                     let what = format!("{quantity} of joint '{}'", self.joint_name(j));
-                    found.push(Violation { what, value, bound, unit });
+                    found.push(Violation { what, value, bound, unit: unit.into() });
                 }
             }
         }

@@ -1,7 +1,10 @@
 //! What a planner hands back.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
 
 use super::cost::Cost;
 use super::planar_arm::Orientations;
@@ -10,7 +13,7 @@ use crate::trajectory::Trajectory;
 use crate::wording::number;
 
 /// A planned motion, and what became of the search for it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// The motion: the best that keeps everything, else the least violating one.
     pub trajectory: Trajectory,
@@ -38,7 +41,7 @@ pub struct Plan {
 }
 
 /// A step of a search to something better.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Improvement {
     /// Evaluations up to then, that one included.
     pub evaluations: usize,
@@ -47,7 +50,7 @@ pub struct Improvement {
 }
 
 /// A bound that a trajectory breaks.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Violation {
     /// What breaks it, such as "velocity of joint 'elbow'".
     pub what: String,
@@ -56,7 +59,7 @@ pub struct Violation {
     /// How far it may go, in `unit`.
     pub bound: f64,
     /// "rad/s" and so on.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
 }
 
 impl fmt::Display for Violation {

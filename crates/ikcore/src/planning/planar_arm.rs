@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use crate::robot::{JointKind, Robot};
@@ -244,7 +245,7 @@ pub struct Place {
 }
 
 /// An orientation and the range that it was chosen from (rad).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Orientation {
     /// Its value.
     pub value: f64,

@@ -58,6 +58,23 @@ pub struct PointToPointOptions {
     pub seed: u64,
 }
 
+/// Distance that is kept where none is asked for (m).
+const DEFAULT_MARGIN: f64 = 1e-3;
+
+impl PointToPointOptions {
+    /// The distance to keep (m), wherever there is something to keep it from.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a margin that is negative or not finite.
+    pub(super) fn kept_margin(&self) -> Result<f64> {
+        let margin = self.margin.unwrap_or(DEFAULT_MARGIN);
+        if margin.is_finite() && margin >= 0.0 {
+            return Ok(margin);
+        }
+        Err(Error::out_of_range("margin", "zero or more and finite", margin))
+    }
+}
+
 /// Plans a motion of `robot` from `start` to `end`, at rest at both.
 ///
 /// # Errors
@@ -72,6 +89,7 @@ pub fn plan_point_to_point(
 ) -> Result<Plan> {
     start.check("start", robot)?;
     end.check("end", robot)?;
+    options.kept_margin()?;
     match options.method {
         PointToPointMethod::MinMax => minmax::point_to_point(robot, start, end, options, monitor),
         PointToPointMethod::Tpbso => tpbso::point_to_point(robot, start, end, options, monitor),

@@ -10,11 +10,22 @@ use crate::math::Pose;
 
 /// One element between base and tip, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) enum Element {
+pub enum Element {
     /// A constant transform.
     Fixed(Pose),
-    /// A motion about or along `axis` (unit length) by `scale * q[joint] + offset`.
-    Moving { axis: Vector3<f64>, turns: bool, joint: usize, scale: f64, offset: f64 },
+    /// A motion by `scale * q[joint] + offset`.
+    Moving {
+        /// About or along this axis, of unit length.
+        axis: Vector3<f64>,
+        /// Whether it turns (rad) rather than slides (m).
+        turns: bool,
+        /// The independent joint that drives it.
+        joint: usize,
+        /// Factor on q.
+        scale: f64,
+        /// Constant added (rad or m).
+        offset: f64,
+    },
     /// The frame reached here is that of a link.
     Link(String),
 }

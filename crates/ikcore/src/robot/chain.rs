@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::builder::Element;
 use super::dispatch::Kernels;
+use super::reach::Reach;
 use crate::math::{Frame, Pose, pose};
 
 /// What drives a stage: turn = turn_scale * q\[joint\] + turn_offset, and likewise the slide. One of the scales is zero.
@@ -39,6 +40,8 @@ pub(super) struct Chain {
     pub motions: Vec<Motion>,
     pub tip: Frame,
     pub links: Vec<LinkFrame>,
+    /// How far the tip can be from the first joint, sliding aside.
+    pub stretched: Reach,
     pub kernels: Kernels,
 }
 
@@ -57,6 +60,7 @@ impl Chain {
             motions: vec![],
             tip: Frame::IDENTITY,
             links: vec![],
+            stretched: Reach { center: [0.0; 3], radius: 0.0 },
             kernels: Kernels::for_stages(padded_size(elements)),
         };
         // Constant transform since the last moving element, already in that element's z-aligned frame.
@@ -85,6 +89,7 @@ impl Chain {
         let padded = padded_size(elements);
         chain.stages.resize(padded, Frame::IDENTITY);
         chain.motions.resize(padded.next_multiple_of(LANES), Motion::NONE);
+        chain.stretched = Reach::of_links(&chain.stages, &chain.motions, &chain.tip);
         chain
     }
 }

@@ -20,7 +20,7 @@ mod seed_index;
 mod seeds;
 mod urdf;
 
-pub use builder::{ChainBuilder, Drive};
+pub use builder::{ChainBuilder, Drive, Element};
 pub use collision::LinkCapsule;
 pub use dh::{Dh, DhTable};
 pub use directions::Directions;

@@ -90,6 +90,11 @@ impl Robot {
         self.chain.links.iter().map(|link| link.name.as_str())
     }
 
+    /// What the chain is made of between its first link and its last, without base and tool.
+    pub fn elements(&self) -> &[Element] {
+        &self.description.elements
+    }
+
     /// Pose of the chain's first link, seen from the robot's base.
     pub fn base(&self) -> &Pose {
         &self.base

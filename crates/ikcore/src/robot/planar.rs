@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::builder::{ChainBuilder, Drive};
 use super::joint::{Joint, JointKind};
 use super::model::Robot;
-use crate::error::{Result, require_positive};
+use crate::error::{Error, Result, require_positive};
 use crate::math::pose;
 
 impl Robot {
@@ -20,6 +20,10 @@ impl Robot {
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a length that is not positive and finite;
     /// [`Error::InvalidRobot`](crate::Error::InvalidRobot) for no link at all.
     pub fn planar(lengths: &[f64]) -> Result<Self> {
+        if lengths.is_empty() {
+            let (what, expected) = ("lengths of a planar arm".into(), "at least 1".into());
+            return Err(Error::WrongLength { what, expected, got: 0 });
+        }
         let mut chain = ChainBuilder::new(format!("planar{}", lengths.len()), "base");
         for (i, &length) in lengths.iter().enumerate() {
             require_positive(&format!("length {i} of a planar arm"), length)?;

@@ -1,7 +1,7 @@
 //! How far the tip can be from the base at most.
 
 use super::Robot;
-use super::chain::Motion;
+use super::chain::{Chain, Motion};
 use crate::math::Frame;
 use crate::math::arithmetic::Separate;
 use crate::math::so3::norm;
@@ -23,22 +23,28 @@ impl Reach {
 }
 
 impl Robot {
-    /// The reach between these joint limits: the lengths of all links, stretched out.
+    /// The reach between these joint limits: the lengths of all links, stretched out, and what joints slide.
+    pub fn reach(&self, lower: &[f64], upper: &[f64]) -> Reach {
+        let Chain { stretched, motions, .. } = self.chain();
+        let slides: f64 = motions.iter().map(|motion| longest_slide(motion, lower, upper)).sum();
+        Reach { radius: stretched.radius + slides, ..*stretched }
+    }
+}
+
+impl Reach {
+    /// Of links alone, without what joints slide.
     ///
     /// A first joint that turns keeps the height at which the second one begins, so that only the distance from its axis
     /// counts; of every other link all its length does.
-    pub fn reach(&self, lower: &[f64], upper: &[f64]) -> Reach {
-        let chain = self.chain();
-        let links: Vec<[f64; 3]> =
-            chain.stages[1..].iter().chain([&chain.tip]).map(|frame: &Frame| frame.origin).collect();
-        let slides: f64 = chain.motions.iter().map(|motion| longest_slide(motion, lower, upper)).sum();
-        let [x, y, height] = links[0];
-        let (on_axis, first) = match chain.motions[0].slide_scale {
+    pub(super) fn of_links(stages: &[Frame], motions: &[Motion], tip: &Frame) -> Self {
+        let mut links = stages[1..].iter().chain([tip]).map(|frame| frame.origin);
+        let [x, y, height] = links.next().unwrap_or_default();
+        let (on_axis, first) = match motions[0].slide_scale {
             0.0 => (height, x.hypot(y)),
-            _ => (0.0, norm(&links[0])),
+            _ => (0.0, norm(&[x, y, height])),
         };
-        let center = chain.stages[0].place::<Separate>(&[0.0, 0.0, on_axis]);
-        Reach { center, radius: first + slides + links[1..].iter().map(norm).sum::<f64>() }
+        let center = stages[0].place::<Separate>(&[0.0, 0.0, on_axis]);
+        Self { center, radius: first + links.map(|link| norm(&link)).sum::<f64>() }
     }
 }
 

@@ -12,7 +12,7 @@ use super::bas::sign;
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use super::population::{Members, Memory, Population, Schedule};
-use super::pso::{draw_velocities, turn_particles};
+use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::Objective;
 
@@ -129,7 +129,7 @@ impl BeetleSwarm {
 pub struct State {
     population: Population,
     memory: Memory,
-    velocities: Vec<f64>,
+    velocities: Velocities,
     /// Right and left antenna of each beetle in turn.
     antennae: Members,
     /// delta of eq. (32).
@@ -144,7 +144,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
         let beetles = self.schedule.population;
         Ok(State {
             memory: Memory::new(beetles, x0.len()),
-            velocities: vec![0.0; population.members.points.len()],
+            velocities: Velocities::new(&population, self.velocity_limit),
             antennae: Members::new(2 * beetles, x0.len()),
             step: self.step,
             population,
@@ -155,15 +155,14 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
         let State { population, memory, velocities, antennae, step } = state;
         if population.is_drawn(&self.schedule, evaluator)? {
-            draw_velocities(population, velocities, evaluator.rng());
+            velocities.draw(population, evaluator.rng());
             // The draw spans half the width; the limit is on all velocities.
-            velocities.iter_mut().for_each(|v| *v *= (2.0 * self.velocity_limit).min(1.0));
+            velocities.all.iter_mut().for_each(|v| *v *= (2.0 * self.velocity_limit).min(1.0));
         } else {
             // eq. (27), with inertia and limit
-            let weights = [self.inertia, self.c1, self.c2];
-            turn_particles(weights, self.velocity_limit, population, memory, velocities, evaluator.rng());
-            self.feel(&population.members, velocities, *step, antennae, evaluator)?;
-            self.advance(&mut population.members, velocities, antennae, *step);
+            velocities.turn([self.inertia, self.c1, self.c2], population, memory, evaluator.rng());
+            self.feel(&population.members, &velocities.all, *step, antennae, evaluator)?;
+            self.advance(&mut population.members, &velocities.all, antennae, *step);
             population.members.evaluate_from(0, evaluator)?;
             *step *= self.step_decay; // eq. (32)
         }

@@ -1,11 +1,44 @@
 //! Differential evolution, DE/rand/1/bin (Storn and Price 1997).
 
+use std::fmt;
+use std::str::FromStr;
+
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use super::population::{Members, Population, Schedule};
 use crate::error::{Error, Result};
 use crate::objective::{Bounds, Objective};
 use crate::rng::LazyRng;
+
+/// When a trial that does no worse takes its vector's place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Update {
+    /// After all trials, as published: they are evaluated together.
+    Generation,
+    /// At once, so that the next trials build on it: fewer evaluations, one by one.
+    Immediate,
+}
+
+impl fmt::Display for Update {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Generation => "generation",
+            Self::Immediate => "immediate",
+        })
+    }
+}
+
+impl FromStr for Update {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "generation" => Ok(Self::Generation),
+            "immediate" => Ok(Self::Immediate),
+            _ => Err(Error::unknown_option("update", name, &["generation", "immediate"])),
+        }
+    }
+}
 
 /// Differential evolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,12 +49,14 @@ pub struct DifferentialEvolution {
     pub weight: f64,
     /// CR: probability that a coordinate comes from the mutant.
     pub crossover_rate: f64,
+    /// When a better trial takes its vector's place.
+    pub update: Update,
 }
 
 impl Default for DifferentialEvolution {
     /// F = 0.5 and CR = 0.9, the first choices of Storn and Price (1997).
     fn default() -> Self {
-        Self { schedule: Schedule::of(50), weight: 0.5, crossover_rate: 0.9 }
+        Self { schedule: Schedule::of(50), weight: 0.5, crossover_rate: 0.9, update: Update::Generation }
     }
 }
 
@@ -65,14 +100,23 @@ impl<O: Objective + ?Sized> Solver<O> for DifferentialEvolution {
         let members = &mut population.members;
         for i in 0..members.values.len() {
             self.cross(members, i, evaluator.bounds(), evaluator.rng(), trials.point_mut(i));
-        }
-        trials.evaluate_from(0, evaluator)?;
-        for i in 0..members.values.len() {
-            if trials.values[i] <= members.values[i] {
-                members.take(i, trials, i);
+            if self.update == Update::Immediate {
+                trials.values[i] = evaluator.evaluate(trials.point_mut(i))?;
+                select(members, trials, i);
             }
         }
+        if self.update == Update::Generation {
+            trials.evaluate_from(0, evaluator)?;
+            (0..members.values.len()).for_each(|i| select(members, trials, i));
+        }
         Ok(())
+    }
+}
+
+/// Trial `i` takes its vector's place if it is no worse.
+fn select(members: &mut Members, trials: &Members, i: usize) {
+    if trials.values[i] <= members.values[i] {
+        members.take(i, trials, i);
     }
 }
 

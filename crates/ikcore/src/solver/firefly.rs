@@ -9,7 +9,7 @@ use super::evaluator::{Evaluator, Halt};
 use super::population::{Members, Population, Schedule};
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Objective, Point};
-use crate::rng::LazyRng;
+use crate::rng::split;
 
 /// Firefly algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +72,7 @@ impl Firefly {
 #[derive(Debug, Clone)]
 pub struct State {
     population: Population,
-    /// Those who move in a turn, and where to.
+    /// Those who move in a turn, the first so many of the list, and where to.
     moving: Vec<usize>,
     moved: Members,
     /// Whose turn it is.
@@ -81,6 +81,7 @@ pub struct State {
     randomness: f64,
     /// One over the widths of the box; zero for a locked coordinate, along which there is no distance.
     scales: Point,
+    draws: Vec<f64>,
 }
 
 impl<O: Objective + ?Sized> Solver<O> for Firefly {
@@ -92,27 +93,30 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
         Ok(State {
             scales: population.widths.iter().map(|width| if *width > 0.0 { 1.0 / width } else { 0.0 }).collect(),
             population,
-            moving: Vec::with_capacity(fireflies),
+            moving: vec![0; fireflies],
             moved: Members::new(fireflies, x0.len()),
             attractor: 0,
             randomness: self.randomness,
+            draws: vec![0.0; fireflies * x0.len().div_ceil(2)],
         })
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
-        let State { population, moving, moved, attractor, randomness, scales } = state;
+        let State { population, moving, moved, attractor, randomness, scales, draws } = state;
         if population.is_drawn(&self.turns(), evaluator)? {
             return Ok(());
         }
         let Population { members, widths, .. } = population;
         let (light, x_j) = (members.values[*attractor], members.point(*attractor));
-        moving.clear();
-        moving.extend((0..members.values.len()).filter(|i| members.values[*i] > light));
-        for (place, i) in moving.iter().enumerate() {
-            let x = moved.point_mut(place);
-            x.copy_from_slice(members.point(*i));
+        let count = list_dimmer(&members.values, light, moving);
+        let moving = &moving[..count];
+        let pairs = x_j.len().div_ceil(2);
+        evaluator.rng().fill(&mut draws[..pairs * moving.len()]);
+        let draws = draws.chunks_exact(pairs);
+        for ((i, to), draws) in moving.iter().zip(moved.points.chunks_exact_mut(x_j.len())).zip(draws) {
+            let x = members.point(*i);
             let beta = self.attractiveness_at(x, x_j, scales);
-            fly(x, x_j, beta, *randomness, widths, evaluator.rng());
+            fly(x, x_j, beta, *randomness, widths, draws, to);
         }
         moved.evaluate_first(moving.len(), evaluator)?;
         for (place, i) in moving.iter().enumerate() {
@@ -122,6 +126,16 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
         *randomness *= self.randomness_decay;
         Ok(())
     }
+}
+
+/// Lists in `moving` who is less bright than `light`, and counts them. Without a branch, which nobody could predict.
+fn list_dimmer(values: &[f64], light: f64, moving: &mut [usize]) -> usize {
+    let mut count = 0;
+    for (i, value) in values.iter().enumerate() {
+        moving[count] = i;
+        count += usize::from(*value > light);
+    }
+    count
 }
 
 impl Firefly {
@@ -134,12 +148,17 @@ impl Firefly {
     }
 }
 
-/// x = x + beta (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009).
+/// x + beta (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009); a draw makes two of u.
 #[inline]
-fn fly(x: &mut [f64], x_j: &[f64], beta: f64, randomness: f64, widths: &[f64], rng: &mut LazyRng) {
-    for ((x, x_j), widths) in x.chunks_mut(2).zip(x_j.chunks(2)).zip(widths.chunks(2)) {
-        for (((x, x_j), width), u) in x.iter_mut().zip(x_j).zip(widths).zip(rng.uniform_pair()) {
-            *x += beta * (x_j - *x) + randomness * width * (u - 0.5);
-        }
+fn fly(x: &[f64], x_j: &[f64], beta: f64, randomness: f64, widths: &[f64], draws: &[f64], to: &mut [f64]) {
+    let n = to.len();
+    let (x, x_j, widths) = (&x[..n], &x_j[..n], &widths[..n]);
+    let moved = |k: usize, u: f64| x[k] + (beta * (x_j[k] - x[k]) + randomness * widths[k] * (u - 0.5));
+    for (j, draw) in draws[..n / 2].iter().enumerate() {
+        let [u, v] = split(*draw);
+        (to[2 * j], to[2 * j + 1]) = (moved(2 * j, u), moved(2 * j + 1, v));
+    }
+    if n % 2 == 1 {
+        to[n - 1] = moved(n - 1, split(draws[n / 2])[0]);
     }
 }

@@ -23,6 +23,9 @@ pub struct Genetic {
     pub crossover_share: f64,
     /// Members of a tournament, the best of which becomes a parent: MATLAB's selectiontournament.
     pub tournament: usize,
+    /// Probability that a coordinate of a mutant moves; one moves in any case. MATLAB's Gaussian mutation moves all, which
+    /// is 1; one over the dimension searches coordinate by coordinate.
+    pub mutation_rate: f64,
     /// Standard deviation of mutations at first, as a share of the box's width.
     pub mutation_scale: f64,
     /// What it is multiplied by in a generation.
@@ -37,6 +40,7 @@ impl Default for Genetic {
             elite_share: 0.05,
             crossover_share: 0.8,
             tournament: 2,
+            mutation_rate: 1.0,
             mutation_scale: 0.1,
             mutation_decay: 0.97,
         }
@@ -59,6 +63,9 @@ impl Genetic {
         if !(1..=self.schedule.population).contains(&self.tournament) {
             let requirement = format!("between 1 and the population of {}", self.schedule.population);
             return Err(Error::out_of_range("tournament", &requirement, self.tournament as f64));
+        }
+        if !(self.mutation_rate > 0.0 && self.mutation_rate <= 1.0) {
+            return Err(Error::out_of_range("mutation_rate", "above 0 and at most 1", self.mutation_rate));
         }
         require_positive("mutation_scale", self.mutation_scale)?;
         if !(self.mutation_decay > 0.0 && self.mutation_decay <= 1.0) {
@@ -113,7 +120,11 @@ impl<O: Objective + ?Sized> Solver<O> for Genetic {
                 self.cross(parents, evaluator.rng(), child_point);
             } else {
                 child_point.copy_from_slice(self.parent(parents, evaluator.rng()));
-                mutate(child_point, &population.widths, *scale, evaluator.rng());
+                if self.mutation_rate < 1.0 {
+                    mutate_some(child_point, &population.widths, *scale, self.mutation_rate, evaluator.rng());
+                } else {
+                    mutate(child_point, &population.widths, *scale, evaluator.rng());
+                }
             }
         }
         children.evaluate_from(elite, evaluator)?;
@@ -169,6 +180,16 @@ fn mutate(x: &mut [f64], widths: &[f64], scale: f64, rng: &mut LazyRng) {
         let normals = rng.normal_pair();
         for ((x, width), z) in pair.iter_mut().zip(widths).zip(normals) {
             *x += scale * width * z;
+        }
+    }
+}
+
+/// Gaussian mutation of each coordinate with probability `rate`, and of one in any case.
+fn mutate_some(x: &mut [f64], widths: &[f64], scale: f64, rate: f64, rng: &mut LazyRng) {
+    let forced = rng.below(x.len());
+    for (k, (x, width)) in x.iter_mut().zip(widths).enumerate() {
+        if rng.uniform() < rate || k == forced {
+            *x += scale * width * rng.normal_pair()[0];
         }
     }
 }

@@ -40,6 +40,7 @@ pub mod population;
 pub mod pso;
 pub mod qpso;
 pub mod stop;
+pub mod velocities;
 
 pub use algorithm::{Algorithm, DerivativeFree};
 pub use any_solver::AnySolver;

@@ -216,3 +216,14 @@ impl Memory {
         self.leader = self.members.best();
     }
 }
+
+/// Fills `rows` with `row` again and again: what is the same for all members, laid out as their coordinates are.
+pub fn repeat(row: &[f64], rows: &mut [f64]) {
+    let mut filled = row.len().min(rows.len());
+    rows[..filled].copy_from_slice(&row[..filled]);
+    while filled < rows.len() {
+        let more = filled.min(rows.len() - filled);
+        rows.copy_within(..more, filled);
+        filled += more;
+    }
+}

@@ -9,10 +9,10 @@ use std::str::FromStr;
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
-use super::population::{Memory, Population, Schedule};
+use super::population::{Memory, Population, Schedule, repeat};
+use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
-use crate::objective::{Bounds, Objective, Point};
-use crate::rng::{LazyRng, split};
+use crate::objective::{Bounds, Objective};
 
 /// What keeps velocities from growing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -164,7 +164,8 @@ impl Pso {
 pub struct State {
     population: Population,
     memory: Memory,
-    velocities: Vec<f64>,
+    velocities: Velocities,
+    walls: Walls,
 }
 
 impl<O: Objective + ?Sized> Solver<O> for Pso {
@@ -172,17 +173,21 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
 
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
-        let memory = Memory::new(self.schedule.population, x0.len());
-        Ok(State { velocities: vec![0.0; population.members.points.len()], population, memory })
+        Ok(State {
+            memory: Memory::new(self.schedule.population, x0.len()),
+            velocities: Velocities::new(&population, self.velocity_limit),
+            walls: Walls::new(evaluator.bounds(), &population),
+            population,
+        })
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
-        let State { population, memory, velocities } = state;
+        let State { population, memory, velocities, walls } = state;
         if population.is_drawn(&self.schedule, evaluator)? {
-            draw_velocities(population, velocities, evaluator.rng());
+            velocities.draw(population, evaluator.rng());
         } else {
-            turn_particles(self.weights(), self.velocity_limit, population, memory, velocities, evaluator.rng());
-            move_particles(population, velocities, evaluator.bounds());
+            velocities.turn(self.weights(), population, memory, evaluator.rng());
+            move_particles(&mut population.members.points, &mut velocities.all, walls);
             population.members.evaluate_from(0, evaluator)?;
         }
         memory.update(population);
@@ -193,52 +198,29 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
     }
 }
 
-/// Half way from each particle to a uniform draw around it: at most half the width (standard PSO 2007).
-pub fn draw_velocities(population: &Population, velocities: &mut [f64], rng: &mut LazyRng) {
-    for v in velocities.chunks_exact_mut(population.widths.len()) {
-        for (v, width) in v.iter_mut().zip(&population.widths) {
-            *v = 0.5 * width * (2.0 * rng.uniform() - 1.0);
-        }
-    }
+/// The box, laid out as the particles' coordinates are.
+#[derive(Debug, Clone)]
+struct Walls {
+    lower: Vec<f64>,
+    upper: Vec<f64>,
 }
 
-/// v = w v + c1 r1 (p - x) + c2 r2 (g - x), r1 and r2 anew for each coordinate, clamped to a share of the widths.
-pub fn turn_particles(
-    [w, c1, c2]: [f64; 3],
-    velocity_limit: f64,
-    population: &Population,
-    memory: &Memory,
-    velocities: &mut [f64],
-    rng: &mut LazyRng,
-) {
-    let widths = &population.widths[..];
-    let n = widths.len();
-    let g = &memory.members.point(memory.leader)[..n];
-    let mut draws = Point::from_elem(0.0, n);
-    let draws = &mut draws[..n];
-    let particles = population.members.points().zip(memory.members.points()).zip(velocities.chunks_exact_mut(n));
-    for ((x, p), v) in particles {
-        rng.fill(draws);
-        let (x, p, v) = (&x[..n], &p[..n], &mut v[..n]);
-        for k in 0..n {
-            let [r1, r2] = split(draws[k]);
-            let most = velocity_limit * widths[k];
-            let wanted = w * v[k] + c1 * r1 * (p[k] - x[k]) + c2 * r2 * (g[k] - x[k]);
-            let raised = if wanted > -most { wanted } else { -most };
-            v[k] = if raised < most { raised } else { most };
-        }
+impl Walls {
+    fn new(bounds: &Bounds, population: &Population) -> Self {
+        let repeated = |row| {
+            let mut rows = vec![0.0; population.members.points.len()];
+            repeat(row, &mut rows);
+            rows
+        };
+        Self { lower: repeated(bounds.lower()), upper: repeated(bounds.upper()) }
     }
 }
 
 /// x = x + v; a particle stops at the walls.
-fn move_particles(population: &mut Population, velocities: &mut [f64], bounds: &Bounds) {
-    let (lower, upper) = (bounds.lower(), bounds.upper());
-    let particles =
-        population.members.points.chunks_exact_mut(lower.len()).zip(velocities.chunks_exact_mut(lower.len()));
-    for (x, v) in particles {
-        for (((x, v), lower), upper) in x.iter_mut().zip(v).zip(lower).zip(upper) {
-            fly(x, v, *lower, *upper);
-        }
+fn move_particles(points: &mut [f64], velocities: &mut [f64], walls: &Walls) {
+    let walls = walls.lower.iter().zip(&walls.upper);
+    for ((x, v), (lower, upper)) in points.iter_mut().zip(velocities).zip(walls) {
+        fly(x, v, *lower, *upper);
     }
 }
 

@@ -1,13 +1,10 @@
 //! Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): particles have no velocity, but are found around
 //! an attractor with a spread that follows from their distance to the mean best place.
 
-use smallvec::SmallVec;
-
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
-use super::population::{Memory, Population, Schedule};
+use super::population::{Members, Memory, Population, Schedule, repeat};
 use crate::error::{Result, require_positive};
-use crate::math::MAX_DOF;
 use crate::math::logarithm::ln;
 use crate::objective::{Objective, Point};
 use crate::rng::{LazyRng, split};
@@ -43,8 +40,7 @@ impl Qpso {
 pub struct State {
     population: Population,
     memory: Memory,
-    /// Mean of the best places.
-    mean: Point,
+    around: Around,
 }
 
 impl<O: Objective + ?Sized> Solver<O> for Qpso {
@@ -53,20 +49,43 @@ impl<O: Objective + ?Sized> Solver<O> for Qpso {
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
         let memory = Memory::new(self.schedule.population, x0.len());
-        Ok(State { population, memory, mean: Point::from_elem(0.0, x0.len()) })
+        Ok(State { around: Around::new(&population.members), population, memory })
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
-        let State { population, memory, mean } = state;
+        let State { population, memory, around } = state;
         if !population.is_drawn(&self.schedule, evaluator)? {
-            find_mean(memory, mean);
-            self.draw_particles(&mut population.members.points, memory, mean, evaluator.rng());
+            find_mean(memory, &mut around.mean);
+            self.draw_particles(&mut population.members.points, memory, around, evaluator.rng());
             population.members.evaluate_from(0, evaluator)?;
         }
         memory.update(population);
         Ok(())
     }
 }
+
+/// What particles are drawn around, laid out as their coordinates are: each update is one long loop, which the compiler
+/// vectorises whatever the dimension.
+#[derive(Debug, Clone)]
+struct Around {
+    /// Mean of the best places.
+    mean: Point,
+    means: Vec<f64>,
+    /// The swarm's best place.
+    leader: Vec<f64>,
+    draws: Vec<f64>,
+}
+
+impl Around {
+    fn new(members: &Members) -> Self {
+        let none = vec![0.0; members.points.len()];
+        let mean = Point::from_elem(0.0, members.dimension());
+        Self { mean, means: none.clone(), leader: none.clone(), draws: none }
+    }
+}
+
+/// The unit of the second half of a draw, which has 27 bits.
+const LAST_PLACE: f64 = 1.0 / (1_u64 << 27) as f64;
 
 /// m = (sum over particles of p) / M.
 fn find_mean(memory: &Memory, mean: &mut [f64]) {
@@ -80,21 +99,19 @@ fn find_mean(memory: &Memory, mean: &mut [f64]) {
 
 impl Qpso {
     /// x = phi p + (1 - phi) g -+ alpha |m - x| ln(1/u), phi, u and the sign anew for each coordinate.
-    fn draw_particles(&self, points: &mut [f64], memory: &Memory, mean: &[f64], rng: &mut LazyRng) {
-        let n = mean.len();
-        let g = memory.members.point(memory.leader);
-        let mut draws: SmallVec<[f64; 2 * MAX_DOF]> = SmallVec::from_elem(0.0, 2 * n);
-        for (x, p) in points.chunks_exact_mut(n).zip(memory.members.points()) {
-            rng.fill(&mut draws);
-            let (first, second) = draws.split_at(n);
-            let (x, p, g, mean, second) = (&mut x[..n], &p[..n], &g[..n], &mean[..n], &second[..n]);
-            for k in 0..n {
-                let [phi, side] = split(first[k]);
-                // 1 - u is in (0, 1], where the logarithm is finite.
-                let spread = self.expansion * (mean[k] - x[k]).abs() * ln(1.0 - second[k]);
-                let attractor = g[k] + phi * (p[k] - g[k]);
-                x[k] = attractor + if side < 0.5 { -spread } else { spread };
-            }
+    fn draw_particles(&self, points: &mut [f64], memory: &Memory, around: &mut Around, rng: &mut LazyRng) {
+        repeat(memory.members.point(memory.leader), &mut around.leader);
+        repeat(&around.mean, &mut around.means);
+        rng.fill(&mut around.draws);
+        let count = points.len();
+        let (x, p) = (&mut points[..count], &memory.members.points[..count]);
+        let (g, mean, draws) = (&around.leader[..count], &around.means[..count], &around.draws[..count]);
+        for k in 0..count {
+            let [phi, rest] = split(draws[k]);
+            // Sign and size from one draw, evenly in (-1, 1): neither end can occur, where the logarithm is infinite.
+            let signed = 2.0 * rest - (1.0 - LAST_PLACE);
+            let spread = self.expansion * (mean[k] - x[k]).abs() * -ln(1.0 - signed.abs());
+            x[k] = g[k] + phi * (p[k] - g[k]) + spread.copysign(signed);
         }
     }
 }

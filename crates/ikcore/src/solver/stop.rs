@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::{Error, Result};
 
 /// Limits on a run; whichever comes first. Counts repeat exactly, a time limit does not.
@@ -51,7 +53,7 @@ impl Stop {
 }
 
 /// How a solve, one item of a batch or one step of a track ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum Status {
     /// Within the tolerances.

@@ -1,12 +1,14 @@
 //! What counts of a target's six components, and when it is reached.
 
+use serde::{Deserialize, Serialize};
+
 use super::{SquaredError, Target, Tolerance};
 use crate::error::{Error, Result};
 use crate::math::box_step::ROWS;
 use crate::objective::{Linearization, Score};
 
 /// When a target is reached, and what its components weigh.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Criterion {
     /// Largest distance and angle.
     pub tolerance: Tolerance,
@@ -22,7 +24,7 @@ impl From<Tolerance> for Criterion {
 
 /// Weights and tolerances of the components: x, y, z (m) and the rotation vector's three (rad), along the axes of the
 /// target's frame; along those of the base for a target that is a position alone.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Components {
     /// Factors on the residuals; a component of weight zero is left free.
     pub weights: [f64; ROWS],

@@ -2,11 +2,13 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::{Error, Result};
 use crate::wording::number;
 
 /// When a target counts as reached.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Tolerance {
     /// Largest distance of the tip from the target (m).
     pub position: f64,
@@ -54,7 +56,7 @@ impl SquaredError {
 }
 
 /// The errors as a caller reads them; NaN is what the target does not ask for.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TipError {
     /// Distance (m).
     pub position: f64,

@@ -48,7 +48,7 @@ pub struct Goals {
 #[derive(Debug, Clone, PartialEq)]
 enum Term {
     /// The sum of stiffness * (q - rest)^2.
-    Springs { stiffness: Point, rest: Point },
+    Springs { stiffness: Vec<f64>, rest: Vec<f64> },
     /// -weight * ln of an index.
     Manipulability { measure: Manipulability, of: Part, weight: f64 },
 }
@@ -97,7 +97,7 @@ impl Goal {
     fn term(&self, robot: &Robot, bounds: &Bounds) -> Term {
         match self {
             Self::Posture { posture, weight } => {
-                Term::Springs { stiffness: Point::from_elem(*weight, posture.len()), rest: posture.as_slice().into() }
+                Term::Springs { stiffness: vec![*weight; posture.len()], rest: posture.clone() }
             }
             Self::Centring { weight } => {
                 let ranges = bounds.lower().iter().zip(bounds.upper());

@@ -1,5 +1,7 @@
 //! Following a path with an arm that nobody has a model of: a controller, and the plant that answers it.
 
+use serde::{Deserialize, Serialize};
+
 use super::controller::{self, Controller};
 use super::plant::{Fault, Plant, check};
 use super::record::{Accepted, Record};
@@ -32,7 +34,7 @@ impl Default for ModelFreeOptions {
 }
 
 /// The record of a track without a model.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ModelFreeRecord {
     /// Rows as in any track: `q` what was accepted, `position` what was measured (m), at `command`. Its violations are those
     /// of all commands.

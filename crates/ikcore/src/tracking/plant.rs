@@ -1,5 +1,7 @@
 //! What is controlled: something that takes a joint command and answers with a position.
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::Error;
 use crate::error::{Result, require_finite};
 use crate::rng::{self, LazyRng};
@@ -15,7 +17,7 @@ pub trait Plant {
 }
 
 /// Why a plant has no answer, as the end of "the plant ...".
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fault(pub String);
 
 /// A plant that is a function of its command.

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use super::session::Step;
 use crate::limits::Limits;
 use crate::solver::Status;
@@ -13,7 +15,7 @@ const ALLOWED_ULPS: f64 = 4.0;
 
 /// The record of a track: k rows, row 0 the start at t = 0, row i the tick that ends at t_i = i dt. Tables are stored
 /// row after row.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Record {
     /// Joints per row, n.
     pub dof: usize,

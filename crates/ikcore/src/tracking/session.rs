@@ -258,10 +258,10 @@ impl Session {
     ///
     /// # Errors
     /// As [`new`](Self::new) for the start.
-    pub fn reset(&mut self, start: &[f64]) -> Result<()> {
-        self.robot.check("start", start)?;
-        self.limits.require_inside("start", 0.0, start)?;
-        self.q.copy_from_slice(start);
+    pub fn reset(&mut self, q: &[f64]) -> Result<()> {
+        self.robot.check("q", q)?;
+        self.limits.require_inside("q", 0.0, q)?;
+        self.q.copy_from_slice(q);
         self.qd.fill(0.0);
         (self.ticks, self.last_value, self.last_target, self.running) = (0, None, None, self.rule.start());
         self.rng = rng::stream(self.seed, 0);

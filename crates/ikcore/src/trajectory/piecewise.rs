@@ -1,5 +1,7 @@
 //! Piecewise polynomials, one a segment and joint.
 
+use serde::{Deserialize, Serialize};
+
 use super::hermite;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Knots;
@@ -31,7 +33,7 @@ pub const fn polynomial<const N: usize>(given: [f64; N]) -> Coefficients {
 const CONTINUITY_TOLERANCE: f64 = 1e-6;
 
 /// The motion of all joints in time: piecewise polynomials between common knots, continuous in position.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Trajectory {
     joints: Vec<String>,
     knots: Knots,

@@ -18,6 +18,8 @@ use crate::limits::PyLimits;
 /// believed, so that noise and outliers of the sensor do no harm. As a solver, in `solve` and `track`, it serves
 /// where residuals are cheap and a Jacobian is not; `LevenbergMarquardt` needs fewer evaluations.
 ///
+/// Defaults: `BroydenBAS(antenna_length=0.01, max_evaluations_per_step=20, sensor_delay=0)`.
+///
 /// Args:
 ///     antenna_length: of the controller's antennae (rad, m): well above the noise of the sensor once the arm has levered
 ///         it up. A solver, without noise to be afraid of, uses 1e-6.

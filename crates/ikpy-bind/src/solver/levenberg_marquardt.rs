@@ -9,6 +9,8 @@ use crate::error::raise;
 /// Levenberg-Marquardt on the box of the limits, by the analytic Jacobian: joints at a bound are held and the step is
 /// solved again for the others.
 ///
+/// Defaults: `LevenbergMarquardt(initial_damping=0.05)`.
+///
 /// Args:
 ///     initial_damping: damping over squared error at the start; larger is more careful far from the target.
 #[pyclass(name = "LevenbergMarquardt", module = "beetle_ik", frozen, eq, from_py_object)]

@@ -9,6 +9,8 @@ use crate::error::raise;
 /// Newton-Raphson by the pseudo-inverse of the Jacobian, on the box of the limits. Very quick from a start that is near
 /// enough; from others it may jump about until its budget is spent.
 ///
+/// Defaults: `NewtonRaphson(step_fraction=1.0)`.
+///
 /// Args:
 ///     step_fraction: share of the full step that is taken, above 0 and at most 1.
 #[pyclass(name = "NewtonRaphson", module = "beetle_ik", frozen, eq, from_py_object)]

@@ -2,6 +2,7 @@
 
 use ikcore::solver::Schedule;
 use ikcore::solver::beetle_swarm::Direction;
+use ikcore::solver::differential_evolution::Update;
 use pyo3::PyResult;
 
 use crate::convert::{count, optional_count};
@@ -56,18 +57,25 @@ impl SolverOption for Option<usize> {
     }
 }
 
-impl SolverOption for Direction {
-    type Given = String;
-    fn take(_: &str, given: String) -> PyResult<Self> {
-        given.parse().map_err(raise)
-    }
-    fn give(&self) -> String {
-        self.to_string()
-    }
-    fn show(&self) -> String {
-        format!("'{self}'")
-    }
+/// Options that are one of a few names.
+macro_rules! named {
+    ($($option:ty),*) => {
+        $(impl SolverOption for $option {
+            type Given = String;
+            fn take(_: &str, given: String) -> PyResult<Self> {
+                given.parse().map_err(raise)
+            }
+            fn give(&self) -> String {
+                self.to_string()
+            }
+            fn show(&self) -> String {
+                format!("'{self}'")
+            }
+        })*
+    };
 }
+
+named!(Direction, Update);
 
 /// None where a count is without limit.
 pub fn limited(count: usize) -> Option<usize> {

@@ -10,6 +10,9 @@ use crate::error::raise;
 
 /// Particle swarm optimisation: uses values alone.
 ///
+/// Defaults: `PSO(population=40, form='constriction', c1=2.05, c2=2.05, velocity_limit=0.5, accept='always',
+/// max_generations=None, stall_generations=50)`.
+///
 /// Args:
 ///     population: particles.
 ///     form: "constriction", the whole velocity shrinks by a factor that follows from c1 + c2 > 4 (Clerc and Kennedy

@@ -1,6 +1,7 @@
 //! Swarms and evolution: classes that are a population and a list of options.
 
 use ikcore::solver::beetle_swarm::Direction;
+use ikcore::solver::differential_evolution::Update;
 use ikcore::solver::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Qpso};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -86,6 +87,8 @@ macro_rules! swarm {
 swarm! {
     /// Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): uses values alone.
     ///
+    /// Defaults: `QPSO(population=40, expansion=0.75, max_generations=None, stall_generations=50)`.
+    ///
     /// Args:
     ///     population: particles.
     ///     expansion: contraction-expansion coefficient alpha; 0.75 is the fixed value of Sun et al. (2012).
@@ -97,6 +100,9 @@ swarm! {
 
 swarm! {
     /// Firefly algorithm (Yang 2009): uses values alone. Fireflies have turns to attract all that are less bright.
+    ///
+    /// Defaults: `Firefly(population=25, attractiveness=1, absorption=1, randomness=0.2, randomness_decay=0.97,
+    /// max_generations=None, stall_generations=50)`.
     ///
     /// Args:
     ///     population: fireflies.
@@ -120,11 +126,15 @@ swarm! {
     /// Genetic algorithm with the operators of MATLAB's `ga`: elite, tournaments, scattered crossover, Gaussian mutation.
     /// Uses values alone.
     ///
+    /// Defaults: `Genetic(population=50, elite_share=0.05, crossover_share=0.8, tournament=2, mutation_scale=0.1,
+    /// mutation_decay=0.97, max_generations=None, stall_generations=50)`.
+    ///
     /// Args:
     ///     population: members of a generation.
     ///     elite_share: share that survives unchanged, rounded up.
     ///     crossover_share: share of the others that is born by crossover; the rest by mutation.
     ///     tournament: members of a tournament, the best of which becomes a parent.
+    ///     mutation_rate: probability that a coordinate of a mutant moves, one in any case; 1 moves all, as MATLAB does.
     ///     mutation_scale: standard deviation of mutations at first, as a share of the box's width.
     ///     mutation_decay: what it is multiplied by in a generation.
     PyGenetic, "Genetic", Genetic {
@@ -134,6 +144,8 @@ swarm! {
         crossover_share: f64,
         /// Members of a tournament.
         tournament: usize,
+        /// Probability that a coordinate of a mutant moves.
+        mutation_rate: f64,
         /// Standard deviation of mutations at first, as a share of the box's width.
         mutation_scale: f64,
         /// What it is multiplied by in a generation.
@@ -143,6 +155,8 @@ swarm! {
 
 swarm! {
     /// Artificial bee colony (Karaboga 2005): uses values alone.
+    ///
+    /// Defaults: `BeeColony(population=20, limit=None, max_generations=None, stall_generations=50)`.
     ///
     /// Args:
     ///     population: food sources; there are as many employed bees, and as many onlookers.
@@ -156,6 +170,10 @@ swarm! {
 swarm! {
     /// Beetle swarm optimisation (Wang et al. 2019, eq. 26-32), particles with antennae: uses values alone. The equations
     /// need an inertia weight and a limit on velocities to converge; with inertia=1 and velocity_limit=1 they are literal.
+    ///
+    /// Defaults: `BeetleSwarm(population=50, inertia=0.729, c1=1.494, c2=1.494, velocity_limit=0.2, velocity_share=0.9,
+    /// step=1, step_decay=0.97, step_over_antennae=5, direction='printed', max_generations=None,
+    /// stall_generations=50)`.
     ///
     /// Args:
     ///     population: beetles; each takes three evaluations a generation.
@@ -193,14 +211,21 @@ swarm! {
 swarm! {
     /// Differential evolution, DE/rand/1/bin (Storn and Price 1997): uses values alone.
     ///
+    /// Defaults: `DifferentialEvolution(population=50, weight=0.5, crossover_rate=0.9, max_generations=None,
+    /// stall_generations=50)`.
+    ///
     /// Args:
     ///     population: vectors.
     ///     weight: F, weight of the difference of two vectors.
     ///     crossover_rate: CR, probability that a coordinate comes from the mutant.
+    ///     update: "generation", better trials take their vectors' places after all of them, evaluated together (as
+    ///         published); "immediate", at once: fewer evaluations, but one by one.
     PyDifferentialEvolution, "DifferentialEvolution", DifferentialEvolution {
         /// Weight of the difference of two vectors.
         weight: f64,
         /// Probability that a coordinate comes from the mutant.
         crossover_rate: f64,
+        /// "generation" or "immediate".
+        update: Update,
     }
 }

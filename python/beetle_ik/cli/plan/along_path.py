@@ -9,7 +9,7 @@ import typer
 from ... import InvalidInputError, Robot, plan_along_path
 from ... import Path as ReferencePath
 from ..curves import CurveName, make_curve, read_points
-from ..options import AsJson, BaseLink, RobotName, Seed, Start, TipLink, UrdfFile, load_robot, numbers
+from ..options import AsJson, BaseLink, RobotName, Seed, StartQ, TipLink, UrdfFile, load_robot, numbers
 from .planned import Acceleration, Animated, Budget, Out, Solver, Velocity, options, report
 
 _DURATION = 1.0  # s; the planner does not look at it
@@ -39,7 +39,7 @@ def along_path(
     ] = Method.TIMED,
     objective: Annotated[Objective, typer.Option(help="What to minimise.")] = Objective.TIME,
     accuracy: Annotated[float | None, typer.Option(help="Allowed distance from the points in m.")] = None,
-    start: Start = None,
+    start_q: StartQ = None,
     velocity: Velocity = None,
     acceleration: Acceleration = None,
     solver: Solver = None,
@@ -62,7 +62,7 @@ def along_path(
         lambda: plan_along_path(
             arm,
             path,
-            start_q=None if start is None else numbers("--start", start),
+            start_q=None if start_q is None else numbers("--start-q", start_q),
             method=method.value,
             objective=objective.value,
             accuracy=accuracy,

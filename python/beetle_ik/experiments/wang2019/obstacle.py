@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
 TITLE = "Past an obstacle"
-_SEEDS = 12
+_SEEDS = 6
 _SEEDS_SHORT = 1
 _LINKS = (3, 4, 5)
 _CENTER, _SEMI_AXES = (0.8, 0.8), (0.3, 0.2)  # m; the paper does not state them

@@ -15,8 +15,6 @@ use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
-/// Distance that is kept where none is asked for (m).
-pub(in crate::planning) const DEFAULT_MARGIN: f64 = 1e-3;
 /// So much more is kept on straight lines, that they can be certified again once they are timed (m).
 const EXTRA: f64 = 5e-5;
 /// Configurations that all trees together may look at: about half a second.
@@ -33,10 +31,7 @@ const NARROWINGS: usize = 12;
 
 /// Plans for ends and options that are in order.
 pub(super) fn plan(search: &mut Search, options: &PointToPointOptions, monitor: &mut dyn Monitor) -> Result<Plan> {
-    let margin = options.margin.unwrap_or(DEFAULT_MARGIN);
-    if !(margin.is_finite() && margin >= 0.0) {
-        return Err(Error::out_of_range("margin", "zero or more and finite", margin));
-    }
+    let margin = options.kept_margin()?;
     let robot = search.robot;
     // Without capsules the links of an arm in the plane are lines that may cross each other, as in Wang et al. (2019).
     let bare = robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
@@ -212,7 +207,7 @@ fn finish(
 /// A distance below the margin, by name.
 pub(in crate::planning) fn too_near(contact: &Contact, margin: f64) -> Violation {
     let what = format!("distance of link '{}' from {}", contact.link, contact.other);
-    Violation { what, value: contact.distance, bound: margin, unit: "m" }
+    Violation { what, value: contact.distance, bound: margin, unit: "m".into() }
 }
 
 /// Err for a configuration nearer to something than the margin.

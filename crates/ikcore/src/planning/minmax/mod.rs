@@ -19,7 +19,7 @@ mod nearer;
 mod pace;
 mod travel;
 
-pub(super) use self::around::{DEFAULT_MARGIN, refuse_collision, too_near};
+pub(super) use self::around::{refuse_collision, too_near};
 pub(super) use self::clear::InTime;
 use self::ends::{Pair, Search};
 use self::pace::Polyline;
@@ -44,6 +44,10 @@ pub(super) fn point_to_point(
     let stopwatch = Stopwatch::start();
     let limits = MotionLimits::new(robot, options.limits.as_ref(), "plan_point_to_point with method='minmax'")?;
     require_pace(robot, &limits)?;
+    if options.solver.is_some() {
+        let problem = "method=\"minmax\" has a search of its own: leave solver out, or use method=\"tpbso\"";
+        return Err(Error::Contradiction { problem: problem.into() });
+    }
     let mut search = Search::new(robot, &limits, [start, end], options.seed)?;
     let shape_known = !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
     let mut plan = if options.obstacles.is_empty() && !shape_known {

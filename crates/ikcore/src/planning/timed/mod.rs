@@ -107,7 +107,7 @@ fn plan(
             what: format!("distance of the tip from point {row} of the path"),
             value: distance,
             bound: cost.accuracy,
-            unit: "m",
+            unit: "m".into(),
         },
     ));
     let keeps_everything = violations.is_empty();

@@ -121,7 +121,7 @@ pub(super) fn along_path(
         what: format!("distance of the tip from point {i} of the path"),
         value: distance,
         bound: accuracy,
-        unit: "m",
+        unit: "m".into(),
     }));
     Ok(Plan {
         objective: options.objective,

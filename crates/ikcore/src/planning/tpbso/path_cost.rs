@@ -17,8 +17,12 @@ const STRIDE: usize = 2;
 /// The motion may last from this share of the slowest joint's way through its range ...
 const SHORTEST: f64 = 0.025;
 
-/// ... to so many times that.
+/// ... to so many times that ...
 const LONGEST: f64 = 5.0;
+
+/// ... or, on a path that turns the joints more than once through it, to so many times what the middle of all free
+/// orientations takes.
+const LONGER_THAN_MIDDLE: f64 = 1.5;
 
 /// The cost F of eq. (25), as a function of \[x_phi (5 a free link), T\].
 #[derive(Debug, Clone)]
@@ -73,7 +77,10 @@ impl<'a> PathCost<'a> {
     }
 
     /// What the decision vector may be. A given start fixes the first node of every free link.
-    pub fn bounds(&self) -> Result<Bounds> {
+    ///
+    /// # Errors
+    /// [`Error::InvalidPath`](crate::Error::InvalidPath) for a start that is not on the path.
+    pub fn bounds(&mut self) -> Result<Bounds> {
         let whole_range = self.limits.whole_range_time();
         let mut ranges = vec![(0.0, 1.0); NODES * self.redundancy.links()];
         if let Some(q) = self.start {
@@ -81,8 +88,22 @@ impl<'a> PathCost<'a> {
                 nodes[0] = (share, share);
             }
         }
-        ranges.push((SHORTEST * whole_range, LONGEST * whole_range));
+        let middle: Vec<f64> = ranges.iter().map(|(lowest, highest)| 0.5 * (lowest + highest)).collect();
+        let longest = (LONGEST * whole_range).max(LONGER_THAN_MIDDLE * self.least_duration(&middle));
+        ranges.push((SHORTEST * whole_range, longest));
         Ok(Bounds::from_ranges(ranges.into_iter()))
+    }
+
+    /// How long these free orientations take at least (s); 0 where a point has no configuration.
+    fn least_duration(&mut self, nodes: &[f64]) -> f64 {
+        if self.place_knots(nodes).is_err() {
+            return 0.0;
+        }
+        let of_joint = |j: usize| {
+            let (_, speed, acceleration, _) = self.joint_extremes(j);
+            (speed / self.limits.velocity[j]).max((acceleration / self.limits.acceleration[j]).sqrt())
+        };
+        (0..self.robot.dof()).map(of_joint).fold(0.0, f64::max)
     }
 
     /// The motion of decision vector `x`; None where a point has no configuration.

@@ -1,8 +1,8 @@
 //! What a motion may not touch: looked at in samples by the search, certified for the plan.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::obstacle::{Obstacle, Scene, Shape, Sweep};
-use crate::planning::minmax::{DEFAULT_MARGIN, InTime, refuse_collision, too_near};
+use crate::planning::minmax::{InTime, refuse_collision, too_near};
 use crate::planning::plan::Violation;
 use crate::planning::planar_arm::PlanarArm;
 use crate::planning::point_to_point::PointToPointOptions;
@@ -51,10 +51,7 @@ impl<'a> Surroundings<'a> {
     /// # Errors
     /// [`Error::NoCapsules`], [`Error::InvalidObstacle`], [`Error::OutOfRange`] for a negative margin.
     pub fn new(body: &'a Robot, options: &'a PointToPointOptions, lines: bool) -> Result<Self> {
-        let margin = options.margin.unwrap_or(DEFAULT_MARGIN);
-        if !(margin.is_finite() && margin >= 0.0) {
-            return Err(Error::out_of_range("margin", "zero or more and finite", margin));
-        }
+        let margin = options.kept_margin()?;
         let scene = Scene::new(body, &options.obstacles)?;
         if !lines {
             return Ok(Self { scene, margin, flat: None });

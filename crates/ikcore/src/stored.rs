@@ -1,0 +1,51 @@
+//! Values as bytes, for storing and for copying between processes: a version, a checksum, then the value. Bytes that were
+//! damaged are refused by the checksum, so that a value restored is one that was made.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::error::{Error, Result};
+
+/// Version of the byte form.
+const FORMAT: u8 = 1;
+
+/// `value` as bytes; `what` names it in errors.
+///
+/// # Errors
+/// [`Error::Corrupt`] if the encoder fails.
+pub fn to_bytes<T: Serialize>(what: &str, value: &T) -> Result<Vec<u8>> {
+    let payload = postcard::to_allocvec(value).map_err(|problem| corrupt(what, problem.to_string()))?;
+    let mut bytes = vec![FORMAT];
+    bytes.extend(checksum(&payload).to_le_bytes());
+    bytes.extend(payload);
+    Ok(bytes)
+}
+
+/// The value that [`to_bytes`] stored, with every bit; `what` names it in errors.
+///
+/// # Errors
+/// [`Error::Corrupt`] for bytes of another version, damaged ones, or those of something else.
+pub fn from_bytes<T: DeserializeOwned>(what: &str, bytes: &[u8]) -> Result<T> {
+    let (version, rest) = bytes.split_first().ok_or_else(|| corrupt(what, "no bytes".into()))?;
+    if *version != FORMAT {
+        let problem = format!("format version {version}, this library reads version {FORMAT}");
+        return Err(corrupt(what, problem));
+    }
+    match rest.split_first_chunk() {
+        Some((stored, payload)) if u64::from_le_bytes(*stored) == checksum(payload) => {
+            postcard::from_bytes(payload).map_err(|problem| corrupt(what, problem.to_string()))
+        }
+        _ => Err(corrupt(what, "the bytes were damaged: their checksum differs".into())),
+    }
+}
+
+fn corrupt(what: &str, problem: String) -> Error {
+    Error::Corrupt { what: what.into(), problem }
+}
+
+/// FNV-1a with 64 bits (Fowler, Noll and Vo): sees accidents, not malice.
+fn checksum(bytes: &[u8]) -> u64 {
+    const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
+    const PRIME: u64 = 0x0000_0100_0000_01b3;
+    bytes.iter().fold(OFFSET, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(PRIME))
+}

@@ -1,0 +1,30 @@
+"""Trajectories and robots for other libraries, and from them. What a function needs is imported when it is called.
+
+Poses need no conversion: wherever one is taken, so are Pinocchio's `SE3`, spatialmath's `SE3` and scipy's
+`RigidTransform`, and scipy's `Rotation` where a rotation matrix is.
+
+| to and from | functions |
+|---|---|
+| ROS 2 `trajectory_msgs/JointTrajectory` | `to_ros`, `to_ros_yaml` |
+| pandas | `to_dataframe` |
+| Pinocchio | `from_pinocchio`, `to_pinocchio` |
+| Robotics Toolbox for Python | `from_roboticstoolbox`, `to_roboticstoolbox` |
+| MuJoCo (MJCF) | `from_mujoco` |
+"""
+
+from .mujoco import from_mujoco
+from .pinocchio import from_pinocchio, to_pinocchio
+from .roboticstoolbox import from_roboticstoolbox, to_roboticstoolbox
+from .ros import to_ros, to_ros_yaml
+from .table import to_dataframe
+
+__all__ = [
+    "from_mujoco",
+    "from_pinocchio",
+    "from_roboticstoolbox",
+    "to_dataframe",
+    "to_pinocchio",
+    "to_roboticstoolbox",
+    "to_ros",
+    "to_ros_yaml",
+]

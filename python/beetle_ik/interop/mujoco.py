@@ -1,0 +1,118 @@
+"""MuJoCo's models."""
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._core import InvalidInputError, Robot, UnknownNameError, pose
+from .chain import ChainReader, only_leaf
+from .needs import library
+
+if TYPE_CHECKING:
+    import mujoco
+
+
+def from_mujoco(
+    model: "mujoco.MjModel | str | os.PathLike[str]", *, base: str | None = None, tip: str | None = None
+) -> Robot:
+    """The chain of a MuJoCo model between two of its bodies, or up to a site.
+
+    Args:
+        model: an `mujoco.MjModel`, an MJCF file, or text that contains "<".
+        base: body in whose frame everything is expressed, at the chain's start; None: "world".
+        tip: body or site that is to be moved; None: the only body that nothing follows.
+
+    Hinges and slides are taken with their ranges; MuJoCo knows no velocity limits. Angles count as in MuJoCo's qpos.
+
+    Raises:
+        BeetleIkError: MuJoCo is not installed.
+        UnknownNameError: no body or site of that name; the message lists them.
+        InvalidInputError: a model that MuJoCo cannot read, several leaves and no `tip`, a tip that does not follow the
+            base, ball or free joints, joints coupled by equalities.
+    """
+    mujoco = library("mujoco", "mujoco", "a MuJoCo model")
+    described = model if isinstance(model, mujoco.MjModel) else _read(mujoco, model)
+    bodies = [described.body(i).name or f"body_{i}" for i in range(described.nbody)]
+    sites = [described.site(i).name for i in range(described.nsite)]
+    tip = _leaf(described, bodies) if tip is None else tip
+    start = _index(bodies, [], "world" if base is None else base)
+    end = _index(bodies, sites, tip)
+    site = end - len(bodies) if end >= len(bodies) else None
+    chain = ChainReader(_name(described), bodies[start])
+    for body in _bodies_between(described, bodies, start, end if site is None else described.site_bodyid[site]):
+        chain.fixed(pose(described.body_pos[body], wxyz=described.body_quat[body]))
+        _add_joints(mujoco, chain, described, body)
+        chain.link(bodies[body])
+    if site is not None:
+        chain.fixed(pose(described.site_pos[site], wxyz=described.site_quat[site]))
+        chain.link(tip if tip not in bodies else f"{tip} (site)")
+    return chain.robot()
+
+
+def _read(mujoco: Any, model: str | os.PathLike[str]) -> Any:
+    text = os.fspath(model)
+    try:
+        return mujoco.MjModel.from_xml_string(text) if "<" in text else mujoco.MjModel.from_xml_path(str(Path(text)))
+    except ValueError as error:
+        raise InvalidInputError(f"MuJoCo cannot read the model: {error}") from error
+
+
+def _name(model: Any) -> str:
+    return bytes(model.names).split(b"\0", 1)[0].decode() or "mujoco"
+
+
+def _index(bodies: list[str], sites: list[str], name: str) -> int:
+    """Place of a name among the bodies, or behind them among the sites."""
+    names = bodies + sites
+    if name not in names:
+        known = f"bodies: {', '.join(bodies)}" + (f"; sites: {', '.join(filter(None, sites))}" if any(sites) else "")
+        raise UnknownNameError(f"no body or site '{name}' in the MuJoCo model; {known}")
+    return names.index(name)
+
+
+def _leaf(model: Any, bodies: list[str]) -> str:
+    followed = set(model.body_parentid[1:].tolist())
+    return only_leaf("MuJoCo", "bodies", [name for i, name in enumerate(bodies) if i and i not in followed])
+
+
+def _bodies_between(model: Any, bodies: list[str], start: int, end: int) -> list[int]:
+    """The bodies behind `start` up to `end`, in order."""
+    between: list[int] = []
+    body = end
+    while body != start:
+        if body == 0:
+            raise InvalidInputError(f"body '{bodies[end]}' of the MuJoCo model does not follow body '{bodies[start]}'")
+        between.insert(0, body)
+        body = int(model.body_parentid[body])
+    return between
+
+
+def _add_joints(mujoco: Any, chain: ChainReader, model: Any, body: int) -> None:
+    first = model.body_jntadr[body]
+    for joint in range(first, first + model.body_jntnum[body]):
+        name = model.joint(joint).name or f"joint_{joint}"
+        hinge = model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE
+        if not hinge and model.jnt_type[joint] != mujoco.mjtJoint.mjJNT_SLIDE:
+            raise InvalidInputError(f"joint '{name}' of the MuJoCo model is neither a hinge nor a slide")
+        if _is_coupled(mujoco, model, joint):
+            raise InvalidInputError(f"joint '{name}' of the MuJoCo model is coupled to another by an equality")
+        limited = bool(model.jnt_limited[joint])
+        lower, upper = model.jnt_range[joint] if limited else (-np.inf, np.inf)
+        # A hinge turns about a point of the body, by qpos less the qpos at which the model was drawn.
+        chain.fixed(pose(model.jnt_pos[joint]))
+        chain.moving(
+            name,
+            ("revolute" if limited else "continuous") if hinge else "prismatic",
+            model.jnt_axis[joint],
+            offset=-float(model.qpos0[model.jnt_qposadr[joint]]),
+            lower=lower,
+            upper=upper,
+        )
+        chain.fixed(pose(-model.jnt_pos[joint]))
+
+
+def _is_coupled(mujoco: Any, model: Any, joint: int) -> bool:
+    coupling = (model.eq_type == mujoco.mjtEq.mjEQ_JOINT) & (model.eq_active0 != 0)
+    return bool(np.any(coupling & ((model.eq_obj1id == joint) | (model.eq_obj2id == joint))))

@@ -1,0 +1,75 @@
+"""Trajectories for ROS 2."""
+
+import json
+import os
+from typing import Any
+
+from .._core import InvalidInputError, Trajectory
+from .._files import whole_file
+
+_NANO = 1_000_000_000
+
+
+def to_ros(trajectory: Trajectory, *, dt: float | None = None, frame_id: str = "") -> dict[str, Any]:
+    """The trajectory in the shape of a ROS 2 `trajectory_msgs/JointTrajectory`: names, lists and numbers alone.
+
+    Args:
+        trajectory: the motion.
+        dt: time between points (s), for controllers that do not join them by polynomials of its degree, and for
+            trajectories whose derivatives jump; None: its knots.
+        frame_id: of the header.
+
+    Velocities and accelerations go along as far as its degree needs them (from 2, from 4), so that a controller that
+    joins points by the lowest polynomial through them does what the trajectory says.
+
+    Raises:
+        InvalidInputError: `dt` not positive, or two points in the same nanosecond.
+    """
+    time, *samples = (
+        (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd) if dt is None else trajectory.sample(dt)
+    )
+    degree = trajectory.coefficients.shape[2] - 1
+    fields = ("positions", "velocities", "accelerations")[: 1 + (degree > 1) + (degree > 3)]
+    nanoseconds = [round(float(t) * _NANO) for t in time]
+    for i in range(1, len(nanoseconds)):
+        if nanoseconds[i] <= nanoseconds[i - 1]:
+            raise InvalidInputError(f"points {i - 1} and {i} fall into the same nanosecond, t = {time[i]} s: give dt=")
+    points = []
+    for i, nanosecond in enumerate(nanoseconds):
+        point: dict[str, Any] = {name: [] for name in ("positions", "velocities", "accelerations", "effort")}
+        point |= {name: values[i].tolist() for name, values in zip(fields, samples, strict=False)}
+        points.append(point | {"time_from_start": _duration(nanosecond)})
+    header = {"stamp": _duration(0), "frame_id": frame_id}
+    return {"header": header, "joint_names": list(trajectory.joint_names), "points": points}
+
+
+def to_ros_yaml(
+    trajectory: Trajectory, file: str | os.PathLike[str], *, dt: float | None = None, frame_id: str = ""
+) -> None:
+    """Write `to_ros(trajectory, ...)` as YAML, whole or not at all: for `ros2 topic pub` and parameter files."""
+    message = to_ros(trajectory, dt=dt, frame_id=frame_id)
+    header, points = message["header"], message["points"]
+    lines = ["header:", f"  stamp: {_flow(header['stamp'])}", f"  frame_id: {_flow(header['frame_id'])}"]
+    lines += [f"joint_names: {_flow(message['joint_names'])}", "points:"]
+    for point in points:
+        rows = [f"{name}: {_flow(value)}" for name, value in point.items()]
+        lines += [f"  - {rows[0]}", *(f"    {row}" for row in rows[1:])]
+    with whole_file(file) as stream:
+        stream.write(("\n".join(lines) + "\n").encode())
+
+
+def _duration(nanoseconds: int) -> dict[str, int]:
+    return {"sec": nanoseconds // _NANO, "nanosec": nanoseconds % _NANO}
+
+
+def _flow(value: Any) -> str:
+    """A value on one line. Text is quoted as in JSON, which YAML contains."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name}: {_flow(item)}" for name, item in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(_flow(item) for item in value) + "]"
+    if isinstance(value, float):
+        text = repr(value)
+        # YAML 1.1 reads 1e-07 as text: a number has a point.
+        return text.replace("e", ".0e") if "e" in text and "." not in text else text
+    return json.dumps(value)

@@ -1,0 +1,29 @@
+"""Trajectories as tables."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .._core import Trajectory
+from .needs import library
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def to_dataframe(trajectory: Trajectory, *, dt: float | None = None) -> "pd.DataFrame":
+    """A pandas table of the motion: index `time` (s), columns `q:joint`, `qd:joint`, `qdd:joint` (rad, m and per s).
+
+    Args:
+        trajectory: the motion.
+        dt: time between rows (s); None: its knots.
+
+    Raises:
+        BeetleIkError: pandas is not installed.
+    """
+    pandas = library("pandas", "pandas", "a table")
+    time, q, qd, qdd = (
+        (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd) if dt is None else trajectory.sample(dt)
+    )
+    columns = [f"{derivative}:{joint}" for derivative in ("q", "qd", "qdd") for joint in trajectory.joint_names]
+    return pandas.DataFrame(np.hstack((q, qd, qdd)), index=pandas.Index(time, name="time"), columns=columns)

@@ -1,0 +1,250 @@
+"""Every public call, each of its arguments wrong in many ways: no panic, and a message that names the argument.
+
+The calls are taken from `__all__` and their arguments from their signatures, so that new ones cannot be forgotten.
+"""
+
+import inspect
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beetle_ik as bik
+
+WRONG: dict[str, Any] = {
+    "NaN": np.nan,
+    "infinite": -np.inf,
+    "None": None,
+    "a word": "nonsense",
+    "no word": "",
+    "an object": object(),
+    "a module": np,
+    "nothing": [],
+    "a ragged list": [[1.0], [1.0, 2.0]],
+    "NaNs": [np.nan] * 3,
+    "three dimensions": np.zeros((2, 3, 5)),
+    "huge": 10**30,
+    "negative": -1,
+    "complex": 1j,
+}
+# What messages say for an argument whose name is not a word of them.
+WORDS = {
+    "q": "joint angles",
+    "t": "time",
+    "time": "times",
+    "name": "named",
+    "path_or_xml": "cannot read|URDF",
+    "lengths": "length \\d",
+    "capsules": "with_capsules",
+    "kinds": "kind",
+    "positions_or_poses": "points|poses",
+    "semi_axes": "semi-axes",
+    "starts": "start",
+    "waypoints_q": "waypoints?",
+    "start_speed": "speed at the start",
+    "end_speed": "speed at the end",
+    "qd": "velocity samples",
+    "qdd": "accelerations",
+}
+
+URDF = """<robot name="r"><link name="base"/><link name="tip"/><joint name="turn" type="continuous">
+<parent link="base"/><child link="tip"/></joint></robot>"""
+ARM = bik.Robot.named("iiwa14").with_capsules(radius=0.05)
+PLANAR = bik.Robot.planar([1, 1, 1])
+Q = np.array([0.6449, 0.2037, 0.1969, -0.7714, 0.2028, 0.7179, 0.1])
+LINE = bik.paths.polyline([(0.3, 0.3, 1.0), (0.3, 0.31, 1.0)], duration=0.2)
+MOTION = bik.Trajectory.from_samples([0.0, 1.0], [[0.0, 0.0], [1.0, 1.0]])
+LIMITS = bik.Limits(velocity=1.0, acceleration=2.0)
+QUICK = {"stop": bik.Stop(max_evaluations=100)}
+PLACED = {"center": (0, 0, 0), "duration": 1.0}
+TICKS = {"start": Q, "dt": 0.1}
+PLAN = bik.plan_point_to_point(PLANAR, start_q=[0, 0, 0], end_q=[0.1, 0.1, 0.1], limits=LIMITS)
+TRACK = bik.track(ARM, LINE, Q, dt=0.1)
+MODEL_FREE = bik.track_model_free(bik.KinematicPlant(ARM), LINE, Q, dt=0.1)
+ASKED, IDLE = (bik.ZNNBAS().session(**TICKS) for _ in range(2))
+ASKED.command((0.3, 0.3, 1.0))
+
+# What a call needs besides the argument that is wrong; "." stands for the instance that a method is called on.
+NEEDED: dict[str, dict[str, Any]] = {
+    "ControlSession.command": {".": IDLE, "target": (0.3, 0.3, 1.0)},
+    "ControlSession.observe": {".": ASKED, "position": (0.3, 0.3, 1.0)},
+    "BroydenBAS.session": {".": bik.BroydenBAS(), **TICKS},
+    "KinematicPlant": {"robot": ARM},
+    "KinematicPlant.move": {".": bik.KinematicPlant(ARM), "q": Q},
+    "ModelFreeResult.": {".": MODEL_FREE},
+    "MultiStart": {"solver": bik.BAS()},
+    "Path.": {".": LINE},
+    "Path.pose": {".": LINE.with_orientation(np.eye(3)), "t": 0.0},
+    "Path.position": {"t": 0.0},
+    "Path.sample": {"dt": 0.1},
+    "Path.velocity": {"t": 0.0},
+    "Path.with_orientation": {"orientation": np.eye(3)},
+    "Plan.": {".": PLAN},
+    "Robot.": {".": ARM, "q": Q},
+    "Robot.from_dh": {"a": [0, 1], "alpha": [0, 0], "d": [0, 0]},
+    "Robot.from_urdf": {"path_or_xml": URDF},
+    "Robot.named": {"name": "iiwa14"},
+    "Robot.planar": {"lengths": [1, 1]},
+    "Robot.random_configurations": {"m": 3},
+    "Robot.with_base": {"base": np.eye(4)},
+    "Robot.with_capsules": {"radius": 0.05},
+    "Robot.with_tool": {"tool": np.eye(4)},
+    "Sinusoid": {"mean": 1.0, "amplitude": 0.1, "angular_frequency": 1.0},
+    "TrackResult.": {".": TRACK},
+    "Tracker": {"robot": ARM, **TICKS},
+    "Tracker.reset": {".": bik.Tracker(ARM, **TICKS), "q": Q},
+    "Tracker.step": {".": bik.Tracker(ARM, **TICKS), "target": (0.3, 0.3, 1.0)},
+    "Trajectory": {"time": [0, 1], "coefficients": np.zeros((1, 2, 2))},
+    "Trajectory.": {".": MOTION},
+    "Trajectory.at": {"t": 0.0},
+    "Trajectory.from_csv": {"file": "motion.csv"},
+    "Trajectory.from_npz": {"file": "motion.npz"},
+    "Trajectory.from_samples": {"time": [0, 1], "q": [[0, 0], [1, 1]]},
+    "Trajectory.sample": {"dt": 0.5},
+    "Trajectory.to_csv": {"file": "written.csv"},
+    "Trajectory.to_npz": {"file": "written.npz"},
+    "ZNNBAS.session": {".": bik.ZNNBAS(), **TICKS},
+    "goals.Posture": {"posture": Q},
+    "minimize": {"function": np.sum, "lower": [-1, -1], "upper": [1, 1], "solver": bik.BAS(), **QUICK},
+    "obstacles.Box": {"center": (0, 0, 0), "size": (1, 1, 1)},
+    "obstacles.Capsule": {"a": (0, 0, 0), "b": (1, 0, 0), "radius": 0.1},
+    "obstacles.ConvexMesh": {"points": [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]},
+    "obstacles.Ellipse": {"center": (0, 0), "semi_axes": (1, 1)},
+    "obstacles.Ellipsoid": {"center": (0, 0, 0), "semi_axes": (1, 1, 1)},
+    "obstacles.Sphere": {"center": (0, 0, 0), "radius": 0.1},
+    "obstacles.clearance": {"robot": ARM, "q": Q},
+    "paths.circle": {**PLACED, "diameter": 0.1},
+    "paths.from_function": {"function": lambda t: (t, 0, 0), "duration": 1.0},
+    "paths.from_samples": {"time": [0, 1], "positions_or_poses": [(0, 0, 0), (1, 0, 0)]},
+    "paths.hypotrochoid": {**PLACED, "outer_radius": 0.3, "inner_radius": 0.1, "distance": 0.1},
+    "paths.letter_m": {**PLACED, "width": 0.1, "height": 0.1},
+    "paths.pentagram": {**PLACED, "radius": 0.1},
+    "paths.polyline": {"points": [(0, 0, 0), (1, 0, 0)], "duration": 1.0},
+    "paths.rose": {**PLACED, "radius": 0.1, "k": 3},
+    "plan_along_path": {"robot": ARM, "path": LINE, "limits": LIMITS, **QUICK},
+    "plan_point_to_point": {"robot": PLANAR, "start": (1, 1, 0), "end": (1, 1.5, 0), "limits": LIMITS, **QUICK},
+    "planar_posture": {"robot": PLANAR, "target": (1, 1, 0), "swarm": bik.CircleSwarm()},
+    "plot.animation": {"plan": PLAN},
+    "plot.model_free": {"result": MODEL_FREE},
+    "plot.plan": {"plan": PLAN},
+    "plot.robot": {"robot": ARM, "q": Q},
+    "plot.saturation": {"trajectory": MOTION, "limits": LIMITS},
+    "plot.track": {"result": TRACK},
+    "plot.trajectory": {"trajectory": MOTION},
+    "pose": {"position": (0, 0, 0)},
+    "solve": {"robot": ARM, "target": (0.3, 0.3, 1.0), **QUICK},
+    "solve_all": {"robot": ARM, "target": (0.3, 0.3, 1.0), "limit": 2, **QUICK},
+    "solve_batch": {"robot": ARM, "targets": [(0.3, 0.3, 1.0)], "threads": 1, **QUICK},
+    "time_optimal": {"waypoints_q": [[0, 0], [1, 1]], "limits": LIMITS},
+    "track": {"robot": ARM, "path": LINE, **TICKS},
+    "track_model_free": {"plant": bik.KinematicPlant(ARM), "path": LINE, **TICKS},
+}
+# A right call would change what the others are called on, or leave a film that nobody looks at.
+ONLY_WRONG = ("ControlSession.command", "ControlSession.observe", "plot.animation")
+MODULES = {"": bik, "tasks.": bik.tasks, "goals.": bik.goals, "paths.": bik.paths, "obstacles.": bik.obstacles}
+MODULES["plot."] = bik.plot
+
+
+def public(prefix: str, module: ModuleType) -> Iterator[tuple[str, Callable[..., object]]]:
+    """Functions, classes and their methods; methods bound to the instance in the table."""
+    for name in module.__all__:
+        thing = getattr(module, name)
+        if isinstance(thing, ModuleType) or not callable(thing):
+            continue
+        if not isinstance(thing, type):
+            yield prefix + name, thing
+            continue
+        if issubclass(thing, bik.BeetleIkError | bik.Status):
+            continue
+        if name not in ("Goal", "Obstacle", "Task"):
+            yield prefix + name, thing
+        for method in vars(thing):
+            if not method.startswith("_") and callable(getattr(thing, method)):
+                full = f"{prefix}{name}.{method}"
+                yield full, getattr(needed(full).get(".", thing), method)
+
+
+def needed(name: str) -> dict[str, Any]:
+    owner = name[: name.rfind(".") + 1]
+    return {**NEEDED.get(owner, {}), **NEEDED.get(name, {})}
+
+
+CALLS = {name: call for prefix, module in MODULES.items() for name, call in public(prefix, module)}
+MADE_BY_THE_LIBRARY = [
+    "BatchSolution",
+    "ControlSession",
+    "Minimum",
+    "ModelFreeResult",
+    "Path",
+    "Plan",
+    "PlanarPosture",
+    "Robot",
+    "Solution",
+    "SolutionSet",
+    "Step",
+    "TrackResult",
+    "VelocityEllipsoid",
+    "Violation",
+]
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    MOTION.to_csv("motion.csv")
+    MOTION.to_npz("motion.npz")
+
+
+def refusal(call: Callable[..., object], arguments: dict[str, Any]) -> str | None:
+    """What an exception of the right kind says, with its notes; None where there is none."""
+    try:
+        call(**arguments)
+    except (bik.BeetleIkError, TypeError, ValueError, FileNotFoundError) as error:
+        return "\n".join([str(error), *getattr(error, "__notes__", [])])
+    return None
+
+
+def arguments_of(name: str) -> list[str]:
+    return list(inspect.signature(CALLS[name]).parameters)
+
+
+WITH_ARGUMENTS = [name for name in CALLS if name not in MADE_BY_THE_LIBRARY and arguments_of(name)]
+
+
+def test_the_table_has_no_call_that_is_gone() -> None:
+    assert {name for name in NEEDED if not name.endswith(".")} <= set(CALLS)
+
+
+@pytest.mark.parametrize("name", MADE_BY_THE_LIBRARY)
+def test_results_cannot_be_made_by_hand(name: str) -> None:
+    with pytest.raises(TypeError, match=name):
+        getattr(bik, name)()
+
+
+@pytest.mark.parametrize("name", [name for name in WITH_ARGUMENTS if name not in ONLY_WRONG])
+def test_what_is_needed_is_enough(name: str) -> None:
+    arguments = {key: value for key, value in needed(name).items() if key in arguments_of(name)}
+    assert refusal(CALLS[name], arguments) is None
+
+
+@pytest.mark.parametrize("name", WITH_ARGUMENTS)
+def test_wrong_arguments(name: str) -> None:
+    names = arguments_of(name)
+    right = {key: value for key, value in needed(name).items() if key in names}
+    for argument in names:
+        told = {kind: refusal(CALLS[name], {**right, argument: value}) for kind, value in WRONG.items()}
+        word = rf"(?<!\w)({argument}|{WORDS.get(argument, argument)})(?!\w)"
+        nameless = {kind: text for kind, text in told.items() if text is not None and not re.search(word, text)}
+        assert not nameless, f"{name}({argument}=...) is not named"
+        assert told["an object"] is not None, f"{name}({argument}=...) takes any object"
+
+
+@pytest.mark.parametrize("name", [name for name in CALLS if name not in MADE_BY_THE_LIBRARY])
+def test_unknown_options(name: str) -> None:
+    told = refusal(CALLS[name], {**{k: v for k, v in needed(name).items() if k != "."}, "no_such_option": 1})
+    assert told is not None
+    assert re.search(r"no_such_option|takes no (keyword )?arguments|unexpected keyword", told), told
