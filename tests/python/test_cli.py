@@ -77,7 +77,7 @@ def test_solved_angles_can_be_fed_back() -> None:
 
 
 def test_a_budget_of_evaluations_is_kept() -> None:
-    result = run("solve", "iiwa14", "--position", "9,0,0", "--max-evaluations", "50", "--json")
+    result = run("solve", "iiwa14", "--position", "0,0,0.36", "--max-evaluations", "50", "--json")
     answer = json.loads(result.stdout)
     assert (result.exit_code, answer["status"]) == (1, "BUDGET_SPENT")
     assert answer["evaluations"] <= 50

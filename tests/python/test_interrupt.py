@@ -25,7 +25,8 @@ def track_for_minutes() -> object:
 
 
 def solve_for_minutes() -> object:
-    return bik.solve(IIWA, [5.0, 5.0, 5.0], stop=bik.Stop(max_evaluations=10**12))
+    # Inside the shoulder: out of reach, but not farther than the arm is long, which would be told at once.
+    return bik.solve(IIWA, [0.0, 0.0, 0.36], stop=bik.Stop(max_evaluations=10**12))
 
 
 def solve_one_endless_iteration() -> object:
@@ -93,10 +94,12 @@ def test_other_threads_run_meanwhile(call: Callable[[], object]) -> None:
 
     counter = threading.Thread(target=count)
     counter.start()
-    with interrupted(after=0.3):
-        call()
-    stopped.set()
-    counter.join()
+    try:
+        with interrupted(after=0.3):
+            call()
+    finally:
+        stopped.set()
+        counter.join()
     assert turns > 10  # with the interpreter held throughout it would be one or two
 
 

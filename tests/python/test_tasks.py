@@ -226,7 +226,7 @@ def solve(**options: object) -> bik.Solution:
             "goals must be of beetle_ik.goals, one or several, got 'Centring'",
         ),
         (lambda: solve(goals=3), Invalid, "goals must be of beetle_ik.goals, one or several, got 3"),
-        (lambda: solve(prefer="near"), Invalid, "prefer must be one of 'any', 'nearest', got 'near'"),
+        (lambda: solve(prefer="near"), Invalid, "prefer must be one of 'any', 'nearest', 'best', got 'near'"),
         (lambda: solve(prefer="nearest"), Invalid, 'prefer="nearest" needs a start: nearest to what?'),
         (
             lambda: solve(prefer="nearest", start=Q, goals=goals.Centring()),
@@ -236,7 +236,7 @@ def solve(**options: object) -> bik.Solution:
         (
             lambda: bik.Tracker(IIWA, Q, dt=0.1, solver=bik.BAS(), goals=goals.Centring()),
             Invalid,
-            "goals beside the path are served by the library's own rule: leave solver out",
+            "goals beside the path are served by the library's own rule and by WeightedPseudoInverse: leave solver out",
         ),
         (lambda: bik.solve_all(IIWA, POSE, limit=0), Invalid, "limit must be at least 1, got 0"),
         (

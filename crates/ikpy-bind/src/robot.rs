@@ -17,6 +17,9 @@ use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
 use crate::manipulability::PyVelocityEllipsoid;
 
+/// Link, a (3,), b (3,) and radius (m).
+type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);
+
 /// A robot arm: the chain of joints from a base link to a tip link. Immutable; make one with `from_urdf`, `from_dh`,
 /// `planar` or `named`.
 ///
@@ -251,10 +254,7 @@ impl PyRobot {
     /// The room that the links take up: (link, a, b, radius) each, all points within `radius` (m) of the segment from a
     /// (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to a URDF's collision shapes.
     #[getter]
-    fn capsules<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> Vec<(String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64)> {
+    fn capsules<'py>(&self, py: Python<'py>) -> Vec<Capsule<'py>> {
         let capsules = self.core.capsules().iter();
         capsules.map(|c| (c.link.clone(), row(py, c.a.to_vec()), row(py, c.b.to_vec()), c.radius)).collect()
     }

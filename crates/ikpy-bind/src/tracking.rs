@@ -244,7 +244,8 @@ impl PyTrackResult {
 /// Args:
 ///     robot: the arm.
 ///     path: positions or poses over time.
-///     start: (n,), configuration at t = 0; None solves for the path's first point.
+///     start: (n,), configuration at t = 0; None solves for the path's first point, for the configuration that is best for
+///         the goals or, without goals, far from singularities and limits.
 ///     dt: time step (s).
 ///     task: of `tasks`, what of the path matters; None: all that it says.
 ///     solver: what runs in every tick: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule, which

@@ -2,11 +2,16 @@
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .. import BAS, InvalidInputError, LevenbergMarquardt, Robot, Sinusoid
+import beetle_ik as bik
+
+from .. import InvalidInputError, Robot, Sinusoid
+
+if TYPE_CHECKING:
+    from .._core import _Single
 
 _ROBOT = "Robot"
 
@@ -28,19 +33,41 @@ class SolverName(StrEnum):
     CHAIN = "chain"
     GREEDY = "greedy"
     LM = "lm"
+    NEWTON_RAPHSON = "newton-raphson"
+    JACOBIAN_TRANSPOSE = "jacobian-transpose"
+    APPS = "apps"
+    BROYDEN_BAS = "broyden-bas"
+    BEETLE_SWARM = "beetle-swarm"
+    PSO = "pso"
+    QPSO = "qpso"
+    FIREFLY = "firefly"
+    GENETIC = "genetic"
+    BEE_COLONY = "bee-colony"
+    DIFFERENTIAL_EVOLUTION = "differential-evolution"
 
 
-def make_solver(name: SolverName) -> BAS | LevenbergMarquardt:
+_SOLVERS: dict[SolverName, "_Single"] = {
+    SolverName.BAS: bik.BAS(variant="star"),
+    SolverName.CHAIN: bik.BAS(variant="chain"),
+    SolverName.GREEDY: bik.BAS(variant="greedy"),
+    SolverName.LM: bik.LevenbergMarquardt(),
+    SolverName.NEWTON_RAPHSON: bik.NewtonRaphson(),
+    SolverName.JACOBIAN_TRANSPOSE: bik.JacobianTranspose(),
+    SolverName.APPS: bik.APPS(),
+    SolverName.BROYDEN_BAS: bik.BroydenBAS(),
+    SolverName.BEETLE_SWARM: bik.BeetleSwarm(),
+    SolverName.PSO: bik.PSO(),
+    SolverName.QPSO: bik.QPSO(),
+    SolverName.FIREFLY: bik.Firefly(),
+    SolverName.GENETIC: bik.Genetic(),
+    SolverName.BEE_COLONY: bik.BeeColony(),
+    SolverName.DIFFERENTIAL_EVOLUTION: bik.DifferentialEvolution(),
+}
+
+
+def make_solver(name: SolverName) -> "_Single":
     """The solver of this name, with the library's settings."""
-    match name:
-        case SolverName.BAS:
-            return BAS(variant="star")
-        case SolverName.CHAIN:
-            return BAS(variant="chain")
-        case SolverName.GREEDY:
-            return BAS(variant="greedy")
-        case SolverName.LM:
-            return LevenbergMarquardt()
+    return _SOLVERS[name]
 
 
 def load_robot(name: str | None, urdf: Path | None, base: str | None, tip: str | None) -> Robot:

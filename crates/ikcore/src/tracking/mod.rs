@@ -21,8 +21,9 @@ pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
 pub use session::{Session, Step};
 
 use crate::error::{Error, Result};
-use crate::ik::{SolveOptions, solve};
-use crate::limits::{Field, LimitAt, Limits};
+use crate::ik::{Prefer, SolveOptions, solve};
+use crate::limits::{Field, LimitAt, Limits, Profile};
+use crate::manipulability::Motion;
 use crate::path::Reference;
 use crate::robot::Robot;
 use crate::solver::Monitor;
@@ -132,7 +133,8 @@ pub(crate) fn target(reference: &Reference, i: usize) -> Target {
     }
 }
 
-/// A configuration on, or nearest to, the path's first point, by the default solver.
+/// A configuration on, or nearest to, the path's first point, by the default solver: the best for the goals, or one with
+/// room for what is to come.
 fn first_configuration(
     robot: &Robot,
     reference: &Reference,
@@ -140,15 +142,26 @@ fn first_configuration(
     options: &TrackOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Vec<f64>> {
-    let at_start = |field: Field| limits.field(field).unwrap_or_default().iter().map(|profile| profile.at(0.0));
-    let constant = robot.with_limits(|i, joint| {
-        joint.lower = at_start(Field::Lower).nth(i).unwrap_or(joint.lower);
-        joint.upper = at_start(Field::Upper).nth(i).unwrap_or(joint.upper);
-    })?;
+    let at_start = |field: Field| -> Vec<Profile> {
+        let profiles = limits.field(field).unwrap_or_default().iter();
+        profiles.map(|profile| Profile::Constant(profile.at(0.0))).collect()
+    };
+    let limits = Limits::of(robot)
+        .replace(Field::Lower, at_start(Field::Lower))?
+        .replace(Field::Upper, at_start(Field::Upper))?;
     // Tighter than the band, so that the track does not begin at its edge.
     let tolerance =
         Tolerance { position: 0.1 * options.tolerance.position, rotation: 0.1 * options.tolerance.rotation };
-    let TrackOptions { task, goals, seed, .. } = options;
-    let options = SolveOptions { task: *task, goals: goals.clone(), tolerance, seed: *seed, ..SolveOptions::default() };
-    Ok(solve(&constant, &target(reference, 0), &options, monitor)?.q.to_vec())
+    let target = target(reference, 0);
+    let goals = if options.goals.is_empty() { roomy(&target) } else { options.goals.clone() };
+    let TrackOptions { task, seed, .. } = *options;
+    let (limits, prefer) = (Some(limits), Prefer::Best);
+    let options = SolveOptions { task, goals, prefer, tolerance, limits, seed, ..SolveOptions::default() };
+    Ok(solve(robot, &target, &options, monitor)?.q.to_vec())
+}
+
+/// Goals for a start that has the most room for what is to come: away from singularities and limits.
+fn roomy(target: &Target) -> Vec<Goal> {
+    let motion = if matches!(target, Target::Position(_)) { Motion::Position } else { Motion::Pose };
+    vec![Goal::Manipulability { motion, weight: 1.0 }, Goal::Centring { weight: 1.0 }]
 }
