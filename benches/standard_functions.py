@@ -144,14 +144,19 @@ class Pair:
     rival: Mealpy | Pyswarms
 
 
-SAME = {"population": POPULATION, "stall_generations": None}  # ends with the budget, as the others do
+SAME: dict[str, Any] = {"population": POPULATION, "stall_generations": None}  # ends with the budget, as the others do
 CLERC = Pyswarms({"c1": 1.49445, "c2": 1.49445, "w": 0.729})
 GREEDY = Mealpy("OriginalPSO", {"c1": 2.05, "c2": 2.05, "w": 0.4})
 GA = Mealpy("BaseGA", {"pc": 0.95, "pm": 0.025})
 ABC = Mealpy("OriginalABC", {"n_limits": 25})
 FFA = Mealpy("OriginalFFA", {"gamma": 0.999, "beta_base": 1.0, "alpha": 0.2, "alpha_damp": 0.97})
 DE = Mealpy("OriginalDE", {"wf": 0.5, "cr": 0.9, "strategy": 0})
-SEPARABLE = {"crossover_share": 0.5, "mutation_rate": 0.1, "mutation_scale": 0.2, "mutation_decay": 0.98}
+SEPARABLE: dict[str, Any] = {
+    "crossover_share": 0.5,
+    "mutation_rate": 0.1,
+    "mutation_scale": 0.2,
+    "mutation_decay": 0.98,
+}
 PAIRS = [
     Pair("PSO", bik.PSO(form="inertia", **SAME), CLERC),
     Pair("QPSO", bik.QPSO(**SAME), CLERC),
@@ -197,8 +202,10 @@ def page(rivals: dict[tuple[str, str], list[float]], seeds: int, evaluations: in
     lines = [
         "# Solvers on standard functions",
         "",
-        f"Ten dimensions, {seeds} seeds, {evaluations} evaluations each; minima shifted for every seed within the inner half",
-        "of the box (half widths: " + ", ".join(f"{name} {reach:g}" for name, (_, reach) in FUNCTIONS.items()) + ").",
+        f"Ten dimensions, {seeds} seeds, {evaluations} evaluations each; minima shifted for every seed within the",
+        "inner half of the box (half widths: "
+        + ", ".join(f"{name} {reach:g}" for name, (_, reach) in FUNCTIONS.items())
+        + ").",
         f"mealpy {version('mealpy')}, pyswarms {version('pyswarms')}, numpy {version('numpy')}; written by",
         f"`benches/standard_functions.py`. Populations of {POPULATION} where nothing else is said.",
         "",
@@ -223,17 +230,17 @@ def page(rivals: dict[tuple[str, str], list[float]], seeds: int, evaluations: in
 NOTES = (
     "What the rows say:",
     "",
-    "- Where a solver stands twice, the row with a **worse** came first. The other one's settings were chosen to mend it, on",
-    "  these functions and seeds: it shows what the algorithm can do, not what to expect of it on others.",
-    "- A beetle takes three evaluations a generation and a bee's source two: with as many of them as a swarm has particles,",
-    "  there are fewer generations within the budget.",
-    "- PSO that returns to its best place is worse on Rastrigin. Known differences: mealpy's puts a coordinate that left the box",
-    "  at a random place in it, where ours stops at the wall, and does not limit velocities. A wider limit did not help; the",
-    "  walls were not tried.",
-    "- Differential evolution as published replaces vectors after the generation, so that all trials are evaluated together;",
-    '  mealpy replaces them at once. With `update="immediate"` so do we.',
-    "- The genetic algorithms share the scheme, not the operators: ours are MATLAB's, which move all coordinates of a mutant,",
-    "  mealpy's replaces each coordinate with probability pm by a random one.",
+    "- Where a solver stands twice, the row with a **worse** came first. The other one's settings were chosen to mend it,",
+    "  on these functions and seeds: it shows what the algorithm can do, not what to expect of it on others.",
+    "- A beetle takes three evaluations a generation and a bee's source two: with as many of them as a swarm has",
+    "  particles, there are fewer generations within the budget.",
+    "- PSO that returns to its best place is worse on Rastrigin. Known differences: mealpy's puts a coordinate that left",
+    "  the box at a random place in it, where ours stops at the wall, and does not limit velocities. A wider limit did",
+    "  not help; the walls were not tried.",
+    "- Differential evolution as published replaces vectors after the generation, so that all trials are evaluated",
+    '  together; mealpy replaces them at once. With `update="immediate"` so do we.',
+    "- The genetic algorithms share the scheme, not the operators: ours are MATLAB's, which move all coordinates of a",
+    "  mutant; mealpy's replaces each coordinate with probability pm by a random one.",
     "- mealpy's firefly algorithm is another one by the same name: differences are multiplied by a random matrix, and",
     "  random points are added. Its bee colony moves all coordinates at once, ours one, as published.",
 )
