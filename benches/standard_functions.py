@@ -230,7 +230,7 @@ def page(rivals: dict[tuple[str, str], list[float]], seeds: int, evaluations: in
 NOTES = (
     "What the rows say:",
     "",
-    "- Where a solver stands twice, the row with a **worse** came first. The other one's settings were chosen to mend",
+    "- Where a solver stands twice, the row with a **worse** came first. The other's settings were chosen to mend",
     "  it, on these functions and seeds: it shows what the algorithm can do, not what to expect of it on others.",
     "- A beetle takes three evaluations a generation and a bee's source two: with as many of them as a swarm has",
     "  particles, there are fewer generations within the budget.",
