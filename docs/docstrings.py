@@ -5,6 +5,7 @@ from typing import Any
 
 _CODE = re.compile(r"(`[^`]*`)")
 _SPECIAL = re.compile(r"[\\*|]|(?<=\w)_(?!\w)")
+_ENUMERATOR = re.compile(r"(?<=: )(\w)\.$")  # "tolerance: m." is not the first item of a list
 _SECTION = re.compile(r"^(Args|Returns|Raises|Yields):$")
 
 
@@ -15,7 +16,7 @@ def escaped(line: str) -> str:
     for i in range(2, len(parts), 2):
         if parts[i][:1].isalnum():
             parts[i] = "\\ " + parts[i]  # the s of several `Sinusoid`s
-    return "".join(parts)
+    return _ENUMERATOR.sub(r"\1\\.", "".join(parts))
 
 
 def converted(lines: list[str]) -> list[str]:
