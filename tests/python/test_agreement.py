@@ -1,6 +1,7 @@
 """What all results, values and solvers have in common."""
 
 import inspect
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -102,3 +103,16 @@ def test_options_that_would_be_ignored_are_refused() -> None:
 def test_a_track_tells_the_tolerance_that_was_asked_for() -> None:
     with pytest.raises(bik.InvalidInputError, match=r"^position_tolerance must be positive, got -1$"):
         bik.track(ARM, LINE, dt=0.1, position_tolerance=-1.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: bik.ZNNBAS(delay_steps=2**62), "delay_steps must be at most 100000 ticks, got "),
+        (lambda: bik.ZNNBAS(sensor_delay=2**62), "sensor_delay must be at most 100000 ticks, got "),
+        (lambda: bik.CircleSwarm(population=10**12), "population must be at most 1000000, got "),
+    ],
+)
+def test_numbers_beyond_memory_are_refused(call: Callable[[], object], message: str) -> None:
+    with pytest.raises(bik.InvalidInputError, match=f"^{message}"):
+        call()

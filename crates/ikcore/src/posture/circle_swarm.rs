@@ -5,6 +5,9 @@ use super::linkage::{Linkage, Point2};
 use crate::error::{Error, Result, require_positive};
 use crate::rng::LazyRng;
 
+/// More particles or generations than this are a mistake.
+const MOST: usize = 1_000_000;
+
 /// The options, as far as they are published.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CircleSwarm {
@@ -70,6 +73,9 @@ impl CircleSwarm {
         for (what, count) in [("population", self.population), ("generations", self.generations)] {
             if count == 0 {
                 return Err(Error::out_of_range(what, "at least 1", 0.0));
+            }
+            if count > MOST {
+                return Err(Error::out_of_range(what, &format!("at most {MOST}"), count as f64));
             }
         }
         for (what, value) in [("c1", self.c1), ("c2", self.c2), ("velocity_limit", self.velocity_limit)] {

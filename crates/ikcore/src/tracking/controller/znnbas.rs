@@ -19,6 +19,9 @@ use crate::error::{Error, Result, require_positive};
 use crate::objective::Point;
 use crate::rng::LazyRng;
 
+/// A longer memory than this is a mistake, and might not fit.
+const MOST_TICKS: usize = 100_000;
+
 /// The length of the antennae, lambda of eq. (10).
 #[derive(Debug, Clone, PartialEq)]
 pub enum Antenna {
@@ -121,6 +124,11 @@ impl Znnbas {
         }
         if self.delay_steps == 0 {
             return Err(Error::out_of_range("delay_steps", "at least 1", 0.0));
+        }
+        for (what, ticks) in [("delay_steps", self.delay_steps), ("sensor_delay", self.sensor_delay)] {
+            if ticks > MOST_TICKS {
+                return Err(Error::out_of_range(what, &format!("at most {MOST_TICKS} ticks"), ticks as f64));
+            }
         }
         Ok(())
     }
