@@ -17,7 +17,7 @@ impl End {
     /// Err unless all numbers are finite and a configuration has one a joint; `what` names the end.
     ///
     /// # Errors
-    /// [`Error::NotFinite`](crate::Error::NotFinite) or [`Error::WrongLength`](crate::Error::WrongLength).
+    /// [`Error::NotFinite`] or [`Error::WrongLength`].
     pub fn check(&self, what: &str, robot: &Robot) -> Result<()> {
         match self {
             Self::Target(target) => target.validate().map_err(|error| match error {

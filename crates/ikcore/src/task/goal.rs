@@ -77,7 +77,7 @@ impl Goal {
     /// Checks the weight.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a weight that is not positive.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a weight that is not positive.
     pub fn validate_weight(&self) -> Result<()> {
         require_positive("weight of a goal", self.weight())
     }

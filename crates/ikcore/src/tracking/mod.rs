@@ -76,7 +76,7 @@ impl TrackOptions {
 /// Follows `reference` with the tip of `robot`, from `start` (n,), or from a configuration solved for its first point.
 ///
 /// # Errors
-/// Any [`Error`](crate::Error) for wrong input. A path that cannot be followed is a status, not an error. A monitor that
+/// Any [`enum@Error`] for wrong input. A path that cannot be followed is a status, not an error. A monitor that
 /// asks to stop leaves the record of the ticks that were finished.
 pub fn track(
     robot: &Robot,
