@@ -62,7 +62,7 @@ def test_descriptions_without_meshes_and_masses_will_do() -> None:
     shared = Path(__file__).parents[3] / "shared" / "robots" / "panda.urdf"
     if not shared.exists():
         pytest.skip("no robot descriptions beside the repository")
-    MujocoPlant.from_urdf(shared, tip="panda_hand")
+    MujocoPlant.from_urdf(shared, tip="panda_link8")
 
 
 @pytest.mark.usefixtures("mujoco")

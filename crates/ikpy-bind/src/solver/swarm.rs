@@ -126,8 +126,8 @@ swarm! {
     /// Genetic algorithm with the operators of MATLAB's `ga`: elite, tournaments, scattered crossover, Gaussian mutation.
     /// Uses values alone.
     ///
-    /// Defaults: `Genetic(population=50, elite_share=0.05, crossover_share=0.8, tournament=2, mutation_scale=0.1,
-    /// mutation_decay=0.97, max_generations=None, stall_generations=50)`.
+    /// Defaults: `Genetic(population=50, elite_share=0.05, crossover_share=0.8, tournament=2,
+/// mutation_rate=1, mutation_scale=0.1, mutation_decay=0.97, max_generations=None, stall_generations=50)`.
     ///
     /// Args:
     ///     population: members of a generation.
@@ -211,8 +211,8 @@ swarm! {
 swarm! {
     /// Differential evolution, DE/rand/1/bin (Storn and Price 1997): uses values alone.
     ///
-    /// Defaults: `DifferentialEvolution(population=50, weight=0.5, crossover_rate=0.9, max_generations=None,
-    /// stall_generations=50)`.
+    /// Defaults: `DifferentialEvolution(population=50, weight=0.5, crossover_rate=0.9,
+/// update='generation', max_generations=None, stall_generations=50)`.
     ///
     /// Args:
     ///     population: vectors.
