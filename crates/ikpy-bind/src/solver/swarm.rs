@@ -127,7 +127,7 @@ swarm! {
     /// Uses values alone.
     ///
     /// Defaults: `Genetic(population=50, elite_share=0.05, crossover_share=0.8, tournament=2,
-/// mutation_rate=1, mutation_scale=0.1, mutation_decay=0.97, max_generations=None, stall_generations=50)`.
+    /// mutation_rate=1, mutation_scale=0.1, mutation_decay=0.97, max_generations=None, stall_generations=50)`.
     ///
     /// Args:
     ///     population: members of a generation.
@@ -212,7 +212,7 @@ swarm! {
     /// Differential evolution, DE/rand/1/bin (Storn and Price 1997): uses values alone.
     ///
     /// Defaults: `DifferentialEvolution(population=50, weight=0.5, crossover_rate=0.9,
-/// update='generation', max_generations=None, stall_generations=50)`.
+    /// update='generation', max_generations=None, stall_generations=50)`.
     ///
     /// Args:
     ///     population: vectors.
