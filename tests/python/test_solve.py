@@ -105,7 +105,7 @@ def test_out_of_reach_is_a_status_with_the_nearest_point() -> None:
     assert not found.success
     assert found.status is bik.Status.OUT_OF_REACH
     assert found.position_error == pytest.approx(1.0, abs=1e-6)
-    assert "(out of reach by 1.000 m" in found.message
+    assert "(out of reach by at least 1.000 m" in found.message
 
 
 def test_seeds_repeat_and_differ() -> None:

@@ -142,15 +142,15 @@ def test_no_solution_comes_with_the_best_miss() -> None:
     assert found.status == bik.Status.OUT_OF_REACH
     assert found.miss is not None
     assert found.message.startswith("none found; the best miss: as near as it gets ")
-    assert "(out of reach by " in found.message
+    assert "(out of reach by at least " in found.message
 
 
 def test_out_of_reach_says_by_how_much() -> None:
     found = bik.solve(IIWA, [0.0, 0.0, 0.36 + 0.946 + 0.21])
     assert found.status == bik.Status.OUT_OF_REACH
     np.testing.assert_allclose(found.position_error, 0.21, rtol=1e-2)
-    assert "(out of reach by 0.2100 m" in found.message
-    assert "(out of reach by 8." in bik.solve_batch(IIWA, [[9.0, 0, 0]])[0].message
+    assert "(out of reach by at least 0.2100 m" in found.message
+    assert "(out of reach by at least 8." in bik.solve_batch(IIWA, [[9.0, 0, 0]])[0].message
 
 
 def test_a_start_is_brought_inside_where_the_user_says_so() -> None:

@@ -138,7 +138,7 @@ fn positions_leave_the_orientation_free() {
     );
     assert!(batch.items.iter().all(|item| item.error.rotation.is_nan()));
     assert!(batch.items[1].evaluations <= 500);
-    assert!(batch.solution(1).unwrap().message().contains("(out of reach by 8.061 m"));
+    assert!(batch.solution(1).unwrap().message().contains("(out of reach by at least 8.061 m"));
     assert!(batch.items[1].error.position > 7.0);
     let says = "2 of 3 solved; 1 OUT_OF_REACH: move the target nearer to the base, or the base nearer to the target";
     assert_eq!(batch.message(), says);

@@ -192,7 +192,7 @@ fn a_target_out_of_reach_is_approached_and_told() {
     let end = ": move the target nearer to the base, or the base nearer to the target";
     let message = solution.message();
     assert!(message.starts_with("as near as it gets 0.21") && message.ends_with(end), "{message}");
-    assert!(message.contains(" m away (out of reach by 0.2100 m"), "{message}");
+    assert!(message.contains(" m away (out of reach by at least 0.2100 m"), "{message}");
     assert!(solution.evaluations < 2000, "{}", solution.evaluations);
 }
 

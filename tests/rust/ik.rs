@@ -96,7 +96,7 @@ fn a_target_out_of_reach_is_approached_and_said_to_be() {
     let distance = solution.error.position;
     assert!((shortfall..1.01 * shortfall).contains(&distance), "{:?}", solution.error);
     let advice = "move the target nearer to the base, or the base nearer to the target";
-    let why = format!("out of reach by {shortfall:.4} m");
+    let why = format!("out of reach by at least {shortfall:.4} m");
     assert_eq!(solution.message(), format!("as near as it gets {distance:.4} m away ({why}): {advice}"));
 }
 
@@ -119,7 +119,10 @@ fn one_start_alone_stalls_with_advice() {
     let solution = solved(&robot("planar5"), &Target::Position([0.0, 7.0, 0.0]), &options);
     assert_eq!((solution.status, solution.restarts), (Status::Stalled, 0));
     let advice = "try another start or seed, or MultiStart; the target may be out of reach";
-    assert_eq!(solution.message(), format!("no further progress 2.000 m away (out of reach by 2.000 m): {advice}"));
+    assert_eq!(
+        solution.message(),
+        format!("no further progress 2.000 m away (out of reach by at least 2.000 m): {advice}")
+    );
 }
 
 #[test]
