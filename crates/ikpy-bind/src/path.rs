@@ -3,6 +3,7 @@
 use ikcore::math::ticks::ticks;
 use ikcore::nalgebra::Matrix3;
 use ikcore::path::{Circle, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples};
+use ikcore::planning::Course;
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -195,6 +196,25 @@ impl PyPath {
             .map(|i| self.velocity_at(py, reference.time(i).min(self.duration())))
             .collect::<PyResult<_>>()?;
         reference.with_velocities(velocities).map_err(raise)
+    }
+
+    /// The path as a planner sees it; Python functions are called here, before the core runs.
+    pub fn course(&self, py: Python<'_>) -> PyResult<Course> {
+        let corners = match &self.curve {
+            Curve::Core(path) => path.corners(),
+            Curve::Function { .. } => vec![],
+        };
+        let times = Course::times(self.duration(), &corners);
+        let (mut positions, mut rotations) = (vec![], vec![]);
+        for (i, t) in times.iter().enumerate() {
+            if i % CALLS_BETWEEN_LOOKS == 0 {
+                py.check_signals()?;
+            }
+            positions.push(self.position_at(py, *t)?);
+            rotations.extend(self.rotation_at(py, *t)?);
+        }
+        let rotations = (!rotations.is_empty()).then_some(rotations);
+        Course::sampled(times, positions, rotations).map_err(raise)
     }
 
     fn position_at(&self, py: Python<'_>, t: f64) -> PyResult<[f64; 3]> {

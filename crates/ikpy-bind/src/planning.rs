@@ -2,7 +2,9 @@
 
 use ikcore::math::Frame;
 use ikcore::path::Reference;
-use ikcore::planning::{self, AlongPathOptions, Elbow, End, Plan, PointToPointOptions, Violation};
+use ikcore::planning::{
+    self, AlongPathMethod, AlongPathOptions, Course, Elbow, End, Plan, PointToPointOptions, Violation,
+};
 use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Target;
@@ -86,7 +88,7 @@ pub struct PyPlan {
     trajectory: Py<PyTrajectory>,
     history: Py<PyArrayDyn<f64>>,
     redundancy: Py<PyArrayDyn<f64>>,
-    /// Positions (k, 3) (m) that the tip was to follow; None for a plan from end to end.
+    /// Positions (k, 3) (m) that the tip was to follow, straight in between; None for a plan from end to end.
     #[pyo3(get)]
     reference: Option<Py<PyArrayDyn<f64>>>,
     /// What the robot was not to touch, as given.
@@ -133,7 +135,7 @@ impl PyPlan {
         self.core.clearance.unwrap_or(f64::NAN)
     }
 
-    /// Largest distance of the tip from the points of the path (m); NaN for a plan from end to end.
+    /// Largest distance of the tip from the path (m), at its points and between them; NaN for a plan from end to end.
     #[getter]
     fn accuracy(&self) -> f64 {
         self.core.accuracy.unwrap_or(f64::NAN)
@@ -254,7 +256,7 @@ impl PyPlan {
 ///     method: "minmax": the ends' configurations that are nearest in time, joined at the limits' pace; "tpbso":
 ///         polynomials through a via point, searched by a beetle swarm (Wang et al. 2019).
 ///     objective: what to minimise: "time", "joint_travel" or "tip_travel".
-///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1.
+///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1; None: (1, 1).
 ///     solver: what searches; None: the method's own.
 ///     stop: budgets; None: the method's own.
 ///     seed: of the random draws: the same seed, the same bits.
@@ -269,7 +271,7 @@ impl PyPlan {
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
 #[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method="minmax",
-                    objective="time", obstacles=None, margin=None, elbows=[1, 1], solver=None, stop=None, seed=0,
+                    objective="time", obstacles=None, margin=None, elbows=None, solver=None, stop=None, seed=0,
                     progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point(
@@ -284,7 +286,7 @@ pub fn plan_point_to_point(
     objective: &str,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
-    elbows: [i128; 2],
+    elbows: Option<[i128; 2]>,
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
     seed: i128,
@@ -300,7 +302,7 @@ pub fn plan_point_to_point(
         objective: objective.parse().map_err(raise)?,
         obstacles: obstacles.core,
         margin,
-        elbows: [read_elbow("elbows[0]", elbows[0])?, read_elbow("elbows[1]", elbows[1])?],
+        elbows: elbows.map(read_elbows).transpose()?,
         limits: resolved,
         solver: solver.map(|solver| derivative_free_solver("plan_point_to_point", solver)).transpose()?,
         stop: stop.map(PyStop::core),
@@ -318,14 +320,15 @@ pub fn plan_point_to_point(
 ///
 /// Args:
 ///     robot: the arm.
-///     path: a `Path`, whose times do not matter here, or points (k, 3) (m) or poses (k, 4, 4).
+///     path: a `Path`, whose times do not matter here, or points (k, 3) (m) or poses (k, 4, 4), straight in between.
 ///     start_q: joint angles (n,) to start from; None: the planner's choice.
 ///     limits: positions, velocities and accelerations to keep; None: the robot's.
 ///     method: "timed": redundancy and the fastest timing found together; "tpbso": redundancy by a beetle swarm, uniform
 ///         time, splines through every second point (Wang et al. 2019).
 ///     objective: what to minimise: "time" or "joint_travel".
-///     elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it.
-///     accuracy: how far the tip may be from the points (m); None: what suits the method.
+///     elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it; None: 1.
+///     accuracy: how far the tip may be from the path (m), between its points too, and how far turned from it (rad); as
+///         many points are passed as that takes. None: a thousandth of the path's extent, for "tpbso" 4 %.
 ///     solver: what searches; None: the method's own.
 ///     stop: budgets; None: the method's own.
 ///     seed: of the random draws: the same seed, the same bits.
@@ -339,7 +342,7 @@ pub fn plan_point_to_point(
 ///     LimitError: limits that contradict themselves.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
-#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", elbow=1, accuracy=None,
+#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", elbow=None, accuracy=None,
                     solver=None, stop=None, seed=0, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_along_path(
@@ -350,7 +353,7 @@ pub fn plan_along_path(
     limits: Option<&PyLimits>,
     method: &str,
     objective: &str,
-    elbow: i128,
+    elbow: Option<i128>,
     accuracy: Option<f64>,
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
@@ -358,14 +361,14 @@ pub fn plan_along_path(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyPlan> {
     let arm = robot.get().core.clone();
-    let reference = read_path(py, path)?;
+    let course = read_course(py, path)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
     let options = AlongPathOptions {
         method: method.parse().map_err(raise)?,
         objective: objective.parse().map_err(raise)?,
         start: start_q.map(|q| vector("start_q", q)).transpose()?,
         limits: resolved,
-        elbow: read_elbow("elbow", elbow)?,
+        elbow: elbow.map(|sign| read_elbow("elbow", sign)).transpose()?,
         accuracy,
         solver: solver.map(|solver| derivative_free_solver("plan_along_path", solver)).transpose()?,
         stop: stop.map(PyStop::core),
@@ -373,10 +376,13 @@ pub fn plan_along_path(
     };
     let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
     let mut watcher = Watcher::with_progress(progress.update(py));
-    let plan = py.detach(|| planning::plan_along_path(&arm, &reference, &options, &mut watcher));
+    let plan = py.detach(|| planning::plan_along_path(&arm, &course, &options, &mut watcher));
     progress.close(py)?;
     watcher.finish()?;
-    let positions = (0..reference.len()).flat_map(|i| reference.position(i)).collect();
+    let positions = match options.method {
+        AlongPathMethod::Timed => course.positions().as_flattened().to_vec(),
+        AlongPathMethod::Tpbso => (0..course.points().len()).flat_map(|i| course.points().position(i)).collect(),
+    };
     PyPlan::new(plan.map_err(raise)?, Some(positions), robot, in_force, PyTuple::empty(py).unbind())
 }
 
@@ -387,6 +393,10 @@ fn read_elbow(name: &str, sign: i128) -> PyResult<Elbow> {
         -1 => Ok(Elbow::Negative),
         _ => Err(invalid(format!("{name} must be 1 or -1, the sign of the second joint's angle, got {sign}"))),
     }
+}
+
+fn read_elbows([start, end]: [i128; 2]) -> PyResult<[Elbow; 2]> {
+    Ok([read_elbow("elbows[0]", start)?, read_elbow("elbows[1]", end)?])
 }
 
 /// An end given as a target or as joint angles.
@@ -412,15 +422,16 @@ fn read_place(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Target> {
     }
 }
 
-/// Intervals that a `Path` is divided into: the published planner's.
-const INTERVALS: f64 = 50.0;
-
 /// A `Path`, or points (k, 3), or poses (k, 4, 4).
-fn read_path(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<Reference> {
-    if let Ok(path) = path.cast::<PyPath>() {
-        let path = path.get();
-        return path.reference(py, path.duration() / INTERVALS);
+fn read_course(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<Course> {
+    match path.cast::<PyPath>() {
+        Ok(path) => path.get().course(py),
+        Err(_) => Course::through(&read_points(path)?).map_err(raise),
     }
+}
+
+/// Points (k, 3), or poses (k, 4, 4).
+fn read_points(path: &Bound<'_, PyAny>) -> PyResult<Reference> {
     let rows = array("path", path)?;
     let numbers = rows.as_slice()?;
     match rows.shape() {
