@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
 
+use std::f64::consts::TAU;
+
+use ikcore::ik::{AllOptions, solve_all};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::{Obstacle, Scene};
 use ikcore::planning::{End, Plan, PointToPointOptions, plan_point_to_point};
@@ -49,6 +52,33 @@ fn plane_arms_come_near_the_time_of_bang_bang() {
             sum += plan.cost / 20.0;
         }
         assert!(sum <= 1.25 * bound, "{links} links: {sum} {bound}");
+    }
+}
+
+#[test]
+fn the_nearest_of_all_branches_and_turns_are_taken() {
+    let robot = Robot::named("ur5e").unwrap();
+    let limits = limits(&robot, None, 10.0);
+    let options = PointToPointOptions { limits: Some(limits), ..Default::default() };
+    let rest_to_rest =
+        |j: usize, way: f64| (1.875 * way / robot.joints()[j].velocity).max((5.7736 * way / 10.0).sqrt());
+    let qs = robot.random_configurations(12, &mut rng::stream(3, 0)).unwrap();
+    let targets: Vec<Target> = qs.chunks(6).map(|q| Target::from(&robot.fk(q).unwrap())).collect();
+    for pair in targets.windows(2) {
+        let [starts, ends] = [0, 1].map(|i| {
+            let found = solve_all(&robot, &pair[i], &AllOptions::default(), &mut Unattended).unwrap();
+            found.solutions.into_iter().map(|solution| solution.q).collect::<Vec<_>>()
+        });
+        // A joint that turns once to either side can always take the shorter way round.
+        let turns = |j: usize| if robot.joints()[j].upper >= TAU { 1.0 } else { 0.0 };
+        let way = |j: usize, d: f64| (d - turns(j) * TAU * (d / TAU).round()).abs();
+        let quintic = |a: &[f64], b: &[f64]| (0..6).map(|j| rest_to_rest(j, way(j, b[j] - a[j]))).fold(0.0, f64::max);
+        let all = starts.iter().flat_map(|start| ends.iter().map(move |end| quintic(start, end)));
+        let least = all.fold(f64::INFINITY, f64::min);
+        let [start, end] = [0, 1].map(|i| End::Target(pair[i].clone()));
+        let plan = plan_point_to_point(&robot, &start, &end, &options, &mut Unattended).unwrap();
+        assert_eq!(plan.status, Status::Solved, "{}", plan.message());
+        assert!(plan.cost <= least * (1.0 + 1e-3), "{} s, {least} s", plan.cost);
     }
 }
 
