@@ -73,6 +73,9 @@ class Scene:
 
     def _scale(self) -> None:
         if self._flat:
+            # The arm may go where none of its pictures is.
+            self.axes.update_datalim(self._corners.reshape(-1, 3)[:, :2])
+            self.axes.autoscale_view()
             self.axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
             return
         corners = self._corners.reshape(-1, 3)

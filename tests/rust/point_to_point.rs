@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use ikcore::ik::{AllOptions, solve_all};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::{Obstacle, Scene};
-use ikcore::planning::{End, Plan, PointToPointOptions, plan_point_to_point};
+use ikcore::planning::{Elbow, End, Plan, PointToPointOptions, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Stop, Unattended};
@@ -246,6 +246,14 @@ fn mistakes_are_named() {
     assert_eq!(
         refused(&thin, &here, &there, with(vec![ball.clone()], &thin)),
         "start: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere)"
+    );
+    assert_eq!(
+        refused(&thin, &there, &here, with(vec![ball.clone()], &thin)),
+        "end: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere)"
+    );
+    assert_eq!(
+        refused(&arm, &here, &there, PointToPointOptions { elbows: Some([Elbow::Positive; 2]), ..with(vec![], &arm) }),
+        "method=\"minmax\" chooses how the arm bends: leave elbows out, or use method=\"tpbso\""
     );
     assert_eq!(
         refused(&arm, &here, &position(3.0, 0.0), with(vec![], &arm)),

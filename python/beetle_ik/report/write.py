@@ -78,20 +78,26 @@ def _picture(figure: Figure, folder: Path, dpi: int) -> str:
     if figure.frames is None:
         file.write_bytes(_png(figure, dpi))
     else:
+        _lay_out(figure, _DPI_MOVING)
         figure.frames.save(file, writer="pillow", dpi=_DPI_MOVING)
     return f"data:image/{kind};base64,{base64.b64encode(file.read_bytes()).decode()}"
 
 
 def _png(figure: Figure, dpi: int) -> bytes:
-    picture, drawing = io.BytesIO(), figure.drawing
+    picture = io.BytesIO()
+    _lay_out(figure, dpi)
+    figure.drawing.savefig(picture, format="png", dpi=dpi, metadata={"Software": None})  # same figure, same bytes
+    return picture.getvalue()
+
+
+def _lay_out(figure: Figure, dpi: int) -> None:
+    """Once and for all: savefig would do so each time, and draw everything twice for it."""
+    drawing = figure.drawing
     drawing.set_dpi(dpi)
     layout = drawing.get_layout_engine()
     if layout is not None:
-        # Savefig would draw everything twice, once to lay it out.
         layout.execute(drawing)
         drawing.set_layout_engine("none")
-    drawing.savefig(picture, format="png", dpi=dpi, metadata={"Software": None})  # same figure, same bytes
-    return picture.getvalue()
 
 
 def _claims_csv(claims: Sequence[Claim]) -> str:

@@ -32,7 +32,7 @@ pub(super) struct Search<'a> {
 }
 
 /// Names of the two ends in messages.
-const NAMES: [&str; 2] = ["start", "end"];
+pub(super) const NAMES: [&str; 2] = ["start", "end"];
 
 impl<'a> Search<'a> {
     /// # Errors
