@@ -40,7 +40,7 @@ fn plane_arms_come_near_the_time_of_bang_bang() {
     // Best over elbows and redundancy of max 2 sqrt(D / a): what no motion of this kind can beat.
     for (links, bound) in [(2, 0.7403), (3, 0.5912), (4, 0.5201), (5, 0.4702)] {
         let robot = Robot::planar(&vec![2.0 / links as f64; links]).unwrap();
-        let limits = limits(&robot, Some(std::f64::consts::PI), std::f64::consts::TAU);
+        let limits = limits(&robot, Some(std::f64::consts::PI), TAU);
         let mut sum = 0.0;
         for seed in 0..20 {
             let options = PointToPointOptions { limits: Some(limits.clone()), seed, ..Default::default() };
@@ -48,7 +48,7 @@ fn plane_arms_come_near_the_time_of_bang_bang() {
             let plan = plan.unwrap();
             assert_eq!(plan.status, Status::Solved, "{}", plan.message());
             assert!(plan.trajectory.max_velocity().iter().all(|v| *v <= std::f64::consts::PI));
-            assert!(plan.trajectory.max_acceleration().iter().all(|a| *a <= std::f64::consts::TAU));
+            assert!(plan.trajectory.max_acceleration().iter().all(|a| *a <= TAU));
             sum += plan.cost / 20.0;
         }
         assert!(sum <= 1.25 * bound, "{links} links: {sum} {bound}");
@@ -75,7 +75,7 @@ fn the_nearest_of_all_branches_and_turns_are_taken() {
         let quintic = |a: &[f64], b: &[f64]| (0..6).map(|j| rest_to_rest(j, way(j, b[j] - a[j]))).fold(0.0, f64::max);
         let all = starts.iter().flat_map(|start| ends.iter().map(move |end| quintic(start, end)));
         let least = all.fold(f64::INFINITY, f64::min);
-        let [start, end] = [0, 1].map(|i| End::Target(pair[i].clone()));
+        let [start, end] = [0, 1].map(|i| End::Target(pair[i]));
         let plan = plan_point_to_point(&robot, &start, &end, &options, &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
         assert!(plan.cost <= least * (1.0 + 1e-3), "{} s, {least} s", plan.cost);
