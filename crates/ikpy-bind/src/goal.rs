@@ -37,11 +37,13 @@ impl PyGoal {
     fn __repr__(&self) -> String {
         let weight = self.core.weight();
         match &self.core {
-            Goal::Posture { posture, .. } => format!("goals.Posture({posture:?}, weight={weight})"),
-            Goal::Centring { .. } => format!("goals.Centring(weight={weight})"),
-            Goal::Manipulability { motion, .. } => format!("goals.Manipulability(motion='{motion}', weight={weight})"),
+            Goal::Posture { posture, .. } => format!("goals.Posture({posture:?}, weight={weight:?})"),
+            Goal::Centring { .. } => format!("goals.Centring(weight={weight:?})"),
+            Goal::Manipulability { motion, .. } => {
+                format!("goals.Manipulability(motion='{motion}', weight={weight:?})")
+            }
             Goal::LinkManipulability { motion, .. } => {
-                format!("goals.LinkManipulability(motion='{motion}', weight={weight})")
+                format!("goals.LinkManipulability(motion='{motion}', weight={weight:?})")
             }
         }
     }

@@ -2,15 +2,18 @@
 
 use ikcore::manipulability::{Ellipsoid, Manipulability, Motion};
 use ikcore::robot::Robot;
+use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 
 use crate::convert::{row, table, vector};
 use crate::error::raise;
+use crate::stored::{self, Reduced};
 
 /// The tip velocities that unit joint speeds give, |q'| = 1: an ellipsoid with one semi-axis per direction in which the
 /// tip can move, the longest first.
-#[pyclass(name = "VelocityEllipsoid", module = "beetle_ik", frozen)]
+#[pyclass(name = "VelocityEllipsoid", module = "beetle_ik", frozen, eq)]
+#[derive(PartialEq)]
 pub struct PyVelocityEllipsoid(Ellipsoid);
 
 #[pymethods]
@@ -49,6 +52,16 @@ impl PyVelocityEllipsoid {
     fn __repr__(&self) -> String {
         let lengths: Vec<String> = self.0.lengths.iter().map(|length| format!("{length:.4}")).collect();
         format!("<VelocityEllipsoid: lengths {}>", lengths.join(", "))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::restored_from::<Self>(py, (stored::bytes(py, to_bytes("ellipsoid", &self.0))?,))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(bytes: &[u8]) -> PyResult<Self> {
+        from_bytes("ellipsoid", bytes).map(Self).map_err(raise)
     }
 }
 

@@ -4,7 +4,8 @@ use std::cell::RefCell;
 
 use ikcore::minimize::{self, MinimizeOptions};
 use ikcore::objective::{Objective, Pace, Score};
-use ikcore::solver::{Monitor, Status, Stop};
+use ikcore::solver::{Monitor, Stop};
+use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyException;
 use pyo3::intern;
@@ -14,7 +15,9 @@ use crate::convert::{array, count, row, shape_text, summary, table, vector};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
 use crate::monitor::Watcher;
-use crate::solver::{PyStop, derivative_free_solver, status};
+use crate::outcome::outcome;
+use crate::solver::{PyStop, derivative_free_solver};
+use crate::stored::{self, Reduced};
 
 /// The best point found by `minimize`, and what became of the search.
 #[pyclass(name = "Minimum", module = "beetle_ik", frozen)]
@@ -31,37 +34,25 @@ pub struct PyMinimum {
     limits: Py<PyLimits>,
 }
 
+outcome! {
+    PyMinimum = |result|
+    /// Whether the value is below the one asked for by `Stop(value_below=...)`; without one, nothing is known to be good
+    /// enough, and this is False.
+    success,
+    /// SOLVED as `success`; STALLED by the solver's own rule; BUDGET_SPENT, TIME_UP or INTERRUPTED.
+    status: result.core.status,
+    message: result.core.message(),
+    /// Evaluations of the function.
+    evaluations: result.core.evaluations,
+    elapsed: result.core.elapsed,
+}
+
 #[pymethods]
 impl PyMinimum {
     /// The function's value at `x`; inf where it was finite nowhere.
     #[getter]
     fn value(&self) -> f64 {
         self.core.value
-    }
-
-    /// Whether the value is below the one asked for by `Stop(value_below=...)`; without one, nothing is known to be good
-    /// enough, and this is False.
-    #[getter]
-    fn success(&self) -> bool {
-        self.core.status == Status::Solved
-    }
-
-    /// SOLVED as `success`; STALLED by the solver's own rule; BUDGET_SPENT, TIME_UP or INTERRUPTED.
-    #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        status(py, self.core.status)
-    }
-
-    /// What happened, and what to try.
-    #[getter]
-    fn message(&self) -> String {
-        self.core.message()
-    }
-
-    /// Evaluations of the function.
-    #[getter]
-    fn evaluations(&self) -> usize {
-        self.core.evaluations
     }
 
     /// Iterations over all starts: generations of swarms, passes of BAS.
@@ -76,21 +67,26 @@ impl PyMinimum {
         self.core.restarts
     }
 
-    /// Time taken (s).
-    #[getter]
-    fn elapsed(&self) -> f64 {
-        self.core.elapsed.as_secs_f64()
-    }
-
     fn __repr__(&self) -> String {
         format!("<Minimum {}: {}>", self.core.status.name(), self.core.message())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let core = stored::bytes(py, to_bytes("minimum", &self.core))?;
+        stored::restored_from::<Self>(py, (core, &self.limits))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
+        Self::new(py, from_bytes("minimum", bytes).map_err(raise)?, limits)
     }
 }
 
 impl PyMinimum {
-    fn new(py: Python<'_>, core: minimize::Minimum, limits: PyLimits) -> PyResult<Self> {
+    fn new(py: Python<'_>, core: minimize::Minimum, limits: Py<PyLimits>) -> PyResult<Self> {
         let history = table(py, core.history.as_flattened().to_vec(), &[core.history.len(), 2])?.unbind();
-        Ok(Self { x: row(py, core.x.to_vec()).unbind(), history, limits: Py::new(py, limits)?, core })
+        Ok(Self { x: row(py, core.x.to_vec()).unbind(), history, limits, core })
     }
 }
 
@@ -250,7 +246,7 @@ pub fn minimize_function(
     let mut objective = Function { function: function.clone(), dimension: lower.len(), vectorized, failure: &failure };
     let mut attendant = Attendant { watcher: Watcher::new(), failure: &failure };
     let core = minimize::minimize(&mut objective, &lower, &upper, &options, &mut attendant).map_err(raise)?;
-    let found = PyMinimum::new(py, core, PyLimits::of_box(lower, upper))?;
+    let found = PyMinimum::new(py, core, Py::new(py, PyLimits::of_box(lower, upper))?)?;
     match attendant.watcher.finish().err().or(failure.into_inner()) {
         Some(error) => Err(with_best(py, error, found)?),
         None => Ok(found),

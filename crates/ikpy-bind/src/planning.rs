@@ -3,7 +3,6 @@
 use ikcore::math::Frame;
 use ikcore::path::Reference;
 use ikcore::planning::{self, AlongPathOptions, Elbow, End, Plan, PointToPointOptions, Violation};
-use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Target;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
@@ -13,11 +12,12 @@ use pyo3::types::PyTuple;
 use crate::convert::{array, count, point, rigid_rows, shape_text, table, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
-use crate::monitor::{Progress, Watcher};
+use crate::monitor::watched;
 use crate::obstacle::Given;
+use crate::outcome::outcome;
 use crate::path::PyPath;
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, derivative_free_solver, status};
+use crate::solver::{PyStop, derivative_free_solver};
 use crate::stored::{self, Reduced};
 use crate::trajectory::PyTrajectory;
 use crate::upward;
@@ -83,8 +83,16 @@ impl PyViolation {
 #[pyclass(name = "Plan", module = "beetle_ik", frozen)]
 pub struct PyPlan {
     core: Plan,
+    /// The motion: the best that keeps everything, else the least violating one.
+    #[pyo3(get)]
     trajectory: Py<PyTrajectory>,
+    /// How the search came to its best: rows (evaluations, lowest cost from then on), (h, 2); with penalties as long as
+    /// the plan breaks something.
+    #[pyo3(get)]
     history: Py<PyArrayDyn<f64>>,
+    /// The absolute orientations that a planar arm was free to choose along the path (points, links, 3): value, lowest
+    /// and highest possible (rad), from the tip's link down; without such a choice (0, 0, 3).
+    #[pyo3(get)]
     redundancy: Py<PyArrayDyn<f64>>,
     /// Positions (k, 3) (m) that the tip was to follow; None for a plan from end to end.
     #[pyo3(get)]
@@ -100,14 +108,20 @@ pub struct PyPlan {
     limits: Py<PyLimits>,
 }
 
+outcome! {
+    PyPlan = |result|
+    /// Whether the trajectory keeps everything that was asked.
+    success,
+    /// SOLVED as `success`; else why the search ended.
+    status: result.core.status,
+    message: result.core.message(),
+    /// Evaluations of the cost.
+    evaluations: result.core.evaluations,
+    elapsed: result.core.elapsed,
+}
+
 #[pymethods]
 impl PyPlan {
-    /// The motion: the best that keeps everything, else the least violating one.
-    #[getter]
-    fn trajectory<'py>(&self, py: Python<'py>) -> Bound<'py, PyTrajectory> {
-        self.trajectory.bind(py).clone()
-    }
-
     /// What was minimised: "time", "joint_travel" or "tip_travel".
     #[getter]
     fn objective(&self) -> String {
@@ -118,13 +132,6 @@ impl PyPlan {
     #[getter]
     fn cost(&self) -> f64 {
         self.core.cost
-    }
-
-    /// How the search came to its best: rows (evaluations, lowest cost from then on), (h, 2); with penalties as long as
-    /// the plan breaks something.
-    #[getter]
-    fn history<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.history.bind(py).clone()
     }
 
     /// Smallest distance between robot and obstacles on the trajectory (m); NaN without obstacles.
@@ -139,47 +146,10 @@ impl PyPlan {
         self.core.accuracy.unwrap_or(f64::NAN)
     }
 
-    /// The absolute orientations that a planar arm was free to choose along the path (points, links, 3): value, lowest
-    /// and highest possible (rad), from the tip's link down; without such a choice (0, 0, 3).
-    #[getter]
-    fn redundancy<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.redundancy.bind(py).clone()
-    }
-
     /// What the trajectory breaks, a list of `Violation`; empty for a plan that succeeded.
     #[getter]
     fn violations(&self) -> Vec<PyViolation> {
         self.core.violations.iter().cloned().map(PyViolation).collect()
-    }
-
-    /// Whether the trajectory keeps everything that was asked.
-    #[getter]
-    fn success(&self) -> bool {
-        self.core.status == Status::Solved
-    }
-
-    /// SOLVED as `success`; else why the search ended.
-    #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        status(py, self.core.status)
-    }
-
-    /// What happened, and what to try.
-    #[getter]
-    fn message(&self) -> String {
-        self.core.message()
-    }
-
-    /// Evaluations of the cost.
-    #[getter]
-    fn evaluations(&self) -> usize {
-        self.core.evaluations
-    }
-
-    /// Time taken (s).
-    #[getter]
-    fn elapsed(&self) -> f64 {
-        self.core.elapsed.as_secs_f64()
     }
 
     /// A matplotlib figure: the arm along its way, the cost against evaluations, the joints' motion with their limits.
@@ -306,12 +276,8 @@ pub fn plan_point_to_point(
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
-    let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
-    let mut watcher = Watcher::with_progress(progress.update(py));
-    let plan = py.detach(|| planning::plan_point_to_point(&arm, &start, &end, &options, &mut watcher));
-    progress.close(py)?;
-    watcher.finish()?;
-    PyPlan::new(plan.map_err(raise)?, None, robot, in_force, given)
+    let plan = watched(py, progress, |watcher| planning::plan_point_to_point(&arm, &start, &end, &options, watcher))?;
+    PyPlan::new(plan, None, robot, in_force, given)
 }
 
 /// Plans a motion whose tip follows a path, in order.
@@ -371,13 +337,9 @@ pub fn plan_along_path(
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
-    let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
-    let mut watcher = Watcher::with_progress(progress.update(py));
-    let plan = py.detach(|| planning::plan_along_path(&arm, &reference, &options, &mut watcher));
-    progress.close(py)?;
-    watcher.finish()?;
+    let plan = watched(py, progress, |watcher| planning::plan_along_path(&arm, &reference, &options, watcher))?;
     let positions = (0..reference.len()).flat_map(|i| reference.position(i)).collect();
-    PyPlan::new(plan.map_err(raise)?, Some(positions), robot, in_force, PyTuple::empty(py).unbind())
+    PyPlan::new(plan, Some(positions), robot, in_force, PyTuple::empty(py).unbind())
 }
 
 /// Which way a planar arm bends.

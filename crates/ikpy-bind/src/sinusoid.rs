@@ -2,10 +2,10 @@
 
 use ikcore::limits::{Profile, Sinusoid};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 use crate::convert::{row, scalar_or_vector};
 use crate::error::invalid;
+use crate::options::{NewArguments, keywords};
 
 /// A limit that oscillates: mean + amplitude sin(angular_frequency t + phase), eq. (7) of Cheng et al. (2020) with its
 /// sign mended.
@@ -111,13 +111,8 @@ impl PySinusoid {
         )
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("mean", self.mean(py)?)?;
-        options.set_item("amplitude", self.amplitude(py)?)?;
-        options.set_item("angular_frequency", self.angular_frequency(py)?)?;
-        options.set_item("phase", self.phase(py)?)?;
-        Ok(((), options))
+    fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
+        keywords(slf, &["mean", "amplitude", "angular_frequency", "phase"])
     }
 }
 
