@@ -138,7 +138,7 @@ def test_robots_are_compared_by_what_they_are() -> None:
 @pytest.mark.parametrize("damaged", [b"", b"\x00", b"\xff" * 40])
 def test_damaged_robots_are_refused(damaged: bytes) -> None:
     with pytest.raises(bik.InvalidInputError, match=r"^cannot restore robot: "):
-        bik.Robot._from_bytes(damaged)
+        bik.Robot._restore(damaged)
 
 
 def test_limits_come_back(again: Callable[[bik.Limits], bik.Limits]) -> None:

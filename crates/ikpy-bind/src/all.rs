@@ -132,7 +132,7 @@ pub fn solve_all(
     stop: Option<&PyStop>,
     seed: i128,
 ) -> PyResult<PySolutionSet> {
-    let target = read_target(target)?;
+    let target = read_target("target", target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let each = SolveOptions {
         solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,

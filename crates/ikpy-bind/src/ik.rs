@@ -137,7 +137,7 @@ pub fn solve(
     stop: Option<&PyStop>,
     seed: i128,
 ) -> PyResult<PySolution> {
-    let target = read_target(target)?;
+    let target = read_target("target", target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let options = SolveOptions {
         solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
@@ -157,14 +157,14 @@ pub fn solve(
 }
 
 /// A pose (4, 4) or a position (3,).
-pub fn read_target(value: &Bound<'_, PyAny>) -> PyResult<Target> {
-    let numbers = array("target", value)?;
+pub fn read_target(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Target> {
+    let numbers = array(what, value)?;
     match numbers.shape() {
-        [3] => Ok(Target::Position(point("target", value)?)),
-        [4, 4] => Ok(Target::Pose(Frame::from(&rigid_rows("target", numbers.as_slice()?)?))),
+        [3] => Ok(Target::Position(point(what, value)?)),
+        [4, 4] => Ok(Target::Pose(Frame::from(&rigid_rows(what, numbers.as_slice()?)?))),
         shape => {
             let got = shape_text(shape);
-            Err(invalid(format!("target: expected a pose (4, 4) or a position (3,), got shape {got}")))
+            Err(invalid(format!("{what}: expected a pose (4, 4) or a position (3,), got shape {got}")))
         }
     }
 }

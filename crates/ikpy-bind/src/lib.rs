@@ -2,13 +2,11 @@
 
 mod all;
 mod batch;
-mod chain;
 mod convert;
 mod error;
 mod goal;
 mod ik;
 mod limits;
-mod manipulability;
 mod minimize;
 mod monitor;
 mod obstacle;
@@ -23,7 +21,6 @@ mod sinusoid;
 mod solver;
 mod stored;
 mod task;
-mod time_optimal;
 mod tracking;
 mod trajectory;
 mod upward;
@@ -36,7 +33,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     error::register(module)?;
     solver::register(module)?;
     module.add_class::<robot::PyRobot>()?;
-    module.add_class::<manipulability::PyVelocityEllipsoid>()?;
+    module.add_class::<robot::PyVelocityEllipsoid>()?;
     module.add_function(wrap_pyfunction!(pose::pose, module)?)?;
     module.add_class::<sinusoid::PySinusoid>()?;
     module.add_class::<limits::PyLimits>()?;
@@ -58,7 +55,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     planning::register(module)?;
     tracking::register(module)?;
     module.add_class::<trajectory::PyTrajectory>()?;
-    module.add_function(wrap_pyfunction!(time_optimal::time_optimal, module)?)?;
     // The package names what is public; a second list here would only go stale.
     module.dict().del_item("__all__")
 }

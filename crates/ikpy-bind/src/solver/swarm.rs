@@ -80,7 +80,7 @@ swarm! {
 swarm! {
     /// Firefly algorithm (Yang 2009): uses values alone. Fireflies have turns to attract all that are less bright.
     ///
-    /// Defaults: `Firefly(population=25, attractiveness=1, absorption=1, randomness=0.2, randomness_decay=0.97,
+    /// Defaults: `Firefly(population=25, attractiveness=1.0, absorption=1.0, randomness=0.2, randomness_decay=0.97,
     /// max_generations=None, stall_generations=50)`.
     ///
     /// Args:
@@ -106,7 +106,7 @@ swarm! {
     /// Uses values alone.
     ///
     /// Defaults: `Genetic(population=50, elite_share=0.05, crossover_share=0.8, tournament=2,
-    /// mutation_rate=1, mutation_scale=0.1, mutation_decay=0.97, max_generations=None, stall_generations=50)`.
+    /// mutation_rate=1.0, mutation_scale=0.1, mutation_decay=0.97, max_generations=None, stall_generations=50)`.
     ///
     /// Args:
     ///     population: members of a generation.
@@ -151,7 +151,7 @@ swarm! {
     /// need an inertia weight and a limit on velocities to converge; with inertia=1 and velocity_limit=1 they are literal.
     ///
     /// Defaults: `BeetleSwarm(population=50, inertia=0.729, c1=1.494, c2=1.494, velocity_limit=0.2, velocity_share=0.9,
-    /// step=1, step_decay=0.97, step_over_antennae=5, direction='printed', max_generations=None,
+    /// step=1.0, step_decay=0.97, step_over_antennae=5.0, direction='printed', max_generations=None,
     /// stall_generations=50)`.
     ///
     /// Args:

@@ -89,7 +89,7 @@ impl PyTracker {
     ///         Other rules need none.
     #[pyo3(signature = (target, *, velocity=None))]
     fn step(&self, py: Python<'_>, target: &Bound<'_, PyAny>, velocity: Option<&Bound<'_, PyAny>>) -> PyResult<PyStep> {
-        let target = read_target(target)?;
+        let target = read_target("target", target)?;
         let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
         let (watch, mut session) = (Stopwatch::start(), self.session());
         let core = session.step_moving(&target, velocity, &mut Unattended).map_err(raise)?;

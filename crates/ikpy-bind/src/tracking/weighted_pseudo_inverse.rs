@@ -17,8 +17,8 @@ use crate::trajectory::PyTrajectory;
 ///
 /// with q0' down the gradient of the goals and towards `posture`. Joints at a limit leave their share to the others.
 ///
-/// Defaults: `WeightedPseudoInverse(gain=None, integrator='euler', weights=None, posture=None, posture_gain=20,
-/// damping=0)`.
+/// Defaults: `WeightedPseudoInverse(gain=None, integrator='euler', weights=None, posture=None, posture_gain=20.0,
+/// damping=0.0)`.
 ///
 /// Args:
 ///     gain: share of the error that is taken back per second (1/s); below 2 / dt. None: half of it in every tick.
