@@ -17,7 +17,6 @@ mod planning;
 mod pose;
 mod posture;
 mod robot;
-mod sinusoid;
 mod solver;
 mod stored;
 mod task;
@@ -35,7 +34,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<robot::PyRobot>()?;
     module.add_class::<robot::PyVelocityEllipsoid>()?;
     module.add_function(wrap_pyfunction!(pose::pose, module)?)?;
-    module.add_class::<sinusoid::PySinusoid>()?;
+    module.add_class::<limits::PySinusoid>()?;
     module.add_class::<limits::PyLimits>()?;
     module.add_class::<ik::PySolution>()?;
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;

@@ -6,8 +6,8 @@ use pyo3::prelude::*;
 
 use crate::convert::count;
 use crate::error::{invalid, raise};
+use crate::limits::Numbers;
 use crate::options::{NewArguments, keywords};
-use crate::sinusoid::Numbers;
 
 /// Zeroing neural network with beetle antennae search (Khan et al. 2022, eq. 10 to 16): a controller that measures once a
 /// tick, a random antenna away from where it is, and moves by the sign of what that brought.
