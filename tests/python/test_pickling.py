@@ -291,7 +291,7 @@ def results() -> dict[str, object]:
         "failed plant": bik.track_model_free(failing_plant(), circle, [0.1, 0.2, 0.3], dt=0.1),
         "step": bik.Tracker(arm, q[0], dt=0.1, limits=limits).step(arm.fk(q[1])),
         "step without a model": step_without_a_model(),
-        "minimum": bik.minimize(np.linalg.norm, [-1.0] * 3, [2.0] * 3, solver=bik.PSO(), stop=bik.Stop(value_below=1e-3)),
+        "minimum": bik.minimize(np.linalg.norm, [-1, -1], [2, 2], solver=bik.PSO(), stop=bik.Stop(value_below=1e-3)),
         "no minimum": bik.minimize(lambda _: np.nan, [-1.0], [2.0], solver=bik.BAS(), stop=bik.Stop(max_evaluations=9)),
         "posture": bik.planar_posture(planar, (1.5, 1.0, 0.0), swarm=bik.CircleSwarm()),
         "no posture": bik.planar_posture(planar, (4.0, 0.0, 0.0)),
