@@ -1,11 +1,9 @@
 //! A joint as the caller sees it.
 
-use std::str::FromStr;
-
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
 use crate::math::interval;
+use crate::wording::words;
 
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -18,29 +16,12 @@ pub enum JointKind {
     Prismatic,
 }
 
-impl JointKind {
-    /// The name as URDF writes it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Revolute => "revolute",
-            Self::Continuous => "continuous",
-            Self::Prismatic => "prismatic",
-        }
-    }
+words!("kind of a joint": JointKind { Revolute => "revolute", Continuous => "continuous", Prismatic => "prismatic" });
 
+impl JointKind {
     /// Whether the joint turns rather than slides.
     pub fn turns(self) -> bool {
         self != Self::Prismatic
-    }
-}
-
-impl FromStr for JointKind {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        const ALL: [JointKind; 3] = [JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic];
-        let found = ALL.into_iter().find(|kind| kind.name() == name);
-        found.ok_or_else(|| Error::unknown_option("kind of a joint", name, &ALL.map(Self::name)))
     }
 }
 

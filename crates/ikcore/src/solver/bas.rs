@@ -11,15 +11,13 @@
 //! third of all evaluations repeats one already made; we repeat it too, for counts that compare. And the best point is
 //! kept over all evaluations, antennae included, which for c2 = 1 is the best beetle of line 15.
 
-use std::fmt;
-use std::str::FromStr;
-
 use smallvec::SmallVec;
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Objective, Point};
+use crate::wording::words;
 
 /// From where the next exploration of a pass starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,28 +30,7 @@ pub enum Variant {
     Greedy,
 }
 
-impl fmt::Display for Variant {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Star => "star",
-            Self::Chain => "chain",
-            Self::Greedy => "greedy",
-        })
-    }
-}
-
-impl FromStr for Variant {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "star" => Ok(Self::Star),
-            "chain" => Ok(Self::Chain),
-            "greedy" => Ok(Self::Greedy),
-            _ => Err(Error::unknown_option("variant", name, &["star", "chain", "greedy"])),
-        }
-    }
-}
+words!("variant": Variant { Star => "star", Chain => "chain", Greedy => "greedy" });
 
 /// Beetle antennae search.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -11,13 +11,11 @@
 //! The proof of Theorem 1 describes another algorithm, which keeps theta' where h fell and else goes back to theta and waits.
 //! It is here as [`Accept::Improving`]: the theorem holds for it, while the target stands still.
 
-use std::fmt;
-use std::str::FromStr;
-
 use super::{Tick, Verdict};
 use crate::error::{Error, Result, require_positive};
 use crate::objective::Point;
 use crate::rng::LazyRng;
+use crate::wording::words;
 
 /// A longer memory than this is a mistake, and might not fit.
 const MOST_TICKS: usize = 100_000;
@@ -43,6 +41,8 @@ pub enum Delay {
     Held,
 }
 
+words!("delay": Delay { Sliding => "sliding", Held => "held" });
+
 /// When theta moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Accept {
@@ -52,6 +52,8 @@ pub enum Accept {
     /// delay have no part in it.
     Improving,
 }
+
+words!("accept": Accept { Always => "always", Improving => "improving" });
 
 /// ZNNBAS.
 #[derive(Debug, Clone, PartialEq)]
@@ -299,46 +301,4 @@ fn squared_distance(target: [f64; 3], position: [f64; 3]) -> f64 {
 /// The plain sign: zero at zero.
 fn sign(z: f64) -> f64 {
     f64::from(i8::from(z > 0.0) - i8::from(z < 0.0))
-}
-
-impl fmt::Display for Delay {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Sliding => "sliding",
-            Self::Held => "held",
-        })
-    }
-}
-
-impl FromStr for Delay {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "sliding" => Ok(Self::Sliding),
-            "held" => Ok(Self::Held),
-            _ => Err(Error::unknown_option("delay", name, &["sliding", "held"])),
-        }
-    }
-}
-
-impl fmt::Display for Accept {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Always => "always",
-            Self::Improving => "improving",
-        })
-    }
-}
-
-impl FromStr for Accept {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "always" => Ok(Self::Always),
-            "improving" => Ok(Self::Improving),
-            _ => Err(Error::unknown_option("accept", name, &["always", "improving"])),
-        }
-    }
 }

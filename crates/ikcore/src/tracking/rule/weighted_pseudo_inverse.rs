@@ -7,7 +7,6 @@
 //! no K; without it errors add up. Its q' is the point of the tick's box nearest to q0' in the norm of W that moves the tip
 //! as wanted: joints at a limit leave their share to the others, which the plain formula does not.
 
-use std::str::FromStr;
 use std::sync::Arc;
 
 use super::{Found, Tick};
@@ -17,6 +16,7 @@ use crate::math::box_step::box_step;
 use crate::objective::{Linearization, Point};
 use crate::robot::Robot;
 use crate::trajectory::Trajectory;
+use crate::wording::words;
 
 /// How velocities become configurations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -28,26 +28,7 @@ pub enum Integrator {
     RungeKutta4,
 }
 
-impl Integrator {
-    const ALL: [Self; 2] = [Self::Euler, Self::RungeKutta4];
-
-    /// The word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Euler => "euler",
-            Self::RungeKutta4 => "rk4",
-        }
-    }
-}
-
-impl FromStr for Integrator {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        let found = Self::ALL.into_iter().find(|integrator| integrator.name() == name);
-        found.ok_or_else(|| Error::unknown_option("integrator", name, &Self::ALL.map(Self::name)))
-    }
-}
+words!("integrator": Integrator { Euler => "euler", RungeKutta4 => "rk4" });
 
 /// The options of the rule.
 #[derive(Debug, Clone, PartialEq)]
