@@ -15,6 +15,7 @@ pub mod sincos;
 pub mod singular;
 pub mod so3;
 pub mod ticks;
+pub mod vector;
 
 pub use frame::Frame;
 pub use knots::Knots;

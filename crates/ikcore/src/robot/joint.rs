@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::{Error, Result};
 use crate::math::interval;
 use crate::wording::words;
 
@@ -69,5 +70,26 @@ impl Joint {
     pub fn sampling_range_within(&self, lower: f64, upper: f64) -> (f64, f64) {
         let reach = if self.kind.turns() { std::f64::consts::PI } else { UNLIMITED_SLIDE };
         interval::finite(lower, upper, reach)
+    }
+
+    /// Err for limits that contradict themselves.
+    pub(super) fn validate(&self) -> Result<()> {
+        let Self { lower, upper, velocity, .. } = *self;
+        let limits = [
+            ("lower", lower, lower < f64::INFINITY, "a number below infinity"),
+            ("upper", upper, upper > f64::NEG_INFINITY, "a number above -infinity"),
+            ("velocity", velocity, !velocity.is_nan(), "a number"),
+        ];
+        if let Some((side, value, _, requirement)) = limits.into_iter().find(|(_, _, valid, _)| !valid) {
+            return Err(Error::out_of_range(format!("{side} limit of joint '{}'", self.name), requirement, value));
+        }
+        let joint = self.name.clone();
+        if lower > upper {
+            return Err(Error::EmptyRange { joint, lower, upper, time: None });
+        }
+        if velocity < 0.0 {
+            return Err(Error::NegativeLimit { field: "velocity".into(), joint, value: velocity, time: 0.0 });
+        }
+        Ok(())
     }
 }

@@ -16,6 +16,7 @@ use smallvec::SmallVec;
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result, require_positive};
+use crate::math::vector::sign;
 use crate::objective::{Objective, Point};
 use crate::wording::words;
 
@@ -192,7 +193,7 @@ impl Bas {
         }
         let mut smells = [[0.0; 2]; LARGEST_GROUP];
         evaluator.evaluate_all(antennae, smells[..count].as_flattened_mut())?;
-        // v) move towards the lower value, eq. (11) and (13); equal smells leave the beetle where it is
+        // v) move towards the lower value, eq. (11) and (13); equal smells, also where neither is finite, leave the beetle
         let delta = self.c2 * lambda;
         for ((b, beetle), [left, right]) in
             group.directions.chunks_exact(n).zip(beetles.chunks_exact_mut(n)).zip(smells)
@@ -237,9 +238,4 @@ fn place(out: &mut [f64], x: &[f64], distance: f64, b: &[f64]) {
     for ((out, x), b) in out.iter_mut().zip(x).zip(b) {
         *out = x + distance * b;
     }
-}
-
-/// The plain sign of eq. (11): zero at zero, and for antennae that both smell nothing finite.
-pub(super) fn sign(z: f64) -> f64 {
-    f64::from(i8::from(z > 0.0) - i8::from(z < 0.0))
 }

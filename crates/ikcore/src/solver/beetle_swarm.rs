@@ -5,12 +5,12 @@
 //! which the swarm diverges; the antennae of eq. (28) to (30) stand at x +- V d/2 (the paper prints one name for both)
 //! with the velocity just updated, as line 7 of its Algorithm 1 has it. [`BeetleSwarm::literal`] has no inertia weight.
 
-use super::bas::sign;
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use super::population::{Members, Memory, Population, Schedule};
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
+use crate::math::vector::sign;
 use crate::objective::Objective;
 use crate::wording::words;
 

@@ -7,9 +7,10 @@
 //! noisy the sensor is to begin with, three measurements of the start tell.
 
 use super::noise::{ABOVE_NOISE, Noise, median};
-use super::{Tick, Verdict, distance};
+use super::{Tick, Verdict};
 use crate::math::box_step::ROWS;
 use crate::math::secant::{LEAST_DAMPING, Secant, antenna};
+use crate::math::vector::{distance, norm};
 use crate::objective::Point;
 use crate::solver::BroydenBas;
 use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
@@ -186,14 +187,14 @@ impl Memory {
             Purpose::Again { first } => self.believe(tick, position, Some(first)),
         };
         let near_enough = self.tolerance.max(2.0 * self.noise.level());
-        let arrived = self.next == Purpose::Step && distance(self.position, tick.target) <= near_enough;
+        let arrived = self.next == Purpose::Step && distance(&self.position, &tick.target) <= near_enough;
         if arrived { Verdict::TickOver } else { verdict }
     }
 
     /// Where the start is, and how noisy the sensor: one of the three measurements may be an outlier.
     fn know_start(&mut self, [a, b, c]: [[f64; 3]; 3]) {
         self.position = std::array::from_fn(|k| median(a[k], b[k], c[k]));
-        let nearest = distance(a, b).min(distance(b, c)).min(distance(a, c));
+        let nearest = distance(&a, &b).min(distance(&b, &c)).min(distance(&a, &c));
         self.noise.note(nearest);
         self.noise.note(nearest);
         self.next = Purpose::Antenna { joint: 0 };
@@ -223,8 +224,8 @@ impl Memory {
                 self.next = Purpose::Again { first: position };
                 return Verdict::GoOn;
             }
-            Some(first) if surprising && distance(position, first) > 0.5 * miss => {
-                self.noise.note(distance(position, first));
+            Some(first) if surprising && distance(&position, &first) > 0.5 * miss => {
+                self.noise.note(distance(&position, &first));
                 noisy = true;
             }
             _ => {}
@@ -237,7 +238,7 @@ impl Memory {
 
     /// Keeps a step that came nearer; else does something about it, unless noise hides what.
     fn judge(&mut self, tick: Tick<'_>, position: [f64; 3], noisy: bool) -> Verdict {
-        let (before, after) = (distance(self.position, tick.target), distance(position, tick.target));
+        let (before, after) = (distance(&self.position, &tick.target), distance(&position, &tick.target));
         if after < before {
             self.q.copy_from_slice(&self.sent);
             self.position = position;
@@ -273,8 +274,4 @@ impl Memory {
 /// a - b in the rows of a task.
 fn rows(a: [f64; 3], b: [f64; 3]) -> [f64; ROWS] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2], 0.0, 0.0, 0.0]
-}
-
-fn norm(rows: &[f64; ROWS]) -> f64 {
-    rows.iter().map(|row| row * row).sum::<f64>().sqrt()
 }

@@ -13,6 +13,7 @@ use super::{Found, Tick};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::MAX_DOF;
 use crate::math::box_step::box_step;
+use crate::math::vector::norm;
 use crate::objective::{Linearization, Point};
 use crate::robot::Robot;
 use crate::trajectory::Trajectory;
@@ -225,10 +226,6 @@ impl Demand<'_> {
         }
         left
     }
-}
-
-fn norm(rows: &[f64; 6]) -> f64 {
-    rows.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
 }
 
 /// Residual and Jacobian at `from` into the scratch; how the residual changes per second by the target's own motion.

@@ -2,6 +2,7 @@
 
 use super::super::{Tick, Verdict};
 use super::{Accept, Antenna, Delay, Znnbas};
+use crate::math::vector::{sign, squared_distance};
 use crate::objective::Point;
 use crate::rng::LazyRng;
 
@@ -70,7 +71,7 @@ impl Memory {
     }
 
     pub fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {
-        (self.position, self.standing, self.value) = (position, position, squared_distance(target, position));
+        (self.position, self.standing, self.value) = (position, position, squared_distance(&target, &position));
         // Until the first answer comes, the arm stands at the start.
         self.on_the_way.targets.fill(target);
     }
@@ -88,7 +89,7 @@ impl Memory {
         rng.symmetric(sent); // b, line 14
         let error = match self.accept {
             Accept::Always => self.value,
-            Accept::Improving => squared_distance(tick.target, self.standing),
+            Accept::Improving => squared_distance(&tick.target, &self.standing),
         };
         let lengths = match antenna {
             Antenna::Constant(lengths) => &lengths[..],
@@ -105,11 +106,11 @@ impl Memory {
         self.position = position;
         self.answered.copy_from_slice(&self.sent);
         let target = self.on_the_way.swap(&mut self.answered, tick.target);
-        self.value = squared_distance(target, position); // (12)
+        self.value = squared_distance(&target, &position); // h of (12)
         match self.accept {
             Accept::Always => self.move_theta(),
             Accept::Improving
-                if squared_distance(tick.target, position) < squared_distance(tick.target, self.standing) =>
+                if squared_distance(&tick.target, &position) < squared_distance(&tick.target, &self.standing) =>
             {
                 self.theta.copy_from_slice(&self.answered);
                 self.standing = position;
@@ -163,14 +164,4 @@ impl Past {
         self.sent[slot * command.len()..][..command.len()].copy_from_slice(command);
         self.ticks += 1;
     }
-}
-
-/// h of eq. (12).
-fn squared_distance(target: [f64; 3], position: [f64; 3]) -> f64 {
-    (0..3).map(|k| (target[k] - position[k]) * (target[k] - position[k])).sum()
-}
-
-/// The plain sign: zero at zero.
-fn sign(z: f64) -> f64 {
-    f64::from(i8::from(z > 0.0) - i8::from(z < 0.0))
 }
