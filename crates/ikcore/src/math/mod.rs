@@ -3,11 +3,11 @@
 
 pub mod arithmetic;
 pub mod box_step;
+pub mod cubic_spline;
 pub mod frame;
 pub mod interval;
 pub mod knots;
 pub mod logarithm;
-pub mod natural_spline;
 pub mod polynomial;
 pub mod pose;
 pub mod secant;
