@@ -43,7 +43,11 @@ SOLVERS = [
     bik.MultiStart(bik.BAS(variant="greedy")),
     bik.MultiStart(bik.LevenbergMarquardt(initial_damping=0.5), max_starts=3),
 ]
-STOPS = [bik.Stop(), bik.Stop(max_evaluations=10, max_iterations=20, max_time=0.25, value_below=-0.5)]
+STOPS = [
+    bik.Stop(),
+    bik.Stop(value_below=float("inf")),
+    bik.Stop(max_evaluations=10, max_iterations=20, max_time=0.25, value_below=-0.5),
+]
 TURN = bik.pose([0, 0, 0], rpy=[0.1, 0.2, 0.3])[:3, :3]
 OBSTACLES = [
     bik.obstacles.Sphere([0.1, 0.2, 0.3], 0.5),

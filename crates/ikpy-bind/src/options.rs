@@ -29,7 +29,7 @@ impl Shown for f64 {
         *self
     }
     fn text(&self) -> String {
-        format!("{self:?}")
+        if self.is_finite() { format!("{self:?}") } else { format!("float('{self}')") }
     }
 }
 

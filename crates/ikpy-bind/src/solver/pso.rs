@@ -104,9 +104,10 @@ impl PyPso {
 
     fn __repr__(&self) -> String {
         let Pso { schedule, form, c1, c2, velocity_limit, accept } = &self.0;
-        let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={weight:?}, "));
+        let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={}, ", weight.text()));
+        let [c1, c2, velocity_limit] = [c1, c2, velocity_limit].map(f64::text);
         format!(
-            "PSO(population={}, form='{form}', {inertia}c1={c1:?}, c2={c2:?}, velocity_limit={velocity_limit:?}, accept='{accept}', {})",
+            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={velocity_limit}, accept='{accept}', {})",
             schedule.population,
             show_schedule(schedule)
         )
