@@ -41,6 +41,21 @@ class _AsMatrix(Protocol):  # scipy's RigidTransform and Rotation
 class _Mover(Protocol):
     def move(self, q: _Array, /) -> ArrayLike: ...  # (n,) -> (3,)
 
+@type_check_only
+class _Outcome:  # of every call that searches
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+
 # --- errors -------------------------------------------------------------------------------------
 
 class BeetleIkError(Exception): ...
@@ -648,15 +663,9 @@ def solve(
 ) -> Solution: ...
 
 @final
-class Solution:
+class Solution(_Outcome):
     @property
     def q(self) -> _Array: ...  # (n,)
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
     @property
     def position_error(self) -> float: ...  # m
     @property
@@ -665,12 +674,6 @@ class Solution:
     def iterations(self) -> int: ...
     @property
     def restarts(self) -> int: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
 
 def solve_all(
     robot: Robot,
@@ -689,23 +692,11 @@ def solve_all(
 ) -> SolutionSet: ...
 
 @final
-class SolutionSet:
+class SolutionSet(_Outcome):
     @property
     def q(self) -> _Array: ...  # (k, n)
     @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
     def miss(self) -> Solution | None: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
     def __len__(self) -> int: ...
     def __getitem__(self, index: int, /) -> Solution: ...
 
@@ -770,7 +761,7 @@ def minimize(
 ) -> Minimum: ...
 
 @final
-class Minimum:
+class Minimum(_Outcome):
     @property
     def x(self) -> _Array: ...  # (n,)
     @property
@@ -778,21 +769,9 @@ class Minimum:
     @property
     def history(self) -> _Array: ...  # (k, 2): evaluations, best value
     @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
     def iterations(self) -> int: ...
     @property
     def restarts(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # the box
 
 # --- postures -----------------------------------------------------------------------------------
 
@@ -833,7 +812,7 @@ def planar_posture(
 ) -> PlanarPosture: ...
 
 @final
-class PlanarPosture:
+class PlanarPosture(_Outcome):
     @property
     def q(self) -> _Array: ...  # (n,)
     @property
@@ -841,19 +820,7 @@ class PlanarPosture:
     @property
     def history(self) -> _Array: ...  # (generations,), or empty
     @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
     def position_error(self) -> float: ...  # m
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...
 
 # --- reference paths (public as beetle_ik.paths) ------------------------------------------------
 
@@ -925,7 +892,7 @@ def track(
 ) -> TrackResult: ...
 
 @final
-class TrackResult:
+class TrackResult(_Outcome):
     @property
     def time(self) -> _Array: ...  # (k,)
     @property
@@ -956,18 +923,6 @@ class TrackResult:
     def max_violation(self) -> float: ...  # rad or m; 0 within rounding
     @property
     def limit_margin(self) -> float: ...  # rad/s: smallest velocity_limit - |qd| of all; inf where no limit
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
     @property
     def robot(self) -> Robot: ...
     @property
@@ -1005,27 +960,15 @@ class Tracker:
     def limits(self) -> Limits: ...  # those in force
 
 @final
-class Step:
+class Step(_Outcome):
     @property
     def q(self) -> _Array: ...  # (n,): what to command
     @property
     def qd(self) -> _Array: ...  # (n,): the velocity that leads there
     @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
     def position_error(self) -> float: ...  # m
     @property
     def rotation_error(self) -> float: ...  # rad; NaN where no orientation was asked
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
     @property
     def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
 
@@ -1143,7 +1086,7 @@ def plan_along_path(
 ) -> Plan: ...
 
 @final
-class Plan:
+class Plan(_Outcome):
     @property
     def trajectory(self) -> Trajectory: ...
     @property
@@ -1162,18 +1105,6 @@ class Plan:
     def redundancy(self) -> _Array: ...  # (points, links, 3): orientation chosen, lowest, highest (rad)
     @property
     def reference(self) -> _Array | None: ...  # (k, 3): the path asked for
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
     @property
     def robot(self) -> Robot: ...
     @property
@@ -1207,7 +1138,7 @@ def track_model_free(
 ) -> ModelFreeResult: ...
 
 @final
-class ModelFreeResult:
+class ModelFreeResult(_Outcome):
     @property
     def time(self) -> _Array: ...  # (k,)
     @property
@@ -1233,19 +1164,7 @@ class ModelFreeResult:
     @property
     def settled_error(self) -> float: ...  # m, root mean square over the second half
     @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
     def exception(self) -> BaseException | None: ...  # what the plant raised
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
     def plot(self) -> Figure: ...
     def __len__(self) -> int: ...
 

@@ -1,10 +1,8 @@
 //! The box of one tick: position limits intersected with what the velocity limit lets the ACCEPTED configuration reach.
 
-use std::str::FromStr;
-
 use super::{Limits, Profile};
-use crate::error::{Error, Result};
 use crate::objective::{Bounds, Point};
+use crate::wording::words;
 
 /// Where in a tick its limit is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -15,6 +13,8 @@ pub enum LimitAt {
     /// The limit at the tick's beginning, as Cheng et al. (2020) take it.
     Start,
 }
+
+words!("limit_at": LimitAt { Interval => "interval", Start => "start" });
 
 /// Where one tick may end, and the velocity limits that it came from.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,18 +29,6 @@ impl TickBox {
     /// The box of an arm that stands still at `q`.
     pub fn around(q: &[f64]) -> Self {
         Self { bounds: Bounds::from_ranges(q.iter().map(|q| (*q, *q))), velocity: Point::from_elem(0.0, q.len()) }
-    }
-}
-
-impl FromStr for LimitAt {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "interval" => Ok(Self::Interval),
-            "start" => Ok(Self::Start),
-            _ => Err(Error::unknown_option("limit_at", name, &["interval", "start"])),
-        }
     }
 }
 

@@ -5,7 +5,6 @@
 //! and a particle that meets a wall stops there.
 
 use std::fmt;
-use std::str::FromStr;
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
@@ -13,6 +12,7 @@ use super::population::{Memory, Population, Schedule, repeat};
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Bounds, Objective};
+use crate::wording::words;
 
 /// What keeps velocities from growing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,26 +67,7 @@ pub enum Accept {
     Improving,
 }
 
-impl fmt::Display for Accept {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Always => "always",
-            Self::Improving => "improving",
-        })
-    }
-}
-
-impl FromStr for Accept {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "always" => Ok(Self::Always),
-            "improving" => Ok(Self::Improving),
-            _ => Err(Error::unknown_option("accept", name, &["always", "improving"])),
-        }
-    }
-}
+words!("accept": Accept { Always => "always", Improving => "improving" });
 
 /// Particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]

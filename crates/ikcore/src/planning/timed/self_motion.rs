@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 use crate::error::{Error, Result};
 use crate::math::MAX_DOF;
 use crate::math::box_step::box_step;
-use crate::math::natural_spline::NaturalSpline;
+use crate::math::cubic_spline::CubicSpline;
 use crate::objective::{Bounds, LeastSquares, Linearization};
 use crate::path::Reference;
 use crate::problem::Problem;
@@ -265,7 +265,7 @@ pub fn travel(waypoints: &[f64], n: usize) -> f64 {
 
 /// The splines through a unit offset at each node, at every point.
 fn node_weights(points: usize) -> Vec<f64> {
-    let spline = NaturalSpline::over((0..NODES).map(|node| node as f64 / (NODES - 1) as f64).collect());
+    let spline = CubicSpline::natural((0..NODES).map(|node| node as f64 / (NODES - 1) as f64).collect());
     let mut weights = vec![0.0; points * NODES];
     for node in 0..NODES {
         let (mut values, mut bends) = ([0.0; NODES], [0.0; NODES]);
