@@ -15,7 +15,7 @@ use pyo3::sync::PyOnceLock;
 
 pub use manipulability::PyVelocityEllipsoid;
 
-use crate::convert::copied;
+use crate::convert::{copied, row};
 use crate::error::raise;
 use crate::limits::PyLimits;
 use crate::stored::{self, Reduced};
