@@ -451,6 +451,7 @@ class PSO:
         c2: float | None = None,
         velocity_limit: float = ...,
         accept: Literal["always", "improving"] = "always",
+        walls: Literal["absorbing", "random"] = "absorbing",
         max_generations: int | None = ...,
         stall_generations: int | None = ...,
     ) -> PSO: ...
@@ -468,6 +469,8 @@ class PSO:
     def velocity_limit(self) -> float: ...
     @property
     def accept(self) -> str: ...
+    @property
+    def walls(self) -> str: ...
     @property
     def max_generations(self) -> int | None: ...
     @property

@@ -1,7 +1,7 @@
 //! `PSO`.
 
 use ikcore::solver::Pso;
-use ikcore::solver::pso::{Accept, Form};
+use ikcore::solver::pso::{Accept, Form, Walls};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -11,7 +11,7 @@ use crate::error::raise;
 /// Particle swarm optimisation: uses values alone.
 ///
 /// Defaults: `PSO(population=40, form='constriction', c1=2.05, c2=2.05, velocity_limit=0.5, accept='always',
-/// max_generations=None, stall_generations=50)`.
+/// walls='absorbing', max_generations=None, stall_generations=50)`.
 ///
 /// Args:
 ///     population: particles.
@@ -20,9 +20,11 @@ use crate::error::raise;
 ///     inertia: that weight; None: 0.729. Only with form "inertia".
 ///     c1: attraction to the particle's own best place; None: 2.05 with constriction, 1.49445 with inertia.
 ///     c2: attraction to the swarm's best place; None: as c1's.
-///     velocity_limit: largest velocity, as a share of the box's width a generation.
+///     velocity_limit: largest velocity, as a share of the box's width a generation; `inf`: none.
 ///     accept: "always", a particle stays where it went (as published); "improving", it returns to its best place if that
 ///         is better.
+///     walls: "absorbing", a coordinate that would leave the box stops at the wall, and has no velocity left; "random", it
+///         is drawn anew in the box, and keeps its velocity (compared by Helwig, Branke and Mostaghim 2013).
 ///     max_generations: after so many it gives up; None: as many as the budget allows.
 ///     stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None: never.
 #[pyclass(name = "PSO", module = "beetle_ik", frozen, eq, from_py_object)]
@@ -34,7 +36,7 @@ impl PyPso {
     #[new]
     #[pyo3(signature = (*, population=Pso::default().schedule.population.give(), form="constriction", inertia=None, c1=None,
                         c2=None, velocity_limit=Pso::default().velocity_limit, accept="always",
-                        max_generations=limited(Pso::default().schedule.max_generations).give(),
+                        walls="absorbing", max_generations=limited(Pso::default().schedule.max_generations).give(),
                         stall_generations=limited(Pso::default().schedule.stall_generations).give()))]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -45,6 +47,7 @@ impl PyPso {
         c2: Option<f64>,
         velocity_limit: f64,
         accept: &str,
+        walls: &str,
         max_generations: Option<i128>,
         stall_generations: Option<i128>,
     ) -> PyResult<Self> {
@@ -55,6 +58,7 @@ impl PyPso {
             c2: c2.unwrap_or(standard.c2),
             velocity_limit,
             accept: accept.parse::<Accept>().map_err(raise)?,
+            walls: walls.parse::<Walls>().map_err(raise)?,
             ..standard
         };
         solver.validate().map_err(raise)?;
@@ -106,6 +110,12 @@ impl PyPso {
         self.0.accept.to_string()
     }
 
+    /// "absorbing" or "random".
+    #[getter]
+    fn walls(&self) -> String {
+        self.0.walls.to_string()
+    }
+
     /// Generations after which it gives up; None: as many as the budget allows.
     #[getter]
     fn max_generations(&self) -> Option<usize> {
@@ -119,10 +129,11 @@ impl PyPso {
     }
 
     fn __repr__(&self) -> String {
-        let Pso { schedule, form, c1, c2, velocity_limit, accept } = &self.0;
+        let Pso { schedule, form, c1, c2, velocity_limit, accept, walls } = &self.0;
         let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={weight}, "));
+        let limit = if velocity_limit.is_finite() { velocity_limit.to_string() } else { "float('inf')".into() };
         format!(
-            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={velocity_limit}, accept='{accept}', {})",
+            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={limit}, accept='{accept}', walls='{walls}', {})",
             schedule.population,
             show_schedule(schedule)
         )
@@ -137,6 +148,7 @@ impl PyPso {
         options.set_item("c2", self.0.c2)?;
         options.set_item("velocity_limit", self.0.velocity_limit)?;
         options.set_item("accept", self.accept())?;
+        options.set_item("walls", self.walls())?;
         options.set_item("max_generations", self.max_generations())?;
         options.set_item("stall_generations", self.stall_generations())?;
         Ok((PyTuple::empty(py), options))
