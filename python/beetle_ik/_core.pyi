@@ -227,6 +227,7 @@ class Status(IntEnum):
     PLANT_FAILED = 10
     BELOW_THRESHOLD = 11
     OUTSIDE_LIMITS = 12
+    HELD_IN_REGION = 13
 
 @final
 class APPS:
@@ -465,6 +466,7 @@ class PSO:
         c2: float | None = None,
         velocity_limit: float = ...,
         accept: Literal["always", "improving"] = "always",
+        walls: Literal["absorbing", "random"] = "absorbing",
         max_generations: int | None = ...,
         stall_generations: int | None = ...,
     ) -> PSO: ...
@@ -482,6 +484,8 @@ class PSO:
     def velocity_limit(self) -> float: ...
     @property
     def accept(self) -> str: ...
+    @property
+    def walls(self) -> str: ...
     @property
     def max_generations(self) -> int | None: ...
     @property
@@ -587,24 +591,41 @@ class Task:
     def tolerance(self) -> _Array | None: ...  # m, rad
     @property
     def tool(self) -> _Array | None: ...  # (4, 4)
+    @property
+    def region(self) -> _Array | None: ...  # (2, 3) m
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Pose(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
+        cls,
+        *,
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Pose: ...
 
 @final
 class Position(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
+        cls,
+        *,
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Position: ...
 
 @final
 class Orientation(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
+        cls,
+        *,
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Orientation: ...
 
 @final
@@ -616,6 +637,7 @@ class Pointing(Task):
         weights: ArrayLike | None = None,
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Pointing: ...
     @property
     def axis(self) -> _Array: ...  # (3,)

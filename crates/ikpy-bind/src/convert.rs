@@ -137,6 +137,15 @@ pub fn point(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
     entries(what, value)
 }
 
+/// Two corners of a box, one row each.
+pub fn corners(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 2]> {
+    let array = array(what, value)?;
+    match (array.shape(), array.as_slice()?) {
+        ([2, 3], [a, b, c, d, e, f]) => Ok([[*a, *b, *c], [*d, *e, *f]]),
+        (shape, _) => Err(invalid(format!("{what}: expected shape (2, 3), got {}", shape_text(shape)))),
+    }
+}
+
 /// A rigid transform from a 4x4 matrix.
 pub fn rigid(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Pose> {
     let array = array(what, value)?;
