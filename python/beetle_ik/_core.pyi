@@ -1073,7 +1073,7 @@ def plan_point_to_point(
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,  # m
-    elbows: Sequence[int] = ...,  # (1, 1)
+    elbows: Sequence[int] | None = None,
     solver: _Solver | None = None,
     stop: Stop | None = None,
     seed: int = 0,
@@ -1099,7 +1099,7 @@ def plan_along_path(
     limits: Limits | None = None,
     method: Literal["timed", "tpbso"] = "timed",
     objective: Literal["time", "joint_travel"] = "time",
-    elbow: int = 1,
+    elbow: int | None = None,
     accuracy: float | None = None,  # m
     solver: _Solver | None = None,
     stop: Stop | None = None,
