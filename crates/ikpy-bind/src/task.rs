@@ -7,7 +7,7 @@ use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::convert::{Array, corners, point, pose_array, rigid, row, summary, table, vector};
+use crate::convert::{Array, copied, corners, point, pose_array, rigid, row, summary, table, vector};
 use crate::error::{invalid, raise};
 use crate::options::NewArguments;
 
@@ -204,7 +204,7 @@ impl PyPointing {
     fn axis<'py>(self_: PyRef<'py, Self>) -> Option<Bound<'py, PyArray1<f64>>> {
         let py = self_.py();
         match self_.as_super().core.kind {
-            Kind::Pointing { axis } => Some(row(py, axis.to_vec())),
+            Kind::Pointing { axis } => Some(copied(py, &axis)),
             _ => None,
         }
     }

@@ -9,7 +9,7 @@ use pyo3::PyClass;
 use pyo3::prelude::*;
 
 use super::PyObstacle;
-use crate::convert::{Array, array, entries, matrix3, point, row, shape_text, table};
+use crate::convert::{Array, array, copied, entries, matrix3, point, shape_text, table};
 use crate::error::{invalid, raise};
 
 /// A point or the like as a class keeps it; Python gets a read-only vector.
@@ -22,7 +22,7 @@ impl<'py, const N: usize> IntoPyObject<'py> for Coordinates<N> {
     type Error = Infallible;
 
     fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
-        Ok(row(py, self.0.to_vec()))
+        Ok(copied(py, &self.0))
     }
 }
 
