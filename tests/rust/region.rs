@@ -9,7 +9,7 @@ use ikcore::ik::{AllOptions, SolveOptions, solve, solve_all};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::robot::Robot;
-use ikcore::solver::{Algorithm, AnySolver, Status, Stop, Unattended};
+use ikcore::solver::{Algorithm, AnySolver, Bas, Status, Stop, Unattended, Variant};
 use ikcore::task::{Components, Criterion, Kind, Region, Target, Task, Tolerance};
 use ikcore::tracking::{Session, TickRule, TrackOptions, WeightedPseudoInverse, track};
 
@@ -165,6 +165,22 @@ fn no_tick_of_any_rule_ends_outside() {
         assert_eq!(record.max_violation, 0.0, "{rule:?}");
         let held = record.step_status.iter().filter(|status| **status == Status::HeldInRegion).count();
         assert!(held > 0, "{rule:?}: {}", record.message());
+    }
+}
+
+/// A beetle rests as soon as it is nearer than in the step before: it must not go outside to be.
+#[test]
+fn beetles_follow_the_faces() {
+    let iiwa = robot("iiwa14");
+    for variant in [Variant::Star, Variant::Chain] {
+        let bas = Bas { variant, c1: 1.0, ..Bas::default() };
+        let (options, reference) = leaving(&iiwa, TickRule::EachTick(AnySolver::Single(bas.into())), 1e-4);
+        let record = track(&iiwa, &reference, None, &options, &mut Unattended).unwrap();
+        for (tip, wanted) in record.position.iter().zip(&record.reference) {
+            let nearest = below(CEILING).nearest(wanted, 0.0);
+            let away = (0..3).map(|k| (tip[k] - nearest[k]).powi(2)).sum::<f64>().sqrt();
+            assert!(away < 3e-4, "{variant:?}: {tip:?} {wanted:?}");
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::region::Outside;
 use super::{Region, SquaredError, Target, Tolerance};
 use crate::error::{Error, Result};
 use crate::math::box_step::ROWS;
@@ -16,11 +17,13 @@ pub struct Criterion {
     pub components: Option<Components>,
     /// Where the tip is to stay; None: anywhere.
     pub region: Option<Region>,
+    /// What a tip outside its region is worth.
+    pub outside: Outside,
 }
 
 impl From<Tolerance> for Criterion {
     fn from(tolerance: Tolerance) -> Self {
-        Self { tolerance, components: None, region: None }
+        Self { tolerance, ..Self::default() }
     }
 }
 

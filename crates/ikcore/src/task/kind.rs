@@ -124,7 +124,7 @@ impl Task {
 
     /// When a target of this task is reached.
     pub(crate) fn criterion(&self, tolerance: Tolerance) -> Criterion {
-        Criterion { tolerance, components: self.components, region: self.region }
+        Criterion { components: self.components, region: self.region, ..tolerance.into() }
     }
 
     /// The weights, one for each component that the kind has; None where they are all one by default.

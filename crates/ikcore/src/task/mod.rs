@@ -17,7 +17,7 @@ pub use error::{SquaredError, TipError, Tolerance};
 pub use goal::{Goal, Goals};
 pub use kind::{Kind, Task};
 pub use motion::{TargetMotion, Twist};
-pub use region::Region;
+pub use region::{Outside, Region};
 
 use crate::error::{Result, require_finite};
 use crate::math::box_step::ROWS;

@@ -17,6 +17,16 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The widest margin (m): no tolerance, however wide, keeps the tip farther from the faces.
 const WIDEST_MARGIN: f64 = 1e-3;
 
+/// What a tip outside its region is worth to a search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Outside {
+    /// As much as it is near its target: a search that starts outside finds in.
+    #[default]
+    Graded,
+    /// Nothing: a search that starts inside stays there.
+    Worthless,
+}
+
 /// An open box in the frame of the base; infinite where it has no face.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Region {
@@ -144,7 +154,7 @@ impl Target {
         let anywhere = Criterion { region: None, ..*criterion };
         let pull = pull(region, &tip.origin, criterion, self);
         let led = criterion.aim(self).assess_tip(tip, &anywhere);
-        self.judged(region, tip, &anywhere, led.score.value + squared(&pull))
+        self.judged(region, tip, criterion, led.score.value + squared(&pull))
     }
 
     /// The same, with residual and Jacobian.
@@ -167,15 +177,20 @@ impl Target {
             out.residual[k] = pull[k];
             out.columns[..dof].iter_mut().zip(&linear).for_each(|(column, linear)| column[k] = linear[k]);
         }
-        self.judged(region, tip, &anywhere, led.score.value + squared(&pull))
+        self.judged(region, tip, criterion, led.score.value + squared(&pull))
     }
 
     /// Errors are those to the target itself; solved is who is inside, and as near as the region allows.
-    fn judged(&self, region: &Region, tip: &Frame, anywhere: &Criterion, value: f64) -> Assessment {
+    fn judged(&self, region: &Region, tip: &Frame, criterion: &Criterion, value: f64) -> Assessment {
+        let anywhere = &Criterion { region: None, ..*criterion };
+        let inside = region.contains(&tip.origin);
         let within = self.with_position(|wanted| region.nearest(wanted, 0.0));
         let mut assessment = self.assess_tip(tip, anywhere);
-        assessment.score.value = value;
-        assessment.score.solved = region.contains(&tip.origin) && within.assess_tip(tip, anywhere).score.solved;
+        assessment.score.value = match criterion.outside {
+            Outside::Worthless if !inside => f64::INFINITY,
+            _ => value,
+        };
+        assessment.score.solved = inside && within.assess_tip(tip, anywhere).score.solved;
         assessment
     }
 
