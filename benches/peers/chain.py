@@ -15,6 +15,7 @@ import numpy as np
 import pinocchio as pin
 
 SEED = 20250
+TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,10 @@ class Chain:
         """Tip in the base frame, (4, 4)."""
         pin.framesForwardKinematics(self.model, self._data, q)
         return self._data.oMf[self.tip_frame].homogeneous.copy()
+
+    def unwound(self, q: np.ndarray) -> np.ndarray:
+        """The same posture by whole turns: each joint at its least value that is not below its limit."""
+        return q + TURN * np.ceil((self.lower - q) / TURN)
 
     def targets(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Reachable poses (count, 4, 4) and one random start for each (count, n), the same in every run."""
@@ -96,7 +101,7 @@ def _cut(urdf: Path, base: str | None, tip: str | None, scratch: Path) -> Chain:
         link = joints[-1].find("parent").get("link")
 
     chain = ET.Element("robot", name=urdf.stem)
-    ET.SubElement(chain, "link", name=link)
+    _add_link(chain, link)
     for joint in reversed(joints):
         if joint.get("type") == "continuous":
             joint.set("type", "revolute")
@@ -105,7 +110,14 @@ def _cut(urdf: Path, base: str | None, tip: str | None, scratch: Path) -> Chain:
             limit.set("lower", str(-math.pi))
             limit.set("upper", str(math.pi))
         chain.append(joint)
-        ET.SubElement(chain, "link", name=joint.find("child").get("link"))
+        _add_link(chain, joint.find("child").get("link"))
     path = scratch / urdf.name
     ET.ElementTree(chain).write(path)
     return Chain(urdf.stem, path, link, tip)
+
+
+def _add_link(chain: ET.Element, name: str) -> None:
+    """A link of some mass, which the simulators among the libraries insist on."""
+    inertial = ET.SubElement(ET.SubElement(chain, "link", name=name), "inertial")
+    ET.SubElement(inertial, "mass", value="1")
+    ET.SubElement(inertial, "inertia", ixx="1", ixy="0", ixz="0", iyy="1", iyz="0", izz="1")

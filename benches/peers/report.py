@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from .measure import Times
+from .tracking import STEPS, Followed
 
 REFERENCE = "beetle-ik"
 
@@ -20,6 +21,7 @@ class Row:
     """One line of the table: a library on a robot and task; `times` None with a note where it was not measured."""
 
     task: str
+    order: str
     robot: str
     library: str
     times: Times | None
@@ -29,18 +31,20 @@ class Row:
 def write_csv(rows: list[Row], path: Path) -> None:
     with path.open("w", newline="") as file:
         table = csv.writer(file)
-        table.writerow(["task", "robot", "library", "solved_percent", "median_us", "mean_us", "p99_us", "note"])
+        table.writerow(
+            ["task", "order", "robot", "library", "solved_percent", "median_us", "mean_us", "p99_us", "note"]
+        )
         for row in rows:
             figures = [f"{x:.4g}" for x in asdict(row.times).values()] if row.times else [""] * 4
-            table.writerow([row.task, row.robot, row.library, *figures, row.note])
+            table.writerow([row.task, row.order, row.robot, row.library, *figures, row.note])
 
 
-def times_section(task: str, rows: list[Row]) -> str:
+def times_section(task: str, order: str, rows: list[Row]) -> str:
     """Success, median, mean and p99 of each library on each robot, and what the library takes beside beetle-ik."""
-    cells = {(row.library, row.robot): row for row in rows if row.task == task}
+    cells = {(row.library, row.robot): row for row in rows if (row.task, row.order) == (task, order)}
     libraries = list(dict.fromkeys(library for library, _ in cells))
     robots = list(dict.fromkeys(robot for _, robot in cells))
-    lines = [f"## {task}", "", "Solved % / median / mean / p99 in µs.", ""]
+    lines = [f"## {task}, {order}", "", "Solved % / median / mean / p99 in µs.", ""]
     lines += _header(["library", *robots, f"mean ÷ {REFERENCE}", f"p99 ÷ {REFERENCE}"])
     for library in libraries:
         of_library = [cells.get((library, robot)) for robot in robots]
@@ -67,6 +71,24 @@ def _ratio(cells: dict[tuple[str, str], Row], library: str, robots: list[str], f
     return f"{np.exp(np.mean(logs)):.2f} ({len(logs)} robots)" if logs else "-"
 
 
+def tracking_section(followed: list[Followed]) -> str:
+    """Time and largest error of each library round the circle, and its time beside the reference's."""
+    cells = {(row.library, row.steps): row for row in followed}
+    libraries = list(dict.fromkeys(row.library for row in followed))
+    columns = ["library"]
+    for steps in STEPS:
+        columns += [f"{steps} steps, ms", "largest error, m (points missed)", f"÷ {libraries[0]}"]
+    lines = []
+    for library in libraries:
+        lines.append([library])
+        for steps in STEPS:
+            row, reference = cells[library, steps], cells[libraries[0], steps]
+            ratio = row.milliseconds / reference.milliseconds
+            missed = f" ({row.missed})" if row.missed else ""
+            lines[-1] += [f"{row.milliseconds:.3g}", f"{row.largest_error:.1e}{missed}", f"{ratio:.3g}"]
+    return plain_section("Tracking: a circle of 0.2 m, iiwa14, position, warm-started", columns, lines)
+
+
 def plain_section(title: str, columns: list[str], lines: list[list[str]]) -> str:
     return "\n".join([f"## {title}", "", *_header(columns), *map(_line, lines), ""])
 
@@ -79,14 +101,14 @@ def _line(cells: list[str]) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-def plot(rows: list[Row], task: str, title: str, path: Path) -> None:
+def plot(rows: list[Row], task: str, order: str, title: str, path: Path) -> None:
     """Success against mean time: one colour a library, one point a robot, its geometric mean ringed."""
     import matplotlib as mpl
 
     mpl.use("Agg")
     from matplotlib import pyplot as plt
 
-    measured = [row for row in rows if row.task == task and row.times]
+    measured = [row for row in rows if (row.task, row.order) == (task, order) and row.times]
     libraries = list(dict.fromkeys(row.library for row in measured))
     figure, axes = plt.subplots(figsize=(9.0, 5.0), layout="constrained")
     for library, colour in zip(libraries, plt.get_cmap("tab20")(np.arange(len(libraries))), strict=True):
