@@ -203,7 +203,7 @@ def run(*arguments: str) -> Result:
     return CliRunner().invoke(app, ["plan", *arguments])
 
 
-QUICKLY = ("--velocity", "3.14", "--acceleration", "6.28", "--max-evaluations", "3000", "--method", "tpbso")
+QUICKLY = ("--velocity-limit", "3.14", "--acceleration-limit", "6.28", "--max-evaluations", "3000", "--method", "tpbso")
 
 
 def test_command_line_from_end_to_end(tmp_path: Path) -> None:

@@ -1,5 +1,7 @@
 //! Python values to Rust and back: the only file that knows how numpy lays out memory.
 
+use std::convert::Infallible;
+
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix3, Matrix4};
 use numpy::{
@@ -123,13 +125,18 @@ pub fn times(value: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, bool)> {
     }
 }
 
+/// The N numbers of an array-like of one dimension.
+pub fn entries<const N: usize>(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; N]> {
+    let array = array(what, value)?;
+    match <[f64; N]>::try_from(array.as_slice()?) {
+        Ok(entries) if array.shape().len() == 1 => Ok(entries),
+        _ => Err(invalid(format!("{what}: expected shape ({N},), got {}", shape_text(array.shape())))),
+    }
+}
+
 /// Three numbers.
 pub fn point(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
-    let array = array(what, value)?;
-    match <[f64; 3]>::try_from(array.as_slice()?) {
-        Ok(point) if array.shape().len() == 1 => Ok(point),
-        _ => Err(invalid(format!("{what}: expected shape (3,), got {}", shape_text(array.shape())))),
-    }
+    entries(what, value)
 }
 
 /// A rigid transform from a 4x4 matrix.
@@ -144,6 +151,12 @@ pub fn rigid(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Pose> {
 /// A rigid transform from 16 numbers, row after row.
 pub fn rigid_rows(what: &str, rows: &[f64]) -> PyResult<Pose> {
     pose::from_matrix(what, &Matrix4::from_row_slice(rows)).map_err(raise)
+}
+
+/// The rigid transforms of a pile of 4x4 matrices.
+pub fn rigid_matrices(numbers: &[f64]) -> PyResult<Vec<Pose>> {
+    let matrices = numbers.chunks_exact(16).enumerate();
+    matrices.map(|(i, rows)| rigid_rows(&format!("pose {i}"), rows)).collect()
 }
 
 /// A 3x3 matrix.
@@ -168,6 +181,41 @@ pub fn row<T: Element>(py: Python<'_>, values: Vec<T>) -> Bound<'_, PyArray1<T>>
 /// A read-only 4x4 matrix.
 pub fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyArray2<f64>>> {
     Ok(read_only(PyArray1::from_slice(py, &pose::rows(pose)).reshape([4, 4])?))
+}
+
+/// A point or the like as a class keeps it; Python gets a read-only vector.
+#[derive(Clone, Copy)]
+pub struct Coordinates<const N: usize>(pub [f64; N]);
+
+impl<'py, const N: usize> IntoPyObject<'py> for Coordinates<N> {
+    type Target = PyArray1<f64>;
+    type Output = Bound<'py, Self::Target>;
+    type Error = Infallible;
+
+    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
+        Ok(row(py, self.0.to_vec()))
+    }
+}
+
+/// How something is turned, as a class keeps it; Python gets a read-only matrix (3, 3).
+#[derive(Clone, Copy)]
+pub struct Rotation(Matrix3<f64>);
+
+impl Rotation {
+    /// This one, or that of something that was not turned.
+    pub fn or_none(given: Option<Matrix3<f64>>) -> Self {
+        Self(given.unwrap_or_else(Matrix3::identity))
+    }
+}
+
+impl<'py> IntoPyObject<'py> for Rotation {
+    type Target = PyArrayDyn<f64>;
+    type Output = Bound<'py, Self::Target>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
+        table(py, self.0.transpose().as_slice().to_vec(), &[3, 3])
+    }
 }
 
 fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {

@@ -3,12 +3,13 @@
 use ikcore::math::{Pose, pose};
 use ikcore::task::{Kind, Task};
 use numpy::{PyArray1, PyArray2};
-use pyo3::PyClassInitializer;
+use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::convert::{point, pose_array, rigid, row, summary, vector};
 use crate::error::{invalid, raise};
+use crate::options::NewArguments;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyTask>()?;
@@ -64,7 +65,7 @@ impl PyTask {
         format!("tasks.{}({})", self.core.kind.name(), given.join(", "))
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let options = PyDict::new(py);
         if let Kind::Pointing { axis } = self.core.kind {
             options.set_item("axis", axis)?;
@@ -76,82 +77,72 @@ impl PyTask {
     }
 }
 
-/// What every task takes besides its kind.
+/// What an argument was given.
 type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
-fn task(kind: Kind, weights: Given<'_, '_>, tolerance: Given<'_, '_>, tool: Given<'_, '_>) -> PyResult<PyTask> {
+/// A task of a class that adds nothing to what all of them take besides their kind: weights, tolerance and tool.
+fn made<C>(kind: Kind, [weights, tolerance, tool]: [Given<'_, '_>; 3], class: C) -> PyResult<PyClassInitializer<C>>
+where
+    C: PyClass<BaseType = PyTask>,
+{
     let weights = weights.map(|value| vector("weights", value)).transpose()?;
     let tolerance = tolerance.map(|value| vector("tolerance", value)).transpose()?;
     let tool = tool.map(|value| rigid("tool", value)).transpose()?;
     let core = Task::new(kind, weights.as_deref(), tolerance.as_deref(), tool).map_err(raise)?;
-    Ok(PyTask { core })
+    Ok(PyClassInitializer::from(PyTask { core }).add_subclass(class))
 }
 
-/// The whole pose.
-///
-/// Args:
-///     weights: (6,), factors on x, y, z and on the three components of the rotation vector, along the axes of the target;
-///         zero leaves a component free.
-///     tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
-///     tool: (4, 4), from the tip to what is to reach the target.
-#[pyclass(name = "Pose", module = "beetle_ik.tasks", extends = PyTask, frozen)]
-pub struct PyPose;
+/// The class of a task whose kind says it all.
+macro_rules! task {
+    ($(#[$doc:meta])* $class:ident, $name:literal, $kind:expr) => {
+        $(#[$doc])*
+        #[pyclass(name = $name, module = "beetle_ik.tasks", extends = PyTask, frozen)]
+        pub struct $class;
 
-#[pymethods]
-impl PyPose {
-    #[new]
-    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None))]
-    fn new(
-        weights: Given<'_, '_>,
-        tolerance: Given<'_, '_>,
-        tool: Given<'_, '_>,
-    ) -> PyResult<PyClassInitializer<Self>> {
-        Ok(PyClassInitializer::from(task(Kind::Pose, weights, tolerance, tool)?).add_subclass(Self))
-    }
+        #[pymethods]
+        impl $class {
+            #[new]
+            #[pyo3(signature = (*, weights=None, tolerance=None, tool=None))]
+            fn new(
+                weights: Given<'_, '_>,
+                tolerance: Given<'_, '_>,
+                tool: Given<'_, '_>,
+            ) -> PyResult<PyClassInitializer<Self>> {
+                made($kind, [weights, tolerance, tool], Self)
+            }
+        }
+    };
 }
 
-/// The position alone; the orientation is left free. Takes the position of a target that is a pose.
-///
-/// Args:
-///     weights: (3,), factors on x, y and z of the base; zero leaves a component free.
-///     tolerance: (3,) (m), largest error of each component, instead of the tolerance of the call.
-///     tool: (4, 4), from the tip to what is to reach the target.
-#[pyclass(name = "Position", module = "beetle_ik.tasks", extends = PyTask, frozen)]
-pub struct PyPosition;
-
-#[pymethods]
-impl PyPosition {
-    #[new]
-    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None))]
-    fn new(
-        weights: Given<'_, '_>,
-        tolerance: Given<'_, '_>,
-        tool: Given<'_, '_>,
-    ) -> PyResult<PyClassInitializer<Self>> {
-        Ok(PyClassInitializer::from(task(Kind::Position, weights, tolerance, tool)?).add_subclass(Self))
-    }
+task! {
+    /// The whole pose.
+    ///
+    /// Args:
+    ///     weights: (6,), factors on x, y, z and on the three components of the rotation vector, along the axes of the target;
+    ///         zero leaves a component free.
+    ///     tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
+    ///     tool: (4, 4), from the tip to what is to reach the target.
+    PyPose, "Pose", Kind::Pose
 }
 
-/// The orientation alone; the position is left free.
-///
-/// Args:
-///     weights: (3,), factors on the components of the rotation vector along the axes of the target; zero leaves one free.
-///     tolerance: (3,) (rad), largest error of each component, instead of the tolerance of the call.
-///     tool: (4, 4), from the tip to what is to reach the target.
-#[pyclass(name = "Orientation", module = "beetle_ik.tasks", extends = PyTask, frozen)]
-pub struct PyOrientation;
+task! {
+    /// The position alone; the orientation is left free. Takes the position of a target that is a pose.
+    ///
+    /// Args:
+    ///     weights: (3,), factors on x, y and z of the base; zero leaves a component free.
+    ///     tolerance: (3,) (m), largest error of each component, instead of the tolerance of the call.
+    ///     tool: (4, 4), from the tip to what is to reach the target.
+    PyPosition, "Position", Kind::Position
+}
 
-#[pymethods]
-impl PyOrientation {
-    #[new]
-    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None))]
-    fn new(
-        weights: Given<'_, '_>,
-        tolerance: Given<'_, '_>,
-        tool: Given<'_, '_>,
-    ) -> PyResult<PyClassInitializer<Self>> {
-        Ok(PyClassInitializer::from(task(Kind::Orientation, weights, tolerance, tool)?).add_subclass(Self))
-    }
+task! {
+    /// The orientation alone; the position is left free.
+    ///
+    /// Args:
+    ///     weights: (3,), factors on the components of the rotation vector along the axes of the target; zero leaves one free.
+    ///     tolerance: (3,) (rad), largest error of each component, instead of the tolerance of the call.
+    ///     tool: (4, 4), from the tip to what is to reach the target.
+    PyOrientation, "Orientation", Kind::Orientation
 }
 
 /// The position, and the direction of one axis of the tip; the spin about it is left free. `rotation_error` is the angle
@@ -176,7 +167,7 @@ impl PyPointing {
         tool: Given<'_, '_>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let axis = axis.map_or(Ok([0.0, 0.0, 1.0]), |axis| point("axis", axis))?;
-        Ok(PyClassInitializer::from(task(Kind::Pointing { axis }, weights, tolerance, tool)?).add_subclass(Self))
+        made(Kind::Pointing { axis }, [weights, tolerance, tool], Self)
     }
 
     /// In the tip's coordinates (3,).

@@ -4,6 +4,8 @@
 use std::f64::consts::PI;
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use super::circle_swarm::{CircleSwarm, Flight};
 use super::linkage::{Linkage, Measure, Region};
 use crate::error::Result;
@@ -29,7 +31,7 @@ pub struct SearchOptions {
 }
 
 /// The best posture found.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Posture {
     /// The configuration (n,) (rad); as near as the tip gets where there is no posture.
     pub q: Vec<f64>,

@@ -7,9 +7,9 @@ mod jacobian_transpose;
 mod levenberg_marquardt;
 mod multi_start;
 mod newton_raphson;
-mod options;
 mod pso;
 mod rate;
+mod schedule;
 mod stop;
 mod swarm;
 

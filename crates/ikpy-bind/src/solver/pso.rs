@@ -3,10 +3,10 @@
 use ikcore::solver::Pso;
 use ikcore::solver::pso::{Accept, Form};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 
-use super::options::{SolverOption, limited, schedule, show_schedule};
+use super::schedule::{limited, schedule, scheduled, show_schedule};
 use crate::error::raise;
+use crate::options::{NewArguments, Shown, keywords};
 
 /// Particle swarm optimisation: uses values alone.
 ///
@@ -29,13 +29,15 @@ use crate::error::raise;
 #[derive(Clone, PartialEq)]
 pub struct PyPso(pub Pso);
 
+scheduled!(PyPso);
+
 #[pymethods]
 impl PyPso {
     #[new]
-    #[pyo3(signature = (*, population=Pso::default().schedule.population.give(), form="constriction", inertia=None, c1=None,
+    #[pyo3(signature = (*, population=Pso::default().schedule.population.value(), form="constriction", inertia=None, c1=None,
                         c2=None, velocity_limit=Pso::default().velocity_limit, accept="always",
-                        max_generations=limited(Pso::default().schedule.max_generations).give(),
-                        stall_generations=limited(Pso::default().schedule.stall_generations).give()))]
+                        max_generations=limited(Pso::default().schedule.max_generations).value(),
+                        stall_generations=limited(Pso::default().schedule.stall_generations).value()))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         population: i128,
@@ -59,12 +61,6 @@ impl PyPso {
         };
         solver.validate().map_err(raise)?;
         Ok(Self(solver))
-    }
-
-    /// Particles.
-    #[getter]
-    fn population(&self) -> usize {
-        self.0.schedule.population
     }
 
     /// "constriction" or "inertia".
@@ -106,39 +102,18 @@ impl PyPso {
         self.0.accept.to_string()
     }
 
-    /// Generations after which it gives up; None: as many as the budget allows.
-    #[getter]
-    fn max_generations(&self) -> Option<usize> {
-        limited(self.0.schedule.max_generations)
-    }
-
-    /// Generations without gain after which it gives up; None: never.
-    #[getter]
-    fn stall_generations(&self) -> Option<usize> {
-        limited(self.0.schedule.stall_generations)
-    }
-
     fn __repr__(&self) -> String {
         let Pso { schedule, form, c1, c2, velocity_limit, accept } = &self.0;
-        let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={weight}, "));
+        let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={weight:?}, "));
         format!(
-            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={velocity_limit}, accept='{accept}', {})",
+            "PSO(population={}, form='{form}', {inertia}c1={c1:?}, c2={c2:?}, velocity_limit={velocity_limit:?}, accept='{accept}', {})",
             schedule.population,
             show_schedule(schedule)
         )
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("population", self.population())?;
-        options.set_item("form", self.form())?;
-        options.set_item("inertia", self.inertia())?;
-        options.set_item("c1", self.0.c1)?;
-        options.set_item("c2", self.0.c2)?;
-        options.set_item("velocity_limit", self.0.velocity_limit)?;
-        options.set_item("accept", self.accept())?;
-        options.set_item("max_generations", self.max_generations())?;
-        options.set_item("stall_generations", self.stall_generations())?;
-        Ok((PyTuple::empty(py), options))
+    fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
+        let own = ["form", "inertia", "c1", "c2", "velocity_limit", "accept"];
+        keywords(slf, &[&["population", "max_generations", "stall_generations"], &own[..]].concat())
     }
 }

@@ -6,12 +6,13 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use super::PyRobot;
 use crate::convert::{point, pose_array, rigid, row};
 use crate::error::raise;
 
 /// Everything between base and tip: ("fixed", pose (4, 4)), ("moving", joint, turns, axis (3,), scale, offset) or ("link",
 /// name) each.
-pub fn elements<'py>(py: Python<'py>, robot: &Robot) -> PyResult<Vec<Bound<'py, PyTuple>>> {
+fn elements<'py>(py: Python<'py>, robot: &Robot) -> PyResult<Vec<Bound<'py, PyTuple>>> {
     robot.elements().iter().map(|element| shown(py, element)).collect()
 }
 
@@ -27,17 +28,17 @@ fn shown<'py>(py: Python<'py>, element: &Element) -> PyResult<Bound<'py, PyTuple
 }
 
 /// Poses of the first link, and of the tip in the frame of the last.
-pub fn ends<'py>(py: Python<'py>, robot: &Robot) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
+fn ends<'py>(py: Python<'py>, robot: &Robot) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
     Ok([pose_array(py, robot.base())?, pose_array(py, robot.tool())?])
 }
 
 /// (name, kind, lower, upper, velocity).
-pub type JointParts = (String, String, f64, f64, f64);
+type JointParts = (String, String, f64, f64, f64);
 /// (joint, turns, axis, scale, offset).
 type MovingParts<'py> = (usize, bool, Bound<'py, PyAny>, f64, f64);
 
 /// The robot made of these joints, and from link `base` on of what [`elements`] shows.
-pub fn built(name: &str, base: &str, joints: Vec<JointParts>, elements: &[Bound<'_, PyTuple>]) -> PyResult<Robot> {
+fn built(name: &str, base: &str, joints: Vec<JointParts>, elements: &[Bound<'_, PyTuple>]) -> PyResult<Robot> {
     let mut chain = ChainBuilder::new(name, base);
     for (name, kind, lower, upper, velocity) in joints {
         let kind: JointKind = kind.parse().map_err(raise)?;
@@ -61,4 +62,25 @@ fn append(chain: &mut ChainBuilder, element: &Bound<'_, PyTuple>) -> PyResult<()
         }
     }
     Ok(())
+}
+
+#[pymethods]
+impl PyRobot {
+    /// For `beetle_ik.interop`: (base (4, 4), elements, tool (4, 4)), as in `_from_chain`.
+    fn _chain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let [base, tool] = ends(py, &self.core)?;
+        (base, elements(py, &self.core)?, tool).into_pyobject(py)
+    }
+
+    /// For `beetle_ik.interop`: joints are (name, kind, lower, upper, velocity), elements ("fixed", pose (4, 4)), ("moving",
+    /// joint, turns, axis (3,), scale, offset) or ("link", name).
+    #[staticmethod]
+    fn _from_chain(
+        name: &str,
+        base: &str,
+        joints: Vec<JointParts>,
+        elements: Vec<Bound<'_, PyTuple>>,
+    ) -> PyResult<Self> {
+        built(name, base, joints, &elements).map(Self::from)
+    }
 }

@@ -11,6 +11,7 @@ use pyo3::types::{PyDict, PyList, PyListMethods, PyTuple};
 
 use crate::convert::{array, count, shape_text, summary, vector};
 use crate::error::{invalid, raise};
+use crate::options::NewArguments;
 use crate::robot::PyRobot;
 
 /// A robot that goes at once where it is sent, with a sensor at its tip; it runs without Python in the loop. Give it
@@ -74,7 +75,7 @@ impl PyKinematicPlant {
         format!("<KinematicPlant of '{}': noise={}, seed={}>", self.core.robot().name(), self.noise(), self.seed)
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let options = PyDict::new(py);
         options.set_item("noise", self.noise())?;
         options.set_item("seed", self.seed)?;

@@ -1,7 +1,6 @@
 //! `track` and `TrackResult`.
 
 use ikcore::limits::LimitAt;
-use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
 use ikcore::tracking::{self, Record, TickRule, TrackOptions};
@@ -9,25 +8,36 @@ use ikcore::trajectory::Trajectory;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 
+use super::record::{Columns, counts, record};
+use super::weighted_pseudo_inverse::PyWeightedPseudoInverse;
 use crate::convert::{count, row, table, vector};
 use crate::error::raise;
 use crate::goal::read_goals;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
-use crate::monitor::{Progress, Watcher};
+use crate::monitor::watched;
+use crate::outcome::outcome;
 use crate::path::PyPath;
 use crate::robot::PyRobot;
-use crate::solver::{any_solver, status};
+use crate::solver::any_solver;
 use crate::stored::{self, Reduced};
 use crate::task::read_task;
 use crate::trajectory::PyTrajectory;
 use crate::upward;
-use crate::weighted_pseudo_inverse::PyWeightedPseudoInverse;
 
 /// The record of a track: k = steps + 1 rows; row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
 #[pyclass(name = "TrackResult", module = "beetle_ik", frozen)]
 pub struct PyTrackResult {
     core: Record,
-    tables: Tables,
+    columns: Columns,
+    /// The limit that each velocity was held against (k, n); NaN in row 0, inf where there is none.
+    #[pyo3(get)]
+    velocity_limit: Py<PyArrayDyn<f64>>,
+    /// Angles to the wanted orientations (k,) (rad); NaN where none was asked for.
+    #[pyo3(get)]
+    rotation_error: Py<PyArray1<f64>>,
+    /// Iterations in each step (k,): passes of BAS, steps of Levenberg-Marquardt.
+    #[pyo3(get)]
+    step_iterations: Py<PyArray1<i64>>,
     /// The robot that was tracked.
     #[pyo3(get)]
     robot: Py<PyRobot>,
@@ -36,163 +46,43 @@ pub struct PyTrackResult {
     limits: Py<PyLimits>,
 }
 
-/// The arrays of a record, made once.
-struct Tables {
-    time: Py<PyArray1<f64>>,
-    q: Py<PyArrayDyn<f64>>,
-    qd: Py<PyArrayDyn<f64>>,
-    velocity_limit: Py<PyArrayDyn<f64>>,
-    position: Py<PyArrayDyn<f64>>,
-    reference: Py<PyArrayDyn<f64>>,
-    position_error: Py<PyArray1<f64>>,
-    rotation_error: Py<PyArray1<f64>>,
-    step_status: Py<PyArray1<u8>>,
-    step_evaluations: Py<PyArray1<i64>>,
-    step_iterations: Py<PyArray1<i64>>,
+record! {
+    PyTrackResult = |result| result.core,
+    /// Configurations (k, n) (rad, m).
+    q,
+    /// Positions of the tip (k, 3) (m).
+    position,
+    /// Evaluations of the forward kinematics in each step (k,).
+    step_evaluations,
+    /// Largest excess of a displacement over its limit times dt, or of a position over its limit (rad, m); 0 within
+    /// rounding.
+    max_violation,
 }
 
-impl Tables {
-    fn new(py: Python<'_>, record: &Record) -> PyResult<Self> {
-        let (k, n) = (record.time.len(), record.dof);
-        let counts = |counts: &[usize]| row(py, counts.iter().map(|count| *count as i64).collect()).unbind();
-        Ok(Self {
-            time: row(py, record.time.clone()).unbind(),
-            q: table(py, record.q.clone(), &[k, n])?.unbind(),
-            qd: table(py, record.qd.clone(), &[k, n])?.unbind(),
-            velocity_limit: table(py, record.velocity_limit.clone(), &[k, n])?.unbind(),
-            position: table(py, record.position.as_flattened().to_vec(), &[k, 3])?.unbind(),
-            reference: table(py, record.reference.as_flattened().to_vec(), &[k, 3])?.unbind(),
-            position_error: row(py, record.position_error.clone()).unbind(),
-            rotation_error: row(py, record.rotation_error.clone()).unbind(),
-            step_status: row(py, record.step_status.iter().map(|status| *status as u8).collect()).unbind(),
-            step_evaluations: counts(&record.step_evaluations),
-            step_iterations: counts(&record.step_iterations),
-        })
-    }
+outcome! {
+    PyTrackResult = |result|
+    /// Whether the tip came into the error band and stayed there.
+    success,
+    /// SOLVED as `success`; LOST if the tip left its band again; else how the last step ended.
+    status: result.core.status,
+    message: result.core.message(),
+    /// Evaluations of the forward kinematics in all.
+    evaluations: result.core.evaluations(),
+    elapsed: result.core.elapsed,
 }
 
 #[pymethods]
 impl PyTrackResult {
-    /// Times (k,) (s).
-    #[getter]
-    fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.tables.time.bind(py).clone()
-    }
-
-    /// Configurations (k, n) (rad, m).
-    #[getter]
-    fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.tables.q.bind(py).clone()
-    }
-
-    /// Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt, zero in row 0.
-    #[getter]
-    fn qd<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.tables.qd.bind(py).clone()
-    }
-
-    /// The limit that each velocity was held against (k, n); NaN in row 0, inf where there is none.
-    #[getter]
-    fn velocity_limit<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.tables.velocity_limit.bind(py).clone()
-    }
-
-    /// Positions of the tip (k, 3) (m).
-    #[getter]
-    fn position<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.tables.position.bind(py).clone()
-    }
-
-    /// Wanted positions (k, 3) (m).
-    #[getter]
-    fn reference<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.tables.reference.bind(py).clone()
-    }
-
-    /// Distances between the two (k,) (m).
-    #[getter]
-    fn position_error<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.tables.position_error.bind(py).clone()
-    }
-
-    /// Angles to the wanted orientations (k,) (rad); NaN where none was asked for.
-    #[getter]
-    fn rotation_error<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.tables.rotation_error.bind(py).clone()
-    }
-
-    /// The error band (m), as asked.
-    #[getter]
-    fn position_tolerance(&self) -> f64 {
-        self.core.criterion.tolerance.position
-    }
-
-    /// The same for orientations (rad), as asked.
+    /// The error band of orientations (rad), as asked.
     #[getter]
     fn rotation_tolerance(&self) -> f64 {
         self.core.criterion.tolerance.rotation
-    }
-
-    /// How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED
-    /// neither.
-    #[getter]
-    fn step_status<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
-        self.tables.step_status.bind(py).clone()
-    }
-
-    /// Evaluations of the forward kinematics in each step (k,).
-    #[getter]
-    fn step_evaluations<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        self.tables.step_evaluations.bind(py).clone()
-    }
-
-    /// Iterations in each step (k,): passes of BAS, steps of Levenberg-Marquardt.
-    #[getter]
-    fn step_iterations<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        self.tables.step_iterations.bind(py).clone()
-    }
-
-    /// Largest excess of a displacement over its limit times dt, or of a position over its limit (rad, m); 0 within
-    /// rounding.
-    #[getter]
-    fn max_violation(&self) -> f64 {
-        self.core.max_violation
     }
 
     /// Smallest distance of a speed from its limit (rad/s, m/s); inf without limits.
     #[getter]
     fn limit_margin(&self) -> f64 {
         self.core.limit_margin
-    }
-
-    /// Whether the tip came into the error band and stayed there.
-    #[getter]
-    fn success(&self) -> bool {
-        self.core.status == Status::Solved
-    }
-
-    /// SOLVED as `success`; LOST if the tip left its band again; else how the last step ended.
-    #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        status(py, self.core.status)
-    }
-
-    /// What happened, and what to try.
-    #[getter]
-    fn message(&self) -> String {
-        self.core.message()
-    }
-
-    /// Evaluations of the forward kinematics in all.
-    #[getter]
-    fn evaluations(&self) -> usize {
-        self.core.evaluations()
-    }
-
-    /// Time taken (s).
-    #[getter]
-    fn elapsed(&self) -> f64 {
-        self.core.elapsed.as_secs_f64()
     }
 
     /// The joint motion, straight between the ticks: its velocities are exactly `qd`.
@@ -207,10 +97,6 @@ impl PyTrackResult {
     /// A matplotlib figure: the tip's path, the error, joint angles, velocities with their limits, evaluations.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         upward::plot(slf.into_any(), "track")
-    }
-
-    fn __len__(&self) -> usize {
-        self.core.time.len()
     }
 
     fn __repr__(&self) -> String {
@@ -231,7 +117,15 @@ impl PyTrackResult {
 
 impl PyTrackResult {
     fn new(py: Python<'_>, core: Record, robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
-        Ok(Self { tables: Tables::new(py, &core)?, robot, limits, core })
+        Ok(Self {
+            columns: Columns::new(py, &core)?,
+            velocity_limit: table(py, core.velocity_limit.clone(), &[core.time.len(), core.dof])?.unbind(),
+            rotation_error: row(py, core.rotation_error.clone()).unbind(),
+            step_iterations: counts(py, &core.step_iterations),
+            robot,
+            limits,
+            core,
+        })
     }
 }
 
@@ -301,12 +195,9 @@ pub fn track(
         limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
         seed: count("seed", seed)?,
     };
-    let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
-    let mut watcher = Watcher::with_progress(progress.update(py));
-    let record = py.detach(|| tracking::track(&arm, &reference, start.as_deref(), &options, &mut watcher));
-    progress.close(py)?;
-    watcher.finish()?;
-    PyTrackResult::new(py, record.map_err(raise)?, robot.clone().unbind(), in_force)
+    let record =
+        watched(py, progress, |watcher| tracking::track(&arm, &reference, start.as_deref(), &options, watcher))?;
+    PyTrackResult::new(py, record, robot.clone().unbind(), in_force)
 }
 
 /// A rule, a solver, or the library's own rule.

@@ -1,6 +1,6 @@
 //! `ControlSession`, and controllers as arguments.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
 
 use ikcore::solver::stop::Stopwatch;
 use ikcore::tracking::Controller;
@@ -8,12 +8,13 @@ use ikcore::tracking::controller::Session;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
+use super::session::in_progress;
+use super::step::PyStep;
+use super::znnbas::PyZnnbas;
 use crate::convert::{count, point, row, summary, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::solver::PyBroydenBas;
-use crate::tracker::PyStep;
-use crate::znnbas::PyZnnbas;
 
 /// A controller in your own loop, with your own hardware.
 ///
@@ -33,6 +34,8 @@ pub struct PyControlSession {
     limits: Py<PyLimits>,
 }
 
+in_progress!(PyControlSession, Session);
+
 #[pymethods]
 impl PyControlSession {
     /// Where to send the arm (n,) (rad, m), so that its tip comes to `target` (3,) (m) by the end of the tick. Within the
@@ -48,25 +51,10 @@ impl PyControlSession {
         let position = point("position", position)?;
         let (watch, mut session) = (Stopwatch::start(), self.session());
         let step = session.observe(position).map_err(raise)?;
-        Ok(step.map(|step| PyStep::new(py, step, (session.q(), session.qd()), &self.limits, watch)))
-    }
-
-    /// The configuration accepted last (n,) (rad, m).
-    #[getter]
-    fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.session().q().to_vec())
-    }
-
-    /// Time of that configuration (s).
-    #[getter]
-    fn time(&self) -> f64 {
-        self.session().time()
-    }
-
-    /// Time step (s).
-    #[getter]
-    fn dt(&self) -> f64 {
-        self.session().dt()
+        Ok(step.map(|step| {
+            let motion = [session.q().to_vec(), session.qd().to_vec()];
+            PyStep::new(py, step, motion, self.limits.clone_ref(py), watch.elapsed())
+        }))
     }
 
     fn __repr__(&self) -> String {
@@ -76,7 +64,7 @@ impl PyControlSession {
 }
 
 impl PyControlSession {
-    pub fn new(
+    fn new(
         controller: &Controller,
         start: &Bound<'_, PyAny>,
         dt: f64,
@@ -91,21 +79,40 @@ impl PyControlSession {
         let session = Session::new(controller, &start, dt, limits, position_tolerance, count("seed", seed)?);
         Ok(Self { session: Mutex::new(session.map_err(raise)?), limits: in_force })
     }
-
-    /// A panic elsewhere cannot have left the session half-changed: it is written in one go at the end of a call.
-    fn session(&self) -> MutexGuard<'_, Session> {
-        self.session.lock().unwrap_or_else(PoisonError::into_inner)
-    }
 }
 
 /// A controller argument.
 pub fn controller(controller: Option<&Bound<'_, PyAny>>) -> PyResult<Controller> {
     let Some(controller) = controller else { return Ok(Controller::default()) };
     if let Ok(broyden) = controller.cast::<PyBroydenBas>() {
-        return Ok(Controller::BroydenBas(broyden.get().0));
+        return Ok(broyden.get().controller());
     }
     if let Ok(znnbas) = controller.cast::<PyZnnbas>() {
         return Ok(znnbas.get().controller());
     }
     Err(invalid(format!("controller must be BroydenBAS or ZNNBAS, got {}", summary(controller))))
 }
+
+/// The method `session` of a controller's class.
+macro_rules! session {
+    ($class:ty) => {
+        #[pymethods]
+        impl $class {
+            /// The controller at work in your own loop, from `start` (n,) and t = 0: see `ControlSession`.
+            #[pyo3(signature = (start, *, dt, limits=None, position_tolerance=1e-9, seed=0))]
+            fn session(
+                &self,
+                start: &Bound<'_, PyAny>,
+                dt: f64,
+                limits: Option<&PyLimits>,
+                position_tolerance: f64,
+                seed: i128,
+            ) -> PyResult<PyControlSession> {
+                PyControlSession::new(&self.controller(), start, dt, limits, position_tolerance, seed)
+            }
+        }
+    };
+}
+
+session!(PyBroydenBas);
+session!(PyZnnbas);

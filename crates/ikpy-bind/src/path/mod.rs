@@ -1,28 +1,30 @@
-//! `Path` and the functions of `beetle_ik.paths`.
+//! `Path`: a curve and an orientation, of the core or of a Python function.
+
+mod curves;
 
 use ikcore::math::ticks::ticks;
 use ikcore::nalgebra::Matrix3;
-use ikcore::path::{Circle, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples};
+use ikcore::path::{Path, Reference};
 use ikcore::stored::{from_bytes, to_bytes};
-use numpy::{PyArray1, PyUntypedArrayMethods};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
-use crate::convert::{Array, array, count, matrix3, point, rigid_rows, row, shape_text, summary, table, times, vector};
+use crate::convert::{Array, matrix3, point, row, table, times};
 use crate::error::{invalid, raise};
 use crate::limits::CALLS_BETWEEN_LOOKS;
 use crate::stored::{self, Reduced};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyPath>()?;
-    module.add_function(wrap_pyfunction!(circle, module)?)?;
-    module.add_function(wrap_pyfunction!(letter_m, module)?)?;
-    module.add_function(wrap_pyfunction!(hypotrochoid, module)?)?;
-    module.add_function(wrap_pyfunction!(pentagram, module)?)?;
-    module.add_function(wrap_pyfunction!(rose, module)?)?;
-    module.add_function(wrap_pyfunction!(polyline, module)?)?;
-    module.add_function(wrap_pyfunction!(from_samples, module)?)?;
-    module.add_function(wrap_pyfunction!(from_function, module)?)
+    module.add_function(wrap_pyfunction!(curves::circle, module)?)?;
+    module.add_function(wrap_pyfunction!(curves::letter_m, module)?)?;
+    module.add_function(wrap_pyfunction!(curves::hypotrochoid, module)?)?;
+    module.add_function(wrap_pyfunction!(curves::pentagram, module)?)?;
+    module.add_function(wrap_pyfunction!(curves::rose, module)?)?;
+    module.add_function(wrap_pyfunction!(curves::polyline, module)?)?;
+    module.add_function(wrap_pyfunction!(curves::from_samples, module)?)?;
+    module.add_function(wrap_pyfunction!(curves::from_function, module)?)
 }
 
 /// A reference for the tip: a position for every time in [0, duration], and an orientation where one was given. Times
@@ -154,6 +156,11 @@ impl Curve {
 }
 
 impl PyPath {
+    /// The path that a function of t describes.
+    fn of_function(function: Py<PyAny>, duration: f64) -> Self {
+        Self { curve: Curve::Function { function, duration }, orientation: Orientation::OfCurve }
+    }
+
     /// What makes it what it is: (curve, duration, orientation), each as bytes or as the function that was given.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let curve = match &self.curve {
@@ -247,115 +254,4 @@ fn each<'py, const D: usize>(
     let mut full = if single { vec![] } else { vec![times.len()] };
     full.extend(shape);
     table(py, values, &full)
-}
-
-fn plane(center: &Bound<'_, PyAny>, a: [f64; 3], b: [f64; 3]) -> PyResult<Plane> {
-    Plane::new(point("center", center)?, a, b).map_err(raise)
-}
-
-/// A circle about `center` (3,) (m) of this diameter (m), once around in `duration` (s), from the side of `a` towards
-/// `b`: eq. (14) of Cheng et al. (2020). `a` and `b` (3,) are orthonormal.
-#[pyfunction]
-#[pyo3(signature = (center, diameter, duration, *, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
-       text_signature = "(center, diameter, duration, *, a=(1, 0, 0), b=(0, 1, 0))")]
-fn circle(center: &Bound<'_, PyAny>, diameter: f64, duration: f64, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
-    Ok(Path::new(Circle::new(plane(center, a, b)?, diameter, duration).map_err(raise)?).into())
-}
-
-/// The letter M about `center` (3,), `width` along `a` and `height` along `b` (m), its four strokes equally long in
-/// time (Khan et al. 2022).
-#[pyfunction]
-#[pyo3(signature = (center, duration, *, width, height, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]),
-       text_signature = "(center, duration, *, width, height, a=(0, 1, 0), b=(0, 0, 1))")]
-fn letter_m(
-    center: &Bound<'_, PyAny>,
-    duration: f64,
-    width: f64,
-    height: f64,
-    a: [f64; 3],
-    b: [f64; 3],
-) -> PyResult<PyPath> {
-    Ok(Path::new(Polyline::letter_m(&plane(center, a, b)?, width, height, duration).map_err(raise)?).into())
-}
-
-/// A hypotrochoid about `center` (3,): the path of a point at `distance` from the centre of a circle that rolls inside
-/// another (m). Eq. (20) of Khan et al. (2022) as it was meant; the ratio of the radii is one of small whole numbers.
-#[pyfunction]
-#[pyo3(signature = (center, duration, *, outer_radius, inner_radius, distance, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]),
-       text_signature = "(center, duration, *, outer_radius, inner_radius, distance, a=(0, 1, 0), b=(0, 0, 1))")]
-fn hypotrochoid(
-    center: &Bound<'_, PyAny>,
-    duration: f64,
-    outer_radius: f64,
-    inner_radius: f64,
-    distance: f64,
-    a: [f64; 3],
-    b: [f64; 3],
-) -> PyResult<PyPath> {
-    let curve = Hypotrochoid::new(plane(center, a, b)?, outer_radius, inner_radius, distance, duration);
-    Ok(Path::new(curve.map_err(raise)?).into())
-}
-
-/// A five-pointed star about `center` (3,), its points `radius` (m) away, drawn in five strokes at constant speed from
-/// the point on the side of `b`.
-#[pyfunction]
-#[pyo3(signature = (center, duration, *, radius, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
-       text_signature = "(center, duration, *, radius, a=(1, 0, 0), b=(0, 1, 0))")]
-fn pentagram(center: &Bound<'_, PyAny>, duration: f64, radius: f64, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
-    Ok(Path::new(Polyline::pentagram(&plane(center, a, b)?, radius, duration).map_err(raise)?).into())
-}
-
-/// A rose about `center` (3,): at angle u the distance is radius cos(k u) (m). Odd k gives k petals, even k 2 k.
-#[pyfunction]
-#[pyo3(signature = (center, duration, *, radius, k, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
-       text_signature = "(center, duration, *, radius, k, a=(1, 0, 0), b=(0, 1, 0))")]
-fn rose(center: &Bound<'_, PyAny>, duration: f64, radius: f64, k: i128, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
-    Ok(Path::new(Rose::new(plane(center, a, b)?, radius, count("k", k)?, duration).map_err(raise)?).into())
-}
-
-/// Straight strokes through `points` (k, 3) (m) at constant speed, `duration` (s) in all.
-#[pyfunction]
-fn polyline(points: &Bound<'_, PyAny>, duration: f64) -> PyResult<PyPath> {
-    Ok(Path::new(Polyline::new(&positions("points", points)?, duration).map_err(raise)?).into())
-}
-
-/// The path through samples: `time` (k,) (s) from 0, and positions (k, 3) (m) or poses (k, 4, 4). Straight in between,
-/// rotations along the shortest turn.
-#[pyfunction]
-fn from_samples(time: &Bound<'_, PyAny>, positions_or_poses: &Bound<'_, PyAny>) -> PyResult<PyPath> {
-    let time = vector("time", time)?;
-    let values = array("positions_or_poses", positions_or_poses)?;
-    let samples = match values.shape() {
-        [_, 4, 4] => {
-            let matrices = values.as_slice()?.chunks_exact(16).enumerate();
-            let poses =
-                matrices.map(|(i, rows)| rigid_rows(&format!("pose {i}"), rows)).collect::<PyResult<Vec<_>>>()?;
-            Samples::from_poses(time, &poses)
-        }
-        _ => Samples::from_positions(time, positions("positions_or_poses", positions_or_poses)?),
-    };
-    Ok(Path::new(samples.map_err(raise)?).into())
-}
-
-/// The path that `function(t)` describes: t (s) in [0, duration] to a position (3,) (m). It is called before a tracker
-/// runs, at the times of its ticks.
-#[pyfunction]
-fn from_function(function: &Bound<'_, PyAny>, duration: f64) -> PyResult<PyPath> {
-    if !function.is_callable() {
-        return Err(invalid(format!("function must be a callable of t, got {}", summary(function))));
-    }
-    if !(duration.is_finite() && duration > 0.0) {
-        return Err(invalid(format!("duration must be positive and finite, got {duration}")));
-    }
-    let curve = Curve::Function { function: function.clone().unbind(), duration };
-    Ok(PyPath { curve, orientation: Orientation::OfCurve })
-}
-
-fn positions(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; 3]>> {
-    let values = array(what, value)?;
-    match values.shape() {
-        [_, 3] => Ok(values.as_slice()?.as_chunks().0.to_vec()),
-        [0] => Ok(vec![]),
-        shape => Err(invalid(format!("{what}: expected shape (k, 3), got {}", shape_text(shape)))),
-    }
 }

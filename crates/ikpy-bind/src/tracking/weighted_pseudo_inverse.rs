@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use ikcore::tracking::{Integrator, TickRule, WeightedPseudoInverse};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 
 use crate::convert::{row, vector};
 use crate::error::raise;
+use crate::options::{NewArguments, Shown, keywords};
 use crate::trajectory::PyTrajectory;
 
 /// Resolved motion rate, a tick rule for `track` and `Tracker`: joint velocities from the velocity of the target by the
@@ -17,8 +17,8 @@ use crate::trajectory::PyTrajectory;
 ///
 /// with q0' down the gradient of the goals and towards `posture`. Joints at a limit leave their share to the others.
 ///
-/// Defaults: `WeightedPseudoInverse(gain=None, integrator='euler', weights=None, posture=None, posture_gain=20,
-/// damping=0)`.
+/// Defaults: `WeightedPseudoInverse(gain=None, integrator='euler', weights=None, posture=None, posture_gain=20.0,
+/// damping=0.0)`.
 ///
 /// Args:
 ///     gain: share of the error that is taken back per second (1/s); below 2 / dt. None: half of it in every tick.
@@ -96,26 +96,19 @@ impl PyWeightedPseudoInverse {
 
     fn __repr__(&self) -> String {
         let WeightedPseudoInverse { gain, integrator, weights, posture, posture_gain, damping } = &self.0;
-        let gain = gain.map_or("None".into(), |gain| gain.to_string());
+        let gain = gain.text();
         let weights = weights.as_ref().map_or("None".into(), |weights| format!("{weights:?}"));
         let posture =
             posture.as_ref().map_or("None".into(), |posture| format!("<Trajectory of {} s>", posture.duration()));
         format!(
             "WeightedPseudoInverse(gain={gain}, integrator='{}', weights={weights}, posture={posture}, \
-             posture_gain={posture_gain}, damping={damping})",
+             posture_gain={posture_gain:?}, damping={damping:?})",
             integrator.name()
         )
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("gain", self.0.gain)?;
-        options.set_item("integrator", self.integrator())?;
-        options.set_item("weights", self.weights(py))?;
-        options.set_item("posture", self.posture())?;
-        options.set_item("posture_gain", self.0.posture_gain)?;
-        options.set_item("damping", self.0.damping)?;
-        Ok((PyTuple::empty(py), options))
+    fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
+        keywords(slf, &["gain", "integrator", "weights", "posture", "posture_gain", "damping"])
     }
 }
 

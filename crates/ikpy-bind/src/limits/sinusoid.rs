@@ -1,11 +1,11 @@
-//! `Sinusoid`, and numbers that are one for all joints or one each.
+//! `Sinusoid`.
 
 use ikcore::limits::{Profile, Sinusoid};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
-use crate::convert::{row, scalar_or_vector};
+use super::numbers::Numbers;
 use crate::error::invalid;
+use crate::options::{NewArguments, keywords};
 
 /// A limit that oscillates: mean + amplitude sin(angular_frequency t + phase), eq. (7) of Cheng et al. (2020) with its
 /// sign mended.
@@ -21,38 +21,6 @@ pub struct PySinusoid {
     amplitude: Numbers,
     angular_frequency: Numbers,
     phase: Numbers,
-}
-
-/// A number, or one per joint.
-#[derive(Clone, PartialEq)]
-pub struct Numbers {
-    pub values: Vec<f64>,
-    pub single: bool,
-}
-
-impl Numbers {
-    pub fn read(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let (values, single) = scalar_or_vector(what, value)?;
-        if values.is_empty() {
-            return Err(invalid(format!("{what}: expected a number or one per joint, got none")));
-        }
-        Ok(Self { values, single })
-    }
-
-    fn at(&self, joint: usize) -> f64 {
-        self.values[if self.values.len() == 1 { 0 } else { joint }]
-    }
-
-    pub fn show<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        if self.single {
-            return Ok(self.values[0].into_pyobject(py)?.into_any());
-        }
-        Ok(row(py, self.values.clone()).into_any())
-    }
-
-    pub fn repr(&self) -> String {
-        if self.single { format!("{:?}", self.values[0]) } else { format!("{:?}", self.values) }
-    }
 }
 
 #[pymethods]
@@ -111,13 +79,8 @@ impl PySinusoid {
         )
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("mean", self.mean(py)?)?;
-        options.set_item("amplitude", self.amplitude(py)?)?;
-        options.set_item("angular_frequency", self.angular_frequency(py)?)?;
-        options.set_item("phase", self.phase(py)?)?;
-        Ok(((), options))
+    fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
+        keywords(slf, &["mean", "amplitude", "angular_frequency", "phase"])
     }
 }
 

@@ -3,13 +3,11 @@
 use ikcore::tracking::Controller;
 use ikcore::tracking::controller::{Accept, Antenna, Delay, Znnbas};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 
-use crate::control::PyControlSession;
 use crate::convert::count;
 use crate::error::{invalid, raise};
-use crate::limits::PyLimits;
-use crate::sinusoid::Numbers;
+use crate::limits::Numbers;
+use crate::options::{NewArguments, keywords};
 
 /// Zeroing neural network with beetle antennae search (Khan et al. 2022, eq. 10 to 16): a controller that measures once a
 /// tick, a random antenna away from where it is, and moves by the sign of what that brought.
@@ -120,41 +118,20 @@ impl PyZnnbas {
         self.core.sensor_delay
     }
 
-    /// The controller at work in your own loop, from `start` (n,) and t = 0: see `ControlSession`.
-    #[pyo3(signature = (start, *, dt, limits=None, position_tolerance=1e-9, seed=0))]
-    fn session(
-        &self,
-        start: &Bound<'_, PyAny>,
-        dt: f64,
-        limits: Option<&PyLimits>,
-        position_tolerance: f64,
-        seed: i128,
-    ) -> PyResult<PyControlSession> {
-        PyControlSession::new(&self.controller(), start, dt, limits, position_tolerance, seed)
-    }
-
     fn __repr__(&self) -> String {
         let Znnbas { gain, delay_steps, delay, accept, sensor_delay, .. } = &self.core;
         let antenna = match (&self.antenna, self.c1()) {
             (Some(lengths), _) => format!("antenna_length={}", lengths.repr()),
-            (None, c1) => format!("c1={}", c1.unwrap_or_default()),
+            (None, c1) => format!("c1={:?}", c1.unwrap_or_default()),
         };
         format!(
-            "ZNNBAS(gain={gain}, {antenna}, delay_steps={delay_steps}, delay='{delay}', accept='{accept}', \
+            "ZNNBAS(gain={gain:?}, {antenna}, delay_steps={delay_steps}, delay='{delay}', accept='{accept}', \
              sensor_delay={sensor_delay})"
         )
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("gain", self.gain())?;
-        options.set_item("antenna_length", self.antenna_length(py)?)?;
-        options.set_item("c1", self.c1())?;
-        options.set_item("delay_steps", self.delay_steps())?;
-        options.set_item("delay", self.delay())?;
-        options.set_item("accept", self.accept())?;
-        options.set_item("sensor_delay", self.sensor_delay())?;
-        Ok((PyTuple::empty(py), options))
+    fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
+        keywords(slf, &["gain", "antenna_length", "c1", "delay_steps", "delay", "accept", "sensor_delay"])
     }
 }
 

@@ -1,110 +1,24 @@
-//! `Tracker` and `Step`.
+//! `Tracker`.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::sync::Mutex;
 
 use ikcore::limits::LimitAt;
+use ikcore::solver::Unattended;
 use ikcore::solver::stop::Stopwatch;
-use ikcore::solver::{Status, Unattended};
 use ikcore::task::Tolerance;
-use ikcore::tracking::{self, Session, TrackOptions};
-use numpy::PyArray1;
+use ikcore::tracking::{Session, TrackOptions};
 use pyo3::prelude::*;
 
-use crate::convert::{count, point, row, vector};
+use super::session::in_progress;
+use super::step::PyStep;
+use super::track::tick_rule;
+use crate::convert::{count, point, vector};
 use crate::error::raise;
 use crate::goal::read_goals;
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::robot::PyRobot;
-use crate::solver::status;
 use crate::task::read_task;
-use crate::tracking::tick_rule;
-
-/// What became of one step of a `Tracker` or a `ControlSession`.
-#[pyclass(name = "Step", module = "beetle_ik", frozen)]
-pub struct PyStep {
-    core: tracking::Step,
-    /// The configuration to command (n,) (rad, m).
-    #[pyo3(get)]
-    q: Py<PyArray1<f64>>,
-    /// The velocity that leads there (n,) (rad/s, m/s).
-    #[pyo3(get)]
-    qd: Py<PyArray1<f64>>,
-    /// The limits in force.
-    #[pyo3(get)]
-    limits: Py<PyLimits>,
-    elapsed: Duration,
-}
-
-impl PyStep {
-    pub fn new(
-        py: Python<'_>,
-        core: tracking::Step,
-        (q, qd): (&[f64], &[f64]),
-        limits: &Py<PyLimits>,
-        watch: Stopwatch,
-    ) -> Self {
-        let elapsed = watch.elapsed();
-        let [q, qd] = [q, qd].map(|values| row(py, values.to_vec()).unbind());
-        Self { core, q, qd, limits: limits.clone_ref(py), elapsed }
-    }
-}
-
-#[pymethods]
-impl PyStep {
-    /// Whether the tip is within the tolerances.
-    #[getter]
-    fn success(&self) -> bool {
-        self.core.status == Status::Solved
-    }
-
-    /// SOLVED within the tolerances, IMPROVED nearer than the step before, CAPPED neither.
-    #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        status(py, self.core.status)
-    }
-
-    /// What happened, and what to try.
-    #[getter]
-    fn message(&self) -> String {
-        self.core.message()
-    }
-
-    /// Distance of the tip from the target (m).
-    #[getter]
-    fn position_error(&self) -> f64 {
-        self.core.error.position
-    }
-
-    /// Geodesic angle to the target's orientation (rad); NaN where none was asked for.
-    #[getter]
-    fn rotation_error(&self) -> f64 {
-        self.core.error.rotation
-    }
-
-    /// Evaluations of the forward kinematics.
-    #[getter]
-    fn evaluations(&self) -> usize {
-        self.core.evaluations
-    }
-
-    /// Time that the step took to compute (s).
-    #[getter]
-    fn elapsed(&self) -> f64 {
-        self.elapsed.as_secs_f64()
-    }
-
-    /// False where a joint cannot be brought within its position limits in this step.
-    #[getter]
-    fn inside_limits(&self) -> bool {
-        self.core.inside_limits
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<Step {}: {}>", self.core.status.name(), self.core.message())
-    }
-}
 
 /// One control loop, one call a tick: the same as `track`, for targets that come one at a time.
 ///
@@ -129,6 +43,8 @@ pub struct PyTracker {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+in_progress!(PyTracker, Session);
 
 #[pymethods]
 impl PyTracker {
@@ -173,29 +89,12 @@ impl PyTracker {
     ///         Other rules need none.
     #[pyo3(signature = (target, *, velocity=None))]
     fn step(&self, py: Python<'_>, target: &Bound<'_, PyAny>, velocity: Option<&Bound<'_, PyAny>>) -> PyResult<PyStep> {
-        let target = read_target(target)?;
+        let target = read_target("target", target)?;
         let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
         let (watch, mut session) = (Stopwatch::start(), self.session());
         let core = session.step_moving(&target, velocity, &mut Unattended).map_err(raise)?;
-        Ok(PyStep::new(py, core, (session.q(), session.qd()), &self.limits, watch))
-    }
-
-    /// The configuration reached (n,) (rad, m).
-    #[getter]
-    fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.session().q().to_vec())
-    }
-
-    /// Time of that configuration (s).
-    #[getter]
-    fn time(&self) -> f64 {
-        self.session().time()
-    }
-
-    /// Time step (s).
-    #[getter]
-    fn dt(&self) -> f64 {
-        self.session().dt()
+        let motion = [session.q().to_vec(), session.qd().to_vec()];
+        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()))
     }
 
     /// Back to rest in q (n,), at t = 0.
@@ -206,12 +105,5 @@ impl PyTracker {
     fn __repr__(&self) -> String {
         let session = self.session();
         format!("<Tracker of '{}' at t = {} s, dt = {} s>", session.robot().name(), session.time(), session.dt())
-    }
-}
-
-impl PyTracker {
-    /// A panic elsewhere cannot have left the session half-changed: it is written in one go at the end of a step.
-    fn session(&self) -> MutexGuard<'_, Session> {
-        self.session.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

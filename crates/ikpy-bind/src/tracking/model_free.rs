@@ -1,20 +1,20 @@
 //! `track_model_free` and `ModelFreeResult`.
 
 use ikcore::path::Reference;
-use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::tracking::{self, ModelFreeOptions, ModelFreeRecord};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 
-use crate::control::controller;
-use crate::convert::{count, row, table, vector};
+use super::control::controller;
+use super::plant::{PyKinematicPlant, PythonPlant};
+use super::record::{Columns, record};
+use crate::convert::{count, table, vector};
 use crate::error::raise;
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
-use crate::monitor::{Progress, Watcher};
+use crate::monitor::{Watcher, attended};
+use crate::outcome::outcome;
 use crate::path::PyPath;
-use crate::plant::{PyKinematicPlant, PythonPlant};
-use crate::solver::status;
 use crate::stored::{self, Reduced};
 use crate::upward;
 
@@ -23,138 +23,48 @@ use crate::upward;
 #[pyclass(name = "ModelFreeResult", module = "beetle_ik", frozen)]
 pub struct PyModelFreeResult {
     core: ModelFreeRecord,
-    tables: Tables,
+    columns: Columns,
+    /// The command at which each row's position was measured (k, n) (rad, m): q itself for `BroydenBAS`, an antenna away
+    /// from it for `ZNNBAS`.
+    #[pyo3(get)]
+    command: Py<PyArrayDyn<f64>>,
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
     exception: Option<PyErr>,
 }
 
-/// The arrays of a record, made once.
-struct Tables {
-    time: Py<PyArray1<f64>>,
-    q: Py<PyArrayDyn<f64>>,
-    qd: Py<PyArrayDyn<f64>>,
-    command: Py<PyArrayDyn<f64>>,
-    position: Py<PyArrayDyn<f64>>,
-    reference: Py<PyArrayDyn<f64>>,
-    position_error: Py<PyArray1<f64>>,
-    step_status: Py<PyArray1<u8>>,
-    step_evaluations: Py<PyArray1<i64>>,
+record! {
+    PyModelFreeResult = |result| result.core.track,
+    /// Configurations that the controller accepted (k, n) (rad, m).
+    q,
+    /// Positions of the tip as measured (k, 3) (m).
+    position,
+    /// Measurements of the plant in each step (k,).
+    step_evaluations,
+    /// Largest excess of a command over a limit (rad, m), probes included; 0 within rounding.
+    max_violation,
 }
 
-impl Tables {
-    fn new(py: Python<'_>, record: &ModelFreeRecord) -> PyResult<Self> {
-        let track = &record.track;
-        let (k, n) = (track.time.len(), track.dof);
-        let counts = track.step_evaluations.iter().map(|count| *count as i64).collect();
-        Ok(Self {
-            time: row(py, track.time.clone()).unbind(),
-            q: table(py, track.q.clone(), &[k, n])?.unbind(),
-            qd: table(py, track.qd.clone(), &[k, n])?.unbind(),
-            command: table(py, record.command.clone(), &[k, n])?.unbind(),
-            position: table(py, track.position.as_flattened().to_vec(), &[k, 3])?.unbind(),
-            reference: table(py, track.reference.as_flattened().to_vec(), &[k, 3])?.unbind(),
-            position_error: row(py, track.position_error.clone()).unbind(),
-            step_status: row(py, track.step_status.iter().map(|status| *status as u8).collect()).unbind(),
-            step_evaluations: row(py, counts).unbind(),
-        })
-    }
+outcome! {
+    PyModelFreeResult = |result|
+    /// Whether the tip came into the error band and stayed there.
+    success,
+    /// SOLVED as `success`; LOST if the tip left its band again; PLANT_FAILED where the plant ended the run; else how the last
+    /// step ended.
+    status: result.core.track.status,
+    message: result.core.message(),
+    /// Measurements of the plant in all.
+    evaluations: result.core.track.evaluations(),
+    elapsed: result.core.track.elapsed,
 }
 
 #[pymethods]
 impl PyModelFreeResult {
-    /// Times (k,) (s).
-    #[getter]
-    fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.tables.time.bind(py).clone()
-    }
-
-    /// Configurations that the controller accepted (k, n) (rad, m).
-    #[getter]
-    fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.tables.q.bind(py).clone()
-    }
-
-    /// Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt, zero in row 0.
-    #[getter]
-    fn qd<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.tables.qd.bind(py).clone()
-    }
-
-    /// The command at which each row's position was measured (k, n) (rad, m): q itself for `BroydenBAS`, an antenna away
-    /// from it for `ZNNBAS`.
-    #[getter]
-    fn command<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.tables.command.bind(py).clone()
-    }
-
-    /// Positions of the tip as measured (k, 3) (m).
-    #[getter]
-    fn position<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.tables.position.bind(py).clone()
-    }
-
-    /// Wanted positions (k, 3) (m).
-    #[getter]
-    fn reference<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.tables.reference.bind(py).clone()
-    }
-
-    /// Distances between the two (k,) (m).
-    #[getter]
-    fn position_error<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.tables.position_error.bind(py).clone()
-    }
-
-    /// The error band (m), as asked.
-    #[getter]
-    fn position_tolerance(&self) -> f64 {
-        self.core.track.criterion.tolerance.position
-    }
-
-    /// How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED
-    /// neither.
-    #[getter]
-    fn step_status<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
-        self.tables.step_status.bind(py).clone()
-    }
-
-    /// Measurements of the plant in each step (k,).
-    #[getter]
-    fn step_evaluations<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        self.tables.step_evaluations.bind(py).clone()
-    }
-
-    /// Largest excess of a command over a limit (rad, m), probes included; 0 within rounding.
-    #[getter]
-    fn max_violation(&self) -> f64 {
-        self.core.track.max_violation
-    }
-
     /// Root mean square of the measured error over the second half of the rows (m).
     #[getter]
     fn settled_error(&self) -> f64 {
         self.core.settled_error()
-    }
-
-    /// Whether the tip came into the error band and stayed there.
-    #[getter]
-    fn success(&self) -> bool {
-        self.core.track.status == Status::Solved
-    }
-
-    /// SOLVED as `success`; LOST if the tip left its band again; PLANT_FAILED where the plant ended the run; else how the last
-    /// step ended.
-    #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        status(py, self.core.track.status)
-    }
-
-    /// What happened, and what to try.
-    #[getter]
-    fn message(&self) -> String {
-        self.core.message()
     }
 
     /// What the plant raised, if it did.
@@ -163,25 +73,9 @@ impl PyModelFreeResult {
         self.exception.as_ref().map(|error| error.value(py).clone().into_any())
     }
 
-    /// Measurements of the plant in all.
-    #[getter]
-    fn evaluations(&self) -> usize {
-        self.core.track.evaluations()
-    }
-
-    /// Time taken (s).
-    #[getter]
-    fn elapsed(&self) -> f64 {
-        self.core.track.elapsed.as_secs_f64()
-    }
-
     /// A matplotlib figure: the tip's path, the error, joint angles, measurements.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         upward::plot(slf.into_any(), "model_free")
-    }
-
-    fn __len__(&self) -> usize {
-        self.core.track.time.len()
     }
 
     fn __repr__(&self) -> String {
@@ -211,7 +105,9 @@ impl PyModelFreeResult {
 
 impl PyModelFreeResult {
     fn new(py: Python<'_>, core: ModelFreeRecord, limits: Py<PyLimits>, exception: Option<PyErr>) -> PyResult<Self> {
-        Ok(Self { tables: Tables::new(py, &core)?, limits, exception, core })
+        let (k, n) = (core.track.time.len(), core.track.dof);
+        let command = table(py, core.command.clone(), &[k, n])?.unbind();
+        Ok(Self { columns: Columns::new(py, &core.track)?, command, limits, exception, core })
     }
 }
 
@@ -263,12 +159,7 @@ pub fn track_model_free(
         tolerance: position_tolerance,
         seed: count("seed", seed)?,
     };
-    let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
-    let mut watcher = Watcher::with_progress(progress.update(py));
-    let run = run(plant, &reference, &start, &options, &mut watcher);
-    progress.close(py)?;
-    watcher.finish()?;
-    let (core, exception) = run?;
+    let (core, exception) = attended(py, progress, |watcher| run(plant, &reference, &start, &options, watcher))?;
     PyModelFreeResult::new(py, core, in_force, exception)
 }
 
