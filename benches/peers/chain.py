@@ -101,7 +101,7 @@ def _cut(urdf: Path, base: str | None, tip: str | None, scratch: Path) -> Chain:
         link = joints[-1].find("parent").get("link")
 
     chain = ET.Element("robot", name=urdf.stem)
-    _add_link(chain, link)
+    ET.SubElement(chain, "link", name=link)
     for joint in reversed(joints):
         if joint.get("type") == "continuous":
             joint.set("type", "revolute")
@@ -110,14 +110,16 @@ def _cut(urdf: Path, base: str | None, tip: str | None, scratch: Path) -> Chain:
             limit.set("lower", str(-math.pi))
             limit.set("upper", str(math.pi))
         chain.append(joint)
-        _add_link(chain, joint.find("child").get("link"))
+        moved = ET.SubElement(chain, "link", name=joint.find("child").get("link"))
+        moved.append(_some_mass())
     path = scratch / urdf.name
     ET.ElementTree(chain).write(path)
     return Chain(urdf.stem, path, link, tip)
 
 
-def _add_link(chain: ET.Element, name: str) -> None:
-    """A link of some mass, which the simulators among the libraries insist on."""
-    inertial = ET.SubElement(ET.SubElement(chain, "link", name=name), "inertial")
+def _some_mass() -> ET.Element:
+    """The simulators among the libraries insist on it."""
+    inertial = ET.Element("inertial")
     ET.SubElement(inertial, "mass", value="1")
     ET.SubElement(inertial, "inertia", ixx="1", ixy="0", ixz="0", iyy="1", iyz="0", izz="1")
+    return inertial
