@@ -65,14 +65,21 @@ macro_rules! return_if_one_of {
 
 /// A solver argument.
 pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
+    any_solver_or("", solver)
+}
+
+/// A solver argument where something else, named in `other`, could have been given too.
+pub fn any_solver_or(other: &str, solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
     return_if_one_of!(solver; PyBas, PyBeeColony, PyBeetleSwarm, PyDifferentialEvolution, PyFirefly, PyGenetic);
     return_if_one_of!(solver; PyPso, PyQpso, PyApps, PyBroydenBas, PyJacobianTranspose, PyLevenbergMarquardt);
     return_if_one_of!(solver; PyNewtonRaphson);
     if let Ok(multi_start) = solver.cast::<PyMultiStart>() {
         return Ok(AnySolver::MultiStart(multi_start.get().0.clone()));
     }
-    let got = summary(solver);
-    Err(invalid(format!("solver must be {DERIVATIVE_FREE}, {WITH_MORE} or MultiStart of one of them, got {got}")))
+    let (or, got) = (if other.is_empty() { "" } else { " or " }, summary(solver));
+    Err(invalid(format!(
+        "solver must be {DERIVATIVE_FREE}, {WITH_MORE} or MultiStart of one of them{or}{other}, got {got}"
+    )))
 }
 
 /// A solver argument of a method that knows values alone.

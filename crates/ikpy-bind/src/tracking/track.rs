@@ -18,7 +18,7 @@ use crate::monitor::watched;
 use crate::outcome::outcome;
 use crate::path::PyPath;
 use crate::robot::PyRobot;
-use crate::solver::any_solver;
+use crate::solver::any_solver_or;
 use crate::stored::{self, Reduced};
 use crate::task::read_task;
 use crate::trajectory::PyTrajectory;
@@ -205,6 +205,6 @@ pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
     let Some(solver) = solver else { return Ok(TickRule::default()) };
     match solver.cast::<PyWeightedPseudoInverse>() {
         Ok(rule) => Ok(rule.get().rule()),
-        Err(_) => any_solver(solver).map(TickRule::EachTick),
+        Err(_) => any_solver_or("WeightedPseudoInverse", solver).map(TickRule::EachTick),
     }
 }
