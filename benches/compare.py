@@ -28,7 +28,19 @@ from peers import closed_form, local, restarting, stepping, tracking
 from peers.adapter import Adapter, Unsupported
 from peers.chain import Chain, load_chains
 from peers.measure import Solver, batch_rate, interleave, judge, per_call
-from peers.report import Row, plain_section, plot, times_section, tracking_section, write_csv
+from peers.report import (
+    ROW_COLUMNS,
+    TRACKING_COLUMNS,
+    Row,
+    plain_section,
+    plot,
+    row_line,
+    summary_columns,
+    summary_lines,
+    times_section,
+    tracking_lines,
+    write_table,
+)
 
 BEETLE_IK = restarting.BeetleIk
 GENERAL = [
@@ -60,6 +72,7 @@ TRACKING = [
     stepping.Mink,
     stepping.Pink,
 ]
+EVERY = [*dict.fromkeys((*GENERAL, *LOCAL, *TRACKING))]
 
 POSE = "pose, 1e-6 m and 1e-6 rad"
 TASKS = {
@@ -93,12 +106,15 @@ def main() -> None:
             rates.append(time_batch(chain))
             if chain.name == tracking.ROBOT:
                 followed += tracking.compare_tracking(chain, load(chain, tracking.TOLERANCE, TRACKING)[0])
-    write_csv(rows, arguments.out / "compare.csv")
+    write_table(arguments.out / "compare.csv", ROW_COLUMNS, [*map(row_line, rows)])
+    summary = summary_lines(rows, POSE, ORDERS, versions())
+    write_table(arguments.out / "summary.csv", summary_columns(ORDERS), summary)
+    write_table(arguments.out / "tracking.csv", TRACKING_COLUMNS, tracking_lines(followed))
     report = markdown(rows, calls, rates, followed, arguments.targets)
     (arguments.out / "compare.md").write_text(report, encoding="utf-8")
     title = f"{arguments.targets} random reachable targets a robot: {POSE}, {IN_A_ROW}"
     plot(rows, POSE, IN_A_ROW, title, arguments.out / "compare.png")
-    print(f"wrote compare.csv, compare.md and compare.png to {arguments.out}")
+    print(f"wrote compare.csv, summary.csv, tracking.csv, compare.md and compare.png to {arguments.out}")
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -187,10 +203,10 @@ def markdown(
         plain_section(
             "Libraries and settings",
             ["library", "version", "settings"],
-            [*map(library_line, dict.fromkeys((*GENERAL, *LOCAL, *TRACKING)))],
+            [[library.name, versions()[library.name], library.settings] for library in EVERY],
         ),
         *(times_section(task, order, rows) for task in TASKS for order in ORDERS),
-        *([tracking_section(followed)] if followed else []),
+        plain_section("A circle of 0.2 m, iiwa14, position, warm-started", TRACKING_COLUMNS, tracking_lines(followed)),
         plain_section("Kinematics, ns a call", ["robot", "library", "FK", "FK + Jacobian"], calls),
         plain_section(
             f"Batch of {BATCH:,} poses by beetle-ik, poses a second",
@@ -201,13 +217,15 @@ def markdown(
     return "\n".join(sections)
 
 
-def library_line(library: type[Adapter]) -> list[str]:
-    """Name, installed version and settings."""
-    try:
-        installed = version(library.distribution)
-    except PackageNotFoundError:
-        installed = "not installed"
-    return [library.name, installed, library.settings]
+def versions() -> dict[str, str]:
+    """What is installed, by the names of the libraries."""
+    found = {}
+    for library in EVERY:
+        try:
+            found[library.name] = version(library.distribution)
+        except PackageNotFoundError:
+            found[library.name] = "not installed"
+    return found
 
 
 @functools.cache
