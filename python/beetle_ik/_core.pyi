@@ -6,7 +6,7 @@
 import os
 from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
-from typing import Any, Literal, Protocol, TypeAlias, final, type_check_only
+from typing import Any, Literal, Never, Protocol, TypeAlias, final, type_check_only
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -70,6 +70,7 @@ class InfeasibleError(InvalidInputError): ...
 
 @final
 class Robot:
+    def __new__(cls, *_arguments: Never, **_options: Never) -> Never: ...  # raises: use one of the makers below
     @staticmethod
     def from_urdf(path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None) -> Robot: ...
     @staticmethod
