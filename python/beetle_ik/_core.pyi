@@ -6,7 +6,7 @@
 import os
 from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
-from typing import Any, Literal, Protocol, TypeAlias, final, type_check_only
+from typing import Any, Literal, Never, Protocol, TypeAlias, final, type_check_only
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -70,6 +70,7 @@ class InfeasibleError(InvalidInputError): ...
 
 @final
 class Robot:
+    def __new__(cls, *_arguments: Never, **_options: Never) -> Never: ...  # raises: use one of the makers below
     @staticmethod
     def from_urdf(path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None) -> Robot: ...
     @staticmethod
@@ -227,6 +228,7 @@ class Status(IntEnum):
     PLANT_FAILED = 10
     BELOW_THRESHOLD = 11
     OUTSIDE_LIMITS = 12
+    HELD_IN_REGION = 13
 
 @final
 class APPS:
@@ -465,6 +467,7 @@ class PSO:
         c2: float | None = None,
         velocity_limit: float = ...,
         accept: Literal["always", "improving"] = "always",
+        walls: Literal["absorbing", "random"] = "absorbing",
         max_generations: int | None = ...,
         stall_generations: int | None = ...,
     ) -> PSO: ...
@@ -482,6 +485,8 @@ class PSO:
     def velocity_limit(self) -> float: ...
     @property
     def accept(self) -> str: ...
+    @property
+    def walls(self) -> str: ...
     @property
     def max_generations(self) -> int | None: ...
     @property
@@ -587,24 +592,41 @@ class Task:
     def tolerance(self) -> _Array | None: ...  # m, rad
     @property
     def tool(self) -> _Array | None: ...  # (4, 4)
+    @property
+    def region(self) -> _Array | None: ...  # (2, 3) m
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Pose(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
+        cls,
+        *,
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Pose: ...
 
 @final
 class Position(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
+        cls,
+        *,
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Position: ...
 
 @final
 class Orientation(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
+        cls,
+        *,
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Orientation: ...
 
 @final
@@ -616,6 +638,7 @@ class Pointing(Task):
         weights: ArrayLike | None = None,
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Pointing: ...
     @property
     def axis(self) -> _Array: ...  # (3,)
@@ -1051,7 +1074,7 @@ def plan_point_to_point(
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,  # m
-    elbows: Sequence[int] = ...,  # (1, 1)
+    elbows: Sequence[int] | None = None,
     solver: _Solver | None = None,
     stop: Stop | None = None,
     seed: int = 0,
@@ -1077,7 +1100,7 @@ def plan_along_path(
     limits: Limits | None = None,
     method: Literal["timed", "tpbso"] = "timed",
     objective: Literal["time", "joint_travel"] = "time",
-    elbow: int = 1,
+    elbow: int | None = None,
     accuracy: float | None = None,  # m
     solver: _Solver | None = None,
     stop: Stop | None = None,

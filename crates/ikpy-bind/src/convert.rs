@@ -1,6 +1,5 @@
 //! Python values to Rust and back: the only file that knows how numpy lays out memory.
 
-use std::convert::Infallible;
 use std::ops::Deref;
 
 use ikcore::math::{Pose, pose};
@@ -162,6 +161,15 @@ pub fn point(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
     entries(what, value)
 }
 
+/// Two corners of a box, one row each.
+pub fn corners(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 2]> {
+    let array = array(what, value)?;
+    match (array.shape(), array.as_slice()?) {
+        ([2, 3], [a, b, c, d, e, f]) => Ok([[*a, *b, *c], [*d, *e, *f]]),
+        (shape, _) => Err(invalid(format!("{what}: expected shape (2, 3), got {}", shape_text(shape)))),
+    }
+}
+
 /// A rigid transform from a 4x4 matrix.
 pub fn rigid(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Pose> {
     let array = array(what, value)?;
@@ -209,41 +217,6 @@ pub fn copied<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>>
 /// A read-only 4x4 matrix.
 pub fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyArray2<f64>>> {
     Ok(read_only(PyArray1::from_slice(py, &pose::rows(pose)).reshape([4, 4])?))
-}
-
-/// A point or the like as a class keeps it; Python gets a read-only vector.
-#[derive(Clone, Copy)]
-pub struct Coordinates<const N: usize>(pub [f64; N]);
-
-impl<'py, const N: usize> IntoPyObject<'py> for Coordinates<N> {
-    type Target = PyArray1<f64>;
-    type Output = Bound<'py, Self::Target>;
-    type Error = Infallible;
-
-    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
-        Ok(copied(py, &self.0))
-    }
-}
-
-/// How something is turned, as a class keeps it; Python gets a read-only matrix (3, 3).
-#[derive(Clone, Copy)]
-pub struct Rotation(Matrix3<f64>);
-
-impl Rotation {
-    /// This one, or that of something that was not turned.
-    pub fn or_none(given: Option<Matrix3<f64>>) -> Self {
-        Self(given.unwrap_or_else(Matrix3::identity))
-    }
-}
-
-impl<'py> IntoPyObject<'py> for Rotation {
-    type Target = PyArrayDyn<f64>;
-    type Output = Bound<'py, Self::Target>;
-    type Error = PyErr;
-
-    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
-        table(py, self.0.transpose().as_slice().to_vec(), &[3, 3])
-    }
 }
 
 fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {

@@ -4,7 +4,7 @@ use ikcore::ik::{self, SolveOptions};
 use ikcore::math::Frame;
 use ikcore::solver::{AnySolver, Stop};
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::{Target, TipError, Tolerance};
+use ikcore::task::{Target, Tolerance};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -70,9 +70,7 @@ impl PySolution {
     }
 
     fn __repr__(&self) -> String {
-        let TipError { position, rotation } = self.core.error;
-        let rotation = if rotation.is_nan() { String::new() } else { format!(", rotation_error={rotation:.3e}") };
-        format!("<Solution {}: position_error={position:.3e}{rotation}>", self.core.status.name())
+        format!("<Solution {}: {}>", self.core.status.name(), self.core.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

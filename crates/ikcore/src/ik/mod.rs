@@ -4,6 +4,7 @@ mod all;
 mod best;
 mod nearest;
 mod prepared;
+mod round;
 mod run;
 mod self_motion;
 mod solution;

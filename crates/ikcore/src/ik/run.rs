@@ -155,7 +155,8 @@ impl Run {
         let mut solution = self.solution(status, q, problem);
         if status != Status::Solved {
             let excess = prepared.excess(problem.target());
-            solution.obstruction = obstruction(prepared.robot(), prepared.bounds(), &solution.q, excess);
+            let passed = problem.outside_region(&solution.q);
+            solution.obstruction = obstruction(prepared.robot(), prepared.bounds(), &solution.q, excess, passed);
         }
         solution
     }

@@ -37,8 +37,9 @@ pub struct PointToPointOptions {
     pub margin: Option<f64>,
     /// Limits to keep; None keeps the robot's.
     pub limits: Option<Limits>,
-    /// Which way a planar arm bends at its ends, where [`Tpbso`](PointToPointMethod::Tpbso) chooses its configuration.
-    pub elbows: [Elbow; 2],
+    /// Which way a planar arm bends at its ends, where [`Tpbso`](PointToPointMethod::Tpbso) chooses its configuration;
+    /// None: as printed.
+    pub elbows: Option<[Elbow; 2]>,
     /// What searches; None: the method's own.
     pub solver: Option<AnySolver<DerivativeFree>>,
     /// Budgets; None: the method's own.

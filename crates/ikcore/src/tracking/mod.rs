@@ -53,8 +53,7 @@ impl TrackOptions {
     /// When a tick is within its band.
     fn criterion(&self) -> Result<Criterion> {
         self.task.as_ref().map_or(Ok(()), Task::validate)?;
-        let components = self.task.and_then(|task| task.components);
-        let criterion = Criterion { tolerance: self.tolerance, components };
+        let criterion = self.task.map_or(self.tolerance.into(), |task| task.criterion(self.tolerance));
         criterion.validate().map(|()| criterion)
     }
 

@@ -162,7 +162,8 @@ impl Record {
         (step - before).abs() - self.limits.acceleration_over(j, from, to) * self.dt * self.dt
     }
 
-    /// Sums up: the track has succeeded if, once in its band, it stayed there, and every limit was kept.
+    /// Sums up: the track has succeeded if, once in its band, it stayed there, and every limit was kept; it was held in its
+    /// region if, at times, it was as near to its band as that allows.
     pub(super) fn finish(&mut self, interrupted: bool, elapsed: Duration) {
         self.elapsed = elapsed;
         let last = *self.step_status.last().unwrap_or(&Status::Capped);
@@ -170,14 +171,15 @@ impl Record {
             _ if interrupted => Status::Interrupted,
             Some(_) if self.worst_violation.is_some() => Status::Lost,
             Some(joined) if self.step_status[joined..].iter().all(|s| *s == Status::Solved) => Status::Solved,
+            Some(joined) if self.step_status[joined..].iter().all(is_in_place) => Status::HeldInRegion,
             Some(_) => Status::Lost,
             None => last,
         };
     }
 
-    /// The first row within the band.
+    /// The first row within the band, or as near to it as the region allows.
     pub fn joined(&self) -> Option<usize> {
-        self.step_status.iter().position(|status| *status == Status::Solved)
+        self.step_status.iter().position(is_in_place)
     }
 
     /// Evaluations of the forward kinematics in all.
@@ -199,7 +201,7 @@ impl Record {
                 time(when)
             );
         }
-        let Criterion { tolerance, components } = self.criterion;
+        let Criterion { tolerance, components, .. } = self.criterion;
         let band = match components.and_then(|components| components.tolerance) {
             Some(_) => "its tolerance in each component".into(),
             None => self.in_words(tolerance.position, tolerance.rotation),
@@ -215,6 +217,14 @@ impl Record {
         if self.status == Status::Solved {
             return format!("in the band of {band} from t = {since} s on; worst error there {worst}");
         }
+        if self.status == Status::HeldInRegion {
+            let held = self.step_status[joined..].iter().filter(|status| **status == Status::HeldInRegion).count();
+            let advice = self.status.advice();
+            return format!(
+                "from t = {since} s on held in its region in {held} of {last} steps, up to {worst} away, and else in the \
+                 band of {band}: {advice}"
+            );
+        }
         let outside = self.step_status[joined..].iter().filter(|status| **status != Status::Solved).count();
         format!(
             "joined the path at t = {since} s, then outside the band of {band} in {outside} of {last} steps, by up to {worst}: {advice}"
@@ -228,6 +238,11 @@ impl Record {
         let position = asked(&self.position_error, position);
         TipError { position, rotation: asked(&self.rotation_error, rotation) }.to_string()
     }
+}
+
+/// Whether a tick ended where it was to: in the band, or as near to it as the region allows.
+fn is_in_place(status: &Status) -> bool {
+    matches!(status, Status::Solved | Status::HeldInRegion)
 }
 
 /// The smallest error; NaN, which was not asked for, does not count.

@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use super::numbers::Numbers;
 use super::sampling::{Sampling, sampled};
 use super::sinusoid::PySinusoid;
+use crate::convert::summary;
 
 /// Numbers, a sinusoid, or a function of time.
 pub enum Given {
@@ -48,6 +49,14 @@ impl Given {
             Self::Numbers(numbers) => numbers.show(py),
             Self::Sinusoid(sinusoid) => Ok(Bound::new(py, sinusoid.clone())?.into_any()),
             Self::Function(function) => Ok(function.bind(py).clone()),
+        }
+    }
+
+    pub fn repr(&self, py: Python<'_>) -> String {
+        match self {
+            Self::Numbers(numbers) => numbers.repr(),
+            Self::Sinusoid(sinusoid) => sinusoid.__repr__(),
+            Self::Function(function) => summary(function.bind(py)),
         }
     }
 

@@ -18,7 +18,6 @@ pub use of_call::{limits_of_call, limits_without_robot};
 pub use sampling::{CALLS_BETWEEN_LOOKS, Sampling};
 pub use sinusoid::PySinusoid;
 
-use crate::convert::summary;
 use crate::error::raise;
 use crate::options::NewArguments;
 
@@ -93,7 +92,7 @@ impl PyLimits {
         let mut shown = vec![];
         for (given, field) in self.given.iter().zip(FIELDS) {
             if let Some(given) = given {
-                shown.push(format!("{field}={}", summary(&given.show(py)?)));
+                shown.push(format!("{field}={}", given.repr(py)));
             }
         }
         Ok(format!("Limits({})", shown.join(", ")))

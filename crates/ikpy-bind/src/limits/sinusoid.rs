@@ -68,7 +68,7 @@ impl PySinusoid {
         self.phase.show(py)
     }
 
-    fn __repr__(&self) -> String {
+    pub fn __repr__(&self) -> String {
         let Self { mean, amplitude, angular_frequency, phase } = self;
         format!(
             "Sinusoid(mean={}, amplitude={}, angular_frequency={}, phase={})",

@@ -110,6 +110,9 @@ impl Given {
         };
         let items: Vec<Bound<'_, PyAny>> = match value {
             None => vec![],
+            Some(one) if one.cast::<PyObstacle>().is_ok() => {
+                return Err(invalid(format!("obstacles must be a list, got a single one: [{}]", summary(one))));
+            }
             Some(value) => value.try_iter().map_err(|_| wrong("obstacles", value))?.collect::<PyResult<_>>()?,
         };
         let core = items.iter().enumerate().map(|(i, item)| match item.cast::<PyObstacle>() {

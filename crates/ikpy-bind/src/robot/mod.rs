@@ -10,8 +10,10 @@ use std::sync::Arc;
 
 use ikcore::robot::Robot;
 use numpy::PyArray1;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyTuple};
 
 pub use manipulability::PyVelocityEllipsoid;
 
@@ -49,6 +51,13 @@ impl From<Robot> for PyRobot {
 
 #[pymethods]
 impl PyRobot {
+    #[new]
+    #[pyo3(signature = (*_arguments, **_options))]
+    fn new(_arguments: &Bound<'_, PyTuple>, _options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let ways = "Robot.named(name), Robot.from_urdf(path), Robot.from_dh(...) or Robot.planar(lengths)";
+        Err(PyTypeError::new_err(format!("a robot is made by {ways}")))
+    }
+
     /// The robot's name.
     #[getter]
     fn name(&self) -> &str {

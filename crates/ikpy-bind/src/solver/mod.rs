@@ -84,14 +84,18 @@ solvers! {
 
 /// A solver argument.
 pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
-    if let Some(algorithm) = algorithm(solver) {
-        return Ok(AnySolver::Single(algorithm));
-    }
-    if let Ok(multi_start) = solver.cast::<PyMultiStart>() {
-        return Ok(AnySolver::MultiStart(multi_start.get().0.clone()));
-    }
-    let (names, got) = ([DERIVATIVE_FREE, WITH_MORE].concat().join(", "), summary(solver));
-    Err(invalid(format!("solver must be {names} or MultiStart of one of them, got {got}")))
+    known_solver(solver).ok_or_else(|| invalid(format!("solver must be {}, got {}", solver_names(), summary(solver))))
+}
+
+/// The solver that a Python value is; None for anything else.
+pub fn known_solver(value: &Bound<'_, PyAny>) -> Option<AnySolver> {
+    let multi_start = || value.cast::<PyMultiStart>().ok().map(|solver| AnySolver::MultiStart(solver.get().0.clone()));
+    algorithm(value).map(AnySolver::Single).or_else(multi_start)
+}
+
+/// What an argument may be that takes any solver, for messages.
+pub fn solver_names() -> String {
+    format!("{} or MultiStart of one of them", [DERIVATIVE_FREE, WITH_MORE].concat().join(", "))
 }
 
 /// A solver argument of a method that knows values alone.

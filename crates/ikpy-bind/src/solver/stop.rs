@@ -18,7 +18,12 @@ pub fn status_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     let class = STATUS.get_or_try_init(py, || {
         let members: Vec<(&str, u8)> = Status::ALL.iter().map(|status| (status.name(), *status as u8)).collect();
         let options = [("module", "beetle_ik")].into_py_dict(py)?;
-        let class = py.import("enum")?.getattr("IntEnum")?.call(("Status", members), Some(&options))?;
+        let enums = py.import("enum")?;
+        let class = enums.getattr("IntEnum")?.call(("Status", members), Some(&options))?;
+        // A printed status is its name; IntEnum would print the number.
+        let plain = enums.getattr("Enum")?;
+        class.setattr("__str__", plain.getattr("__str__")?)?;
+        class.setattr("__format__", plain.getattr("__format__")?)?;
         class.setattr(
             "__doc__",
             "How a solve, one item of a batch or one step of a track ended. `SOLVED` alone is success.",

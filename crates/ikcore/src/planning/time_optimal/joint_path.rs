@@ -29,6 +29,15 @@ impl JointPath {
         Self { joints, breaks, coefficients }
     }
 
+    /// One path after the other, each of which begins where the one before it ends; at least one.
+    pub(in crate::planning) fn joined(paths: impl IntoIterator<Item = Self>) -> Option<Self> {
+        paths.into_iter().reduce(|mut all, next| {
+            all.breaks.extend(&next.breaks[1..]);
+            all.coefficients.extend(&next.coefficients);
+            all
+        })
+    }
+
     /// Names of the joints.
     pub fn joints(&self) -> &[String] {
         &self.joints

@@ -134,7 +134,7 @@ pub fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, q: &[f64], m
         }
     }
     tick.tick_box.clip(&mut found.q);
-    found.arrive(&tick.robot.tip(&found.q), &tick);
+    found.arrive(&tick.robot.tip(&found.q), tick.target, tick.criterion);
     found.evaluations += 1;
     found.iterations = 1;
     found

@@ -3,12 +3,13 @@
 from importlib import import_module
 from typing import Any
 
-from .._core import BeetleIkError
+from ._core import BeetleIkError
 
 
-def library(module: str, package: str, purpose: str) -> Any:
+def library(module: str, package: str, purpose: str, *, extra: str | None = None) -> Any:
     """The module, or an error that says what to install; one that is broken speaks for itself."""
     try:
         return import_module(module)
     except ModuleNotFoundError as error:
-        raise BeetleIkError(f"{purpose} needs {package}: pip install {package}") from error
+        install = package if extra is None else f"'beetle-ik[{extra}]'"
+        raise BeetleIkError(f"{purpose} needs {package}: pip install {install}") from error
