@@ -10,6 +10,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import beetle_ik as bik
+from beetle_ik import _plan_figure
 from beetle_ik.cli import app
 
 ARM = bik.Robot.planar([1.0, 1.0, 1.0])
@@ -204,7 +205,7 @@ def run(*arguments: str) -> Result:
     return CliRunner().invoke(app, ["plan", *arguments])
 
 
-QUICKLY = ("--velocity", "3.14", "--acceleration", "6.28", "--max-evaluations", "3000", "--method", "tpbso")
+QUICKLY = ("--velocity-limit", "3.14", "--acceleration-limit", "6.28", "--max-evaluations", "3000", "--method", "tpbso")
 
 
 def test_command_line_from_end_to_end(tmp_path: Path) -> None:
@@ -217,6 +218,19 @@ def test_command_line_from_end_to_end(tmp_path: Path) -> None:
         "summary.json",
     }
     assert json.loads((tmp_path / "summary.json").read_text())["success"] is True
+
+
+def test_command_line_round_an_obstacle_with_an_animation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_plan_figure, "_FRAMES_A_SECOND", 2)
+    monkeypatch.setattr(_plan_figure, "_PAUSE", 0)
+    ends = ("--start-q", "0,0,0,0,0", "--end-q", "0.1,0,0,0,0")
+    result = run(
+        "point-to-point", "planar5", *ends, *QUICKLY, "--ellipse", "9,9,1,1,0", "--animation", "--out", str(tmp_path)
+    )
+    assert result.exit_code == 0, result.output
+    assert "smallest clearance [m]" in result.stdout
+    assert (tmp_path / "plan.gif").read_bytes().startswith(b"GIF")
+    assert "--animation writes a file" in run("point-to-point", "planar5", *ends, "--animation").stderr
 
 
 def test_command_line_along_a_path() -> None:

@@ -84,14 +84,17 @@ def _picture(figure: Figure, folder: Path, dpi: int) -> str:
 
 
 def _png(figure: Figure, dpi: int) -> bytes:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     picture = io.BytesIO()
     _lay_out(figure, dpi)
-    figure.drawing.savefig(picture, format="png", dpi=dpi, metadata={"Software": None})  # same figure, same bytes
+    # Savefig would draw everything twice: once to lay it out, which is done.
+    FigureCanvasAgg(figure.drawing).print_png(picture, metadata={"Software": None})  # same figure, same bytes
     return picture.getvalue()
 
 
 def _lay_out(figure: Figure, dpi: int) -> None:
-    """Once and for all: savefig would do so each time, and draw everything twice for it."""
+    """Once and for all: not again for each frame."""
     drawing = figure.drawing
     drawing.set_dpi(dpi)
     layout = drawing.get_layout_engine()

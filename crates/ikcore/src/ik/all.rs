@@ -52,6 +52,11 @@ pub struct Found {
 }
 
 impl Found {
+    /// [`Status::Solved`] where there is a solution, else why the last search ended.
+    pub fn status(&self) -> Status {
+        self.miss.as_ref().map_or(Status::Solved, |miss| miss.status)
+    }
+
     /// How many there are, or why there are none.
     pub fn message(&self) -> String {
         match (self.solutions.len(), &self.miss) {
@@ -103,7 +108,8 @@ fn search(
     }
     let (mut solutions, mut known) = (Vec::<Solution>::new(), 0);
     let last = loop {
-        let mut solution = run.attempt(prepared, &mut problem, &x0, &mut rng, monitor);
+        let attempt = run.attempt(prepared, &mut problem, &x0, &mut rng, monitor);
+        let mut solution = prepared.told_apart(target, attempt);
         if solution.status != Status::Solved {
             break Some(solution);
         }

@@ -1,16 +1,15 @@
 //! Along a given path.
 
-use std::str::FromStr;
-
 use super::cost::Cost;
 use super::course::Course;
 use super::plan::Plan;
 use super::planar_arm::Elbow;
 use super::{timed, tpbso};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::limits::Limits;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, DerivativeFree, Monitor, Stop};
+use crate::wording::words;
 
 /// How to plan along a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,17 +21,7 @@ pub enum AlongPathMethod {
     Tpbso,
 }
 
-impl FromStr for AlongPathMethod {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "timed" => Ok(Self::Timed),
-            "tpbso" => Ok(Self::Tpbso),
-            _ => Err(Error::unknown_option("method", name, &["timed", "tpbso"])),
-        }
-    }
-}
+words!("method": AlongPathMethod { Timed => "timed", Tpbso => "tpbso" });
 
 /// How to plan along a path, and what to keep.
 #[derive(Debug, Clone, Default)]

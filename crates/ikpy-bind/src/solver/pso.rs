@@ -1,17 +1,17 @@
 //! `PSO`.
 
 use ikcore::solver::Pso;
-use ikcore::solver::pso::{Accept, Form};
+use ikcore::solver::pso::{Accept, Form, Walls};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 
-use super::options::{SolverOption, limited, schedule, show_schedule};
+use super::schedule::{limited, schedule, scheduled, show_schedule};
 use crate::error::raise;
+use crate::options::{NewArguments, Shown, keywords};
 
 /// Particle swarm optimisation: uses values alone.
 ///
 /// Defaults: `PSO(population=40, form='constriction', c1=2.05, c2=2.05, velocity_limit=0.5, accept='always',
-/// max_generations=None, stall_generations=50)`.
+/// walls='absorbing', max_generations=None, stall_generations=50)`.
 ///
 /// Args:
 ///     population: particles.
@@ -20,22 +20,26 @@ use crate::error::raise;
 ///     inertia: that weight; None: 0.729. Only with form "inertia".
 ///     c1: attraction to the particle's own best place; None: 2.05 with constriction, 1.49445 with inertia.
 ///     c2: attraction to the swarm's best place; None: as c1's.
-///     velocity_limit: largest velocity, as a share of the box's width a generation.
+///     velocity_limit: largest velocity, as a share of the box's width a generation; `inf`: none.
 ///     accept: "always", a particle stays where it went (as published); "improving", it returns to its best place if that
 ///         is better.
+///     walls: "absorbing", a coordinate that would leave the box stops at the wall, and has no velocity left; "random", it
+///         is drawn anew in the box, and keeps its velocity (compared by Helwig, Branke and Mostaghim 2013).
 ///     max_generations: after so many it gives up; None: as many as the budget allows.
 ///     stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None: never.
 #[pyclass(name = "PSO", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Clone, PartialEq)]
 pub struct PyPso(pub Pso);
 
+scheduled!(PyPso);
+
 #[pymethods]
 impl PyPso {
     #[new]
-    #[pyo3(signature = (*, population=Pso::default().schedule.population.give(), form="constriction", inertia=None, c1=None,
+    #[pyo3(signature = (*, population=Pso::default().schedule.population.value(), form="constriction", inertia=None, c1=None,
                         c2=None, velocity_limit=Pso::default().velocity_limit, accept="always",
-                        max_generations=limited(Pso::default().schedule.max_generations).give(),
-                        stall_generations=limited(Pso::default().schedule.stall_generations).give()))]
+                        walls="absorbing", max_generations=limited(Pso::default().schedule.max_generations).value(),
+                        stall_generations=limited(Pso::default().schedule.stall_generations).value()))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         population: i128,
@@ -45,6 +49,7 @@ impl PyPso {
         c2: Option<f64>,
         velocity_limit: f64,
         accept: &str,
+        walls: &str,
         max_generations: Option<i128>,
         stall_generations: Option<i128>,
     ) -> PyResult<Self> {
@@ -55,16 +60,11 @@ impl PyPso {
             c2: c2.unwrap_or(standard.c2),
             velocity_limit,
             accept: accept.parse::<Accept>().map_err(raise)?,
+            walls: walls.parse::<Walls>().map_err(raise)?,
             ..standard
         };
         solver.validate().map_err(raise)?;
         Ok(Self(solver))
-    }
-
-    /// Particles.
-    #[getter]
-    fn population(&self) -> usize {
-        self.0.schedule.population
     }
 
     /// "constriction" or "inertia".
@@ -106,39 +106,25 @@ impl PyPso {
         self.0.accept.to_string()
     }
 
-    /// Generations after which it gives up; None: as many as the budget allows.
+    /// "absorbing" or "random".
     #[getter]
-    fn max_generations(&self) -> Option<usize> {
-        limited(self.0.schedule.max_generations)
-    }
-
-    /// Generations without gain after which it gives up; None: never.
-    #[getter]
-    fn stall_generations(&self) -> Option<usize> {
-        limited(self.0.schedule.stall_generations)
+    fn walls(&self) -> String {
+        self.0.walls.to_string()
     }
 
     fn __repr__(&self) -> String {
-        let Pso { schedule, form, c1, c2, velocity_limit, accept } = &self.0;
-        let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={weight}, "));
+        let Pso { schedule, form, c1, c2, velocity_limit, accept, walls } = &self.0;
+        let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={}, ", weight.text()));
+        let [c1, c2, velocity_limit] = [c1, c2, velocity_limit].map(f64::text);
         format!(
-            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={velocity_limit}, accept='{accept}', {})",
+            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={velocity_limit}, accept='{accept}', walls='{walls}', {})",
             schedule.population,
             show_schedule(schedule)
         )
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("population", self.population())?;
-        options.set_item("form", self.form())?;
-        options.set_item("inertia", self.inertia())?;
-        options.set_item("c1", self.0.c1)?;
-        options.set_item("c2", self.0.c2)?;
-        options.set_item("velocity_limit", self.0.velocity_limit)?;
-        options.set_item("accept", self.accept())?;
-        options.set_item("max_generations", self.max_generations())?;
-        options.set_item("stall_generations", self.stall_generations())?;
-        Ok((PyTuple::empty(py), options))
+    fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
+        let own = ["form", "inertia", "c1", "c2", "velocity_limit", "accept", "walls"];
+        keywords(slf, &[&["population", "max_generations", "stall_generations"], &own[..]].concat())
     }
 }

@@ -55,8 +55,6 @@ def along_path(
     """Plan a motion whose tip follows a path, in order."""
     arm = load_robot(robot, urdf, base, tip)
     path = _path(arm, curve, points)
-    if animation and out is None:
-        raise InvalidInputError("--animation writes a file: use --out DIR too")
     chosen = options(velocity, acceleration, solver, max_evaluations)
     report(
         lambda: plan_along_path(

@@ -4,7 +4,7 @@ use crate::error::{Error, Result, require_finite};
 use crate::math::polynomial::{derivative, roots};
 
 /// Powers of a cubic.
-const POWERS: usize = 4;
+pub(super) const POWERS: usize = 4;
 
 /// How far a derivative may differ on both sides of a break before it counts as a jump (relative to its size there).
 const JUMP_TOLERANCE: f64 = 1e-9;

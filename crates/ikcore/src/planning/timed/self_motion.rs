@@ -11,7 +11,7 @@ use super::passage::Passage;
 use super::project::project;
 use crate::error::{Error, Result};
 use crate::math::MAX_DOF;
-use crate::math::natural_spline::NaturalSpline;
+use crate::math::cubic_spline::CubicSpline;
 use crate::objective::{Bounds, LeastSquares, Linearization};
 use crate::planning::course::Course;
 use crate::problem::Problem;
@@ -243,7 +243,7 @@ pub fn travel(waypoints: &[f64], n: usize) -> f64 {
 
 /// The splines through a unit offset at each node, at every knot.
 fn node_weights(knots: &[f64]) -> Vec<f64> {
-    let spline = NaturalSpline::over((0..NODES).map(|node| node as f64 / (NODES - 1) as f64).collect());
+    let spline = CubicSpline::natural((0..NODES).map(|node| node as f64 / (NODES - 1) as f64).collect());
     let mut weights = vec![0.0; knots.len() * NODES];
     for node in 0..NODES {
         let (mut values, mut bends) = ([0.0; NODES], [0.0; NODES]);

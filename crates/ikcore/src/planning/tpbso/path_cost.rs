@@ -3,7 +3,7 @@
 use super::redundancy::{NODES, Redundancy, nearest_turn};
 use super::weights::{BROKEN_LIMIT, NO_CONFIGURATION};
 use crate::error::Result;
-use crate::math::natural_spline::{NaturalSpline, Piece};
+use crate::math::cubic_spline::{CubicSpline, Piece};
 use crate::objective::{Bounds, Objective, Score};
 use crate::planning::cost::Cost;
 use crate::planning::course::Course;
@@ -32,7 +32,7 @@ pub struct PathCost<'a> {
     robot: &'a Robot,
     limits: &'a MotionLimits,
     redundancy: Redundancy,
-    spline: NaturalSpline,
+    spline: CubicSpline,
     cost: Cost,
     accuracy: f64,
     scale: f64,
@@ -62,7 +62,7 @@ impl<'a> PathCost<'a> {
     ) -> Self {
         let last = redundancy.points() - 1;
         let passed = (0..last).step_by(STRIDE).chain([last]);
-        let spline = NaturalSpline::over(passed.map(|i| i as f64 / last as f64).collect());
+        let spline = CubicSpline::natural(passed.map(|i| i as f64 / last as f64).collect());
         let size = robot.dof() * spline.knots().len();
         Self {
             scale: cost.scale(robot, limits),
