@@ -28,14 +28,9 @@ pub(super) fn nearest_by_lane(
     distance: &impl Distance,
 ) -> [usize; LANES] {
     let (distances, blocks) = scan(rows, width, blocks, distance);
-    let mut nearest = [0; LANES];
-    for lane in 0..LANES {
-        // Every lane takes the place that its rank gives it: a sort without a branch.
-        let precedes = |other: usize| (distances[other], other) < (distances[lane], lane);
-        let rank = (0..LANES).filter(|other| precedes(*other)).count();
-        nearest[rank] = blocks[lane] as usize * LANES + lane;
-    }
-    nearest
+    let mut lanes: [usize; LANES] = std::array::from_fn(|lane| lane);
+    lanes.sort_by(|a, b| distances[*a].total_cmp(&distances[*b]));
+    lanes.map(|lane| blocks[lane] as usize * LANES + lane)
 }
 
 /// For each lane the smallest distance, and the first block that has it.
