@@ -236,7 +236,7 @@ def page(rivals: dict[tuple[str, str], list[float]], seeds: int, evaluations: in
 
 
 NOTES = (
-    "How the settings were chosen: an option that both have takes the value of the rival: its default or, for pyswarms,",
+    "How the settings were chosen: an option that both have takes the rival's value: its default or, for pyswarms,",
     "Clerc's. One that only ours has takes our default, unless it says how the rival works, such as what becomes of a",
     "coordinate that leaves the box: then it is set as there. Rows that differ from that are named below.",
     "",
