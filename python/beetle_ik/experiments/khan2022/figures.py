@@ -236,8 +236,9 @@ def _draw_stars() -> Drawing:
         ("as it must be meant", STAR.position(time)),
     )
     with drawing(3.0) as figure:
-        for axes, (name, points) in zip(figure.subplots(1, 2), curves, strict=True):
+        panels = figure.subplots(1, 2, sharex=True, sharey=True)
+        for axes, (name, points) in zip(panels, curves, strict=True):
             axes.plot(points[:, 1], points[:, 2], color=BLUE)
-            axes.set(title=name, xlabel="y [m]", ylabel="z [m]", aspect="equal")
-            axes.locator_params(axis="x", nbins=2 if name == "as printed" else 4)
+            axes.set(title=name, xlabel="y [m]", aspect="equal")
+        panels[0].set_ylabel("z [m]")
     return figure

@@ -235,5 +235,6 @@ def draw_arm(axes: Axes, robot: Robot, q: NDArray[np.float64], *, scale: float =
         away = 14.0 * outward / np.linalg.norm(outward)
         axes.annotate(name, point, textcoords="offset points", xytext=tuple(away), ha="center", va="center")
     axes.set(xlabel="x [m]", ylabel="y [m]")
+    axes.margins(0.2)
     axes.set_aspect("equal", adjustable="datalim")
     axes.legend(loc="best", fontsize="small")
