@@ -172,7 +172,9 @@ PAIRS = [
     Pair("BeetleSwarm, 17 beetles", bik.BeetleSwarm(**{**SAME, "population": 17}), CLERC),
     Pair("BeetleSwarm, 50 beetles", bik.BeetleSwarm(**SAME), CLERC),
     # As mealpy's does: what left the box is drawn anew in it, and nothing limits a velocity.
-    Pair('PSO, accept="improving", walls="random"', bik.PSO(walls="random", velocity_limit=np.inf, **IMPROVING), GREEDY),
+    Pair(
+        'PSO, accept="improving", walls="random"', bik.PSO(walls="random", velocity_limit=np.inf, **IMPROVING), GREEDY
+    ),
     Pair('PSO, accept="improving", walls="absorbing"', bik.PSO(**IMPROVING), GREEDY),
     Pair("Genetic, single coordinates mutated", bik.Genetic(**SEPARABLE, **SAME), GA),
     Pair("Genetic, its defaults", bik.Genetic(**SAME), GA),
@@ -234,9 +236,9 @@ def page(rivals: dict[tuple[str, str], list[float]], seeds: int, evaluations: in
 
 
 NOTES = (
-    "How the settings were chosen: an option that both have takes the value of the rival, which is its default or, for",
-    "pyswarms, Clerc's. An option that only ours has takes our default, unless it says how the rival works, such as what",
-    "becomes of a coordinate that leaves the box: then it is set as there. Rows that differ from that are named below.",
+    "How the settings were chosen: an option that both have takes the rival's value: its default or, for pyswarms,",
+    "Clerc's. One that only ours has takes our default, unless it says how the rival works, such as what becomes of a",
+    "coordinate that leaves the box: then it is set as there. Rows that differ from that are named below.",
     "",
     "What the rows say:",
     "",

@@ -81,8 +81,9 @@ def _png(figure: Figure, dpi: int) -> bytes:
     if layout is not None:
         layout.execute(drawing)
         drawing.set_layout_engine("none")
-    # Savefig would draw everything twice: once to lay it out, which is done.
-    FigureCanvasAgg(drawing).print_png(picture, metadata={"Software": None})  # same figure, same bytes
+    # Savefig would draw everything twice: once to lay it out, which is done. Without metadata: same figure, same bytes.
+    canvas: Any = FigureCanvasAgg(drawing)
+    canvas.print_png(picture, metadata={"Software": None})
     return picture.getvalue()
 
 
