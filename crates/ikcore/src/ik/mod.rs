@@ -11,6 +11,7 @@ mod solution;
 mod unreached;
 
 pub use all::{AllOptions, Found, solve_all};
+pub(crate) use nearest::bring_near;
 pub use solution::Solution;
 
 pub(crate) use prepared::Prepared;
