@@ -95,7 +95,7 @@ def _png(figure: Figure, dpi: int) -> bytes:
 
 
 def _lay_out(figure: Figure, dpi: int) -> None:
-    """Once and for all: drawing would do so each time."""
+    """Once and for all: saving would do so for every frame."""
     drawing = figure.drawing
     drawing.set_dpi(dpi)
     layout = drawing.get_layout_engine()
