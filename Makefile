@@ -5,10 +5,10 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench docs
+.PHONY: help demo test lint bench coverage docs
 
 help:  ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "%-8s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "%-10s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 # The limit is the BAS paper's. It is above the real arm's in four joints: the command says so.
 demo: $(VENV)/with-plot  ## a KUKA iiwa 14 follows the BAS paper's circle; results in demo/
@@ -35,6 +35,12 @@ bench: $(VENV)/wheel  ## criterion benchmarks of the core, then the comparison w
 	.venv-bench/bin/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps dist/*.whl
 	.venv-bench/bin/pip install --quiet --disable-pip-version-check --requirement benches/requirements.txt dist/*.whl
 	.venv-bench/bin/python benches/compare.py --out target/compare
+
+# `cargo install cargo-tarpaulin --locked` brings what counts the lines of Rust.
+coverage: $(VENV)/with-test  ## lines that the tests reach, of Rust and of Python
+	cargo tarpaulin --locked --package ikcore --engine llvm --skip-clean --target-dir target/coverage --timeout 600
+	$(BIN)/pip install --quiet --disable-pip-version-check 'pytest-cov>=6'
+	$(BIN)/python -m pytest --cov=beetle_ik --cov-report=term-missing:skip-covered
 
 docs: $(VENV)/with-docs  ## the site in docs/build/html, the Rust pages in target/doc
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked

@@ -3,7 +3,8 @@
     python benches/compare.py --robots DIR --targets 1000 --out DIR
 
 Every library gets the same chain (see `peers/chain.py`), target and random start, called one target at a time from one
-thread, the call included. Pinocchio's forward kinematics judges the answers. `benches/README.md` says how to set it up.
+thread, the call included; then a circle to follow. Pinocchio's forward kinematics judges the answers.
+`benches/README.md` says how to set it up.
 """
 
 # ruff: noqa: E402
@@ -23,11 +24,23 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
-from peers import closed_form, local, restarting
+from peers import closed_form, local, restarting, stepping, tracking
 from peers.adapter import Adapter, Unsupported
 from peers.chain import Chain, load_chains
 from peers.measure import Solver, batch_rate, interleave, judge, per_call
-from peers.report import Row, plain_section, plot, times_section, write_csv
+from peers.report import (
+    ROW_COLUMNS,
+    TRACKING_COLUMNS,
+    Row,
+    plain_section,
+    plot,
+    row_line,
+    summary_columns,
+    summary_lines,
+    times_section,
+    tracking_lines,
+    write_table,
+)
 
 BEETLE_IK = restarting.BeetleIk
 GENERAL = [
@@ -39,9 +52,27 @@ GENERAL = [
     closed_form.Eaik,
     closed_form.Ssik,
 ]
-# These take milliseconds and would empty the caches of the others between any two of their calls.
-LOCAL = [local.PinocchioClik]
-NO_ADAPTER = ["placo", "mink", "pink", "ikpy", "klampt", "pybullet"]  # single local solves too
+# One descent from the start. They take milliseconds: apart, so that they do not empty the caches of the others, and on
+# fewer targets.
+LOCAL = [
+    local.PinocchioClik,
+    local.Klampt,
+    local.PyBullet,
+    local.IkPy,
+    stepping.Placo,
+    stepping.Mink,
+    stepping.Pink,
+]
+TRACKING = [
+    tracking.BeetleIkTrack,
+    tracking.BeetleIkTracker,
+    stepping.Placo,
+    restarting.RoboticsToolbox,
+    restarting.OptIk,
+    stepping.Mink,
+    stepping.Pink,
+]
+EVERY = [*dict.fromkeys((*GENERAL, *LOCAL, *TRACKING))]
 
 POSE = "pose, 1e-6 m and 1e-6 rad"
 TASKS = {
@@ -49,7 +80,10 @@ TASKS = {
     "pose, 1e-9 m and 1e-9 rad": ("solve_pose", 1e-9),
     "position, 1e-6 m": ("solve_position", 1e-6),
 }
-ROUNDS = 2
+LOCAL_SHARE = 5  # the first of so many targets
+IN_A_ROW = "in a row"
+ORDERS = {"alternating": 1, IN_A_ROW: 50}  # targets that a library gets before the next one has its turn
+ROUNDS = 3
 BATCH = 20_000
 
 
@@ -61,18 +95,26 @@ def main() -> None:
     rows: list[Row] = []
     calls: list[list[str]] = []
     rates: list[list[str]] = []
+    followed: list[tracking.Followed] = []
     with tempfile.TemporaryDirectory() as scratch:
         for chain in load_chains(arguments.robots, Path(scratch)):
             print(f"{chain.name} ({chain.dof} joints)", flush=True)
             for task in TASKS:
                 rows += compare(chain, task, GENERAL, arguments.targets, ROUNDS)
-            rows += compare(chain, POSE, LOCAL, arguments.targets, 1)
+            rows += compare(chain, POSE, LOCAL, max(1, arguments.targets // LOCAL_SHARE), 1)
             calls += time_kinematics(chain)
             rates.append(time_batch(chain))
-    write_csv(rows, arguments.out / "compare.csv")
-    (arguments.out / "compare.md").write_text(markdown(rows, calls, rates, arguments.targets))
-    plot(rows, POSE, f"{arguments.targets} random reachable targets a robot: {POSE}", arguments.out / "compare.png")
-    print(f"wrote compare.csv, compare.md and compare.png to {arguments.out}")
+            if chain.name == tracking.ROBOT:
+                followed += tracking.compare_tracking(chain, load(chain, tracking.TOLERANCE, TRACKING)[0])
+    write_table(arguments.out / "compare.csv", ROW_COLUMNS, [*map(row_line, rows)])
+    summary = summary_lines(rows, POSE, ORDERS, versions())
+    write_table(arguments.out / "summary.csv", summary_columns(ORDERS), summary)
+    write_table(arguments.out / "tracking.csv", TRACKING_COLUMNS, tracking_lines(followed))
+    report = markdown(rows, calls, rates, followed, arguments.targets)
+    (arguments.out / "compare.md").write_text(report, encoding="utf-8")
+    title = f"{arguments.targets} random reachable targets a robot: {POSE}, {IN_A_ROW}"
+    plot(rows, POSE, IN_A_ROW, title, arguments.out / "compare.png")
+    print(f"wrote compare.csv, summary.csv, tracking.csv, compare.md and compare.png to {arguments.out}")
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -90,29 +132,36 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def compare(chain: Chain, task: str, libraries: list[type[Adapter]], count: int, rounds: int) -> list[Row]:
-    """The rows of one task on one robot."""
+    """The rows of one task on one robot, in every order."""
     method, tolerance = TASKS[task]
-    adapters, rows = load(chain, task, [library for library in libraries if library.offers(method)])
+    libraries = [library for library in libraries if library.offers(method)]
+    adapters, missing = load(chain, tolerance, libraries)
     poses, starts = chain.targets(count)
     targets = poses[:, :3, 3].copy() if method == "solve_position" else poses
     solvers: dict[str, Solver] = {adapter.name: getattr(adapter, method) for adapter in adapters}
     for solve in solvers.values():
         solve(targets[0], starts[0])  # what is loaded at the first call is not timed
-    for name, (times, answers) in interleave(solvers, targets, starts, rounds).items():
-        rows.append(Row(task, chain.name, name, judge(chain, targets, times, answers, tolerance)))
+    rows = []
+    for order, in_a_row in ORDERS.items():
+        measured = interleave(solvers, targets, starts, in_a_row=in_a_row, rounds=rounds)
+        times = {name: judge(chain, targets, calls, tolerance) for name, calls in measured.items()}
+        rows += [
+            Row(task, order, chain.name, library.name, times.get(library.name), missing.get(library.name, ""))
+            for library in libraries
+        ]
     return rows
 
 
-def load(chain: Chain, task: str, libraries: list[type[Adapter]]) -> tuple[list[Adapter], list[Row]]:
-    """The libraries that are there and take this robot; for the others a row with the reason."""
-    adapters, missing = [], []
+def load(chain: Chain, tolerance: float, libraries: list[type[Adapter]]) -> tuple[list[Adapter], dict[str, str]]:
+    """The libraries that are there and take this robot, and why the others are not or do not."""
+    adapters, missing = [], {}
     for library in libraries:
         try:
-            adapters.append(library(chain, TASKS[task][1]))
+            adapters.append(library(chain, tolerance))
         except (ImportError, Unsupported) as reason:
-            missing.append(Row(task, chain.name, library.name, None, str(reason)))
+            missing[library.name] = str(reason)
         except Exception as failure:  # of any kind: one library must not end the run of the others
-            missing.append(Row(task, chain.name, library.name, None, f"{type(failure).__name__}: {failure}"))
+            missing[library.name] = f"{type(failure).__name__}: {failure}"
     return adapters, missing
 
 
@@ -120,7 +169,7 @@ def time_kinematics(chain: Chain) -> list[list[str]]:
     """Forward kinematics and Jacobian of every library that has them, in ns a call."""
     configurations = np.random.default_rng(0).uniform(chain.lower, chain.upper, (1000, chain.dof))
     libraries = [library for library in (*GENERAL, *LOCAL) if library.offers("fk")]
-    adapters, _ = load(chain, POSE, libraries)
+    adapters, _ = load(chain, TASKS[POSE][1], libraries)
     poses = per_call({adapter.name: adapter.fk for adapter in adapters}, configurations)
     both = [adapter for adapter in adapters if adapter.offers("fk_and_jacobian")]
     jacobians = per_call({adapter.name: adapter.fk_and_jacobian for adapter in both}, configurations)
@@ -137,19 +186,27 @@ def time_batch(chain: Chain) -> list[str]:
     return [chain.name, *(f"{batch_rate(adapter, targets, threads):,.0f}" for threads in (1, os.cpu_count() or 1))]
 
 
-def markdown(rows: list[Row], calls: list[list[str]], rates: list[list[str]], count: int) -> str:
+def markdown(
+    rows: list[Row], calls: list[list[str]], rates: list[list[str]], followed: list[tracking.Followed], count: int
+) -> str:
     """The whole report."""
     sections = [
         f"# Inverse kinematics libraries compared\n\n{count} reachable targets a robot, drawn uniformly inside the "
-        "limits, and one random start each. One thread, one call a target from Python, call included; libraries "
-        f"interleaved target by target; the quickest of {ROUNDS} rounds (one for the libraries that solve once from "
-        "the start). Solved: within the tolerance by Pinocchio's forward kinematics and inside the limits. Failures "
-        f"count with the time that they took.\n\n{processor()}, Python {platform.python_version()}, "
-        f"{platform.system()}.\n\nNo adapter yet: {', '.join(NO_ADAPTER)}.\n",
+        "limits, and one random start each. One thread, one call a target from Python, call included. Solved: within "
+        "the tolerance by Pinocchio's forward kinematics and inside the limits. Failures count with the time that "
+        "they took.\n\n"
+        "Alternating: each library gets a target before any gets the next, so that every call comes after other work "
+        f"and finds the caches cold. In a row: each library gets {ORDERS[IN_A_ROW]} targets before the next library "
+        f"has its turn. Of a target's {ROUNDS} calls in each order the median counts (the libraries that solve "
+        f"once from the start are measured among themselves, by one call on {count // LOCAL_SHARE} of the targets).\n\n"
+        f"{processor()}, Python {platform.python_version()}, {platform.system()}.\n",
         plain_section(
-            "Libraries and settings", ["library", "version", "settings"], [*map(library_line, (*GENERAL, *LOCAL))]
+            "Libraries and settings",
+            ["library", "version", "settings"],
+            [[library.name, versions()[library.name], library.settings] for library in EVERY],
         ),
-        *(times_section(task, rows) for task in TASKS),
+        *(times_section(task, order, rows) for task in TASKS for order in ORDERS),
+        plain_section("A circle of 0.2 m, iiwa14, position, warm-started", TRACKING_COLUMNS, tracking_lines(followed)),
         plain_section("Kinematics, ns a call", ["robot", "library", "FK", "FK + Jacobian"], calls),
         plain_section(
             f"Batch of {BATCH:,} poses by beetle-ik, poses a second",
@@ -160,13 +217,15 @@ def markdown(rows: list[Row], calls: list[list[str]], rates: list[list[str]], co
     return "\n".join(sections)
 
 
-def library_line(library: type[Adapter]) -> list[str]:
-    """Name, installed version and settings."""
-    try:
-        installed = version(library.distribution)
-    except PackageNotFoundError:
-        installed = "not installed"
-    return [library.name, installed, library.settings]
+def versions() -> dict[str, str]:
+    """What is installed, by the names of the libraries."""
+    found = {}
+    for library in EVERY:
+        try:
+            found[library.name] = version(library.distribution)
+        except PackageNotFoundError:
+            found[library.name] = "not installed"
+    return found
 
 
 @functools.cache

@@ -37,6 +37,14 @@ class Adapter:
         """Joint values whose tip is at `point` (3,), in m, with any orientation."""
         raise NotImplementedError
 
+    def follow(self, points: np.ndarray, start: np.ndarray) -> list[np.ndarray | None]:
+        """Joint values whose tip is at each of `points` (k, 3), each found from the one before."""
+        followed, q = [], start
+        for point in points:
+            followed.append(self.solve_position(point, q))
+            q = q if followed[-1] is None else followed[-1]
+        return followed
+
     def fk(self, q: np.ndarray) -> object:
         """Tip pose, in the library's own type."""
         raise NotImplementedError

@@ -15,6 +15,7 @@ import numpy as np
 import pinocchio as pin
 
 SEED = 20250
+TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,10 @@ class Chain:
         """Tip in the base frame, (4, 4)."""
         pin.framesForwardKinematics(self.model, self._data, q)
         return self._data.oMf[self.tip_frame].homogeneous.copy()
+
+    def unwound(self, q: np.ndarray) -> np.ndarray:
+        """The same posture by whole turns: each joint at its least value that is not below its limit."""
+        return q + TURN * np.ceil((self.lower - q) / TURN)
 
     def targets(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Reachable poses (count, 4, 4) and one random start for each (count, n), the same in every run."""
@@ -105,7 +110,16 @@ def _cut(urdf: Path, base: str | None, tip: str | None, scratch: Path) -> Chain:
             limit.set("lower", str(-math.pi))
             limit.set("upper", str(math.pi))
         chain.append(joint)
-        ET.SubElement(chain, "link", name=joint.find("child").get("link"))
+        moved = ET.SubElement(chain, "link", name=joint.find("child").get("link"))
+        moved.append(_some_mass())
     path = scratch / urdf.name
     ET.ElementTree(chain).write(path)
     return Chain(urdf.stem, path, link, tip)
+
+
+def _some_mass() -> ET.Element:
+    """The simulators among the libraries insist on it."""
+    inertial = ET.Element("inertial")
+    ET.SubElement(inertial, "mass", value="1")
+    ET.SubElement(inertial, "inertia", ixx="1", ixy="0", ixz="0", iyy="1", iyz="0", izz="1")
+    return inertial

@@ -16,7 +16,6 @@ import numpy as np
 from .adapter import Adapter, Unsupported
 from .chain import Chain
 
-TURN = 2.0 * np.pi
 BUILD_SECONDS = 30
 
 
@@ -36,13 +35,13 @@ class Eaik(Adapter):
         zero = np.zeros(chain.dof)
         # EAIK's tip is the last joint, world-aligned at zero.
         self._from_tip = np.linalg.inv(chain.pose(zero)) @ self._robot.fwdKin(zero)
-        self._lower, self._upper = chain.lower, chain.upper
+        self._unwound, self._upper = chain.unwound, chain.upper
 
     def solve_pose(self, target: np.ndarray, start: np.ndarray) -> np.ndarray | None:
         solutions = self._robot.IK(target @ self._from_tip)
         for q, approximate in zip(solutions.Q, solutions.is_LS, strict=True):
             if not approximate:
-                q = q + TURN * np.ceil((self._lower - q) / TURN)
+                q = self._unwound(q)
                 if (q <= self._upper).all():
                     return q
         return None

@@ -20,7 +20,7 @@ LIMIT_SLACK = 1e-9  # rad or m: what a library may lose in rounding at a limit
 class Times:
     """One library on one robot and task."""
 
-    solved: float  # percent of the targets
+    solved: float  # percent of the calls
     median: float  # µs, as the next two; failures count with the time that they took
     mean: float
     p99: float
@@ -29,42 +29,55 @@ class Times:
 Solver = Callable[[np.ndarray, np.ndarray], np.ndarray | None]
 
 
-def interleave(
-    solvers: dict[str, Solver], targets: np.ndarray, starts: np.ndarray, rounds: int
-) -> dict[str, tuple[np.ndarray, list[np.ndarray | None]]]:
-    """Times in µs and answers of each solver in its quickest round.
+@dataclass(frozen=True)
+class Calls:
+    """What one library took and answered: `times` (rounds, targets) in µs, `answers` one list a round."""
 
-    All solvers get a target before any gets the next, in an order drawn anew each time: a busy machine then hurts all
-    alike, and none always follows the one that leaves it the caches warm. A round counts as a whole, since the best of
-    several calls would hide restarts.
+    times: np.ndarray
+    answers: list[list[np.ndarray | None]]
+
+
+def interleave(
+    solvers: dict[str, Solver], targets: np.ndarray, starts: np.ndarray, *, in_a_row: int, rounds: int
+) -> dict[str, Calls]:
+    """Every call of every solver, `in_a_row` targets by one before the next solver gets the same.
+
+    With 1, each call comes after other work and finds the caches cold; with 50, the caches are its own. The order is
+    drawn anew each time: a busy machine hurts all alike, and none always follows the same other.
     """
-    names = list(solvers)
+    calls = {
+        name: Calls(np.empty((rounds, len(targets))), [[None] * len(targets) for _ in range(rounds)])
+        for name in solvers
+    }
     order = np.random.default_rng(0)
-    best: dict[str, tuple[np.ndarray, list[np.ndarray | None]]] = {}
     gc.collect()
     gc.disable()
-    for _ in range(rounds):
-        times = {name: np.empty(len(targets)) for name in names}
-        answers: dict[str, list[np.ndarray | None]] = {name: [] for name in names}
-        for i, (target, start) in enumerate(zip(targets, starts, strict=True)):
-            for name in order.permutation(names):
-                solve = solvers[name]
-                begin = perf_counter_ns()
-                q = solve(target, start)
-                times[name][i] = (perf_counter_ns() - begin) * 1e-3
-                answers[name].append(q)
-        for name in names:
-            if name not in best or times[name].mean() < best[name][0].mean():
-                best[name] = times[name], answers[name]
+    for a_round in range(rounds):
+        for first in range(0, len(targets), in_a_row):
+            for name in order.permutation(list(solvers)):
+                solve, times, answers = solvers[name], calls[name].times[a_round], calls[name].answers[a_round]
+                for i in range(first, min(first + in_a_row, len(targets))):
+                    target, start = targets[i], starts[i]
+                    begin = perf_counter_ns()
+                    q = solve(target, start)
+                    times[i] = (perf_counter_ns() - begin) * 1e-3
+                    answers[i] = q
     gc.enable()
-    return best
+    return calls
 
 
-def judge(chain: Chain, targets: np.ndarray, times: np.ndarray, answers: list, tolerance: float) -> Times:
-    """Solved means within the tolerance by Pinocchio's forward kinematics and inside the limits."""
+def judge(chain: Chain, targets: np.ndarray, calls: Calls, tolerance: float) -> Times:
+    """Solved means within the tolerance by Pinocchio's forward kinematics and inside the limits, in every round.
+
+    Of a target's calls the median counts: it leaves out what interrupted one of them, a short call and a long one
+    alike, and rewards no library for the luckiest of its random restarts, as the quickest call would.
+    """
     solved = [
-        q is not None and _reaches(chain, q, target, tolerance) for q, target in zip(answers, targets, strict=True)
+        q is not None and _reaches(chain, q, target, tolerance)
+        for answers in calls.answers
+        for q, target in zip(answers, targets, strict=True)
     ]
+    times = np.median(calls.times, axis=0)
     return Times(
         100.0 * float(np.mean(solved)), *map(float, (np.median(times), times.mean(), np.quantile(times, 0.99)))
     )

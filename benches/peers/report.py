@@ -5,14 +5,17 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 
 from .measure import Times
+from .tracking import STEPS, Followed
 
 REFERENCE = "beetle-ik"
+Cells = dict[tuple[str, str], "Row"]  # by library and robot
 
 
 @dataclass(frozen=True)
@@ -20,31 +23,57 @@ class Row:
     """One line of the table: a library on a robot and task; `times` None with a note where it was not measured."""
 
     task: str
+    order: str
     robot: str
     library: str
     times: Times | None
     note: str = ""
 
 
-def write_csv(rows: list[Row], path: Path) -> None:
-    with path.open("w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(["task", "robot", "library", "solved_percent", "median_us", "mean_us", "p99_us", "note"])
-        for row in rows:
-            figures = [f"{x:.4g}" for x in asdict(row.times).values()] if row.times else [""] * 4
-            table.writerow([row.task, row.robot, row.library, *figures, row.note])
+def write_table(path: Path, columns: list[str], lines: list[list[str]]) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([columns, *lines])
 
 
-def times_section(task: str, rows: list[Row]) -> str:
+ROW_COLUMNS = ["task", "order", "robot", "library", "solved_percent", "median_us", "mean_us", "p99_us", "note"]
+
+
+def row_line(row: Row) -> list[str]:
+    figures = [f"{x:.4g}" for x in asdict(row.times).values()] if row.times else [""] * 4
+    return [row.task, row.order, row.robot, row.library, *figures, row.note]
+
+
+def summary_columns(orders: Iterable[str]) -> list[str]:
+    return ["library", "arms", "solved [%]", *(f"time over ours, {order}" for order in orders)]
+
+
+def summary_lines(rows: list[Row], task: str, orders: Iterable[str], versions: dict[str, str]) -> list[list[str]]:
+    """A line a library, over all arms that it takes."""
+    measured = [row for row in rows if row.task == task and row.times]
+    lines = []
+    for library in dict.fromkeys(row.library for row in measured):
+        solved = [row.times.solved for row in measured if row.library == library]
+        lowest, highest = f"{min(solved):.3g}", f"{max(solved):.3g}"
+        lines.append(
+            [f"{library} {versions[library]}", str(len({row.robot for row in measured if row.library == library}))]
+        )
+        lines[-1].append(highest if lowest == highest else f"{lowest} to {highest}")
+        for order in orders:
+            cells = {(row.library, row.robot): row for row in measured if row.order == order}
+            lines[-1].append(f"{_geometric_mean(_ratios(cells, library, 'mean')):.2g}")
+    return lines
+
+
+def times_section(task: str, order: str, rows: list[Row]) -> str:
     """Success, median, mean and p99 of each library on each robot, and what the library takes beside beetle-ik."""
-    cells = {(row.library, row.robot): row for row in rows if row.task == task}
+    cells = {(row.library, row.robot): row for row in rows if (row.task, row.order) == (task, order)}
     libraries = list(dict.fromkeys(library for library, _ in cells))
     robots = list(dict.fromkeys(robot for _, robot in cells))
-    lines = [f"## {task}", "", "Solved % / median / mean / p99 in µs.", ""]
+    lines = [f"## {task}, {order}", "", "Solved % / median / mean / p99 in µs.", ""]
     lines += _header(["library", *robots, f"mean ÷ {REFERENCE}", f"p99 ÷ {REFERENCE}"])
     for library in libraries:
         of_library = [cells.get((library, robot)) for robot in robots]
-        ratios = [_ratio(cells, library, robots, figure) for figure in ("mean", "p99")]
+        ratios = [_ratio(cells, library, figure) for figure in ("mean", "p99")]
         lines.append(_line([library, *map(_cell, of_library), *ratios]))
     notes = dict.fromkeys(f"- {row.library}, {row.robot}: {row.note}" for row in cells.values() if row.note)
     return "\n".join([*lines, "", *(["Not measured:", "", *notes, ""] if notes else [])])
@@ -57,14 +86,39 @@ def _cell(row: Row | None) -> str:
     return f"{times.solved:.1f} / {times.median:.3g} / {times.mean:.3g} / {times.p99:.3g}"
 
 
-def _ratio(cells: dict[tuple[str, str], Row], library: str, robots: list[str], figure: str) -> str:
-    """Geometric mean of the ratios on the robots that both have."""
-    logs = []
-    for robot in robots:
-        row, reference = cells.get((library, robot)), cells.get((REFERENCE, robot))
-        if row and reference and row.times and reference.times:
-            logs.append(np.log(getattr(row.times, figure) / getattr(reference.times, figure)))
-    return f"{np.exp(np.mean(logs)):.2f} ({len(logs)} robots)" if logs else "-"
+def _ratio(cells: Cells, library: str, figure: str) -> str:
+    ratios = _ratios(cells, library, figure)
+    return f"{_geometric_mean(ratios):.2f} ({len(ratios)} robots)" if ratios else "-"
+
+
+def _ratios(cells: Cells, library: str, figure: str) -> list[float]:
+    """What the library takes over what beetle-ik takes, on the robots that both have."""
+    pairs = [(row.times, cells[REFERENCE, robot].times) for (name, robot), row in cells.items() if name == library]
+    return [getattr(its, figure) / getattr(ours, figure) for its, ours in pairs if its and ours]
+
+
+def _geometric_mean(values: list[float]) -> float:
+    return float(np.exp(np.mean(np.log(values))))
+
+
+TRACKING_COLUMNS = ["library"]
+for _steps in STEPS:
+    TRACKING_COLUMNS += [f"{_steps} steps [ms]", "largest error [m]", "time over ours"]
+
+
+def tracking_lines(followed: list[Followed]) -> list[list[str]]:
+    """Time and largest error of each library round the circle, and its time over that of the first."""
+    cells = {(row.library, row.steps): row for row in followed}
+    libraries = list(dict.fromkeys(row.library for row in followed))
+    lines = []
+    for library in libraries:
+        lines.append([library])
+        for steps in STEPS:
+            row, reference = cells[library, steps], cells[libraries[0], steps]
+            missed = f" ({row.missed} points missed)" if row.missed else ""
+            ratio = row.milliseconds / reference.milliseconds
+            lines[-1] += [f"{row.milliseconds:.2g}", f"{row.largest_error:.0e}{missed}", f"{ratio:.2g}"]
+    return lines
 
 
 def plain_section(title: str, columns: list[str], lines: list[list[str]]) -> str:
@@ -79,14 +133,14 @@ def _line(cells: list[str]) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-def plot(rows: list[Row], task: str, title: str, path: Path) -> None:
+def plot(rows: list[Row], task: str, order: str, title: str, path: Path) -> None:
     """Success against mean time: one colour a library, one point a robot, its geometric mean ringed."""
     import matplotlib as mpl
 
     mpl.use("Agg")
     from matplotlib import pyplot as plt
 
-    measured = [row for row in rows if row.task == task and row.times]
+    measured = [row for row in rows if (row.task, row.order) == (task, order) and row.times]
     libraries = list(dict.fromkeys(row.library for row in measured))
     figure, axes = plt.subplots(figsize=(9.0, 5.0), layout="constrained")
     for library, colour in zip(libraries, plt.get_cmap("tab20")(np.arange(len(libraries))), strict=True):

@@ -1,5 +1,6 @@
 """Files and folders that are either whole or not there."""
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterator
@@ -29,6 +30,8 @@ def path_of(file: str | os.PathLike[str]) -> Path:
 def whole_file(file: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     """Open `file` for writing: it appears when the block ends well; otherwise what was there before stays."""
     path = path_of(file)
+    if not path.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "No such folder", str(path.parent))
     unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with unfinished.open("wb") as stream:

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from ._needs import library
+
 # Okabe and Ito's palette, which colour-blind readers can tell apart too; its yellow is too faint for lines on white.
 BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK = PALETTE = (
     "#0072B2",
@@ -28,8 +30,7 @@ def line(i: int) -> dict[str, Any]:
 @contextmanager
 def style() -> Iterator[None]:
     """Figures made inside look like all of ours."""
-    import matplotlib as mpl
-
+    mpl = library("matplotlib", "matplotlib", "a figure", extra="plot")
     settings: dict[str, Any] = {
         "axes.grid": True,
         "axes.spines.right": False,
@@ -41,5 +42,5 @@ def style() -> Iterator[None]:
         "legend.frameon": False,
         "lines.linewidth": 1.3,
     }
-    with mpl.rc_context(settings):  # type: ignore[arg-type, unused-ignore]  # the stub wants literal keys
+    with mpl.rc_context(settings):
         yield

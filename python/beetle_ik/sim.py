@@ -14,17 +14,15 @@ from __future__ import annotations
 
 import os
 import sys
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 import numpy as np
 
-from ._core import BeetleIkError, InvalidInputError, Robot
+from ._core import InvalidInputError, Robot
+from ._needs import library
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
     from numpy.typing import ArrayLike, NDArray
 
 _TIMESTEP = 1e-3  # s, of the simulation
@@ -192,14 +190,11 @@ class MujocoPlant:
         self.reset(np.clip(np.zeros(self.robot.dof), self.robot.lower, self.robot.upper))
 
 
-def _mujoco() -> ModuleType:
+def _mujoco() -> Any:
     # Without a screen only EGL can draw; MuJoCo asks when it is loaded.
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         os.environ.setdefault("MUJOCO_GL", "egl")
-    try:
-        return import_module("mujoco")
-    except ImportError as error:
-        raise BeetleIkError("simulation needs the extra 'sim': pip install 'beetle-ik[sim]'") from error
+    return library("mujoco", "mujoco", "simulation", extra="sim")
 
 
 def _description(robot: Robot, stiffness: float, mass: float, gravity: float) -> str:

@@ -22,7 +22,7 @@ CIRCLE = [
     "1.4",
     "--duration",
     "30",
-    "--tolerance",
+    "--position-tolerance",
     "4e-5",
 ]
 TRACK = ["track", "planar5", *CIRCLE]
@@ -243,7 +243,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_any_work(
 
 
 def test_a_failure_half_way_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail_half_way(_result: object, _summary: object, folder: Path) -> None:
+    def fail_half_way(folder: Path, *_others: object) -> None:
         (folder / "trajectory.csv").touch()
         raise OSError("disk full")
 

@@ -77,6 +77,11 @@ def test_joint_angles(call: Callable[[], object], error: type[Exception], messag
             f"no robot is named 'Panda' (did you mean 'panda'?); known robots: {NAMES}",
         ),
         (lambda: bik.Robot.named("zzz"), Unknown, f"no robot is named 'zzz'; known robots: {NAMES}"),
+        (
+            lambda: bik.Robot("iiwa14"),
+            TypeError,
+            "a robot is made by Robot.named(name), Robot.from_urdf(path), Robot.from_dh(...) or Robot.planar(lengths)",
+        ),
         (lambda: bik.Robot.planar([]), Invalid, "lengths of a planar arm: expected at least 1, got 0"),
         (lambda: bik.Robot.planar([1, -1]), Invalid, "length 1 of a planar arm must be positive and finite, got -1"),
         (

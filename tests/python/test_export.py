@@ -29,6 +29,11 @@ def test_csv_keeps_what_determines_the_pieces(tmp_path: Path, derivatives: int) 
     np.testing.assert_allclose(read.coefficients, written.coefficients, rtol=0, atol=1e-13)
 
 
+def test_a_missing_folder_is_named(tracked: bik.TrackResult, tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match=r"No such folder: '.*missing'$"):
+        tracked.trajectory.to_csv(tmp_path / "missing" / "motion.csv")
+
+
 def test_csv_names_its_columns(tmp_path: Path) -> None:
     bik.Trajectory.from_samples(TIME, smooth_samples()[0], joint_names=JOINTS).to_csv(tmp_path / "motion.csv")
     assert (tmp_path / "motion.csv").read_text().splitlines()[0] == 'time,q:shoulder,"q:elbow, left"'

@@ -86,7 +86,7 @@ def test_capsules_are_seen_from_their_links() -> None:
         ),
         (
             lambda: bik.plan_point_to_point(PANDA, start_q=CENTRE, end_q=CENTRE, obstacles=CRATE),
-            f"obstacles must be made by bik.obstacles, such as Sphere or Box, got {CRATE!r}",
+            f"obstacles must be a list, got a single one: [{CRATE!r}]",
         ),
         (
             lambda: bik.plan_point_to_point(PANDA, start_q=CENTRE, end_q=CENTRE, margin=-1.0),

@@ -43,7 +43,11 @@ SOLVERS = [
     bik.MultiStart(bik.BAS(variant="greedy")),
     bik.MultiStart(bik.LevenbergMarquardt(initial_damping=0.5), max_starts=3),
 ]
-STOPS = [bik.Stop(), bik.Stop(max_evaluations=10, max_iterations=20, max_time=0.25, value_below=-0.5)]
+STOPS = [
+    bik.Stop(),
+    bik.Stop(value_below=float("inf")),
+    bik.Stop(max_evaluations=10, max_iterations=20, max_time=0.25, value_below=-0.5),
+]
 TURN = bik.pose([0, 0, 0], rpy=[0.1, 0.2, 0.3])[:3, :3]
 OBSTACLES = [
     bik.obstacles.Sphere([0.1, 0.2, 0.3], 0.5),
@@ -54,7 +58,15 @@ OBSTACLES = [
     bik.obstacles.Ellipse([0.1, 0.2], [1, 2], angle=0.7),
     bik.obstacles.ConvexMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
 ]
-VALUES = [*SINUSOIDS, *SOLVERS, *STOPS, *OBSTACLES]
+METHODS = [
+    bik.CircleSwarm(),
+    bik.CircleSwarm(population=7, generations=20, c1=2.5, c2=2.0, velocity_limit=0.1, signed=True),
+    bik.WeightedPseudoInverse(),
+    bik.WeightedPseudoInverse(gain=5.0, integrator="rk4", weights=[1.0, 2.0], posture_gain=10.0, damping=0.01),
+    bik.ZNNBAS(),
+    bik.ZNNBAS(gain=10.0, antenna_length=[0.1, 0.2], delay_steps=10, delay="held", accept="improving", sensor_delay=2),
+]
+VALUES = [*SINUSOIDS, *SOLVERS, *STOPS, *OBSTACLES, *METHODS]
 
 MECHANISM, MECHANISM_BASE, MECHANISM_TIP = chain(joints=9, place="branch", seed=4)
 ROBOTS = [
@@ -98,9 +110,9 @@ def test_defaults_are_shown_in_full() -> None:
     assert repr(bik.APPS.paper()) == paper
     assert repr(bik.JacobianTranspose()) == "JacobianTranspose(step_size='auto')"
     assert repr(bik.NewtonRaphson()) == "NewtonRaphson(step_fraction=1.0)"
-    assert repr(bik.BAS()) == "BAS(variant='star', c1=3, c2=1, explorations=50, max_passes=200)"
-    assert repr(bik.BAS(variant="chain")) == "BAS(variant='chain', c1=1, c2=1, explorations=30, max_passes=200)"
-    assert repr(bik.BAS(variant="greedy")) == "BAS(variant='greedy', c1=3, c2=1, explorations=5, max_passes=200)"
+    assert repr(bik.BAS()) == "BAS(variant='star', c1=3.0, c2=1.0, explorations=50, max_passes=200)"
+    assert repr(bik.BAS(variant="chain")) == "BAS(variant='chain', c1=1.0, c2=1.0, explorations=30, max_passes=200)"
+    assert repr(bik.BAS(variant="greedy")) == "BAS(variant='greedy', c1=3.0, c2=1.0, explorations=5, max_passes=200)"
     assert bik.BAS() == bik.BAS(variant="star", c1=3.0, c2=1.0, explorations=50)
 
 
@@ -130,7 +142,7 @@ def test_robots_are_compared_by_what_they_are() -> None:
 @pytest.mark.parametrize("damaged", [b"", b"\x00", b"\xff" * 40])
 def test_damaged_robots_are_refused(damaged: bytes) -> None:
     with pytest.raises(bik.InvalidInputError, match=r"^cannot restore robot: "):
-        bik.Robot._from_bytes(damaged)
+        bik.Robot._restore(damaged)
 
 
 def test_limits_come_back(again: Callable[[bik.Limits], bik.Limits]) -> None:
@@ -140,7 +152,7 @@ def test_limits_come_back(again: Callable[[bik.Limits], bik.Limits]) -> None:
     assert (other.lower, other.acceleration, other.jerk) == (-1.0, None, None)
     np.testing.assert_array_equal(other.upper, [1.0, 2.0])
     assert other.velocity == SINUSOIDS[1]
-    assert repr(other).startswith("Limits(lower=-1.0, upper=array([1., 2.]), velocity=Sinusoid(mean=[1.0, 2.0], ")
+    assert eval(repr(other), vars(bik)) == limits
 
 
 def test_limits_compare_as_given() -> None:
@@ -176,6 +188,16 @@ def test_trajectories_come_back(again: Callable[[bik.Trajectory], bik.Trajectory
     assert other.joint_names == ["a", "b"]
     np.testing.assert_array_equal(other.coefficients, trajectory.coefficients)
     assert other != bik.Trajectory.from_samples([0.0, 1.0, 3.0], q, joint_names=["a", "b"])
+
+
+@pytest.mark.parametrize("motion", ["pose", "position", "rotation"])
+def test_ellipsoids_come_back(motion: str, again: Callable[[object], object]) -> None:
+    robot = bik.Robot.named("panda")
+    one, elsewhere = (robot.velocity_ellipsoid(q, motion=motion) for q in robot.random_configurations(2, seed=1))
+    other = again(one)
+    assert (other, repr(other)) == (one, repr(one))
+    assert_same(properties(one), properties(other))
+    assert one != elsewhere
 
 
 def turned(t: float) -> np.ndarray:
@@ -241,6 +263,13 @@ def failing_plant() -> Callable[[np.ndarray], np.ndarray]:
     return move
 
 
+def step_without_a_model() -> bik.Step:
+    session = bik.ZNNBAS().session([0.1, 0.2, 0.3], dt=0.1)
+    plant = bik.KinematicPlant(bik.Robot.planar([1.0] * 3))
+    steps = (session.observe(plant.move(session.command((1.5, 1.0, 0.0)))) for _ in range(9))
+    return next(step for step in steps if step is not None)
+
+
 def results() -> dict[str, object]:
     arm, planar = bik.Robot.named("iiwa14"), bik.Robot.planar([1.0] * 3, velocity=1.0)
     q = arm.random_configurations(4, seed=3)
@@ -264,6 +293,12 @@ def results() -> dict[str, object]:
         "plan along": bik.plan_along_path(planar, [(1.5, 1.0, 0.0), (1.4, 1.2, 0.0)], limits=plane),
         "model free": bik.track_model_free(bik.KinematicPlant(planar), circle, [0.1, 0.2, 0.3], dt=0.1),
         "failed plant": bik.track_model_free(failing_plant(), circle, [0.1, 0.2, 0.3], dt=0.1),
+        "step": bik.Tracker(arm, q[0], dt=0.1, limits=limits).step(arm.fk(q[1])),
+        "step without a model": step_without_a_model(),
+        "minimum": bik.minimize(np.linalg.norm, [-1, -1], [2, 2], solver=bik.PSO(), stop=bik.Stop(value_below=1e-3)),
+        "no minimum": bik.minimize(lambda _: np.nan, [-1.0], [2.0], solver=bik.BAS(), stop=bik.Stop(max_evaluations=9)),
+        "posture": bik.planar_posture(planar, (1.5, 1.0, 0.0), swarm=bik.CircleSwarm()),
+        "no posture": bik.planar_posture(planar, (4.0, 0.0, 0.0)),
     }  # fmt: skip
 
 

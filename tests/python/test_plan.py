@@ -10,6 +10,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import beetle_ik as bik
+from beetle_ik import _plan_figure
 from beetle_ik.cli import app
 
 ARM = bik.Robot.planar([1.0, 1.0, 1.0])
@@ -74,10 +75,11 @@ def test_other_searches_serve(solver: Any) -> None:
 
 
 def test_a_path_is_followed_within_the_accuracy() -> None:
-    plan = along(np.array(CORNER), accuracy=0.05)
+    path = bik.paths.polyline(CORNER, 2.0)
+    plan = along(path, accuracy=0.05)
     assert plan.success, plan.message
     assert plan.accuracy <= 0.05
-    np.testing.assert_array_equal(plan.reference, CORNER)
+    np.testing.assert_allclose(plan.reference, path.sample(0.04)[1], atol=1e-12)
     value, lowest, highest = plan.redundancy[:, 0].T
     assert (lowest <= value).all()
     assert (value <= highest).all()
@@ -95,13 +97,13 @@ def test_what_no_plan_keeps_is_named() -> None:
     assert not plan.success
     assert plan.status == bik.Status.BUDGET_SPENT
     (missed,) = plan.violations
-    assert missed.what == "distance of the tip from point 1 of the path"
+    assert missed.what == "distance of the tip from the path between points 0 and 1"
     assert (missed.bound, missed.unit) == (1e-3, "m")
     assert missed.value == plan.accuracy
-    assert str(missed) == f"distance of the tip from point 1 of the path is {missed.value:.4f} m, allowed 0.001000 m"
+    assert str(missed) == f"{missed.what} is {missed.value:.5f} m, allowed 0.001000 m"
     assert plan.message == (
         f"no plan keeps everything; the least violating one breaks: {missed}; try another seed, a larger budget in "
-        "stop=Stop(...) or wider limits"
+        'stop=Stop(...), wider limits, a larger accuracy, or for method="tpbso" denser points'
     )
 
 
@@ -203,7 +205,7 @@ def run(*arguments: str) -> Result:
     return CliRunner().invoke(app, ["plan", *arguments])
 
 
-QUICKLY = ("--velocity", "3.14", "--acceleration", "6.28", "--max-evaluations", "3000", "--method", "tpbso")
+QUICKLY = ("--velocity-limit", "3.14", "--acceleration-limit", "6.28", "--max-evaluations", "3000", "--method", "tpbso")
 
 
 def test_command_line_from_end_to_end(tmp_path: Path) -> None:
@@ -216,6 +218,19 @@ def test_command_line_from_end_to_end(tmp_path: Path) -> None:
         "summary.json",
     }
     assert json.loads((tmp_path / "summary.json").read_text())["success"] is True
+
+
+def test_command_line_round_an_obstacle_with_an_animation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_plan_figure, "_FRAMES_A_SECOND", 2)
+    monkeypatch.setattr(_plan_figure, "_PAUSE", 0)
+    ends = ("--start-q", "0,0,0,0,0", "--end-q", "0.1,0,0,0,0")
+    result = run(
+        "point-to-point", "planar5", *ends, *QUICKLY, "--ellipse", "9,9,1,1,0", "--animation", "--out", str(tmp_path)
+    )
+    assert result.exit_code == 0, result.output
+    assert "smallest clearance [m]" in result.stdout
+    assert (tmp_path / "plan.gif").read_bytes().startswith(b"GIF")
+    assert "--animation writes a file" in run("point-to-point", "planar5", *ends, "--animation").stderr
 
 
 def test_command_line_along_a_path() -> None:

@@ -1,6 +1,7 @@
 """Figures: what they hold and how it is labelled."""
 
 import io
+import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -99,3 +100,9 @@ def test_figures_are_not_shown(tracked: bik.TrackResult, monkeypatch: pytest.Mon
     tracked.plot()
     tracked.trajectory.plot()
     bik.plot.robot(tracked.robot, tracked.q[0])
+
+
+def test_without_matplotlib_the_extra_is_named(tracked: bik.TrackResult, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    with pytest.raises(bik.BeetleIkError, match=r"^a figure needs matplotlib: pip install 'beetle-ik\[plot\]'$"):
+        tracked.plot()

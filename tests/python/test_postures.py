@@ -46,7 +46,7 @@ def test_any_arm_finds_its_best_posture() -> None:
     assert robot.manipulability(best.q) >= robot.manipulability(near.q) * (1 - 1e-6)
     links = bik.goals.LinkManipulability(weight=2.0)
     assert pickle.loads(pickle.dumps(links)) == links
-    assert repr(links) == "goals.LinkManipulability(motion='position', weight=2)"
+    assert repr(links) == "goals.LinkManipulability(motion='position', weight=2.0)"
 
 
 @pytest.mark.parametrize(

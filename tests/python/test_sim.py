@@ -34,7 +34,7 @@ def test_without_mujoco_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(bik.BeetleIkError) as raised:
         MujocoPlant(ARM)
-    assert str(raised.value) == "simulation needs the extra 'sim': pip install 'beetle-ik[sim]'"
+    assert str(raised.value) == "simulation needs mujoco: pip install 'beetle-ik[sim]'"
 
 
 @pytest.fixture

@@ -81,7 +81,8 @@ def test_a_result_says_what_happened() -> None:
     assert found.restarts >= 0
     assert 0.0 < found.elapsed < 60.0
     np.testing.assert_array_equal(found.limits.upper, robot.upper)
-    assert repr(found).startswith("<Solution SOLVED: position_error=")
+    assert repr(found) == f"<Solution SOLVED: {found.message}>"
+    assert (f"{found.status}", f"{found.status:>15}") == ("Status.SOLVED", "  Status.SOLVED")
 
 
 def test_a_position_leaves_the_orientation_free() -> None:

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::{Error, Result, require_finite};
 use crate::objective::{Bounds, Objective, Pace, Point, Score};
 use crate::rng::{self, LazyRng};
@@ -22,7 +24,7 @@ pub struct MinimizeOptions {
 }
 
 /// The best point found, and what became of the search.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Minimum {
     /// The point (n,), inside the box.
     pub x: Point,

@@ -1,7 +1,7 @@
 //! `solve_all` and `SolutionSet`.
 
 use ikcore::ik::{self, AllOptions, SolveOptions};
-use ikcore::solver::{AnySolver, Status, Stop};
+use ikcore::solver::{AnySolver, Stop};
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
@@ -12,9 +12,10 @@ use crate::convert::{count, position_in, table, vector};
 use crate::error::raise;
 use crate::ik::{PySolution, read_target};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
-use crate::monitor::Watcher;
+use crate::monitor::watched;
+use crate::outcome::outcome;
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, any_solver, status};
+use crate::solver::{PyStop, any_solver};
 use crate::stored::{self, Reduced};
 use crate::task::read_task;
 
@@ -30,42 +31,24 @@ pub struct PySolutionSet {
     limits: Py<PyLimits>,
 }
 
+outcome! {
+    PySolutionSet = |result|
+    /// Whether there is a solution.
+    success,
+    /// SOLVED where there is a solution; else why the last search ended.
+    status: result.core.status(),
+    message: result.core.message(),
+    /// Evaluations of the forward kinematics.
+    evaluations: result.core.evaluations,
+    elapsed: result.core.elapsed,
+}
+
 #[pymethods]
 impl PySolutionSet {
-    /// Whether there is a solution.
-    #[getter]
-    fn success(&self) -> bool {
-        !self.core.solutions.is_empty()
-    }
-
-    /// SOLVED where there is a solution; else why the last search ended.
-    #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        status(py, self.core.miss.as_ref().map_or(Status::Solved, |miss| miss.status))
-    }
-
-    /// How many there are, or why there are none.
-    #[getter]
-    fn message(&self) -> String {
-        self.core.message()
-    }
-
     /// The best miss, a `Solution`, where there is no solution; else None.
     #[getter]
     fn miss(&self, py: Python<'_>) -> Option<PySolution> {
         self.core.miss.as_ref().map(|miss| PySolution::new(py, miss.clone(), self.limits.clone_ref(py)))
-    }
-
-    /// Evaluations of the forward kinematics.
-    #[getter]
-    fn evaluations(&self) -> usize {
-        self.core.evaluations
-    }
-
-    /// Time taken (s).
-    #[getter]
-    fn elapsed(&self) -> f64 {
-        self.core.elapsed.as_secs_f64()
     }
 
     fn __len__(&self) -> usize {
@@ -149,7 +132,7 @@ pub fn solve_all(
     stop: Option<&PyStop>,
     seed: i128,
 ) -> PyResult<PySolutionSet> {
-    let target = read_target(target)?;
+    let target = read_target("target", target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let each = SolveOptions {
         solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
@@ -162,8 +145,6 @@ pub fn solve_all(
         ..SolveOptions::default()
     };
     let options = AllOptions { each, limit: count("limit", limit)?, separation };
-    let mut watcher = Watcher::new();
-    let core = py.detach(|| ik::solve_all(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;
-    watcher.finish()?;
+    let core = watched(py, None, |watcher| ik::solve_all(&robot.core, &target, &options, watcher))?;
     PySolutionSet::new(py, core, robot.core.dof(), in_force)
 }

@@ -7,16 +7,16 @@ use ikcore::ik::SolveOptions;
 use ikcore::solver::{AnySolver, Status, Stop};
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
-use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
-use crate::convert::{Rows, array, count, optional_count, position_in, row, rows, shape_text, table};
+use crate::convert::{Numbers, Rows, array, count, optional_count, position_in, row, rows, shape_text, table};
 use crate::error::{invalid, raise};
 use crate::goal::read_goals;
 use crate::ik::PySolution;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
-use crate::monitor::{Progress, Watcher};
+use crate::monitor::watched;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, any_solver};
 use crate::stored::{self, Reduced};
@@ -205,15 +205,11 @@ pub fn solve_batch(
         threads: optional_count("threads", threads)?,
         on_invalid: on_invalid.parse::<OnInvalid>().map_err(raise)?,
     };
-    let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
-    let mut watcher = Watcher::with_progress(progress.update(py));
-    let batch = py.detach(|| batch::solve_batch(arm, targets, &options, &mut watcher));
-    progress.close(py)?;
-    watcher.finish()?;
-    PyBatchSolution::new(py, batch.map_err(raise)?, in_force)
+    let batch = watched(py, progress, |watcher| batch::solve_batch(arm, targets, &options, watcher))?;
+    PyBatchSolution::new(py, batch, in_force)
 }
 
-fn read_targets<'a>(numbers: &'a PyReadonlyArrayDyn<'_, f64>) -> PyResult<Targets<'a>> {
+fn read_targets<'a>(numbers: &'a Numbers<'_>) -> PyResult<Targets<'a>> {
     match numbers.shape() {
         [0] | [_, 3] => Ok(Targets::Positions(numbers.as_slice()?.as_chunks().0)),
         [_, 4, 4] => Ok(Targets::Poses(numbers.as_slice()?.as_chunks().0)),

@@ -1,10 +1,12 @@
 //! Python values to Rust and back: the only file that knows how numpy lays out memory.
 
+use std::ops::Deref;
+
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix3, Matrix4};
+use numpy::npyffi::NPY_ARRAY_WRITEABLE;
 use numpy::{
-    Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
-    PyUntypedArrayMethods,
+    AsSliceError, Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyException;
 use pyo3::intern;
@@ -16,12 +18,34 @@ use crate::error::{invalid, raise};
 /// A float64 array of any shape, as results hold it.
 pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
+/// The numbers of an argument, in C order.
+///
+/// numpy's `readonly()` would register every one in a table of borrows, which costs as much as a step of a solver and guards
+/// against mutable borrows alone: there are none here.
+pub struct Numbers<'py>(Array<'py>);
+
+impl Numbers<'_> {
+    /// Row after row.
+    pub fn as_slice(&self) -> Result<&[f64], AsSliceError> {
+        // SAFETY: nothing in this library writes into an argument.
+        unsafe { self.0.as_slice() }
+    }
+}
+
+impl<'py> Deref for Numbers<'py> {
+    type Target = Array<'py>;
+
+    fn deref(&self) -> &Array<'py> {
+        &self.0
+    }
+}
+
 /// Any array-like as float64 in C order; not copied where it already is one. `what` names it in errors.
-pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
     if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
         && array.is_c_contiguous()
     {
-        return Ok(array.readonly());
+        return Ok(Numbers(array.clone()));
     }
     let no_numbers = || invalid(format!("{what} must be an array of numbers, got {}", summary(value)));
     if value.is_none() {
@@ -32,7 +56,7 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyA
         None => Err(error),
     });
     match converted {
-        Ok(array) => Ok(array.cast_into::<PyArrayDyn<f64>>()?.readonly()),
+        Ok(array) => Ok(Numbers(array.cast_into()?)),
         // A Ctrl-C that falls into the conversion is not the value's fault.
         Err(error) if error.is_instance_of::<PyException>(value.py()) => Err(no_numbers()),
         Err(interrupt) => Err(interrupt),
@@ -123,13 +147,18 @@ pub fn times(value: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, bool)> {
     }
 }
 
+/// The N numbers of an array-like of one dimension.
+pub fn entries<const N: usize>(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; N]> {
+    let array = array(what, value)?;
+    match <[f64; N]>::try_from(array.as_slice()?) {
+        Ok(entries) if array.shape().len() == 1 => Ok(entries),
+        _ => Err(invalid(format!("{what}: expected shape ({N},), got {}", shape_text(array.shape())))),
+    }
+}
+
 /// Three numbers.
 pub fn point(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
-    let array = array(what, value)?;
-    match <[f64; 3]>::try_from(array.as_slice()?) {
-        Ok(point) if array.shape().len() == 1 => Ok(point),
-        _ => Err(invalid(format!("{what}: expected shape (3,), got {}", shape_text(array.shape())))),
-    }
+    entries(what, value)
 }
 
 /// Two corners of a box, one row each.
@@ -155,6 +184,12 @@ pub fn rigid_rows(what: &str, rows: &[f64]) -> PyResult<Pose> {
     pose::from_matrix(what, &Matrix4::from_row_slice(rows)).map_err(raise)
 }
 
+/// The rigid transforms of a pile of 4x4 matrices.
+pub fn rigid_matrices(numbers: &[f64]) -> PyResult<Vec<Pose>> {
+    let matrices = numbers.chunks_exact(16).enumerate();
+    matrices.map(|(i, rows)| rigid_rows(&format!("pose {i}"), rows)).collect()
+}
+
 /// A 3x3 matrix.
 pub fn matrix3(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
     let array = array(what, value)?;
@@ -174,13 +209,19 @@ pub fn row<T: Element>(py: Python<'_>, values: Vec<T>) -> Bound<'_, PyArray1<T>>
     read_only(values.into_pyarray(py))
 }
 
+/// A read-only vector of these few numbers: cheaper than handing a buffer over.
+pub fn copied<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>> {
+    read_only(PyArray1::from_slice(py, values))
+}
+
 /// A read-only 4x4 matrix.
 pub fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyArray2<f64>>> {
     Ok(read_only(PyArray1::from_slice(py, &pose::rows(pose)).reshape([4, 4])?))
 }
 
 fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
-    array.readwrite().make_nonwriteable();
+    // SAFETY: the array was made here and nobody else has seen it.
+    unsafe { (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE };
     array
 }
 
@@ -188,9 +229,9 @@ fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<
 /// a single row, and here for a batch.
 pub enum Rows<'py> {
     /// One row.
-    One(PyReadonlyArrayDyn<'py, f64>),
+    One(Numbers<'py>),
     /// m rows.
-    Many(PyReadonlyArrayDyn<'py, f64>, usize),
+    Many(Numbers<'py>, usize),
 }
 
 /// Reads (n,) or (m, n); `owner` is whose joints these are.

@@ -3,12 +3,13 @@
 use ikcore::manipulability::Motion;
 use ikcore::task::Goal;
 use numpy::PyArray1;
-use pyo3::PyClassInitializer;
+use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::convert::{row, summary, vector};
 use crate::error::{invalid, raise};
+use crate::options::NewArguments;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyGoal>()?;
@@ -37,16 +38,18 @@ impl PyGoal {
     fn __repr__(&self) -> String {
         let weight = self.core.weight();
         match &self.core {
-            Goal::Posture { posture, .. } => format!("goals.Posture({posture:?}, weight={weight})"),
-            Goal::Centring { .. } => format!("goals.Centring(weight={weight})"),
-            Goal::Manipulability { motion, .. } => format!("goals.Manipulability(motion='{motion}', weight={weight})"),
+            Goal::Posture { posture, .. } => format!("goals.Posture({posture:?}, weight={weight:?})"),
+            Goal::Centring { .. } => format!("goals.Centring(weight={weight:?})"),
+            Goal::Manipulability { motion, .. } => {
+                format!("goals.Manipulability(motion='{motion}', weight={weight:?})")
+            }
             Goal::LinkManipulability { motion, .. } => {
-                format!("goals.LinkManipulability(motion='{motion}', weight={weight})")
+                format!("goals.LinkManipulability(motion='{motion}', weight={weight:?})")
             }
         }
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let options = PyDict::new(py);
         options.set_item("weight", self.core.weight())?;
         let arguments = match &self.core {
@@ -61,9 +64,13 @@ impl PyGoal {
     }
 }
 
-fn goal(core: Goal) -> PyResult<PyGoal> {
+/// A goal of a class that adds nothing to it.
+fn made<C>(core: Goal, class: C) -> PyResult<PyClassInitializer<C>>
+where
+    C: PyClass<BaseType = PyGoal>,
+{
     core.validate_weight().map_err(raise)?;
-    Ok(PyGoal { core })
+    Ok(PyClassInitializer::from(PyGoal { core }).add_subclass(class))
 }
 
 /// Near a posture: lowers |q - posture|^2.
@@ -79,8 +86,7 @@ impl PyPosture {
     #[new]
     #[pyo3(signature = (posture, *, weight=1.0))]
     fn new(posture: &Bound<'_, PyAny>, weight: f64) -> PyResult<PyClassInitializer<Self>> {
-        Ok(PyClassInitializer::from(goal(Goal::Posture { posture: vector("posture", posture)?, weight })?)
-            .add_subclass(Self))
+        made(Goal::Posture { posture: vector("posture", posture)?, weight }, Self)
     }
 
     /// (n,) (rad, m).
@@ -106,7 +112,7 @@ impl PyCentring {
     #[new]
     #[pyo3(signature = (*, weight=1.0))]
     fn new(weight: f64) -> PyResult<PyClassInitializer<Self>> {
-        Ok(PyClassInitializer::from(goal(Goal::Centring { weight })?).add_subclass(Self))
+        made(Goal::Centring { weight }, Self)
     }
 }
 
@@ -124,7 +130,7 @@ impl PyManipulability {
     #[pyo3(signature = (*, motion="pose", weight=1.0))]
     fn new(motion: &str, weight: f64) -> PyResult<PyClassInitializer<Self>> {
         let motion = motion.parse::<Motion>().map_err(raise)?;
-        Ok(PyClassInitializer::from(goal(Goal::Manipulability { motion, weight })?).add_subclass(Self))
+        made(Goal::Manipulability { motion, weight }, Self)
     }
 }
 
@@ -143,7 +149,7 @@ impl PyLinkManipulability {
     #[pyo3(signature = (*, motion="position", weight=1.0))]
     fn new(motion: &str, weight: f64) -> PyResult<PyClassInitializer<Self>> {
         let motion = motion.parse::<Motion>().map_err(raise)?;
-        Ok(PyClassInitializer::from(goal(Goal::LinkManipulability { motion, weight })?).add_subclass(Self))
+        made(Goal::LinkManipulability { motion, weight }, Self)
     }
 }
 

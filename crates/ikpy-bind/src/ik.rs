@@ -2,19 +2,20 @@
 
 use ikcore::ik::{self, SolveOptions};
 use ikcore::math::Frame;
-use ikcore::solver::{AnySolver, Status, Stop};
+use ikcore::solver::{AnySolver, Stop};
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::{Target, TipError, Tolerance};
+use ikcore::task::{Target, Tolerance};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::convert::{array, count, point, rigid_rows, row, shape_text, vector};
+use crate::convert::{array, copied, count, point, rigid_rows, shape_text, vector};
 use crate::error::{invalid, raise};
 use crate::goal::read_goals;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::Watcher;
+use crate::outcome::outcome;
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, any_solver, status};
+use crate::solver::{PyStop, any_solver};
 use crate::stored::{self, Reduced};
 use crate::task::read_task;
 
@@ -22,36 +23,28 @@ use crate::task::read_task;
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
 pub struct PySolution {
     core: ik::Solution,
+    /// The configuration (n,) (rad, m), inside the limits.
+    #[pyo3(get)]
     q: Py<PyArray1<f64>>,
+    /// The limits in force.
+    #[pyo3(get)]
     limits: Py<PyLimits>,
+}
+
+outcome! {
+    PySolution = |result|
+    /// Whether the target was reached within the tolerances.
+    success,
+    /// Why the search ended, a `Status`.
+    status: result.core.status,
+    message: result.core.message(),
+    /// Evaluations of the forward kinematics.
+    evaluations: result.core.evaluations,
+    elapsed: result.core.elapsed,
 }
 
 #[pymethods]
 impl PySolution {
-    /// The configuration (n,) (rad, m), inside the limits.
-    #[getter]
-    fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.q.bind(py).clone()
-    }
-
-    /// Whether the target was reached within the tolerances.
-    #[getter]
-    fn success(&self) -> bool {
-        self.core.status == Status::Solved
-    }
-
-    /// Why the search ended, a `Status`.
-    #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        status(py, self.core.status)
-    }
-
-    /// What happened, and what to try.
-    #[getter]
-    fn message(&self) -> String {
-        self.core.message()
-    }
-
     /// Distance of the tip from the target (m), by forward kinematics of `q`.
     #[getter]
     fn position_error(&self) -> f64 {
@@ -76,33 +69,13 @@ impl PySolution {
         self.core.restarts
     }
 
-    /// Evaluations of the forward kinematics.
-    #[getter]
-    fn evaluations(&self) -> usize {
-        self.core.evaluations
-    }
-
-    /// Time taken (s).
-    #[getter]
-    fn elapsed(&self) -> f64 {
-        self.core.elapsed.as_secs_f64()
-    }
-
-    /// The limits in force.
-    #[getter]
-    fn limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyLimits> {
-        self.limits.bind(py).clone()
-    }
-
     fn __repr__(&self) -> String {
-        let TipError { position, rotation } = self.core.error;
-        let rotation = if rotation.is_nan() { String::new() } else { format!(", rotation_error={rotation:.3e}") };
-        format!("<Solution {}: position_error={position:.3e}{rotation}>", self.core.status.name())
+        format!("<Solution {}: {}>", self.core.status.name(), self.core.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = stored::bytes(py, to_bytes("solution", &self.core))?;
-        stored::restored_from::<Self>(py, (core, self.limits(py)))
+        stored::restored_from::<Self>(py, (core, &self.limits))
     }
 
     /// What pickle stored.
@@ -114,7 +87,7 @@ impl PySolution {
 
 impl PySolution {
     pub fn new(py: Python<'_>, core: ik::Solution, limits: Py<PyLimits>) -> Self {
-        Self { q: row(py, core.q.to_vec()).unbind(), limits, core }
+        Self { q: copied(py, &core.q).unbind(), limits, core }
     }
 }
 
@@ -162,7 +135,7 @@ pub fn solve(
     stop: Option<&PyStop>,
     seed: i128,
 ) -> PyResult<PySolution> {
-    let target = read_target(target)?;
+    let target = read_target("target", target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let options = SolveOptions {
         solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
@@ -182,14 +155,14 @@ pub fn solve(
 }
 
 /// A pose (4, 4) or a position (3,).
-pub fn read_target(value: &Bound<'_, PyAny>) -> PyResult<Target> {
-    let numbers = array("target", value)?;
+pub fn read_target(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Target> {
+    let numbers = array(what, value)?;
     match numbers.shape() {
-        [3] => Ok(Target::Position(point("target", value)?)),
-        [4, 4] => Ok(Target::Pose(Frame::from(&rigid_rows("target", numbers.as_slice()?)?))),
+        [3] => Ok(Target::Position(point(what, value)?)),
+        [4, 4] => Ok(Target::Pose(Frame::from(&rigid_rows(what, numbers.as_slice()?)?))),
         shape => {
             let got = shape_text(shape);
-            Err(invalid(format!("target: expected a pose (4, 4) or a position (3,), got shape {got}")))
+            Err(invalid(format!("{what}: expected a pose (4, 4) or a position (3,), got shape {got}")))
         }
     }
 }

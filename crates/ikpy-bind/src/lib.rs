@@ -2,35 +2,27 @@
 
 mod all;
 mod batch;
-mod chain;
-mod control;
 mod convert;
 mod error;
 mod goal;
 mod ik;
 mod limits;
-mod manipulability;
 mod minimize;
-mod model_free;
 mod monitor;
 mod obstacle;
+mod options;
+mod outcome;
 mod path;
 mod planning;
-mod plant;
 mod pose;
 mod posture;
 mod robot;
-mod sinusoid;
 mod solver;
 mod stored;
 mod task;
-mod time_optimal;
-mod tracker;
 mod tracking;
 mod trajectory;
 mod upward;
-mod weighted_pseudo_inverse;
-mod znnbas;
 
 use pyo3::prelude::*;
 
@@ -40,9 +32,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     error::register(module)?;
     solver::register(module)?;
     module.add_class::<robot::PyRobot>()?;
-    module.add_class::<manipulability::PyVelocityEllipsoid>()?;
+    module.add_class::<robot::PyVelocityEllipsoid>()?;
     module.add_function(wrap_pyfunction!(pose::pose, module)?)?;
-    module.add_class::<sinusoid::PySinusoid>()?;
+    module.add_class::<limits::PySinusoid>()?;
     module.add_class::<limits::PyLimits>()?;
     module.add_class::<ik::PySolution>()?;
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;
@@ -60,18 +52,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     path::register(module)?;
     obstacle::register(module)?;
     planning::register(module)?;
-    module.add_class::<weighted_pseudo_inverse::PyWeightedPseudoInverse>()?;
-    module.add_class::<tracking::PyTrackResult>()?;
-    module.add_function(wrap_pyfunction!(tracking::track, module)?)?;
-    module.add_class::<tracker::PyStep>()?;
-    module.add_class::<tracker::PyTracker>()?;
-    module.add_class::<znnbas::PyZnnbas>()?;
-    module.add_class::<control::PyControlSession>()?;
-    module.add_class::<plant::PyKinematicPlant>()?;
-    module.add_class::<model_free::PyModelFreeResult>()?;
-    module.add_function(wrap_pyfunction!(model_free::track_model_free, module)?)?;
+    tracking::register(module)?;
     module.add_class::<trajectory::PyTrajectory>()?;
-    module.add_function(wrap_pyfunction!(time_optimal::time_optimal, module)?)?;
     // The package names what is public; a second list here would only go stale.
     module.dict().del_item("__all__")
 }

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
 use crate::convert::summary;
-use crate::error::invalid;
+use crate::error::{invalid, raise};
 use crate::upward;
 
 /// Time between two looks at Python, and between two reports of progress: short enough to feel immediate, long enough to cost nothing.
@@ -29,15 +29,34 @@ impl Watcher {
         Self { since_last_look: now, since_last_report: now, progress: None, failure: None }
     }
 
-    /// A watcher that also reports progress to `update(done, total)`.
-    pub fn with_progress(update: Option<Py<PyAny>>) -> Self {
-        Self { progress: update, ..Self::new() }
-    }
-
     /// What the interpreter raised meanwhile, if anything.
     pub fn finish(self) -> PyResult<()> {
         self.failure.map_or(Ok(()), Err)
     }
+}
+
+/// A call that may take long and keeps the interpreter, watched for Ctrl-C and with reports to `progress`. What those raised
+/// comes before what the call did.
+pub fn attended<T>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    call: impl FnOnce(&mut Watcher) -> PyResult<T>,
+) -> PyResult<T> {
+    let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
+    let mut watcher = Watcher { progress: progress.update(py), ..Watcher::new() };
+    let found = call(&mut watcher);
+    progress.close(py)?;
+    watcher.finish()?;
+    found
+}
+
+/// The same for a call of the core, which needs no interpreter.
+pub fn watched<T: Send>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    call: impl FnOnce(&mut Watcher) -> ikcore::Result<T> + Send,
+) -> PyResult<T> {
+    attended(py, progress, |watcher| py.detach(|| call(watcher)).map_err(raise))
 }
 
 /// Whether the interval is over, which then begins anew.
@@ -67,13 +86,13 @@ impl Monitor for Watcher {
 
 /// The `progress` argument: nothing, a bar on the terminal (True), or a callable of (done, total).
 #[derive(Default)]
-pub struct Progress {
+struct Progress {
     update: Option<Py<PyAny>>,
     bar: Option<Py<PyAny>>,
 }
 
 impl Progress {
-    pub fn new(argument: &Bound<'_, PyAny>) -> PyResult<Self> {
+    fn new(argument: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(wanted) = argument.cast::<PyBool>() {
             return if wanted.is_true() { Self::bar(argument.py()) } else { Ok(Self::default()) };
         }
@@ -90,12 +109,12 @@ impl Progress {
     }
 
     /// What to call with (done, total).
-    pub fn update(&self, py: Python<'_>) -> Option<Py<PyAny>> {
+    fn update(&self, py: Python<'_>) -> Option<Py<PyAny>> {
         self.update.as_ref().map(|update| update.clone_ref(py))
     }
 
     /// Takes the bar off the screen.
-    pub fn close(self, py: Python<'_>) -> PyResult<()> {
+    fn close(self, py: Python<'_>) -> PyResult<()> {
         self.bar.map_or(Ok(()), |bar| bar.call_method0(py, "close").map(|_| ()))
     }
 }

@@ -1,10 +1,10 @@
 //! `pose`: a 4x4 matrix from a position and one description of the orientation.
 
 use ikcore::math::{Pose, pose as poses};
-use numpy::{PyArray2, PyUntypedArrayMethods};
+use numpy::PyArray2;
 use pyo3::prelude::*;
 
-use crate::convert::{self, array, pose_array, shape_text};
+use crate::convert::{self, pose_array};
 use crate::error::{invalid, raise};
 
 /// A pose (4, 4) from a position (3,) (m) and one description of the orientation, whose keyword names its order.
@@ -37,11 +37,11 @@ pub fn pose<'py>(
     let made: Pose = match given[..] {
         [] => poses::translation(position_xyz[0], position_xyz[1], position_xyz[2]),
         [("xyzw", value)] => {
-            let [x, y, z, w] = quaternion("xyzw", value)?;
+            let [x, y, z, w] = convert::entries("xyzw", value)?;
             poses::from_quaternion([x, y, z, w], position_xyz).map_err(raise)?
         }
         [("wxyz", value)] => {
-            let [w, x, y, z] = quaternion("wxyz", value)?;
+            let [w, x, y, z] = convert::entries("wxyz", value)?;
             poses::from_quaternion([x, y, z, w], position_xyz).map_err(raise)?
         }
         [("rpy", value)] => poses::from_rpy(finite("rpy", value)?, position_xyz),
@@ -55,10 +55,4 @@ pub fn pose<'py>(
         }
     };
     pose_array(position.py(), &poses::checked("pose", made).map_err(raise)?)
-}
-
-fn quaternion(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 4]> {
-    let array = array(what, value)?;
-    <[f64; 4]>::try_from(array.as_slice()?)
-        .map_err(|_| invalid(format!("{what}: expected shape (4,), got {}", shape_text(array.shape()))))
 }

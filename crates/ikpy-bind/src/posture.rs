@@ -1,17 +1,18 @@
 //! `planar_posture`, `PlanarPosture` and `CircleSwarm`.
 
 use ikcore::posture::{CircleSwarm, Posture, Region, SearchOptions, best_posture};
-use ikcore::solver::Status;
+use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 
 use crate::convert::{array, count, point, row, shape_text};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
-use crate::monitor::Watcher;
+use crate::monitor::watched;
+use crate::options::options;
+use crate::outcome::outcome;
 use crate::robot::PyRobot;
-use crate::solver::status;
+use crate::stored::{self, Reduced};
 
 /// The particle swarm of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization": over joint
 /// points on circles, with a constriction factor (eq. 17, 18).
@@ -36,61 +37,22 @@ impl PyCircleSwarm {
         swarm.validate().map_err(raise)?;
         Ok(Self(swarm))
     }
+}
 
-    /// Particles.
-    #[getter]
-    fn population(&self) -> usize {
-        self.0.population
-    }
-
-    /// Generations, the first draw included.
-    #[getter]
-    fn generations(&self) -> usize {
-        self.0.generations
-    }
-
-    /// Attraction to the particle's own best place.
-    #[getter]
-    fn c1(&self) -> f64 {
-        self.0.c1
-    }
-
-    /// Attraction to the swarm's best place.
-    #[getter]
-    fn c2(&self) -> f64 {
-        self.0.c2
-    }
-
-    /// Largest velocity of a coordinate (m a generation).
-    #[getter]
-    fn velocity_limit(&self) -> f64 {
-        self.0.velocity_limit
-    }
-
-    /// Whether random factors come from [-1, 1].
-    #[getter]
-    fn signed(&self) -> bool {
-        self.0.signed
-    }
-
-    fn __repr__(&self) -> String {
-        let CircleSwarm { population, generations, c1, c2, velocity_limit, signed } = self.0;
-        let signed = if signed { "True" } else { "False" };
-        format!(
-            "CircleSwarm(population={population}, generations={generations}, c1={c1}, c2={c2}, \
-             velocity_limit={velocity_limit}, signed={signed})"
-        )
-    }
-
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("population", self.0.population)?;
-        options.set_item("generations", self.0.generations)?;
-        options.set_item("c1", self.0.c1)?;
-        options.set_item("c2", self.0.c2)?;
-        options.set_item("velocity_limit", self.0.velocity_limit)?;
-        options.set_item("signed", self.0.signed)?;
-        Ok((PyTuple::empty(py), options))
+options! {
+    PyCircleSwarm, "CircleSwarm" {
+        /// Particles.
+        population: usize,
+        /// Generations, the first draw included.
+        generations: usize,
+        /// Attraction to the particle's own best place.
+        c1: f64,
+        /// Attraction to the swarm's best place.
+        c2: f64,
+        /// Largest velocity of a coordinate (m a generation).
+        velocity_limit: f64,
+        /// Whether random factors come from [-1, 1].
+        signed: bool,
     }
 }
 
@@ -98,7 +60,21 @@ impl PyCircleSwarm {
 #[pyclass(name = "PlanarPosture", module = "beetle_ik", frozen)]
 pub struct PyPlanarPosture {
     core: Posture,
+    /// The limits in force: the robot's.
+    #[pyo3(get)]
     limits: Py<PyLimits>,
+}
+
+outcome! {
+    PyPlanarPosture = |result|
+    /// Whether a posture was found.
+    success,
+    /// Why the search ended, a `Status`.
+    status: result.core.status,
+    message: result.core.message(),
+    /// Postures whose index was computed.
+    evaluations: result.core.evaluations,
+    elapsed: result.core.elapsed,
 }
 
 #[pymethods]
@@ -122,50 +98,25 @@ impl PyPlanarPosture {
         row(py, self.core.history.clone())
     }
 
-    /// Whether a posture was found.
-    #[getter]
-    fn success(&self) -> bool {
-        self.core.status == Status::Solved
-    }
-
-    /// Why the search ended, a `Status`.
-    #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        status(py, self.core.status)
-    }
-
-    /// What happened, and what to try.
-    #[getter]
-    fn message(&self) -> String {
-        self.core.message()
-    }
-
     /// Distance of the tip from the target (m).
     #[getter]
     fn position_error(&self) -> f64 {
         self.core.error.position
     }
 
-    /// Postures whose index was computed.
-    #[getter]
-    fn evaluations(&self) -> usize {
-        self.core.evaluations
-    }
-
-    /// Time taken (s).
-    #[getter]
-    fn elapsed(&self) -> f64 {
-        self.core.elapsed.as_secs_f64()
-    }
-
-    /// The limits in force: the robot's.
-    #[getter]
-    fn limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyLimits> {
-        self.limits.bind(py).clone()
-    }
-
     fn __repr__(&self) -> String {
         format!("<PlanarPosture {}: {}>", self.core.status.name(), self.core.message())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let core = stored::bytes(py, to_bytes("posture", &self.core))?;
+        stored::restored_from::<Self>(py, (core, &self.limits))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
+        Ok(Self { core: from_bytes("posture", bytes).map_err(raise)?, limits })
     }
 }
 
@@ -204,9 +155,7 @@ pub fn planar_posture(
         swarm: swarm.map(|swarm| swarm.0),
         seed: count("seed", seed)?,
     };
-    let mut watcher = Watcher::new();
-    let core = py.detach(|| best_posture(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;
-    watcher.finish()?;
+    let core = watched(py, None, |watcher| best_posture(&robot.core, &target, &options, watcher))?;
     Ok(PyPlanarPosture { core, limits: robot.limits(py)? })
 }
 

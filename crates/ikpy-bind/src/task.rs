@@ -3,12 +3,13 @@
 use ikcore::math::{Pose, pose};
 use ikcore::task::{Kind, Region, Task};
 use numpy::{PyArray1, PyArray2};
-use pyo3::PyClassInitializer;
+use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::convert::{Array, corners, point, pose_array, rigid, row, summary, table, vector};
+use crate::convert::{Array, copied, corners, point, pose_array, rigid, row, summary, table, vector};
 use crate::error::{invalid, raise};
+use crate::options::NewArguments;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyTask>()?;
@@ -76,7 +77,7 @@ impl PyTask {
         format!("tasks.{}({})", self.core.kind.name(), given.join(", "))
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let options = PyDict::new(py);
         if let Kind::Pointing { axis } = self.core.kind {
             options.set_item("axis", axis)?;
@@ -89,100 +90,85 @@ impl PyTask {
     }
 }
 
-/// What every task takes besides its kind.
+/// What an argument was given.
 type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
-fn task(
+/// A task of a class that adds nothing to what all of them take besides their kind: weights, tolerance,
+/// tool and region.
+fn made<C>(
     kind: Kind,
-    weights: Given<'_, '_>,
-    tolerance: Given<'_, '_>,
-    tool: Given<'_, '_>,
-    region: Given<'_, '_>,
-) -> PyResult<PyTask> {
+    [weights, tolerance, tool, region]: [Given<'_, '_>; 4],
+    class: C,
+) -> PyResult<PyClassInitializer<C>>
+where
+    C: PyClass<BaseType = PyTask>,
+{
     let weights = weights.map(|value| vector("weights", value)).transpose()?;
     let tolerance = tolerance.map(|value| vector("tolerance", value)).transpose()?;
     let tool = tool.map(|value| rigid("tool", value)).transpose()?;
     let core = Task::new(kind, weights.as_deref(), tolerance.as_deref(), tool).map_err(raise)?;
-    let Some(region) = region else { return Ok(PyTask { core }) };
-    let [lower, upper] = corners("region", region)?;
-    let core = Region::new(lower, upper).and_then(|region| core.within(region)).map_err(raise)?;
-    Ok(PyTask { core })
+    let core = match region {
+        None => core,
+        Some(region) => {
+            let [lower, upper] = corners("region", region)?;
+            Region::new(lower, upper).and_then(|region| core.within(region)).map_err(raise)?
+        }
+    };
+    Ok(PyClassInitializer::from(PyTask { core }).add_subclass(class))
 }
 
-/// The whole pose.
-///
-/// Args:
-///     weights: (6,), factors on x, y, z and on the three components of the rotation vector, along the axes of the target;
-///         zero leaves a component free.
-///     tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
-///     tool: (4, 4), from the tip to what is to reach the target.
-///     region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
-///         infinite where it is open. See `Task`.
-#[pyclass(name = "Pose", module = "beetle_ik.tasks", extends = PyTask, frozen)]
-pub struct PyPose;
+/// The class of a task whose kind says it all.
+macro_rules! task {
+    ($(#[$doc:meta])* $class:ident, $name:literal, $kind:expr) => {
+        $(#[$doc])*
+        ///     tool: (4, 4), from the tip to what is to reach the target.
+        ///     region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
+        ///         infinite where it is open. See `Task`.
+        #[pyclass(name = $name, module = "beetle_ik.tasks", extends = PyTask, frozen)]
+        pub struct $class;
 
-#[pymethods]
-impl PyPose {
-    #[new]
-    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None, region=None))]
-    fn new(
-        weights: Given<'_, '_>,
-        tolerance: Given<'_, '_>,
-        tool: Given<'_, '_>,
-        region: Given<'_, '_>,
-    ) -> PyResult<PyClassInitializer<Self>> {
-        Ok(PyClassInitializer::from(task(Kind::Pose, weights, tolerance, tool, region)?).add_subclass(Self))
-    }
+        #[pymethods]
+        impl $class {
+            #[new]
+            #[pyo3(signature = (*, weights=None, tolerance=None, tool=None, region=None))]
+            fn new(
+                weights: Given<'_, '_>,
+                tolerance: Given<'_, '_>,
+                tool: Given<'_, '_>,
+                region: Given<'_, '_>,
+            ) -> PyResult<PyClassInitializer<Self>> {
+                made($kind, [weights, tolerance, tool, region], Self)
+            }
+        }
+    };
 }
 
-/// The position alone; the orientation is left free. Takes the position of a target that is a pose.
-///
-/// Args:
-///     weights: (3,), factors on x, y and z of the base; zero leaves a component free.
-///     tolerance: (3,) (m), largest error of each component, instead of the tolerance of the call.
-///     tool: (4, 4), from the tip to what is to reach the target.
-///     region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
-///         infinite where it is open. See `Task`.
-#[pyclass(name = "Position", module = "beetle_ik.tasks", extends = PyTask, frozen)]
-pub struct PyPosition;
-
-#[pymethods]
-impl PyPosition {
-    #[new]
-    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None, region=None))]
-    fn new(
-        weights: Given<'_, '_>,
-        tolerance: Given<'_, '_>,
-        tool: Given<'_, '_>,
-        region: Given<'_, '_>,
-    ) -> PyResult<PyClassInitializer<Self>> {
-        Ok(PyClassInitializer::from(task(Kind::Position, weights, tolerance, tool, region)?).add_subclass(Self))
-    }
+task! {
+    /// The whole pose.
+    ///
+    /// Args:
+    ///     weights: (6,), factors on x, y, z and on the three components of the rotation vector, along the axes of the target;
+    ///         zero leaves a component free.
+    ///     tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
+    PyPose, "Pose", Kind::Pose
 }
 
-/// The orientation alone; the position is left free.
-///
-/// Args:
-///     weights: (3,), factors on the components of the rotation vector along the axes of the target; zero leaves one free.
-///     tolerance: (3,) (rad), largest error of each component, instead of the tolerance of the call.
-///     tool: (4, 4), from the tip to what is to reach the target.
-///     region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
-///         infinite where it is open. See `Task`.
-#[pyclass(name = "Orientation", module = "beetle_ik.tasks", extends = PyTask, frozen)]
-pub struct PyOrientation;
+task! {
+    /// The position alone; the orientation is left free. Takes the position of a target that is a pose.
+    ///
+    /// Args:
+    ///     weights: (3,), factors on x, y and z of the base; zero leaves a component free.
+    ///     tolerance: (3,) (m), largest error of each component, instead of the tolerance of the call.
+    PyPosition, "Position", Kind::Position
+}
 
-#[pymethods]
-impl PyOrientation {
-    #[new]
-    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None, region=None))]
-    fn new(
-        weights: Given<'_, '_>,
-        tolerance: Given<'_, '_>,
-        tool: Given<'_, '_>,
-        region: Given<'_, '_>,
-    ) -> PyResult<PyClassInitializer<Self>> {
-        Ok(PyClassInitializer::from(task(Kind::Orientation, weights, tolerance, tool, region)?).add_subclass(Self))
-    }
+task! {
+    /// The orientation alone; the position is left free.
+    ///
+    /// Args:
+    ///     weights: (3,), factors on the components of the rotation vector along the axes of the target; zero leaves one free.
+    ///     tolerance: (3,) (rad), largest error of each component, instead of the tolerance of the call.
+    PyOrientation, "Orientation", Kind::Orientation
 }
 
 /// The position, and the direction of one axis of the tip; the spin about it is left free. `rotation_error` is the angle
@@ -210,8 +196,7 @@ impl PyPointing {
         region: Given<'_, '_>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let axis = axis.map_or(Ok([0.0, 0.0, 1.0]), |axis| point("axis", axis))?;
-        Ok(PyClassInitializer::from(task(Kind::Pointing { axis }, weights, tolerance, tool, region)?)
-            .add_subclass(Self))
+        made(Kind::Pointing { axis }, [weights, tolerance, tool, region], Self)
     }
 
     /// In the tip's coordinates (3,).
@@ -219,7 +204,7 @@ impl PyPointing {
     fn axis<'py>(self_: PyRef<'py, Self>) -> Option<Bound<'py, PyArray1<f64>>> {
         let py = self_.py();
         match self_.as_super().core.kind {
-            Kind::Pointing { axis } => Some(row(py, axis.to_vec())),
+            Kind::Pointing { axis } => Some(copied(py, &axis)),
             _ => None,
         }
     }

@@ -3,10 +3,11 @@
 use ikcore::trajectory::{Coefficients, POWERS, Trajectory};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyTuple};
+use pyo3::types::IntoPyDict;
 
-use crate::convert::{Array, array, row, shape_text, table, times, vector};
+use crate::convert::{Array, array, copied, row, shape_text, table, times, vector};
 use crate::error::{invalid, raise};
+use crate::options::NewArguments;
 use crate::upward;
 
 /// Joint motion in time, a polynomial between knots: q_j(t) = sum over p of coefficients[i, j, p] (t - time[i])^p.
@@ -97,7 +98,7 @@ impl PyTrajectory {
     /// The knots (k,) (s).
     #[getter]
     fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.0.knots().to_vec())
+        copied(py, self.0.knots())
     }
 
     /// (k - 1, n, degree + 1), in ascending powers of the time since the knot.
@@ -210,7 +211,7 @@ impl PyTrajectory {
         )
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let arguments = (self.time(py), self.coefficients(py)?).into_pyobject(py)?;
         Ok((arguments, [("joint_names", self.joint_names())].into_py_dict(py)?))
     }

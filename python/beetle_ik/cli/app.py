@@ -59,9 +59,10 @@ def _options_of_all(
     """Take what belongs to no single command."""
 
 
-for command in (robots, fk, solve, track, reproduce):
+for command in (robots, fk, solve, track):
     app.command()(command)
 app.add_typer(plan, name="plan")
+app.command()(reproduce)
 
 
 def main() -> None:

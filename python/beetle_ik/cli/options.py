@@ -96,6 +96,14 @@ def numbers(option: str, text: str, length: int | None = None) -> list[float]:
     return values
 
 
+def limit(option: str, text: str | None) -> float | list[float] | None:
+    """A limit as one number for all joints or one each; None where none was given."""
+    if text is None:
+        return None
+    values = numbers(option, text)
+    return values[0] if len(values) == 1 else values
+
+
 def velocity_limit(text: str) -> float | Sinusoid:
     """A limit as `number` or as `mean,amplitude,angular_frequency`."""
     values = numbers("--velocity-limit", text)

@@ -31,7 +31,7 @@ def solve(
     ] = None,
     start: Start = None,
     solver: Annotated[SolverName | None, typer.Option(help="Without it: the library's own choice.")] = None,
-    tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = 1e-6,
+    position_tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = 1e-6,
     rotation_tolerance: Annotated[float, typer.Option(help="Allowed rotation error in rad.")] = 1e-6,
     max_evaluations: Annotated[
         int | None, typer.Option(help="Budget of forward kinematics: stop=Stop(...) in Python.")
@@ -50,7 +50,7 @@ def solve(
         point if rpy is None else pose(point, rpy=numbers("--rpy", rpy, 3)),
         start=None if start is None else numbers("--start", start),
         solver=None if solver is None else make_solver(solver),
-        position_tolerance=tolerance,
+        position_tolerance=position_tolerance,
         rotation_tolerance=rotation_tolerance,
         stop=None if max_evaluations is None else Stop(max_evaluations=max_evaluations),
         seed=seed,

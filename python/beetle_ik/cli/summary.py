@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from .. import TrackResult
 from .._text import counted
+from .files import print_files
 from .show import listed, print_pairs
-from .track_files import can_draw
 
 
 def summarize(result: TrackResult, solver: str, dt: float, seed: int, velocity_limit: str | None) -> dict[str, Any]:
@@ -69,9 +69,7 @@ def print_summary(summary: dict[str, Any], out: Path | None) -> None:
     )
     if limit["above_robot"]:
         typer.echo(_above_robot(summary["robot"], limit))
-    if out is not None:
-        figure = "" if can_draw() else ", without a figure: that needs `pip install beetle-ik[plot]`"
-        typer.echo(f"Files in {out}/{figure}")
+    print_files(out)
 
 
 def _span(lowest: NDArray[np.float64], highest: NDArray[np.float64]) -> str:

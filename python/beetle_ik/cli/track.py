@@ -11,6 +11,7 @@ from .. import Path as ReferencePath
 from .. import track as track_path
 from .._files import whole_folder
 from .curves import CurveName, make_curve, read_points
+from .files import write_files
 from .options import (
     AsJson,
     BaseLink,
@@ -27,7 +28,6 @@ from .options import (
 )
 from .show import print_json
 from .summary import print_summary, summarize
-from .track_files import write_files
 
 _PATH = "Path"
 _CURVE = "Parameters of the curve; without them place and size suit the arm, in the plane of x and y"
@@ -73,7 +73,7 @@ def track(
         SolverName | None,
         typer.Option(help="Without it the library's model-based rule; bas, chain and greedy are beetles."),
     ] = None,
-    tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = _BAND,
+    position_tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = _BAND,
     dt: Annotated[float, typer.Option(help="Time between two commands in s.")] = 0.2,
     start: Start = None,
     seed: Seed = 0,
@@ -110,13 +110,13 @@ def track(
             dt=dt,
             solver=None if solver is None else make_solver(solver),
             limits=limits,
-            position_tolerance=tolerance,
+            position_tolerance=position_tolerance,
             seed=seed,
             progress=not as_json,
         )
         summary = summarize(result, solver or "model-based", dt, seed, velocity_limit_text)
         if folder is not None:
-            write_files(result, summary, folder)
+            write_files(folder, result.trajectory, summary, {"track.png": result.plot})
     if as_json:
         print_json(summary)
     else:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import InvalidInputError, Robot, UnknownNameError, pose
+from .._needs import library
 from .chain import ChainReader, only_leaf
-from .needs import library
 
 if TYPE_CHECKING:
     import mujoco

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import InvalidInputError, Robot, UnknownNameError, pose
+from .._needs import library
 from .chain import ChainReader, Kind, Link, Motion, only_leaf, parts
-from .needs import library
 
 if TYPE_CHECKING:
     import pinocchio as pin

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import InvalidInputError, Robot, pose
+from .._needs import library
 from .chain import ChainReader, Kind, Matrix, Motion, parts
-from .needs import library
 
 if TYPE_CHECKING:
     import roboticstoolbox as rtb

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._core import Trajectory
-from .needs import library
+from .._needs import library
 
 if TYPE_CHECKING:
     import pandas as pd

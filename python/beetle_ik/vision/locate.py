@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import BeetleIkError, InvalidInputError, Robot
+from .._needs import library
 from .camera import Camera, check_planar, distance_to_links
 from .render import evenly, outline
 
@@ -160,6 +161,7 @@ def _checked_guess(guess: ArrayLike, robot: Robot) -> NDArray[np.float64]:
 
 def _arm_mask(grey: NDArray[np.float64]) -> tuple[NDArray[np.bool_] | None, float, NDArray[np.float64]]:
     """What is arm, the largest piece that stands out; the brightness at its edge; the smooth picture, arm bright."""
+    library("skimage", "scikit-image", "a picture", extra="vision")
     from skimage.filters import gaussian, threshold_otsu
     from skimage.measure import label
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import Robot
+from .._needs import library
 from .camera import Camera, check_planar, distance_to_links
 
 
@@ -41,6 +42,7 @@ def outline(
     robot: Robot, q: ArrayLike, *, camera: Camera | None = None, margin: float = 0.0, points: int = 300
 ) -> NDArray[np.float64]:
     """The outline of the arm at `q` (n,), `margin` pixels outside: closed, (points, 2), column and row (pixels)."""
+    library("skimage", "scikit-image", "a picture", extra="vision")
     from skimage.measure import find_contours
 
     camera = camera or Camera()

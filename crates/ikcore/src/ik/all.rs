@@ -52,6 +52,11 @@ pub struct Found {
 }
 
 impl Found {
+    /// [`Status::Solved`] where there is a solution, else why the last search ended.
+    pub fn status(&self) -> Status {
+        self.miss.as_ref().map_or(Status::Solved, |miss| miss.status)
+    }
+
     /// How many there are, or why there are none.
     pub fn message(&self) -> String {
         match (self.solutions.len(), &self.miss) {

@@ -1,9 +1,11 @@
 //! The ellipsoid of tip velocities.
 
+use serde::{Deserialize, Serialize};
+
 use crate::math::singular::SingularValues;
 
 /// The tip velocities that unit joint speeds give, |q'| = 1: semi-axes, the longest first, one per direction of motion.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ellipsoid {
     /// Lengths of the semi-axes (m/s, rad/s).
     pub lengths: Vec<f64>,

@@ -4,10 +4,13 @@
 use std::f64::consts::PI;
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use super::circle_swarm::{CircleSwarm, Flight};
 use super::linkage::{Linkage, Measure, Region};
 use crate::error::Result;
 use crate::ik::{SolveOptions, solve};
+use crate::math::vector::distance;
 use crate::objective::{Bounds, Objective, Score};
 use crate::rng;
 use crate::robot::Robot;
@@ -29,7 +32,7 @@ pub struct SearchOptions {
 }
 
 /// The best posture found.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Posture {
     /// The configuration (n,) (rad); as near as the tip gets where there is no posture.
     pub q: Vec<f64>,
@@ -83,8 +86,7 @@ pub fn best_posture(
     };
     let posture = |q: Vec<f64>, index, history, status, evaluations| {
         let tip = robot.tip_position(&q);
-        let distance = (0..3).map(|k| (tip[k] - target[k]).powi(2)).sum::<f64>().sqrt();
-        let error = TipError { position: distance, rotation: f64::NAN };
+        let error = TipError { position: distance(&tip, target), rotation: f64::NAN };
         Posture { q, index, history, status, error, evaluations, elapsed: stopwatch.elapsed() }
     };
     if let Some(Flight { q, index, history, evaluations }) = found {

@@ -5,7 +5,6 @@
 //! and a particle that meets a wall stops there, if nothing else is said.
 
 use std::fmt;
-use std::str::FromStr;
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
@@ -14,6 +13,7 @@ use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Bounds, Objective};
 use crate::rng::LazyRng;
+use crate::wording::words;
 
 /// What keeps velocities from growing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,26 +68,7 @@ pub enum Walls {
     Random,
 }
 
-impl fmt::Display for Walls {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Absorbing => "absorbing",
-            Self::Random => "random",
-        })
-    }
-}
-
-impl FromStr for Walls {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "absorbing" => Ok(Self::Absorbing),
-            "random" => Ok(Self::Random),
-            _ => Err(Error::unknown_option("walls", name, &["absorbing", "random"])),
-        }
-    }
-}
+words!("walls": Walls { Absorbing => "absorbing", Random => "random" });
 
 /// Whether a particle stays where it went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,26 +79,7 @@ pub enum Accept {
     Improving,
 }
 
-impl fmt::Display for Accept {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Always => "always",
-            Self::Improving => "improving",
-        })
-    }
-}
-
-impl FromStr for Accept {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "always" => Ok(Self::Always),
-            "improving" => Ok(Self::Improving),
-            _ => Err(Error::unknown_option("accept", name, &["always", "improving"])),
-        }
-    }
-}
+words!("accept": Accept { Always => "always", Improving => "improving" });
 
 /// Particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]

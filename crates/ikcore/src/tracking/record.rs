@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::session::Step;
-use crate::limits::Limits;
+use crate::limits::{Field, Limits};
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::wording::{number, time};
@@ -125,22 +125,31 @@ impl Record {
             return;
         };
         self.velocity_limit.extend_from_slice(velocity_limit);
-        for (j, q) in q.iter().enumerate() {
-            let before = self.q[self.q.len() - self.dof + j];
+        let limited_acceleration = self.limits.field(Field::Acceleration).is_some();
+        let mut fastest = f64::NEG_INFINITY;
+        for (j, (q, velocity_limit)) in q.iter().zip(velocity_limit).enumerate() {
+            let step = q - self.q[self.q.len() - self.dof + j];
             let [lower, upper] = self.limits.position_range(j, from, to);
-            let too_fast = (q - before).abs() - velocity_limit[j] * self.dt;
-            // From displacements, which keep the limit to the last bit; velocities round once more.
-            self.limit_margin = self.limit_margin.min(0.0 - too_fast / self.dt);
-            let too_sudden = self.too_sudden(j, q - before, [from, to]);
-            let excess = too_fast.max(too_sudden).max(lower - q).max(q - upper);
+            let too_fast = step.abs() - velocity_limit * self.dt;
+            fastest = fastest.max(too_fast);
+            let mut excess = too_fast.max(lower - q).max(q - upper);
+            if limited_acceleration {
+                excess = excess.max(self.too_sudden(j, step, [from, to]));
+            }
             self.note_excess(excess, j, *q, to);
         }
+        // From displacements, which keep the limit to the last bit; velocities round once more.
+        self.limit_margin = self.limit_margin.min(0.0 - fastest / self.dt);
     }
 
     /// Remembers the worst `excess` (rad, m) over a limit of joint `j`, at `q` and `when` (s), unless it is rounding.
+    #[inline]
     pub(super) fn note_excess(&mut self, excess: f64, j: usize, q: f64, when: f64) {
+        if excess <= self.max_violation {
+            return;
+        }
         let rounding = ALLOWED_ULPS * f64::EPSILON * q.abs().max(1.0);
-        if excess > rounding && excess > self.max_violation {
+        if excess > rounding {
             self.max_violation = excess;
             self.worst_violation = Some((j, when));
         }

@@ -1,5 +1,7 @@
 //! One control loop: the accepted configuration, the clock, the box of the tick and the rule that moves within it.
 
+use serde::{Deserialize, Serialize};
+
 use super::TrackOptions;
 use super::record::Accepted;
 use super::rule::{Found, Running, Tick, TickRule};
@@ -12,7 +14,7 @@ use crate::solver::{Monitor, Status};
 use crate::task::{Assessment, Criterion, Goals, Target, TargetMotion, Task, TipError, Twist};
 
 /// What became of one tick.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// [`Status::Solved`] in the band, [`Status::Improved`] nearer than before, else [`Status::Capped`].
     pub status: Status,

@@ -2,10 +2,10 @@
 
 use ikcore::solver::{Apps, LearningRate};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 
+use super::rate::number_or_auto;
 use crate::error::raise;
-use crate::solver::rate::{Rate, number_or_auto};
+use crate::options::options;
 
 /// Autonomous path planning solution (Yuan et al. 2016): descent down the gradient of the error by steps that are cut off
 /// joint by joint. No Jacobian and no inverse.
@@ -44,40 +44,15 @@ impl PyApps {
     fn paper() -> Self {
         Self(Apps::paper())
     }
+}
 
-    /// eta of eq. (13), or "auto".
-    #[getter]
-    fn learning_rate(&self) -> Rate {
-        Rate::from(match self.0.learning_rate {
-            LearningRate::Auto => None,
-            LearningRate::Fixed(rate) => Some(rate),
-        })
-    }
-
-    /// Largest change of a joint in an iteration (rad or m).
-    #[getter]
-    fn step_limit(&self) -> f64 {
-        self.0.step_limit
-    }
-
-    /// E_0, or None.
-    #[getter]
-    fn error_threshold(&self) -> Option<f64> {
-        self.0.error_threshold
-    }
-
-    fn __repr__(&self) -> String {
-        let Apps { step_limit, error_threshold, .. } = self.0;
-        let threshold = error_threshold.map_or_else(|| "None".into(), |threshold| format!("{threshold:?}"));
-        let rate = self.learning_rate();
-        format!("APPS(learning_rate={rate}, step_limit={step_limit:?}, error_threshold={threshold})")
-    }
-
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("learning_rate", self.learning_rate())?;
-        options.set_item("step_limit", self.0.step_limit)?;
-        options.set_item("error_threshold", self.0.error_threshold)?;
-        Ok((PyTuple::empty(py), options))
+options! {
+    PyApps, "APPS" {
+        /// eta of eq. (13), or "auto".
+        learning_rate: LearningRate,
+        /// Largest change of a joint in an iteration (rad or m).
+        step_limit: f64,
+        /// E_0, or None.
+        error_threshold: Option<f64>,
     }
 }

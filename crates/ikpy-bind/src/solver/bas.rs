@@ -2,10 +2,10 @@
 
 use ikcore::solver::{Bas, Variant};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 
 use crate::convert::{count, optional_count};
 use crate::error::raise;
+use crate::options::options;
 
 /// Beetle antennae search (Cheng et al. 2020, Algorithm 1): uses values of the error alone, no derivative.
 ///
@@ -45,49 +45,19 @@ impl PyBas {
         bas.validate().map_err(raise)?;
         Ok(Self(bas))
     }
+}
 
-    /// "star", "chain" or "greedy".
-    #[getter]
-    fn variant(&self) -> String {
-        self.0.variant.to_string()
-    }
-
-    /// Antenna length over error (rad per m).
-    #[getter]
-    fn c1(&self) -> f64 {
-        self.0.c1
-    }
-
-    /// Step length over antenna length.
-    #[getter]
-    fn c2(&self) -> f64 {
-        self.0.c2
-    }
-
-    /// Explorations per pass.
-    #[getter]
-    fn explorations(&self) -> usize {
-        self.0.explorations
-    }
-
-    /// Passes after which it gives up.
-    #[getter]
-    fn max_passes(&self) -> usize {
-        self.0.max_passes
-    }
-
-    fn __repr__(&self) -> String {
-        let Bas { variant, c1, c2, explorations, max_passes } = self.0;
-        format!("BAS(variant='{variant}', c1={c1}, c2={c2}, explorations={explorations}, max_passes={max_passes})")
-    }
-
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("variant", self.variant())?;
-        options.set_item("c1", self.0.c1)?;
-        options.set_item("c2", self.0.c2)?;
-        options.set_item("explorations", self.0.explorations)?;
-        options.set_item("max_passes", self.0.max_passes)?;
-        Ok((PyTuple::empty(py), options))
+options! {
+    PyBas, "BAS" {
+        /// "star", "chain" or "greedy".
+        variant: Variant,
+        /// Antenna length over error (rad per m).
+        c1: f64,
+        /// Step length over antenna length.
+        c2: f64,
+        /// Explorations per pass.
+        explorations: usize,
+        /// Passes after which it gives up.
+        max_passes: usize,
     }
 }

@@ -3,12 +3,10 @@
 use ikcore::solver::BroydenBas;
 use ikcore::tracking::Controller;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 
-use crate::control::PyControlSession;
 use crate::convert::count;
 use crate::error::raise;
-use crate::limits::PyLimits;
+use crate::options::options;
 
 /// Antenna differences as secants: f(q + antenna) - f(q) is a column of the Jacobian, and every step made is an antenna
 /// too (Broyden 1965). It needs what the tip did, not a model.
@@ -43,51 +41,21 @@ impl PyBroydenBas {
         broyden.validate().map_err(raise)?;
         Ok(Self(broyden))
     }
+}
 
-    /// Length of the controller's antennae (rad, m).
-    #[getter]
-    fn antenna_length(&self) -> f64 {
-        self.0.antenna_length
+options! {
+    PyBroydenBas, "BroydenBAS" {
+        /// Length of the controller's antennae (rad, m).
+        antenna_length: f64,
+        /// Measurements after which a step ends.
+        max_evaluations_per_step: usize,
+        /// Measurements by which the sensor is late.
+        sensor_delay: usize,
     }
+}
 
-    /// Measurements after which a step ends.
-    #[getter]
-    fn max_evaluations_per_step(&self) -> usize {
-        self.0.max_evaluations_per_step
-    }
-
-    /// Measurements by which the sensor is late.
-    #[getter]
-    fn sensor_delay(&self) -> usize {
-        self.0.sensor_delay
-    }
-
-    /// The controller at work in your own loop, from `start` (n,) and t = 0: see `ControlSession`.
-    #[pyo3(signature = (start, *, dt, limits=None, position_tolerance=1e-9, seed=0))]
-    fn session(
-        &self,
-        start: &Bound<'_, PyAny>,
-        dt: f64,
-        limits: Option<&PyLimits>,
-        position_tolerance: f64,
-        seed: i128,
-    ) -> PyResult<PyControlSession> {
-        PyControlSession::new(&Controller::BroydenBas(self.0), start, dt, limits, position_tolerance, seed)
-    }
-
-    fn __repr__(&self) -> String {
-        let BroydenBas { antenna_length, max_evaluations_per_step, sensor_delay } = self.0;
-        format!(
-            "BroydenBAS(antenna_length={antenna_length}, max_evaluations_per_step={max_evaluations_per_step}, \
-             sensor_delay={sensor_delay})"
-        )
-    }
-
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("antenna_length", self.0.antenna_length)?;
-        options.set_item("max_evaluations_per_step", self.0.max_evaluations_per_step)?;
-        options.set_item("sensor_delay", self.0.sensor_delay)?;
-        Ok((PyTuple::empty(py), options))
+impl PyBroydenBas {
+    pub fn controller(&self) -> Controller {
+        Controller::BroydenBas(self.0)
     }
 }

@@ -2,10 +2,10 @@
 
 use ikcore::solver::{JacobianTranspose, StepSize};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
+use super::rate::number_or_auto;
 use crate::error::raise;
-use crate::solver::rate::{Rate, number_or_auto};
+use crate::options::options;
 
 /// Jacobian transpose: the steepest descent on the squared error, on the box of the limits. No inverse, so that singular
 /// configurations do no harm; many small steps instead.
@@ -27,21 +27,11 @@ impl PyJacobianTranspose {
         solver.validate().map_err(raise)?;
         Ok(Self(solver))
     }
+}
 
-    /// How far a step goes, or "auto".
-    #[getter]
-    fn step_size(&self) -> Rate {
-        Rate::from(match self.0.step_size {
-            StepSize::Auto => None,
-            StepSize::Fixed(size) => Some(size),
-        })
-    }
-
-    fn __repr__(&self) -> String {
-        format!("JacobianTranspose(step_size={})", self.step_size())
-    }
-
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        Ok((PyTuple::empty(py), [("step_size", self.step_size())].into_py_dict(py)?))
+options! {
+    PyJacobianTranspose, "JacobianTranspose" {
+        /// How far a step goes, or "auto".
+        step_size: StepSize,
     }
 }

@@ -2,9 +2,9 @@
 
 use ikcore::solver::LevenbergMarquardt;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
 use crate::error::raise;
+use crate::options::options;
 
 /// Levenberg-Marquardt on the box of the limits, by the analytic Jacobian: joints at a bound are held and the step is
 /// solved again for the others.
@@ -26,18 +26,11 @@ impl PyLevenbergMarquardt {
         solver.validate().map_err(raise)?;
         Ok(Self(solver))
     }
+}
 
-    /// Damping over squared error at the start.
-    #[getter]
-    fn initial_damping(&self) -> f64 {
-        self.0.initial_damping
-    }
-
-    fn __repr__(&self) -> String {
-        format!("LevenbergMarquardt(initial_damping={})", self.0.initial_damping)
-    }
-
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        Ok((PyTuple::empty(py), [("initial_damping", self.0.initial_damping)].into_py_dict(py)?))
+options! {
+    PyLevenbergMarquardt, "LevenbergMarquardt" {
+        /// Damping over squared error at the start.
+        initial_damping: f64,
     }
 }

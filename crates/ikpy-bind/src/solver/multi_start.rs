@@ -2,11 +2,12 @@
 
 use ikcore::solver::{Algorithm, AnySolver, MultiStart};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{IntoPyDict, PyTuple};
 
 use super::{any_solver, to_python};
 use crate::convert::count;
 use crate::error::{invalid, raise};
+use crate::options::NewArguments;
 
 /// A solver begun again from random starts when it stalls, or when its attempt is hopeless: a few steps that bring
 /// little.
@@ -51,9 +52,7 @@ impl PyMultiStart {
         Ok(format!("MultiStart({}{starts})", self.solver(py)?.repr()?))
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("max_starts", self.max_starts())?;
-        Ok((PyTuple::new(py, [self.solver(py)?])?, options))
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
+        Ok((PyTuple::new(py, [self.solver(py)?])?, [("max_starts", self.max_starts())].into_py_dict(py)?))
     }
 }

@@ -2,9 +2,9 @@
 
 use ikcore::solver::NewtonRaphson;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
 use crate::error::raise;
+use crate::options::options;
 
 /// Newton-Raphson by the pseudo-inverse of the Jacobian, on the box of the limits. Very quick from a start that is near
 /// enough; from others it may jump about until its budget is spent.
@@ -26,18 +26,11 @@ impl PyNewtonRaphson {
         solver.validate().map_err(raise)?;
         Ok(Self(solver))
     }
+}
 
-    /// Share of the full step that is taken.
-    #[getter]
-    fn step_fraction(&self) -> f64 {
-        self.0.step_fraction
-    }
-
-    fn __repr__(&self) -> String {
-        format!("NewtonRaphson(step_fraction={:?})", self.0.step_fraction)
-    }
-
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        Ok((PyTuple::empty(py), [("step_fraction", self.0.step_fraction)].into_py_dict(py)?))
+options! {
+    PyNewtonRaphson, "NewtonRaphson" {
+        /// Share of the full step that is taken.
+        step_fraction: f64,
     }
 }

@@ -3,10 +3,10 @@
 use ikcore::solver::Pso;
 use ikcore::solver::pso::{Accept, Form, Walls};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 
-use super::options::{SolverOption, limited, schedule, show_schedule};
+use super::schedule::{limited, schedule, scheduled, show_schedule};
 use crate::error::raise;
+use crate::options::{NewArguments, Shown, keywords};
 
 /// Particle swarm optimisation: uses values alone.
 ///
@@ -31,13 +31,15 @@ use crate::error::raise;
 #[derive(Clone, PartialEq)]
 pub struct PyPso(pub Pso);
 
+scheduled!(PyPso);
+
 #[pymethods]
 impl PyPso {
     #[new]
-    #[pyo3(signature = (*, population=Pso::default().schedule.population.give(), form="constriction", inertia=None, c1=None,
+    #[pyo3(signature = (*, population=Pso::default().schedule.population.value(), form="constriction", inertia=None, c1=None,
                         c2=None, velocity_limit=Pso::default().velocity_limit, accept="always",
-                        walls="absorbing", max_generations=limited(Pso::default().schedule.max_generations).give(),
-                        stall_generations=limited(Pso::default().schedule.stall_generations).give()))]
+                        walls="absorbing", max_generations=limited(Pso::default().schedule.max_generations).value(),
+                        stall_generations=limited(Pso::default().schedule.stall_generations).value()))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         population: i128,
@@ -63,12 +65,6 @@ impl PyPso {
         };
         solver.validate().map_err(raise)?;
         Ok(Self(solver))
-    }
-
-    /// Particles.
-    #[getter]
-    fn population(&self) -> usize {
-        self.0.schedule.population
     }
 
     /// "constriction" or "inertia".
@@ -116,41 +112,19 @@ impl PyPso {
         self.0.walls.to_string()
     }
 
-    /// Generations after which it gives up; None: as many as the budget allows.
-    #[getter]
-    fn max_generations(&self) -> Option<usize> {
-        limited(self.0.schedule.max_generations)
-    }
-
-    /// Generations without gain after which it gives up; None: never.
-    #[getter]
-    fn stall_generations(&self) -> Option<usize> {
-        limited(self.0.schedule.stall_generations)
-    }
-
     fn __repr__(&self) -> String {
         let Pso { schedule, form, c1, c2, velocity_limit, accept, walls } = &self.0;
-        let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={weight}, "));
-        let limit = if velocity_limit.is_finite() { velocity_limit.to_string() } else { "float('inf')".into() };
+        let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={}, ", weight.text()));
+        let [c1, c2, velocity_limit] = [c1, c2, velocity_limit].map(f64::text);
         format!(
-            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={limit}, accept='{accept}', walls='{walls}', {})",
+            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={velocity_limit}, accept='{accept}', walls='{walls}', {})",
             schedule.population,
             show_schedule(schedule)
         )
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("population", self.population())?;
-        options.set_item("form", self.form())?;
-        options.set_item("inertia", self.inertia())?;
-        options.set_item("c1", self.0.c1)?;
-        options.set_item("c2", self.0.c2)?;
-        options.set_item("velocity_limit", self.0.velocity_limit)?;
-        options.set_item("accept", self.accept())?;
-        options.set_item("walls", self.walls())?;
-        options.set_item("max_generations", self.max_generations())?;
-        options.set_item("stall_generations", self.stall_generations())?;
-        Ok((PyTuple::empty(py), options))
+    fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
+        let own = ["form", "inertia", "c1", "c2", "velocity_limit", "accept", "walls"];
+        keywords(slf, &[&["population", "max_generations", "stall_generations"], &own[..]].concat())
     }
 }

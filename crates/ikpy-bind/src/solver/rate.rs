@@ -1,11 +1,11 @@
 //! An option that is a number or "auto".
 
-use std::fmt;
-
+use ikcore::solver::{LearningRate, StepSize};
 use pyo3::prelude::*;
 
 use crate::convert::summary;
 use crate::error::invalid;
+use crate::options::Shown;
 
 /// What Python shows of the option.
 #[derive(IntoPyObject)]
@@ -14,20 +14,28 @@ pub enum Rate {
     Word(&'static str),
 }
 
-impl From<Option<f64>> for Rate {
-    fn from(number: Option<f64>) -> Self {
-        number.map_or(Self::Word("auto"), Self::Number)
-    }
+/// The options that have such values.
+macro_rules! rates {
+    ($($option:ident),*) => {$(
+        impl Shown for $option {
+            type Value = Rate;
+            fn value(&self) -> Rate {
+                match self {
+                    Self::Auto => Rate::Word("auto"),
+                    Self::Fixed(number) => Rate::Number(*number),
+                }
+            }
+            fn text(&self) -> String {
+                match self {
+                    Self::Auto => "'auto'".into(),
+                    Self::Fixed(number) => number.text(),
+                }
+            }
+        }
+    )*};
 }
 
-impl fmt::Display for Rate {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Number(number) => write!(f, "{number:?}"),
-            Self::Word(word) => write!(f, "'{word}'"),
-        }
-    }
-}
+rates!(LearningRate, StepSize);
 
 /// The number; None for "auto", or where nothing was given. `what` names the option in errors.
 pub fn number_or_auto(what: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<f64>> {

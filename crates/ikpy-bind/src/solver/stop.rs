@@ -5,10 +5,11 @@ use std::time::Duration;
 use ikcore::solver::{Status, Stop};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{IntoPyDict, PyDict, PyTuple};
+use pyo3::types::IntoPyDict;
 
 use crate::convert::optional_count;
 use crate::error::{invalid, raise};
+use crate::options::{NewArguments, Shown, keywords};
 
 static STATUS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
 
@@ -17,7 +18,12 @@ pub fn status_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     let class = STATUS.get_or_try_init(py, || {
         let members: Vec<(&str, u8)> = Status::ALL.iter().map(|status| (status.name(), *status as u8)).collect();
         let options = [("module", "beetle_ik")].into_py_dict(py)?;
-        let class = py.import("enum")?.getattr("IntEnum")?.call(("Status", members), Some(&options))?;
+        let enums = py.import("enum")?;
+        let class = enums.getattr("IntEnum")?.call(("Status", members), Some(&options))?;
+        // A printed status is its name; IntEnum would print the number.
+        let plain = enums.getattr("Enum")?;
+        class.setattr("__str__", plain.getattr("__str__")?)?;
+        class.setattr("__format__", plain.getattr("__format__")?)?;
         class.setattr(
             "__doc__",
             "How a solve, one item of a batch or one step of a track ended. `SOLVED` alone is success.",
@@ -84,23 +90,18 @@ impl PyStop {
     }
 
     fn __repr__(&self) -> String {
-        let shown = |value: Option<String>| value.unwrap_or_else(|| "None".into());
+        let Self { max_evaluations, max_iterations, max_time, value_below } = self;
         format!(
             "Stop(max_evaluations={}, max_iterations={}, max_time={}, value_below={})",
-            shown(self.max_evaluations.map(|v| v.to_string())),
-            shown(self.max_iterations.map(|v| v.to_string())),
-            shown(self.max_time.map(|v| v.to_string())),
-            shown(self.value_below.map(|v| v.to_string())),
+            max_evaluations.text(),
+            max_iterations.text(),
+            max_time.text(),
+            value_below.text(),
         )
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let options = PyDict::new(py);
-        options.set_item("max_evaluations", self.max_evaluations)?;
-        options.set_item("max_iterations", self.max_iterations)?;
-        options.set_item("max_time", self.max_time)?;
-        options.set_item("value_below", self.value_below)?;
-        Ok((PyTuple::empty(py), options))
+    fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
+        keywords(slf, &["max_evaluations", "max_iterations", "max_time", "value_below"])
     }
 }
 

@@ -4,10 +4,10 @@ use ikcore::solver::beetle_swarm::Direction;
 use ikcore::solver::differential_evolution::Update;
 use ikcore::solver::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Qpso};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 
-use super::options::{SolverOption, limited, schedule, show_schedule};
+use super::schedule::{limited, schedule, scheduled, show_schedule};
 use crate::error::raise;
+use crate::options::{NewArguments, Shown, Taken, keywords};
 
 /// The class of a solver whose options are a schedule and these.
 macro_rules! swarm {
@@ -20,65 +20,44 @@ macro_rules! swarm {
         #[derive(Clone, PartialEq)]
         pub struct $class(pub $core);
 
+        scheduled!($class);
+
         #[pymethods]
         impl $class {
             #[new]
-            #[pyo3(signature = (*, population=$core::default().schedule.population.give(),
-                                $($option=$core::default().$option.give(),)*
-                                max_generations=limited($core::default().schedule.max_generations).give(),
-                                stall_generations=limited($core::default().schedule.stall_generations).give()))]
+            #[pyo3(signature = (*, population=$core::default().schedule.population.value(),
+                                $($option=$core::default().$option.value(),)*
+                                max_generations=limited($core::default().schedule.max_generations).value(),
+                                stall_generations=limited($core::default().schedule.stall_generations).value()))]
             #[allow(clippy::too_many_arguments)]
             fn new(
                 population: i128,
-                $($option: <$kind as SolverOption>::Given,)*
+                $($option: <$kind as Shown>::Value,)*
                 max_generations: Option<i128>,
                 stall_generations: Option<i128>,
             ) -> PyResult<Self> {
                 let solver = $core {
                     schedule: schedule(population, max_generations, stall_generations)?,
-                    $($option: <$kind as SolverOption>::take(stringify!($option), $option)?,)*
+                    $($option: <$kind as Taken>::take(stringify!($option), $option)?,)*
                 };
                 solver.validate().map_err(raise)?;
                 Ok(Self(solver))
             }
 
-            /// Members of a generation.
-            #[getter]
-            fn population(&self) -> usize {
-                self.0.schedule.population
-            }
-
-            /// Generations after which it gives up; None: as many as the budget allows.
-            #[getter]
-            fn max_generations(&self) -> Option<usize> {
-                limited(self.0.schedule.max_generations)
-            }
-
-            /// Generations without gain after which it gives up; None: never.
-            #[getter]
-            fn stall_generations(&self) -> Option<usize> {
-                limited(self.0.schedule.stall_generations)
-            }
-
             $($(#[$note])*
             #[getter]
-            fn $option(&self) -> <$kind as SolverOption>::Given {
-                self.0.$option.give()
+            fn $option(&self) -> <$kind as Shown>::Value {
+                self.0.$option.value()
             })*
 
             fn __repr__(&self) -> String {
-                let options = [$(format!("{}={}, ", stringify!($option), self.0.$option.show())),*].concat();
+                let options = [$(format!("{}={}, ", stringify!($option), self.0.$option.text())),*].concat();
                 let schedule = &self.0.schedule;
                 format!("{}(population={}, {options}{})", $name, schedule.population, show_schedule(schedule))
             }
 
-            fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-                let options = PyDict::new(py);
-                options.set_item("population", self.population())?;
-                options.set_item("max_generations", self.max_generations())?;
-                options.set_item("stall_generations", self.stall_generations())?;
-                $(options.set_item(stringify!($option), self.0.$option.give())?;)*
-                Ok((PyTuple::empty(py), options))
+            fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
+                keywords(slf, &["population", $(stringify!($option),)* "max_generations", "stall_generations"])
             }
         }
     };
@@ -101,7 +80,7 @@ swarm! {
 swarm! {
     /// Firefly algorithm (Yang 2009): uses values alone. Fireflies have turns to attract all that are less bright.
     ///
-    /// Defaults: `Firefly(population=25, attractiveness=1, absorption=1, randomness=0.2, randomness_decay=0.97,
+    /// Defaults: `Firefly(population=25, attractiveness=1.0, absorption=1.0, randomness=0.2, randomness_decay=0.97,
     /// max_generations=None, stall_generations=50)`.
     ///
     /// Args:
@@ -127,7 +106,7 @@ swarm! {
     /// Uses values alone.
     ///
     /// Defaults: `Genetic(population=50, elite_share=0.05, crossover_share=0.8, tournament=2,
-    /// mutation_rate=1, mutation_scale=0.1, mutation_decay=0.97, max_generations=None, stall_generations=50)`.
+    /// mutation_rate=1.0, mutation_scale=0.1, mutation_decay=0.97, max_generations=None, stall_generations=50)`.
     ///
     /// Args:
     ///     population: members of a generation.
@@ -172,7 +151,7 @@ swarm! {
     /// need an inertia weight and a limit on velocities to converge; with inertia=1 and velocity_limit=1 they are literal.
     ///
     /// Defaults: `BeetleSwarm(population=50, inertia=0.729, c1=1.494, c2=1.494, velocity_limit=0.2, velocity_share=0.9,
-    /// step=1, step_decay=0.97, step_over_antennae=5, direction='printed', max_generations=None,
+    /// step=1.0, step_decay=0.97, step_over_antennae=5.0, direction='printed', max_generations=None,
     /// stall_generations=50)`.
     ///
     /// Args:

@@ -38,7 +38,7 @@ def along_path(
         Method, typer.Option(help="Redundancy and timing together, or a beetle swarm in uniform time.")
     ] = Method.TIMED,
     objective: Annotated[Objective, typer.Option(help="What to minimise.")] = Objective.TIME,
-    accuracy: Annotated[float | None, typer.Option(help="Allowed distance from the points in m.")] = None,
+    accuracy: Annotated[float | None, typer.Option(help="Allowed distance from the path in m.")] = None,
     start_q: StartQ = None,
     velocity: Velocity = None,
     acceleration: Acceleration = None,
@@ -55,8 +55,6 @@ def along_path(
     """Plan a motion whose tip follows a path, in order."""
     arm = load_robot(robot, urdf, base, tip)
     path = _path(arm, curve, points)
-    if animation and out is None:
-        raise InvalidInputError("--animation writes a file: use --out DIR too")
     chosen = options(velocity, acceleration, solver, max_evaluations)
     report(
         lambda: plan_along_path(

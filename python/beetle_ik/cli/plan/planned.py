@@ -8,30 +8,19 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import (
-    BAS,
-    PSO,
-    QPSO,
-    BeeColony,
-    BeetleSwarm,
-    DifferentialEvolution,
-    Firefly,
-    Genetic,
-    Limits,
-    Plan,
-    Stop,
-    plot,
-)
-from ..._files import whole_file, whole_folder
-from ..options import numbers
-from ..show import print_json, print_pairs, to_json
-from ..track_files import can_draw
+from ... import InvalidInputError, Limits, Plan, Stop, plot
+from ..._files import whole_folder
+from ..files import can_draw, print_files, write_files
+from ..options import SolverName, limit, make_solver
+from ..show import print_json, print_pairs
 
 Velocity = Annotated[
     str | None,
-    typer.Option("--velocity", help="Limit in rad/s: a number, or one a joint: v1,v2,...; else the robot's."),
+    typer.Option("--velocity-limit", help="In rad/s: a number, or one a joint: v1,v2,...; else the robot's."),
 ]
-Acceleration = Annotated[str | None, typer.Option("--acceleration", help="The same in rad/s^2; else there is none.")]
+Acceleration = Annotated[
+    str | None, typer.Option("--acceleration-limit", help="The same in rad/s^2; else there is none.")
+]
 Budget = Annotated[
     int | None, typer.Option("--max-evaluations", min=1, help="Budget of the search; else the method's own.")
 ]
@@ -40,28 +29,18 @@ Animated = Annotated[bool, typer.Option("--animation", help="Write plan.gif too;
 
 
 class SearchName(StrEnum):
-    """Searches by their names on the command line."""
+    """Those of the solvers that need values alone."""
 
-    BAS = "bas"
-    BEE_COLONY = "bee-colony"
-    BEETLE_SWARM = "beetle-swarm"
-    DIFFERENTIAL_EVOLUTION = "differential-evolution"
-    FIREFLY = "firefly"
-    GENETIC = "genetic"
-    PSO = "pso"
-    QPSO = "qpso"
+    BAS = SolverName.BAS
+    BEE_COLONY = SolverName.BEE_COLONY
+    BEETLE_SWARM = SolverName.BEETLE_SWARM
+    DIFFERENTIAL_EVOLUTION = SolverName.DIFFERENTIAL_EVOLUTION
+    FIREFLY = SolverName.FIREFLY
+    GENETIC = SolverName.GENETIC
+    PSO = SolverName.PSO
+    QPSO = SolverName.QPSO
 
 
-_SEARCHES: dict[SearchName, Callable[[], Any]] = {
-    SearchName.BAS: BAS,
-    SearchName.BEE_COLONY: BeeColony,
-    SearchName.BEETLE_SWARM: BeetleSwarm,
-    SearchName.DIFFERENTIAL_EVOLUTION: DifferentialEvolution,
-    SearchName.FIREFLY: Firefly,
-    SearchName.GENETIC: Genetic,
-    SearchName.PSO: PSO,
-    SearchName.QPSO: QPSO,
-}
 Solver = Annotated[SearchName | None, typer.Option(help="What searches; else the method's own.")]
 
 
@@ -70,28 +49,27 @@ def options(
 ) -> dict[str, Any]:
     """What both planners take."""
     chosen: dict[str, Any] = {
-        "limits": Limits(velocity=_limit("--velocity", velocity), acceleration=_limit("--acceleration", acceleration)),
-        "solver": None if solver is None else _SEARCHES[solver](),
+        "limits": Limits(
+            velocity=limit("--velocity-limit", velocity), acceleration=limit("--acceleration-limit", acceleration)
+        ),
+        "solver": None if solver is None else make_solver(SolverName(solver)),
     }
     if max_evaluations is not None:
         chosen["stop"] = Stop(max_evaluations=max_evaluations)
     return chosen
 
 
-def _limit(option: str, text: str | None) -> float | list[float] | None:
-    if text is None:
-        return None
-    values = numbers(option, text)
-    return values[0] if len(values) == 1 else values
-
-
 def report(make: Callable[[], Plan], method: str, seed: int, out: Path | None, animated: bool, as_json: bool) -> None:
     """Plan, write the files, print, and leave with the exit status of the plan."""
+    if animated and out is None:
+        raise InvalidInputError("--animation writes a file: use --out DIR too")
     with nullcontext() if out is None else whole_folder(out, option="--out") as folder:
         plan = make()
         summary = _summarize(plan, method, seed)
         if folder is not None:
-            _write(plan, summary, folder, animated)
+            write_files(folder, plan.trajectory, summary, {"plan.png": plan.plot})
+            if animated and can_draw():
+                plot.animation(plan).save(folder / "plan.gif", writer="pillow")
     if as_json:
         print_json(summary)
     else:
@@ -122,17 +100,6 @@ def _summarize(plan: Plan, method: str, seed: int) -> dict[str, Any]:
     }
 
 
-def _write(plan: Plan, summary: dict[str, Any], folder: Path, animated: bool) -> None:
-    plan.trajectory.to_csv(folder / "trajectory.csv")
-    plan.trajectory.to_npz(folder / "trajectory.npz")
-    with whole_file(folder / "summary.json") as stream:
-        stream.write(to_json(summary).encode() + b"\n")
-    if can_draw():
-        plan.plot().savefig(folder / "plan.png")
-        if animated:
-            plot.animation(plan).save(folder / "plan.gif", writer="pillow")
-
-
 def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
     rows = [("duration [s]", f"{summary['duration']:.6g}")]
     if plan.accuracy == plan.accuracy:  # NaN from end to end
@@ -142,6 +109,4 @@ def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
     rows += [("breaks", violation) for violation in summary["violations"]]
     rows += [("evaluations", str(plan.evaluations)), ("time [ms]", f"{1e3 * plan.elapsed:.3g}")]
     print_pairs(f"{plan.robot.name}: {plan.message}", rows)
-    if out is not None:
-        figure = "" if can_draw() else ", without a figure: that needs `pip install beetle-ik[plot]`"
-        typer.echo(f"Files in {out}/{figure}")
+    print_files(out)

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import InvalidInputError, plan_point_to_point
+from ... import plan_point_to_point
 from ...obstacles import Ellipse
 from ..options import AsJson, BaseLink, RobotName, Seed, TipLink, UrdfFile, load_robot, numbers
 from .planned import Acceleration, Animated, Budget, Out, Solver, Velocity, options, report
@@ -67,8 +67,6 @@ def point_to_point(
         for name, text in texts.items()
         if text is not None
     }
-    if animation and out is None:
-        raise InvalidInputError("--animation writes a file: use --out DIR too")
     chosen = options(velocity, acceleration, solver, max_evaluations)
     obstacles = [_ellipse(text) for text in ellipses or ()]
     report(

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from ... import InvalidInputError, Limits, Trajectory, plot, time_optimal
 from ..._csv import read_table
-from ..._files import whole_file, whole_folder
+from ..._files import whole_folder
 from ..._text import counted
-from ..options import AsJson, numbers
-from ..show import listed, print_json, print_pairs, to_json
-from ..track_files import can_draw
+from ..files import print_files, write_files
+from ..options import AsJson, limit
+from ..show import listed, print_json, print_pairs
 
 _OTHER_COLUMNS = ("qd:", "qdd:")
 
@@ -34,9 +34,15 @@ def retime(
         typer.Argument(help="CSV with a column per joint, named by it or 'q:joint'; a column 'time' sets the knots."),
     ],
     *,
-    acceleration: Annotated[str, typer.Option(help="Limit in rad/s^2: a number, or one a joint: a1,a2,...")],
-    velocity: Annotated[str | None, typer.Option(help="The same in rad/s; without it there is none.")] = None,
-    jerk: Annotated[str | None, typer.Option(help="The same in rad/s^3; without it there is none.")] = None,
+    acceleration: Annotated[
+        str, typer.Option("--acceleration-limit", help="In rad/s^2: a number, or one a joint: a1,a2,...")
+    ],
+    velocity: Annotated[
+        str | None, typer.Option("--velocity-limit", help="The same in rad/s; without it there is none.")
+    ] = None,
+    jerk: Annotated[
+        str | None, typer.Option("--jerk-limit", help="The same in rad/s^3; without it there is none.")
+    ] = None,
     spline: Annotated[SplineName, typer.Option(help="What joins the rows.")] = SplineName.NATURAL,
     blend: Annotated[
         float | None, typer.Option(help="Of a polyline: corners are rounded from so far before them, in rad.")
@@ -52,9 +58,9 @@ def retime(
     """Time the joint path through the rows of FILE as fast as the limits allow."""
     joints, waypoints, time = _read(file)
     limits = Limits(
-        acceleration=_limit("--acceleration", acceleration),
-        velocity=None if velocity is None else _limit("--velocity", velocity),
-        jerk=None if jerk is None else _limit("--jerk", jerk),
+        acceleration=limit("--acceleration-limit", acceleration),
+        velocity=limit("--velocity-limit", velocity),
+        jerk=limit("--jerk-limit", jerk),
     )
     trajectory = time_optimal(
         waypoints,
@@ -68,7 +74,7 @@ def retime(
     summary = _summarize(file, trajectory, limits, waypoints, time)
     if out is not None:
         with whole_folder(out) as folder:
-            _write(trajectory, limits, summary, folder)
+            write_files(folder, trajectory, summary, {"limits.png": lambda: plot.saturation(trajectory, limits)})
     if as_json:
         print_json(summary)
     else:
@@ -88,11 +94,6 @@ def _read(file: Path) -> tuple[list[str], NDArray[np.float64], NDArray[np.float6
         )
     waypoints = np.column_stack([table[column] for column in columns])
     return [column.removeprefix("q:") for column in columns], waypoints, table.get("time")
-
-
-def _limit(option: str, text: str) -> float | list[float]:
-    values = numbers(option, text)
-    return values[0] if len(values) == 1 else values
 
 
 def _summarize(
@@ -125,15 +126,6 @@ def _summarize(
     }
 
 
-def _write(trajectory: Trajectory, limits: Limits, summary: dict[str, Any], folder: Path) -> None:
-    trajectory.to_csv(folder / "trajectory.csv")
-    trajectory.to_npz(folder / "trajectory.npz")
-    with whole_file(folder / "summary.json") as stream:
-        stream.write(to_json(summary).encode() + b"\n")
-    if can_draw():
-        plot.saturation(trajectory, limits).savefig(folder / "limits.png")
-
-
 def _print(summary: dict[str, Any], out: Path | None) -> None:
     before = summary["duration_before"]
     change = [] if before is None else [("duration in the file [s]", f"{before:.6g}")]
@@ -146,6 +138,4 @@ def _print(summary: dict[str, Any], out: Path | None) -> None:
             *((f"share of the {name} limit", f"{share:.4g}") for name, share in summary["saturation"].items()),
         ],
     )
-    if out is not None:
-        figure = "" if can_draw() else ", without a figure: that needs `pip install beetle-ik[plot]`"
-        typer.echo(f"Files in {out}/{figure}")
+    print_files(out)

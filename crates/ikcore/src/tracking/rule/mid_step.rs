@@ -121,7 +121,7 @@ impl Memory {
     /// One step from where `found` is: at `here` once the arm `moved`, before that at `begin`. It is kept if it lowers the
     /// error; whether it did.
     fn lowers(&mut self, found: &mut Found, tick: &Tick<'_>, extrapolate: bool, moved: bool) -> bool {
-        let from = found.q.clone();
+        let from = Point::from_slice(&found.q);
         self.step(found, tick, extrapolate, moved, None);
         if tick.target.assess_tip(&self.trial.tip, tick.criterion).score.value < found.value() {
             std::mem::swap(&mut self.here, &mut self.trial);
@@ -146,7 +146,7 @@ impl Memory {
         let Linearization { columns, residual } = &*self.linearization;
         let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
         let damping = least_damping(&columns[..n]);
-        let from = found.q.clone();
+        let from = Point::from_slice(&found.q);
         match wished {
             None => box_step(columns, residual, damping, &from, lower, upper, &mut found.q),
             Some(wished) => box_step_near(columns, residual, damping, &from, wished, lower, upper, &mut found.q),

@@ -1,0 +1,267 @@
+//! Between solver and objective: counts, clips, checks, and keeps the best.
+
+mod best;
+mod derivatives;
+mod halt;
+
+pub use best::Best;
+pub use halt::Halt;
+
+use smallvec::SmallVec;
+
+use super::conduct::{Conduct, Domain, Goal};
+use super::stop::{Monitor, Stop, Stopwatch};
+use crate::math::MAX_DOF;
+use crate::objective::{Bounds, Objective, Pace, Score};
+use crate::rng::LazyRng;
+
+/// Points whose scores are kept on the stack.
+const CHUNK: usize = 8;
+
+/// A budgeted view of an objective in a box.
+pub struct Evaluator<'a, O: ?Sized> {
+    objective: &'a mut O,
+    bounds: &'a Bounds,
+    stop: Stop,
+    rng: &'a mut LazyRng,
+    monitor: &'a mut dyn Monitor,
+    stopwatch: Option<Stopwatch>,
+    evaluations: usize,
+    next_poll: usize,
+    best: Best,
+    attempt_value: f64,
+    attempts: usize,
+    dimension: usize,
+    pace: Pace,
+    conduct: Conduct,
+    /// After how much each entry repeats itself; empty where everything is clipped.
+    periods: SmallVec<[Option<f64>; MAX_DOF]>,
+    /// Whether the last point was solved, but outside the box.
+    strayed: bool,
+}
+
+impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
+    /// A fresh view with nothing counted yet.
+    pub fn new(
+        objective: &'a mut O,
+        bounds: &'a Bounds,
+        stop: Stop,
+        rng: &'a mut LazyRng,
+        monitor: &'a mut dyn Monitor,
+    ) -> Self {
+        let pace = objective.pace();
+        Self {
+            dimension: objective.dimension(),
+            objective,
+            bounds,
+            stop,
+            rng,
+            monitor,
+            stopwatch: stop.max_time.map(|_| Stopwatch::start()),
+            evaluations: 0,
+            next_poll: pace.between_looks,
+            best: Best::default(),
+            attempt_value: f64::INFINITY,
+            attempts: 1,
+            pace,
+            conduct: Conduct::default(),
+            periods: SmallVec::new(),
+            strayed: false,
+        }
+    }
+
+    /// Takes over what the solver declares of itself.
+    pub(super) fn adopt(&mut self, conduct: Conduct) {
+        self.conduct = conduct;
+        if conduct.domain == Domain::Wrapped {
+            // A locked entry has no room to turn in.
+            let locked = |i: usize| self.bounds.lower()[i] == self.bounds.upper()[i];
+            let period = |i| if locked(i) { None } else { self.objective.period(i) };
+            self.periods = (0..self.dimension).map(period).collect();
+        }
+    }
+
+    /// Number of entries of a point.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// The box.
+    pub fn bounds(&self) -> &'a Bounds {
+        self.bounds
+    }
+
+    /// The run's random generator.
+    pub fn rng(&mut self) -> &mut LazyRng {
+        self.rng
+    }
+
+    /// The best point so far.
+    pub fn best(&self) -> &Best {
+        &self.best
+    }
+
+    /// Evaluations so far.
+    pub fn evaluations(&self) -> usize {
+        self.evaluations
+    }
+
+    /// Starts tried so far.
+    pub fn attempts(&self) -> usize {
+        self.attempts
+    }
+
+    /// The best value since the current attempt began.
+    pub fn attempt_value(&self) -> f64 {
+        self.attempt_value
+    }
+
+    /// Counts a new attempt and writes its start into `x`.
+    pub fn next_attempt(&mut self, x: &mut [f64]) {
+        self.objective.propose_start(self.attempts, self.bounds, self.rng, x);
+        self.attempts += 1;
+        self.attempt_value = f64::INFINITY;
+    }
+
+    /// Clips `x` to the box, or wraps it there, as the solver declared.
+    #[inline]
+    fn admit(&self, x: &mut [f64]) {
+        match self.conduct.domain {
+            Domain::Clipped => self.bounds.clip(x),
+            Domain::Wrapped => self.bounds.wrap(x, &self.periods),
+        }
+    }
+
+    /// Clips `x` to the box and returns its value, infinite where it is not finite.
+    ///
+    /// # Errors
+    /// A [`Halt`] when the budget is spent or the monitor asks to stop; `x` was not evaluated then.
+    #[inline]
+    pub fn evaluate(&mut self, x: &mut [f64]) -> Result<f64, Halt> {
+        self.spend(1)?;
+        self.admit(x);
+        let score = self.objective.evaluate(x);
+        Ok(self.record(x, score))
+    }
+
+    /// Clips the points stored one after another in `xs`, and writes the value of each.
+    ///
+    /// # Errors
+    /// As for one point; with a budget for some of them only, the first ones are evaluated before the halt.
+    pub fn evaluate_all(&mut self, mut xs: &mut [f64], values: &mut [f64]) -> Result<(), Halt> {
+        for values in values.chunks_mut(self.pace.at_once) {
+            let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
+            if affordable == 0 {
+                return Err(Halt::Budget);
+            }
+            self.spend(affordable)?;
+            let (chunk, rest) = xs.split_at_mut(affordable * self.dimension);
+            self.evaluate_chunk(chunk, &mut values[..affordable]);
+            if affordable < values.len() {
+                return Err(Halt::Budget);
+            }
+            xs = rest;
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn evaluate_chunk(&mut self, xs: &mut [f64], values: &mut [f64]) {
+        let unknown = Score { value: f64::INFINITY, solved: false };
+        let mut scores: SmallVec<[Score; CHUNK]> = SmallVec::from_elem(unknown, values.len());
+        xs.chunks_exact_mut(self.dimension).for_each(|x| self.admit(x));
+        self.objective.evaluate_all(xs, &mut scores);
+        for ((x, score), value) in xs.chunks_exact(self.dimension).zip(&scores).zip(values) {
+            *value = self.record(x, *score);
+        }
+    }
+
+    /// What the driver asks before the first step: is the start solved already?
+    ///
+    /// # Errors
+    /// [`Halt::Solved`].
+    pub fn before_steps(&self) -> Result<(), Halt> {
+        if self.stop.min_iterations == 0 { self.check_goal() } else { Ok(()) }
+    }
+
+    /// What the driver asks after every step: is it time to stop?
+    ///
+    /// # Errors
+    /// The reason to stop.
+    pub fn after_step(&self, iterations: usize) -> Result<(), Halt> {
+        if iterations < self.stop.min_iterations {
+            return Ok(());
+        }
+        self.check_goal()?;
+        match self.stop.value_below {
+            Some(value) if self.best.value < value => Err(Halt::BelowValue),
+            _ if iterations >= self.stop.max_iterations => Err(Halt::Budget),
+            _ => Ok(()),
+        }
+    }
+
+    /// Err(Solved) once the best point passes the problem's own test.
+    ///
+    /// # Errors
+    /// [`Halt::Solved`].
+    pub fn check_solved(&self) -> Result<(), Halt> {
+        if self.best.solved { Err(Halt::Solved) } else { Ok(()) }
+    }
+
+    /// Err(OutsideBox) if the last point evaluated was solved, but outside the box.
+    ///
+    /// # Errors
+    /// [`Halt::OutsideBox`].
+    pub fn check_strayed(&self) -> Result<(), Halt> {
+        if self.strayed { Err(Halt::OutsideBox) } else { Ok(()) }
+    }
+
+    /// A solver with a threshold of its own goes on where others are done.
+    fn check_goal(&self) -> Result<(), Halt> {
+        match self.conduct.goal {
+            Goal::Solved => self.check_solved(),
+            Goal::Threshold => Ok(()),
+        }
+    }
+
+    #[inline]
+    fn spend(&mut self, count: usize) -> Result<(), Halt> {
+        if self.evaluations + count > self.stop.max_evaluations {
+            return Err(Halt::Budget);
+        }
+        if self.evaluations >= self.next_poll {
+            self.poll()?;
+        }
+        self.evaluations += count;
+        Ok(())
+    }
+
+    #[cold]
+    fn poll(&mut self) -> Result<(), Halt> {
+        self.next_poll = self.evaluations + self.pace.between_looks;
+        if !self.monitor.keep_going() {
+            return Err(Halt::Interrupted);
+        }
+        match (self.stop.max_time, &self.stopwatch) {
+            (Some(limit), Some(watch)) if watch.elapsed() >= limit => Err(Halt::Time),
+            _ => Ok(()),
+        }
+    }
+
+    /// Remembers the value, and the point where it is better than the best.
+    #[inline]
+    fn record(&mut self, x: &[f64], score: Score) -> f64 {
+        let value = if score.value.is_finite() { score.value } else { f64::INFINITY };
+        self.attempt_value = self.attempt_value.min(value);
+        let solved = score.solved && value.is_finite();
+        if self.conduct.domain == Domain::Wrapped {
+            let outside = !self.bounds.contains(x);
+            self.strayed = solved && outside;
+            if outside {
+                return value;
+            }
+        }
+        self.best.challenge(x, value, solved);
+        value
+    }
+}

@@ -1,0 +1,70 @@
+//! What a field of `Limits` was given.
+
+use ikcore::limits::{Field, Profile};
+use pyo3::prelude::*;
+
+use super::numbers::Numbers;
+use super::sampling::{Sampling, sampled};
+use super::sinusoid::PySinusoid;
+use crate::convert::summary;
+
+/// Numbers, a sinusoid, or a function of time.
+pub enum Given {
+    Numbers(Numbers),
+    Sinusoid(PySinusoid),
+    Function(Py<PyAny>),
+}
+
+impl Given {
+    pub fn read(field: Field, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(sinusoid) = value.cast::<PySinusoid>() {
+            return Ok(Self::Sinusoid(sinusoid.get().clone()));
+        }
+        if value.is_callable() {
+            return Ok(Self::Function(value.clone().unbind()));
+        }
+        Numbers::read(&format!("{field} limit"), value).map(Self::Numbers)
+    }
+
+    pub fn clone_ref(&self, py: Python<'_>) -> Self {
+        match self {
+            Self::Numbers(numbers) => Self::Numbers(numbers.clone()),
+            Self::Sinusoid(sinusoid) => Self::Sinusoid(sinusoid.clone()),
+            Self::Function(function) => Self::Function(function.clone_ref(py)),
+        }
+    }
+
+    /// Functions as Python compares them: two bound methods of one object are equal.
+    pub fn equals(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        match (self, other) {
+            (Self::Numbers(one), Self::Numbers(other)) => Ok(one == other),
+            (Self::Sinusoid(one), Self::Sinusoid(other)) => Ok(one == other),
+            (Self::Function(one), Self::Function(other)) => one.bind(py).eq(other),
+            _ => Ok(false),
+        }
+    }
+
+    pub fn show<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match self {
+            Self::Numbers(numbers) => numbers.show(py),
+            Self::Sinusoid(sinusoid) => Ok(Bound::new(py, sinusoid.clone())?.into_any()),
+            Self::Function(function) => Ok(function.bind(py).clone()),
+        }
+    }
+
+    pub fn repr(&self, py: Python<'_>) -> String {
+        match self {
+            Self::Numbers(numbers) => numbers.repr(),
+            Self::Sinusoid(sinusoid) => sinusoid.__repr__(),
+            Self::Function(function) => summary(function.bind(py)),
+        }
+    }
+
+    pub fn profiles(&self, py: Python<'_>, field: Field, sampling: &Sampling, n: usize) -> PyResult<Vec<Profile>> {
+        match self {
+            Self::Numbers(numbers) => Ok(numbers.values.iter().map(|value| Profile::Constant(*value)).collect()),
+            Self::Sinusoid(sinusoid) => sinusoid.profiles(),
+            Self::Function(function) => sampled(function.bind(py), field, sampling, n),
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Limits as arguments: for the result of a call, and for the core.
+
+use ikcore::limits::Limits;
+use pyo3::prelude::*;
+
+use super::{PyLimits, Sampling};
+use crate::robot::PyRobot;
+
+/// The limits of a call: those in force, for the result, and for the core those that differ from the robot's own.
+pub fn limits_of_call(
+    py: Python<'_>,
+    limits: Option<&PyLimits>,
+    robot: &PyRobot,
+    sampling: &Sampling,
+) -> PyResult<(Py<PyLimits>, Option<Limits>)> {
+    match limits {
+        None => Ok((robot.limits(py)?, None)),
+        Some(limits) => {
+            let in_force = Py::new(py, limits.in_force(py, &robot.core))?;
+            Ok((in_force, Some(limits.resolve(py, &robot.core, sampling)?)))
+        }
+    }
+}
+
+/// The limits of a call that knows no robot, for `n` joints: for the result and for the core.
+pub fn limits_without_robot(
+    py: Python<'_>,
+    limits: Option<&PyLimits>,
+    n: usize,
+    sampling: &Sampling,
+) -> PyResult<(Py<PyLimits>, Limits)> {
+    let none = PyLimits::none(n);
+    match limits {
+        None => Ok((Py::new(py, none)?, Limits::none_for(n))),
+        Some(limits) => {
+            let resolved = limits.applied_to(py, Limits::none_for(n), n, sampling)?;
+            Ok((Py::new(py, limits.else_of(py, none))?, resolved))
+        }
+    }
+}

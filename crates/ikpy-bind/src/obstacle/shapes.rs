@@ -1,0 +1,219 @@
+//! The shapes that obstacles have: a class each, which keeps what it was given.
+
+use std::convert::Infallible;
+
+use ikcore::nalgebra::Matrix3;
+use ikcore::obstacle::Obstacle;
+use numpy::{PyArray1, PyArrayDyn, PyUntypedArrayMethods};
+use pyo3::PyClass;
+use pyo3::prelude::*;
+
+use super::PyObstacle;
+use crate::convert::{Array, array, copied, entries, matrix3, point, shape_text, table};
+use crate::error::{invalid, raise};
+
+/// A point or the like as a class keeps it; Python gets a read-only vector.
+#[derive(Clone, Copy)]
+struct Coordinates<const N: usize>([f64; N]);
+
+impl<'py, const N: usize> IntoPyObject<'py> for Coordinates<N> {
+    type Target = PyArray1<f64>;
+    type Output = Bound<'py, Self::Target>;
+    type Error = Infallible;
+
+    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
+        Ok(copied(py, &self.0))
+    }
+}
+
+/// How something is turned, as a class keeps it; Python gets a read-only matrix (3, 3).
+#[derive(Clone, Copy)]
+struct Rotation(Matrix3<f64>);
+
+impl Rotation {
+    /// This one, or that of something that was not turned.
+    fn or_none(given: Option<Matrix3<f64>>) -> Self {
+        Self(given.unwrap_or_else(Matrix3::identity))
+    }
+}
+
+impl<'py> IntoPyObject<'py> for Rotation {
+    type Target = PyArrayDyn<f64>;
+    type Output = Bound<'py, Self::Target>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
+        table(py, self.0.transpose().as_slice().to_vec(), &[3, 3])
+    }
+}
+
+fn read_rotation(rotation: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Matrix3<f64>>> {
+    rotation.map(|rotation| matrix3("rotation", rotation)).transpose()
+}
+
+/// An obstacle with what its class alone has, as given.
+fn made<C>(core: ikcore::Result<Obstacle>, own: C) -> PyResult<PyClassInitializer<C>>
+where
+    C: PyClass<BaseType = PyObstacle>,
+{
+    Ok(PyClassInitializer::from(PyObstacle { core: core.map_err(raise)? }).add_subclass(own))
+}
+
+/// A ball: centre (3,) and radius (m).
+#[pyclass(name = "Sphere", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
+pub struct PySphere {
+    /// Centre (3,) (m).
+    #[pyo3(get)]
+    center: Coordinates<3>,
+    /// Radius (m).
+    #[pyo3(get)]
+    radius: f64,
+}
+
+#[pymethods]
+impl PySphere {
+    #[new]
+    fn new(center: &Bound<'_, PyAny>, radius: f64) -> PyResult<PyClassInitializer<Self>> {
+        let center = point("center", center)?;
+        made(Obstacle::sphere(center, radius), Self { center: Coordinates(center), radius })
+    }
+}
+
+/// A box: centre (3,), edges (3,) along its own axes (m), and how those are turned (3, 3).
+#[pyclass(name = "Box", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
+pub struct PyBox {
+    /// Centre (3,) (m).
+    #[pyo3(get)]
+    center: Coordinates<3>,
+    /// Edges (3,) (m).
+    #[pyo3(get)]
+    size: Coordinates<3>,
+    /// Its axes as columns (3, 3).
+    #[pyo3(get)]
+    rotation: Rotation,
+}
+
+#[pymethods]
+impl PyBox {
+    #[new]
+    #[pyo3(signature = (center, size, rotation=None))]
+    fn new(
+        center: &Bound<'_, PyAny>,
+        size: &Bound<'_, PyAny>,
+        rotation: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let (center, size) = (point("center", center)?, point("size", size)?);
+        let rotation = read_rotation(rotation)?;
+        let own = Self { center: Coordinates(center), size: Coordinates(size), rotation: Rotation::or_none(rotation) };
+        made(Obstacle::cuboid(center, size, rotation), own)
+    }
+}
+
+/// All points within `radius` (m) of the segment from a (3,) to b (3,).
+#[pyclass(name = "Capsule", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
+pub struct PyCapsule {
+    /// One end of its axis (3,) (m).
+    #[pyo3(get)]
+    a: Coordinates<3>,
+    /// The other end (3,) (m).
+    #[pyo3(get)]
+    b: Coordinates<3>,
+    /// Radius (m).
+    #[pyo3(get)]
+    radius: f64,
+}
+
+#[pymethods]
+impl PyCapsule {
+    #[new]
+    fn new(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>, radius: f64) -> PyResult<PyClassInitializer<Self>> {
+        let (a, b) = (point("a", a)?, point("b", b)?);
+        made(Obstacle::capsule(a, b, radius), Self { a: Coordinates(a), b: Coordinates(b), radius })
+    }
+}
+
+/// An ellipsoid: centre (3,), semi-axes (3,) (m), and how they are turned (3, 3).
+#[pyclass(name = "Ellipsoid", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
+pub struct PyEllipsoid {
+    /// Centre (3,) (m).
+    #[pyo3(get)]
+    center: Coordinates<3>,
+    /// Semi-axes (3,) (m).
+    #[pyo3(get)]
+    semi_axes: Coordinates<3>,
+    /// Its axes as columns (3, 3).
+    #[pyo3(get)]
+    rotation: Rotation,
+}
+
+#[pymethods]
+impl PyEllipsoid {
+    #[new]
+    #[pyo3(signature = (center, semi_axes, rotation=None))]
+    fn new(
+        center: &Bound<'_, PyAny>,
+        semi_axes: &Bound<'_, PyAny>,
+        rotation: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let (center, semi_axes) = (point("center", center)?, point("semi_axes", semi_axes)?);
+        let rotation = read_rotation(rotation)?;
+        let own = Self {
+            center: Coordinates(center),
+            semi_axes: Coordinates(semi_axes),
+            rotation: Rotation::or_none(rotation),
+        };
+        made(Obstacle::ellipsoid(center, semi_axes, rotation), own)
+    }
+}
+
+/// An ellipse in the plane z = 0, for planar arms: centre (2,), semi-axes (2,) (m), angle of the first one (rad).
+#[pyclass(name = "Ellipse", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
+pub struct PyEllipse {
+    /// Centre (2,) (m).
+    #[pyo3(get)]
+    center: Coordinates<2>,
+    /// Semi-axes (2,) (m).
+    #[pyo3(get)]
+    semi_axes: Coordinates<2>,
+    /// Angle of the first semi-axis (rad).
+    #[pyo3(get)]
+    angle: f64,
+}
+
+#[pymethods]
+impl PyEllipse {
+    #[new]
+    #[pyo3(signature = (center, semi_axes, angle=0.0))]
+    fn new(center: &Bound<'_, PyAny>, semi_axes: &Bound<'_, PyAny>, angle: f64) -> PyResult<PyClassInitializer<Self>> {
+        let (center, semi_axes) = (entries("center", center)?, entries("semi_axes", semi_axes)?);
+        let own = Self { center: Coordinates(center), semi_axes: Coordinates(semi_axes), angle };
+        made(Obstacle::ellipse(center, semi_axes, angle), own)
+    }
+}
+
+/// The smallest convex body that holds points (k, 3) (m), at least four that do not lie in a plane.
+#[pyclass(name = "ConvexMesh", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
+pub struct PyConvexMesh {
+    points: Vec<[f64; 3]>,
+}
+
+#[pymethods]
+impl PyConvexMesh {
+    #[new]
+    fn new(points: &Bound<'_, PyAny>) -> PyResult<PyClassInitializer<Self>> {
+        let numbers = array("points", points)?;
+        match numbers.shape() {
+            [_, 3] => {
+                let points = numbers.as_slice()?.as_chunks().0.to_vec();
+                made(Obstacle::convex_mesh(&points), Self { points })
+            }
+            shape => Err(invalid(format!("points: expected shape (k, 3), got {}", shape_text(shape)))),
+        }
+    }
+
+    /// The points as given (k, 3) (m).
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        table(py, self.points.as_flattened().to_vec(), &[self.points.len(), 3])
+    }
+}

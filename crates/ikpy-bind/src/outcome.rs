@@ -1,0 +1,54 @@
+//! What every result says of the search behind it.
+
+/// The getters `success`, `status`, `message`, `evaluations` and `elapsed` of a result's class. Success is the status SOLVED;
+/// what that means differs from class to class, so that three of them are given their words.
+macro_rules! outcome {
+    (
+        $class:ident = |$result:ident|
+        $(#[$success_note:meta])* success,
+        $(#[$status_note:meta])* status: $status:expr,
+        message: $message:expr,
+        $(#[$evaluations_note:meta])* evaluations: $evaluations:expr,
+        elapsed: $elapsed:expr $(,)?
+    ) => {
+        #[pymethods]
+        impl $class {
+            $(#[$success_note])*
+            #[getter]
+            fn success(&self) -> bool {
+                let $result = self;
+                $status == ikcore::solver::Status::Solved
+            }
+
+            $(#[$status_note])*
+            #[getter]
+            fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+                let $result = self;
+                $crate::solver::status(py, $status)
+            }
+
+            /// What happened, and what to try.
+            #[getter]
+            fn message(&self) -> String {
+                let $result = self;
+                $message
+            }
+
+            $(#[$evaluations_note])*
+            #[getter]
+            fn evaluations(&self) -> usize {
+                let $result = self;
+                $evaluations
+            }
+
+            /// Time taken (s).
+            #[getter]
+            fn elapsed(&self) -> f64 {
+                let $result = self;
+                $elapsed.as_secs_f64()
+            }
+        }
+    };
+}
+
+pub(crate) use outcome;

@@ -1,0 +1,121 @@
+//! The functions of `beetle_ik.paths`.
+
+use ikcore::path::{Circle, Hypotrochoid, Path, Plane, Polyline, Rose, Samples};
+use numpy::PyUntypedArrayMethods;
+use pyo3::prelude::*;
+
+use super::PyPath;
+use crate::convert::{array, count, point, rigid_matrices, shape_text, summary, vector};
+use crate::error::{invalid, raise};
+
+fn plane(center: &Bound<'_, PyAny>, a: [f64; 3], b: [f64; 3]) -> PyResult<Plane> {
+    Plane::new(point("center", center)?, a, b).map_err(raise)
+}
+
+/// A circle about `center` (3,) (m) of this diameter (m), once around in `duration` (s), from the side of `a` towards
+/// `b`: eq. (14) of Cheng et al. (2020). `a` and `b` (3,) are orthonormal.
+#[pyfunction]
+#[pyo3(signature = (center, diameter, duration, *, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+       text_signature = "(center, diameter, duration, *, a=(1, 0, 0), b=(0, 1, 0))")]
+pub fn circle(center: &Bound<'_, PyAny>, diameter: f64, duration: f64, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
+    Ok(Path::new(Circle::new(plane(center, a, b)?, diameter, duration).map_err(raise)?).into())
+}
+
+/// The letter M about `center` (3,), `width` along `a` and `height` along `b` (m), its four strokes equally long in
+/// time (Khan et al. 2022).
+#[pyfunction]
+#[pyo3(signature = (center, duration, *, width, height, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]),
+       text_signature = "(center, duration, *, width, height, a=(0, 1, 0), b=(0, 0, 1))")]
+pub fn letter_m(
+    center: &Bound<'_, PyAny>,
+    duration: f64,
+    width: f64,
+    height: f64,
+    a: [f64; 3],
+    b: [f64; 3],
+) -> PyResult<PyPath> {
+    Ok(Path::new(Polyline::letter_m(&plane(center, a, b)?, width, height, duration).map_err(raise)?).into())
+}
+
+/// A hypotrochoid about `center` (3,): the path of a point at `distance` from the centre of a circle that rolls inside
+/// another (m). Eq. (20) of Khan et al. (2022) as it was meant; the ratio of the radii is one of small whole numbers.
+#[pyfunction]
+#[pyo3(signature = (center, duration, *, outer_radius, inner_radius, distance, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]),
+       text_signature = "(center, duration, *, outer_radius, inner_radius, distance, a=(0, 1, 0), b=(0, 0, 1))")]
+pub fn hypotrochoid(
+    center: &Bound<'_, PyAny>,
+    duration: f64,
+    outer_radius: f64,
+    inner_radius: f64,
+    distance: f64,
+    a: [f64; 3],
+    b: [f64; 3],
+) -> PyResult<PyPath> {
+    let curve = Hypotrochoid::new(plane(center, a, b)?, outer_radius, inner_radius, distance, duration);
+    Ok(Path::new(curve.map_err(raise)?).into())
+}
+
+/// A five-pointed star about `center` (3,), its points `radius` (m) away, drawn in five strokes at constant speed from
+/// the point on the side of `b`.
+#[pyfunction]
+#[pyo3(signature = (center, duration, *, radius, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+       text_signature = "(center, duration, *, radius, a=(1, 0, 0), b=(0, 1, 0))")]
+pub fn pentagram(center: &Bound<'_, PyAny>, duration: f64, radius: f64, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
+    Ok(Path::new(Polyline::pentagram(&plane(center, a, b)?, radius, duration).map_err(raise)?).into())
+}
+
+/// A rose about `center` (3,): at angle u the distance is radius cos(k u) (m). Odd k gives k petals, even k 2 k.
+#[pyfunction]
+#[pyo3(signature = (center, duration, *, radius, k, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+       text_signature = "(center, duration, *, radius, k, a=(1, 0, 0), b=(0, 1, 0))")]
+pub fn rose(
+    center: &Bound<'_, PyAny>,
+    duration: f64,
+    radius: f64,
+    k: i128,
+    a: [f64; 3],
+    b: [f64; 3],
+) -> PyResult<PyPath> {
+    Ok(Path::new(Rose::new(plane(center, a, b)?, radius, count("k", k)?, duration).map_err(raise)?).into())
+}
+
+/// Straight strokes through `points` (k, 3) (m) at constant speed, `duration` (s) in all.
+#[pyfunction]
+pub fn polyline(points: &Bound<'_, PyAny>, duration: f64) -> PyResult<PyPath> {
+    Ok(Path::new(Polyline::new(&positions("points", points)?, duration).map_err(raise)?).into())
+}
+
+/// The path through samples: `time` (k,) (s) from 0, and positions (k, 3) (m) or poses (k, 4, 4). Straight in between,
+/// rotations along the shortest turn.
+#[pyfunction]
+pub fn from_samples(time: &Bound<'_, PyAny>, positions_or_poses: &Bound<'_, PyAny>) -> PyResult<PyPath> {
+    let time = vector("time", time)?;
+    let values = array("positions_or_poses", positions_or_poses)?;
+    let samples = match values.shape() {
+        [_, 4, 4] => Samples::from_poses(time, &rigid_matrices(values.as_slice()?)?),
+        _ => Samples::from_positions(time, positions("positions_or_poses", positions_or_poses)?),
+    };
+    Ok(Path::new(samples.map_err(raise)?).into())
+}
+
+/// The path that `function(t)` describes: t (s) in [0, duration] to a position (3,) (m). It is called before a tracker
+/// runs, at the times of its ticks.
+#[pyfunction]
+pub fn from_function(function: &Bound<'_, PyAny>, duration: f64) -> PyResult<PyPath> {
+    if !function.is_callable() {
+        return Err(invalid(format!("function must be a callable of t, got {}", summary(function))));
+    }
+    if !(duration.is_finite() && duration > 0.0) {
+        return Err(invalid(format!("duration must be positive and finite, got {duration}")));
+    }
+    Ok(PyPath::of_function(function.clone().unbind(), duration))
+}
+
+fn positions(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; 3]>> {
+    let values = array(what, value)?;
+    match values.shape() {
+        [_, 3] => Ok(values.as_slice()?.as_chunks().0.to_vec()),
+        [0] => Ok(vec![]),
+        shape => Err(invalid(format!("{what}: expected shape (k, 3), got {}", shape_text(shape)))),
+    }
+}

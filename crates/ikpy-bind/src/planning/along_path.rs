@@ -1,0 +1,110 @@
+//! `plan_along_path`.
+
+use ikcore::path::Reference;
+use ikcore::planning::{self, AlongPathMethod, AlongPathOptions, Course};
+use numpy::PyUntypedArrayMethods;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use super::elbow::read_elbow;
+use super::plan::PyPlan;
+use crate::convert::{array, count, rigid_matrices, shape_text, vector};
+use crate::error::{invalid, raise};
+use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::monitor::watched;
+use crate::path::PyPath;
+use crate::robot::PyRobot;
+use crate::solver::{PyStop, derivative_free_solver};
+
+/// Plans a motion whose tip follows a path, in order.
+///
+/// Args:
+///     robot: the arm.
+///     path: a `Path`, whose times do not matter here, or points (k, 3) (m) or poses (k, 4, 4), straight in between.
+///     start_q: joint angles (n,) to start from; None: the planner's choice.
+///     limits: positions, velocities and accelerations to keep; None: the robot's.
+///     method: "timed": redundancy and the fastest timing found together; "tpbso": redundancy by a beetle swarm, uniform
+///         time, splines through every second point (Wang et al. 2019).
+///     objective: what to minimise: "time" or "joint_travel".
+///     elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it; None: 1.
+///     accuracy: how far the tip may be from the path (m), between its points too, and how far turned from it (rad); as
+///         many points are passed as that takes. None: a thousandth of the path's extent, for "tpbso" 4 %.
+///     solver: what searches; None: the method's own.
+///     stop: budgets; None: the method's own.
+///     seed: of the random draws: the same seed, the same bits.
+///     progress: True for a bar on the terminal, or a callable of (done, total).
+///
+/// Returns:
+///     A `Plan`. That no plan keeps everything is a status beside the least violating trajectory, not an error.
+///
+/// Raises:
+///     InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach.
+///     LimitError: limits that contradict themselves.
+///     UnsupportedLimit: jerk limits, or limits that vary in time.
+#[pyfunction]
+#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", elbow=None, accuracy=None,
+                    solver=None, stop=None, seed=0, progress=None))]
+#[allow(clippy::too_many_arguments)]
+pub fn plan_along_path(
+    py: Python<'_>,
+    robot: &Bound<'_, PyRobot>,
+    path: &Bound<'_, PyAny>,
+    start_q: Option<&Bound<'_, PyAny>>,
+    limits: Option<&PyLimits>,
+    method: &str,
+    objective: &str,
+    elbow: Option<i128>,
+    accuracy: Option<f64>,
+    solver: Option<&Bound<'_, PyAny>>,
+    stop: Option<&PyStop>,
+    seed: i128,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyPlan> {
+    let arm = robot.get().core.clone();
+    let course = read_course(py, path)?;
+    let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
+    let options = AlongPathOptions {
+        method: method.parse().map_err(raise)?,
+        objective: objective.parse().map_err(raise)?,
+        start: start_q.map(|q| vector("start_q", q)).transpose()?,
+        limits: resolved,
+        elbow: elbow.map(|sign| read_elbow("elbow", sign)).transpose()?,
+        accuracy,
+        solver: solver.map(|solver| derivative_free_solver("plan_along_path", solver)).transpose()?,
+        stop: stop.map(PyStop::core),
+        seed: count("seed", seed)?,
+    };
+    let plan = watched(py, progress, |watcher| planning::plan_along_path(&arm, &course, &options, watcher))?;
+    let positions = match options.method {
+        AlongPathMethod::Timed => course.positions().as_flattened().to_vec(),
+        AlongPathMethod::Tpbso => (0..course.points().len()).flat_map(|i| course.points().position(i)).collect(),
+    };
+    PyPlan::new(plan, Some(positions), robot, in_force, PyTuple::empty(py).unbind())
+}
+
+/// A `Path`, or points (k, 3), or poses (k, 4, 4).
+fn read_course(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<Course> {
+    match path.cast::<PyPath>() {
+        Ok(path) => path.get().course(py),
+        Err(_) => Course::through(&read_points(path)?).map_err(raise),
+    }
+}
+
+/// Points (k, 3), or poses (k, 4, 4).
+fn read_points(path: &Bound<'_, PyAny>) -> PyResult<Reference> {
+    let rows = array("path", path)?;
+    let numbers = rows.as_slice()?;
+    match rows.shape() {
+        [_, 3] => Reference::new(1.0, numbers.as_chunks().0.to_vec(), None).map_err(raise),
+        [_, 4, 4] => {
+            let poses = rigid_matrices(numbers)?;
+            let positions = poses.iter().map(|pose| pose.translation.vector.into()).collect();
+            let rotations = poses.iter().map(|pose| *pose.rotation.matrix()).collect();
+            Reference::new(1.0, positions, Some(rotations)).map_err(raise)
+        }
+        shape => Err(invalid(format!(
+            "path: expected a Path, points (k, 3) or poses (k, 4, 4), got shape {}",
+            shape_text(shape)
+        ))),
+    }
+}

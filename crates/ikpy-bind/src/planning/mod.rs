@@ -1,0 +1,18 @@
+//! Planning: motions from end to end and along paths, and their fastest timing.
+
+mod along_path;
+mod elbow;
+mod plan;
+mod point_to_point;
+mod time_optimal;
+mod violation;
+
+use pyo3::prelude::*;
+
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<violation::PyViolation>()?;
+    module.add_class::<plan::PyPlan>()?;
+    module.add_function(wrap_pyfunction!(point_to_point::plan_point_to_point, module)?)?;
+    module.add_function(wrap_pyfunction!(along_path::plan_along_path, module)?)?;
+    module.add_function(wrap_pyfunction!(time_optimal::time_optimal, module)?)
+}

@@ -1,0 +1,58 @@
+//! `Violation`.
+
+use ikcore::planning::Violation;
+use ikcore::stored::{from_bytes, to_bytes};
+use pyo3::prelude::*;
+
+use crate::error::raise;
+use crate::stored::{self, Reduced};
+
+/// A bound that a planned trajectory breaks; `str` says it in words.
+#[pyclass(name = "Violation", module = "beetle_ik", frozen, eq)]
+#[derive(PartialEq)]
+pub struct PyViolation(pub Violation);
+
+#[pymethods]
+impl PyViolation {
+    /// What breaks it, such as "velocity of joint 'elbow'".
+    #[getter]
+    fn what(&self) -> &str {
+        &self.0.what
+    }
+
+    /// How far the trajectory goes, in `unit`.
+    #[getter]
+    fn value(&self) -> f64 {
+        self.0.value
+    }
+
+    /// How far it may go, in `unit`.
+    #[getter]
+    fn bound(&self) -> f64 {
+        self.0.bound
+    }
+
+    /// "rad/s" and so on.
+    #[getter]
+    fn unit(&self) -> &str {
+        &self.0.unit
+    }
+
+    fn __str__(&self) -> String {
+        self.0.to_string()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Violation: {}>", self.0)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::restored_from::<Self>(py, (stored::bytes(py, to_bytes("violation", &self.0))?,))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(bytes: &[u8]) -> PyResult<Self> {
+        from_bytes("violation", bytes).map(Self).map_err(raise)
+    }
+}

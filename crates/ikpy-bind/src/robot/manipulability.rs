@@ -1,0 +1,127 @@
+//! `VelocityEllipsoid`, and how well a posture lets the robot move.
+
+use ikcore::manipulability::{Ellipsoid, Manipulability, Motion, manipulability, manipulability_all};
+use ikcore::stored::{from_bytes, to_bytes};
+use numpy::{PyArray1, PyArrayDyn};
+use pyo3::prelude::*;
+
+use super::PyRobot;
+use super::kinematics::in_pieces;
+use crate::convert::{Rows, row, rows, table, vector};
+use crate::error::raise;
+use crate::stored::{self, Reduced};
+
+/// The tip velocities that unit joint speeds give, |q'| = 1: an ellipsoid with one semi-axis per direction in which the
+/// tip can move, the longest first.
+#[pyclass(name = "VelocityEllipsoid", module = "beetle_ik", frozen, eq)]
+#[derive(PartialEq)]
+pub struct PyVelocityEllipsoid(Ellipsoid);
+
+#[pymethods]
+impl PyVelocityEllipsoid {
+    /// Lengths of the semi-axes (directions,) (m/s, rad/s): the singular values of the Jacobian.
+    #[getter]
+    fn lengths<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.0.lengths.clone())
+    }
+
+    /// Unit vectors along them (directions, 6): linear, then angular part, in the base's axes.
+    #[getter]
+    fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        table(py, self.0.axes.as_flattened().to_vec(), &[self.0.axes.len(), 6])
+    }
+
+    /// Yoshikawa's index: the product of the lengths.
+    #[getter]
+    fn index(&self) -> f64 {
+        self.0.index()
+    }
+
+    /// The longest over the shortest; inf where a direction is lost.
+    #[getter]
+    fn condition(&self) -> f64 {
+        self.0.condition()
+    }
+
+    /// Geometric over arithmetic mean of the squared lengths (Kim and Khosla 1991): 1 for a sphere, 0 where a direction
+    /// is lost.
+    #[getter]
+    fn isotropy(&self) -> f64 {
+        self.0.isotropy()
+    }
+
+    fn __repr__(&self) -> String {
+        let lengths: Vec<String> = self.0.lengths.iter().map(|length| format!("{length:.4}")).collect();
+        format!("<VelocityEllipsoid: lengths {}>", lengths.join(", "))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::restored_from::<Self>(py, (stored::bytes(py, to_bytes("ellipsoid", &self.0))?,))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(bytes: &[u8]) -> PyResult<Self> {
+        from_bytes("ellipsoid", bytes).map(Self).map_err(raise)
+    }
+}
+
+#[pymethods]
+impl PyRobot {
+    /// Yoshikawa's manipulability at q (n,) or (m, n): sqrt(det(J J')), the product of the singular values of the
+    /// Jacobian, one per direction in which the tip can move at all.
+    ///
+    /// Args:
+    ///     motion: what counts, "pose", "position" or "rotation".
+    #[pyo3(signature = (q, *, motion="pose"))]
+    fn manipulability<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyAny>> {
+        let motion: Motion = motion.parse().map_err(raise)?;
+        match rows("joint angles", self.core.name(), self.core.dof(), q)? {
+            Rows::One(q) => {
+                let value = manipulability(&self.core, motion, q.as_slice()?).map_err(raise)?;
+                Ok(value.into_pyobject(py)?.into_any())
+            }
+            Rows::Many(q, _) => {
+                let (robot, q) = (&*self.core, q.as_slice()?);
+                let values = in_pieces(py, q, robot.dof(), |q| manipulability_all(robot, motion, q))?;
+                Ok(row(py, values).into_any())
+            }
+        }
+    }
+
+    /// Gradient (n,) of the manipulability at q (n,), exact; `motion` as there.
+    #[pyo3(signature = (q, *, motion="pose"))]
+    fn manipulability_gradient<'py>(&self, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let (measure, values) = self.measure_at(q, motion)?;
+        let mut gradient = vec![0.0; values.len()];
+        measure.gradient(&self.core, &values, &mut gradient);
+        Ok(row(q.py(), gradient))
+    }
+
+    /// Manipulability of the tip of every moving link, moved by the joints before it, times the volume of the unit ball
+    /// (pi in the plane): (links,), the last one the tip's. Their sum is a measure of the whole arm.
+    ///
+    /// Links with fewer joints before them than there are directions have zero. `motion` as in `manipulability`.
+    #[pyo3(signature = (q, *, motion="position"))]
+    fn link_manipulability<'py>(&self, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let (measure, values) = self.measure_at(q, motion)?;
+        Ok(row(q.py(), measure.link_indices(&self.core, &values).values().to_vec()))
+    }
+
+    /// The ellipsoid of tip velocities at q (n,) for unit joint speeds; `motion` as in `manipulability`.
+    #[pyo3(signature = (q, *, motion="position"))]
+    fn velocity_ellipsoid(&self, q: &Bound<'_, PyAny>, motion: &str) -> PyResult<PyVelocityEllipsoid> {
+        let (measure, values) = self.measure_at(q, motion)?;
+        Ok(PyVelocityEllipsoid(measure.ellipsoid(&self.core, &values)))
+    }
+}
+
+impl PyRobot {
+    /// What the methods above have in common: the word, the check, the measure.
+    fn measure_at(&self, q: &Bound<'_, PyAny>, motion: &str) -> PyResult<(Manipulability, Vec<f64>)> {
+        let motion: Motion = motion.parse().map_err(raise)?;
+        let q = vector("joint angles", q)?;
+        self.core.check("joint angles", &q).map_err(raise)?;
+        Ok((Manipulability::of(&self.core, motion), q))
+    }
+}

@@ -1,0 +1,118 @@
+//! `ControlSession`, and controllers as arguments.
+
+use std::sync::Mutex;
+
+use ikcore::solver::stop::Stopwatch;
+use ikcore::tracking::Controller;
+use ikcore::tracking::controller::Session;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use super::session::in_progress;
+use super::step::PyStep;
+use super::znnbas::PyZnnbas;
+use crate::convert::{copied, count, point, summary, vector};
+use crate::error::{invalid, raise};
+use crate::limits::{PyLimits, Sampling, limits_without_robot};
+use crate::solver::PyBroydenBas;
+
+/// A controller in your own loop, with your own hardware.
+///
+///     session = bik.BroydenBAS(max_evaluations_per_step=1).session(q0, dt=0.01, limits=limits)
+///     while session.time < path.duration:
+///         q = session.command(path.position(session.time + session.dt))
+///         session.observe(measure_tip_after(q))
+///
+/// The first command is the start itself: it only tells where the tip is, and time stands still. From then on a tick is over,
+/// and time advances by dt, when the controller has no more to ask: after every measurement for `ZNNBAS`, for
+/// `BroydenBAS` once it is in its band or has made max_evaluations_per_step.
+#[pyclass(name = "ControlSession", module = "beetle_ik", frozen)]
+pub struct PyControlSession {
+    session: Mutex<Session>,
+    /// The limits in force.
+    #[pyo3(get)]
+    limits: Py<PyLimits>,
+}
+
+in_progress!(PyControlSession, Session);
+
+#[pymethods]
+impl PyControlSession {
+    /// Where to send the arm (n,) (rad, m), so that its tip comes to `target` (3,) (m) by the end of the tick. Within the
+    /// limits, and within what the velocity limits let the configuration accepted last reach.
+    fn command<'py>(&self, py: Python<'py>, target: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let target = point("target", target)?;
+        Ok(copied(py, self.session().command(target).map_err(raise)?))
+    }
+
+    /// The tip was at `position` (3,) (m) at the last command. Returns what became of the tick, a `Step`; None while it
+    /// goes on.
+    fn observe(&self, py: Python<'_>, position: &Bound<'_, PyAny>) -> PyResult<Option<PyStep>> {
+        let position = point("position", position)?;
+        let (watch, mut session) = (Stopwatch::start(), self.session());
+        let step = session.observe(position).map_err(raise)?;
+        Ok(step.map(|step| {
+            let motion = [session.q().to_vec(), session.qd().to_vec()];
+            PyStep::new(py, step, motion, self.limits.clone_ref(py), watch.elapsed())
+        }))
+    }
+
+    fn __repr__(&self) -> String {
+        let session = self.session();
+        format!("<ControlSession of {} joints at t = {} s, dt = {} s>", session.q().len(), session.time(), session.dt())
+    }
+}
+
+impl PyControlSession {
+    fn new(
+        controller: &Controller,
+        start: &Bound<'_, PyAny>,
+        dt: f64,
+        limits: Option<&PyLimits>,
+        position_tolerance: f64,
+        seed: i128,
+    ) -> PyResult<Self> {
+        let py = start.py();
+        let start = vector("start", start)?;
+        limits.map_or(Ok(()), |limits| limits.require_no_functions("session", "track_model_free"))?;
+        let (in_force, limits) = limits_without_robot(py, limits, start.len(), &Sampling::once())?;
+        let session = Session::new(controller, &start, dt, limits, position_tolerance, count("seed", seed)?);
+        Ok(Self { session: Mutex::new(session.map_err(raise)?), limits: in_force })
+    }
+}
+
+/// A controller argument.
+pub fn controller(controller: Option<&Bound<'_, PyAny>>) -> PyResult<Controller> {
+    let Some(controller) = controller else { return Ok(Controller::default()) };
+    if let Ok(broyden) = controller.cast::<PyBroydenBas>() {
+        return Ok(broyden.get().controller());
+    }
+    if let Ok(znnbas) = controller.cast::<PyZnnbas>() {
+        return Ok(znnbas.get().controller());
+    }
+    Err(invalid(format!("controller must be BroydenBAS or ZNNBAS, got {}", summary(controller))))
+}
+
+/// The method `session` of a controller's class.
+macro_rules! session {
+    ($class:ty) => {
+        #[pymethods]
+        impl $class {
+            /// The controller at work in your own loop, from `start` (n,) and t = 0: see `ControlSession`.
+            #[pyo3(signature = (start, *, dt, limits=None, position_tolerance=1e-9, seed=0))]
+            fn session(
+                &self,
+                start: &Bound<'_, PyAny>,
+                dt: f64,
+                limits: Option<&PyLimits>,
+                position_tolerance: f64,
+                seed: i128,
+            ) -> PyResult<PyControlSession> {
+                PyControlSession::new(&self.controller(), start, dt, limits, position_tolerance, seed)
+            }
+        }
+    };
+}
+
+session!(PyBroydenBas);
+session!(PyZnnbas);

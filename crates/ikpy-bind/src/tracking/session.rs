@@ -1,0 +1,36 @@
+//! What loops in progress have in common, with a model of the arm and without.
+
+/// Access to the session of a class that has one, and the getters `q`, `time` and `dt`.
+macro_rules! in_progress {
+    ($class:ident, $session:ty) => {
+        impl $class {
+            /// A panic elsewhere cannot have left the session half-changed: it is written in one go at the end of a call.
+            fn session(&self) -> std::sync::MutexGuard<'_, $session> {
+                self.session.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+            }
+        }
+
+        #[pymethods]
+        impl $class {
+            /// The configuration accepted last (n,) (rad, m).
+            #[getter]
+            fn q<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
+                $crate::convert::copied(py, self.session().q())
+            }
+
+            /// Time of that configuration (s).
+            #[getter]
+            fn time(&self) -> f64 {
+                self.session().time()
+            }
+
+            /// Time step (s).
+            #[getter]
+            fn dt(&self) -> f64 {
+                self.session().dt()
+            }
+        }
+    };
+}
+
+pub(super) use in_progress;

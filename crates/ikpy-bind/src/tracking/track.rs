@@ -1,0 +1,213 @@
+//! `track` and `TrackResult`.
+
+use ikcore::limits::LimitAt;
+use ikcore::stored::{from_bytes, to_bytes};
+use ikcore::task::Tolerance;
+use ikcore::tracking::{self, Record, TickRule, TrackOptions};
+use ikcore::trajectory::Trajectory;
+use numpy::{PyArray1, PyArrayDyn};
+use pyo3::prelude::*;
+
+use super::record::{Columns, counts, record};
+use super::weighted_pseudo_inverse::PyWeightedPseudoInverse;
+use crate::convert::{count, row, summary, table, vector};
+use crate::error::{invalid, raise};
+use crate::goal::read_goals;
+use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::monitor::watched;
+use crate::outcome::outcome;
+use crate::path::PyPath;
+use crate::robot::PyRobot;
+use crate::solver::{known_solver, solver_names};
+use crate::stored::{self, Reduced};
+use crate::task::read_task;
+use crate::trajectory::PyTrajectory;
+use crate::upward;
+
+/// The record of a track: k = steps + 1 rows; row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
+#[pyclass(name = "TrackResult", module = "beetle_ik", frozen)]
+pub struct PyTrackResult {
+    core: Record,
+    columns: Columns,
+    /// The limit that each velocity was held against (k, n); NaN in row 0, inf where there is none.
+    #[pyo3(get)]
+    velocity_limit: Py<PyArrayDyn<f64>>,
+    /// Angles to the wanted orientations (k,) (rad); NaN where none was asked for.
+    #[pyo3(get)]
+    rotation_error: Py<PyArray1<f64>>,
+    /// Iterations in each step (k,): passes of BAS, steps of Levenberg-Marquardt.
+    #[pyo3(get)]
+    step_iterations: Py<PyArray1<i64>>,
+    /// The robot that was tracked.
+    #[pyo3(get)]
+    robot: Py<PyRobot>,
+    /// The limits in force.
+    #[pyo3(get)]
+    limits: Py<PyLimits>,
+}
+
+record! {
+    PyTrackResult = |result| result.core,
+    /// Configurations (k, n) (rad, m).
+    q,
+    /// Positions of the tip (k, 3) (m).
+    position,
+    /// Evaluations of the forward kinematics in each step (k,).
+    step_evaluations,
+    /// Largest excess of a displacement over its limit times dt, or of a position over its limit (rad, m); 0 within
+    /// rounding.
+    max_violation,
+}
+
+outcome! {
+    PyTrackResult = |result|
+    /// Whether the tip came into the error band and stayed there.
+    success,
+    /// SOLVED as `success`; LOST if the tip left its band again; else how the last step ended.
+    status: result.core.status,
+    message: result.core.message(),
+    /// Evaluations of the forward kinematics in all.
+    evaluations: result.core.evaluations(),
+    elapsed: result.core.elapsed,
+}
+
+#[pymethods]
+impl PyTrackResult {
+    /// The error band of orientations (rad), as asked.
+    #[getter]
+    fn rotation_tolerance(&self) -> f64 {
+        self.core.criterion.tolerance.rotation
+    }
+
+    /// Smallest distance of a speed from its limit (rad/s, m/s); inf without limits.
+    #[getter]
+    fn limit_margin(&self) -> f64 {
+        self.core.limit_margin
+    }
+
+    /// The joint motion, straight between the ticks: its velocities are exactly `qd`.
+    #[getter]
+    fn trajectory(&self) -> PyResult<PyTrajectory> {
+        let names = self.robot.get().core.joints().iter().map(|joint| joint.name.clone()).collect();
+        Trajectory::from_samples(names, &self.core.time, &self.core.q, None, None)
+            .map(PyTrajectory::from)
+            .map_err(raise)
+    }
+
+    /// A matplotlib figure: the tip's path, the error, joint angles, velocities with their limits, evaluations.
+    fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        upward::plot(slf.into_any(), "track")
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.time.len(), self.core.message())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let core = stored::bytes(py, to_bytes("track", &self.core))?;
+        stored::restored_from::<Self>(py, (core, self.robot.clone_ref(py), self.limits.clone_ref(py)))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, bytes: &[u8], robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
+        Self::new(py, from_bytes("track", bytes).map_err(raise)?, robot, limits)
+    }
+}
+
+impl PyTrackResult {
+    fn new(py: Python<'_>, core: Record, robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
+        Ok(Self {
+            columns: Columns::new(py, &core)?,
+            velocity_limit: table(py, core.velocity_limit.clone(), &[core.time.len(), core.dof])?.unbind(),
+            rotation_error: row(py, core.rotation_error.clone()).unbind(),
+            step_iterations: counts(py, &core.step_iterations),
+            robot,
+            limits,
+            core,
+        })
+    }
+}
+
+/// Follows `path` with the tip of `robot`, tick by tick, inside the limits.
+///
+/// In every tick the joints may move within the position limits and within what the velocity limits let the last
+/// accepted configuration reach, so that neither can be broken (Cheng et al. 2020, Algorithm 1). Acceleration limits narrow
+/// that further, with room left to brake before position limits; the arm starts at rest.
+///
+/// Args:
+///     robot: the arm.
+///     path: positions or poses over time.
+///     start: (n,), configuration at t = 0; None solves for the path's first point, for the configuration that is best for
+///         the goals or, without goals, far from singularities and limits.
+///     dt: time step (s).
+///     task: of `tasks`, what of the path matters; None: all that it says.
+///     solver: what runs in every tick: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule, which
+///         needs one or two evaluations a step.
+///     limits: None: the robot's.
+///     goals: of `goals`, one or several: in every tick the freedom that the task leaves goes down their gradient by weight times
+///         dt. They need the library's own rule, or `WeightedPseudoInverse`.
+///     position_tolerance: the error band (m).
+///     rotation_tolerance: the same for orientations (rad).
+///     seed: of the random draws: the same seed, the same bits.
+///     limit_at: a tick's velocity limit is its smallest over the "interval", or, as in the paper, that at its "start".
+///     progress: True for a bar on the terminal, or a callable of (done, total).
+///
+/// Returns:
+///     A `TrackResult`. A path that cannot be followed is a status, not an error.
+///
+/// Raises:
+///     InvalidInputError: wrong shape, NaN, dt not positive.
+///     LimitError: a start outside its limits, a limit below zero.
+///     UnsupportedLimit: jerk limits, which this tracker does not keep.
+#[pyfunction]
+#[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
+                    position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval", progress=None))]
+#[allow(clippy::too_many_arguments)]
+pub fn track(
+    py: Python<'_>,
+    robot: &Bound<'_, PyRobot>,
+    path: &PyPath,
+    start: Option<&Bound<'_, PyAny>>,
+    dt: f64,
+    task: Option<&Bound<'_, PyAny>>,
+    solver: Option<&Bound<'_, PyAny>>,
+    limits: Option<&PyLimits>,
+    goals: Option<&Bound<'_, PyAny>>,
+    position_tolerance: f64,
+    rotation_tolerance: f64,
+    seed: i128,
+    limit_at: &str,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyTrackResult> {
+    let arm = robot.get().core.clone();
+    let rule = tick_rule(solver)?;
+    let reference = if rule.uses_velocities() { path.moving_reference(py, dt)? } else { path.reference(py, dt)? };
+    let sampling = Sampling::of_ticks(dt, reference.len() - 1);
+    let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
+    let start = start.map(|start| vector("start", start)).transpose()?;
+    let options = TrackOptions {
+        rule,
+        task: read_task(task)?,
+        goals: read_goals(goals)?,
+        tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
+        limits: resolved,
+        limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
+        seed: count("seed", seed)?,
+    };
+    let record =
+        watched(py, progress, |watcher| tracking::track(&arm, &reference, start.as_deref(), &options, watcher))?;
+    PyTrackResult::new(py, record, robot.clone().unbind(), in_force)
+}
+
+/// A rule, a solver, or the library's own rule.
+pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
+    let Some(solver) = solver else { return Ok(TickRule::default()) };
+    if let Ok(rule) = solver.cast::<PyWeightedPseudoInverse>() {
+        return Ok(rule.get().rule());
+    }
+    known_solver(solver).map(TickRule::EachTick).ok_or_else(|| {
+        let (names, got) = (solver_names(), summary(solver));
+        invalid(format!("solver must be {names} or WeightedPseudoInverse, got {got}"))
+    })
+}

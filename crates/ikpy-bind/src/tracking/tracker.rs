@@ -1,0 +1,109 @@
+//! `Tracker`.
+
+use std::sync::Mutex;
+
+use ikcore::limits::LimitAt;
+use ikcore::solver::Unattended;
+use ikcore::solver::stop::Stopwatch;
+use ikcore::task::Tolerance;
+use ikcore::tracking::{Session, TrackOptions};
+use pyo3::prelude::*;
+
+use super::session::in_progress;
+use super::step::PyStep;
+use super::track::tick_rule;
+use crate::convert::{count, point, vector};
+use crate::error::raise;
+use crate::goal::read_goals;
+use crate::ik::read_target;
+use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::robot::PyRobot;
+use crate::task::read_task;
+
+/// One control loop, one call a tick: the same as `track`, for targets that come one at a time.
+///
+/// Args:
+///     robot: the arm.
+///     start: (n,), configuration at t = 0.
+///     dt: time step (s).
+///     task, goals: as in `track`.
+///     solver: what runs in every step: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule.
+///     limits: None: the robot's. Numbers and `Sinusoid`s; a callable has no end to be sampled to.
+///     position_tolerance: m.
+///     rotation_tolerance: rad.
+///     seed: of the random draws.
+///     limit_at: as in `track`.
+#[pyclass(name = "Tracker", module = "beetle_ik", frozen)]
+pub struct PyTracker {
+    session: Mutex<Session>,
+    /// The robot that is moved.
+    #[pyo3(get)]
+    robot: Py<PyRobot>,
+    /// The limits in force.
+    #[pyo3(get)]
+    limits: Py<PyLimits>,
+}
+
+in_progress!(PyTracker, Session);
+
+#[pymethods]
+impl PyTracker {
+    #[new]
+    #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
+                        position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval"))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        robot: &Bound<'_, PyRobot>,
+        start: &Bound<'_, PyAny>,
+        dt: f64,
+        task: Option<&Bound<'_, PyAny>>,
+        solver: Option<&Bound<'_, PyAny>>,
+        limits: Option<&PyLimits>,
+        goals: Option<&Bound<'_, PyAny>>,
+        position_tolerance: f64,
+        rotation_tolerance: f64,
+        seed: i128,
+        limit_at: &str,
+    ) -> PyResult<Self> {
+        let (py, arm) = (robot.py(), &robot.get().core);
+        limits.map_or(Ok(()), |limits| limits.require_no_functions("Tracker", "track"))?;
+        let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
+        let options = TrackOptions {
+            rule: tick_rule(solver)?,
+            task: read_task(task)?,
+            goals: read_goals(goals)?,
+            tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
+            limits: resolved,
+            limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
+            seed: count("seed", seed)?,
+        };
+        let session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
+        Ok(Self { session: Mutex::new(session), robot: robot.clone().unbind(), limits: in_force })
+    }
+
+    /// Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
+    ///
+    /// Args:
+    ///     target: where the tip is to be at the end of the tick.
+    ///     velocity: (3,) (m/s), that of the target then, for `WeightedPseudoInverse`; None: the way from where it was.
+    ///         Other rules need none.
+    #[pyo3(signature = (target, *, velocity=None))]
+    fn step(&self, py: Python<'_>, target: &Bound<'_, PyAny>, velocity: Option<&Bound<'_, PyAny>>) -> PyResult<PyStep> {
+        let target = read_target("target", target)?;
+        let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
+        let (watch, mut session) = (Stopwatch::start(), self.session());
+        let core = session.step_moving(&target, velocity, &mut Unattended).map_err(raise)?;
+        let motion = [session.q().to_vec(), session.qd().to_vec()];
+        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()))
+    }
+
+    /// Back to rest in q (n,), at t = 0.
+    fn reset(&self, q: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.session().reset(&vector("q", q)?).map_err(raise)
+    }
+
+    fn __repr__(&self) -> String {
+        let session = self.session();
+        format!("<Tracker of '{}' at t = {} s, dt = {} s>", session.robot().name(), session.time(), session.dt())
+    }
+}

@@ -1,0 +1,142 @@
+//! `ZNNBAS`.
+
+use ikcore::tracking::Controller;
+use ikcore::tracking::controller::{Accept, Antenna, Delay, Znnbas};
+use pyo3::prelude::*;
+
+use crate::convert::count;
+use crate::error::{invalid, raise};
+use crate::limits::Numbers;
+use crate::options::{NewArguments, keywords};
+
+/// Zeroing neural network with beetle antennae search (Khan et al. 2022, eq. 10 to 16): a controller that measures once a
+/// tick, a random antenna away from where it is, and moves by the sign of what that brought.
+///
+/// It is here to repeat the paper, and for plants that answer a thousand times a second: it learns nothing, its error grows
+/// with the speed of the target (about 3.5 v / (gain c1)), and its antennae shake the tool. `BroydenBAS` is better
+/// by orders of magnitude in all three.
+///
+/// Args:
+///     gain: k of eq. (14) (1/s), positive. The paper's listing has -10, the gain of a block that takes in the minus of
+///         eq. (14): a negative gain is allowed here, and diverges. gain * dt should not exceed 0.3.
+///     antenna_length: lambda of eq. (10) (rad), a number or (n,); 0.1 in the paper.
+///     c1: instead, an antenna of c1 sqrt(h), eq. (16) (rad per m), up to 0.5 rad. None for both: c1 = 0.3.
+///     delay_steps: alpha of eq. (13), in ticks (10 in the paper); gain * dt * delay_steps should stay below 1.
+///     delay: "sliding", the measurement so many ticks before; "held", one that is taken anew every so many ticks, as in
+///         the paper's listing.
+///     accept: "always", eq. (15); "improving", the algorithm of the proof of Theorem 1: the arm stays at an antenna that is
+///         nearer, and else goes back. Gain and delay have no part in that.
+///     sensor_delay: ticks by which the plant's sensor is late.
+///
+/// The constants of the paper: `ZNNBAS(gain=10, antenna_length=0.1, delay_steps=10)`.
+#[pyclass(name = "ZNNBAS", module = "beetle_ik", frozen, eq, from_py_object)]
+#[derive(Clone, PartialEq)]
+pub struct PyZnnbas {
+    core: Znnbas,
+    /// The constant antenna, as given.
+    antenna: Option<Numbers>,
+}
+
+#[pymethods]
+impl PyZnnbas {
+    #[new]
+    #[pyo3(signature = (*, gain=100.0, antenna_length=None, c1=None, delay_steps=1, delay="sliding", accept="always",
+                        sensor_delay=0))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        gain: f64,
+        antenna_length: Option<&Bound<'_, PyAny>>,
+        c1: Option<f64>,
+        delay_steps: i128,
+        delay: &str,
+        accept: &str,
+        sensor_delay: i128,
+    ) -> PyResult<Self> {
+        let antenna = antenna_length.map(|length| Numbers::read("antenna_length", length)).transpose()?;
+        let core = Znnbas {
+            gain,
+            antenna: match (&antenna, c1) {
+                (Some(_), Some(_)) => {
+                    let problem = "antenna_length and c1 exclude each other: a constant antenna, or one of c1 sqrt(h)";
+                    return Err(invalid(problem.into()));
+                }
+                (Some(lengths), None) => Antenna::Constant(lengths.values.clone()),
+                (None, Some(c1)) => Antenna::Adaptive { c1 },
+                (None, None) => Znnbas::default().antenna,
+            },
+            delay_steps: count("delay_steps", delay_steps)?,
+            delay: delay.parse::<Delay>().map_err(raise)?,
+            accept: accept.parse::<Accept>().map_err(raise)?,
+            sensor_delay: count("sensor_delay", sensor_delay)?,
+        };
+        core.validate_numbers().map_err(raise)?;
+        Ok(Self { core, antenna })
+    }
+
+    /// k of eq. (14) (1/s).
+    #[getter]
+    fn gain(&self) -> f64 {
+        self.core.gain
+    }
+
+    /// The constant antenna (rad), as given; None where it follows the error.
+    #[getter]
+    fn antenna_length<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.antenna.as_ref().map(|numbers| numbers.show(py)).transpose()
+    }
+
+    /// Antenna length over error (rad per m); None where it is constant.
+    #[getter]
+    fn c1(&self) -> Option<f64> {
+        match self.core.antenna {
+            Antenna::Adaptive { c1 } => Some(c1),
+            Antenna::Constant(_) => None,
+        }
+    }
+
+    /// alpha, in ticks.
+    #[getter]
+    fn delay_steps(&self) -> usize {
+        self.core.delay_steps
+    }
+
+    /// "sliding" or "held".
+    #[getter]
+    fn delay(&self) -> String {
+        self.core.delay.to_string()
+    }
+
+    /// "always" or "improving".
+    #[getter]
+    fn accept(&self) -> String {
+        self.core.accept.to_string()
+    }
+
+    /// Ticks by which the sensor is late.
+    #[getter]
+    fn sensor_delay(&self) -> usize {
+        self.core.sensor_delay
+    }
+
+    fn __repr__(&self) -> String {
+        let Znnbas { gain, delay_steps, delay, accept, sensor_delay, .. } = &self.core;
+        let antenna = match (&self.antenna, self.c1()) {
+            (Some(lengths), _) => format!("antenna_length={}", lengths.repr()),
+            (None, c1) => format!("c1={:?}", c1.unwrap_or_default()),
+        };
+        format!(
+            "ZNNBAS(gain={gain:?}, {antenna}, delay_steps={delay_steps}, delay='{delay}', accept='{accept}', \
+             sensor_delay={sensor_delay})"
+        )
+    }
+
+    fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
+        keywords(slf, &["gain", "antenna_length", "c1", "delay_steps", "delay", "accept", "sensor_delay"])
+    }
+}
+
+impl PyZnnbas {
+    pub fn controller(&self) -> Controller {
+        Controller::Znnbas(self.core.clone())
+    }
+}

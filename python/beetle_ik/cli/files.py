@@ -1,0 +1,40 @@
+"""The files that a command leaves: a motion, what there is to say of it, and pictures."""
+
+from collections.abc import Callable, Mapping
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from .. import Trajectory
+from .._files import whole_file
+from .show import to_json
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def write_files(
+    folder: Path, trajectory: Trajectory, summary: dict[str, Any], figures: Mapping[str, Callable[[], "Figure"]]
+) -> None:
+    """Write trajectory, summary and, only where matplotlib is installed, the figures by their names."""
+    trajectory.to_csv(folder / "trajectory.csv")
+    trajectory.to_npz(folder / "trajectory.npz")
+    with whole_file(folder / "summary.json") as stream:
+        stream.write(to_json(summary).encode() + b"\n")
+    if can_draw():
+        for name, figure in figures.items():
+            figure().savefig(folder / name)
+
+
+def print_files(out: Path | None) -> None:
+    """Say where the files are, if there are any, and why one is missing."""
+    if out is not None:
+        figure = "" if can_draw() else ", without a figure: that needs `pip install beetle-ik[plot]`"
+        typer.echo(f"Files in {out}/{figure}")
+
+
+def can_draw() -> bool:
+    """Whether matplotlib is there: it comes with the extra `plot`."""
+    return find_spec("matplotlib") is not None
