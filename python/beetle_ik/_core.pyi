@@ -41,6 +41,21 @@ class _AsMatrix(Protocol):  # scipy's RigidTransform and Rotation
 class _Mover(Protocol):
     def move(self, q: _Array, /) -> ArrayLike: ...  # (n,) -> (3,)
 
+@type_check_only
+class _Outcome:  # of every call that searches
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> Status: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...  # s
+    @property
+    def limits(self) -> Limits: ...  # those in force
+
 # --- errors -------------------------------------------------------------------------------------
 
 class BeetleIkError(Exception): ...
@@ -213,6 +228,7 @@ class Status(IntEnum):
     PLANT_FAILED = 10
     BELOW_THRESHOLD = 11
     OUTSIDE_LIMITS = 12
+    HELD_IN_REGION = 13
 
 @final
 class APPS:
@@ -451,6 +467,7 @@ class PSO:
         c2: float | None = None,
         velocity_limit: float = ...,
         accept: Literal["always", "improving"] = "always",
+        walls: Literal["absorbing", "random"] = "absorbing",
         max_generations: int | None = ...,
         stall_generations: int | None = ...,
     ) -> PSO: ...
@@ -468,6 +485,8 @@ class PSO:
     def velocity_limit(self) -> float: ...
     @property
     def accept(self) -> str: ...
+    @property
+    def walls(self) -> str: ...
     @property
     def max_generations(self) -> int | None: ...
     @property
@@ -573,24 +592,41 @@ class Task:
     def tolerance(self) -> _Array | None: ...  # m, rad
     @property
     def tool(self) -> _Array | None: ...  # (4, 4)
+    @property
+    def region(self) -> _Array | None: ...  # (2, 3) m
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Pose(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
+        cls,
+        *,
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Pose: ...
 
 @final
 class Position(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
+        cls,
+        *,
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Position: ...
 
 @final
 class Orientation(Task):
     def __new__(
-        cls, *, weights: ArrayLike | None = None, tolerance: ArrayLike | None = None, tool: _Pose | None = None
+        cls,
+        *,
+        weights: ArrayLike | None = None,
+        tolerance: ArrayLike | None = None,
+        tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Orientation: ...
 
 @final
@@ -602,6 +638,7 @@ class Pointing(Task):
         weights: ArrayLike | None = None,
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
+        region: ArrayLike | None = None,
     ) -> Pointing: ...
     @property
     def axis(self) -> _Array: ...  # (3,)
@@ -649,15 +686,9 @@ def solve(
 ) -> Solution: ...
 
 @final
-class Solution:
+class Solution(_Outcome):
     @property
     def q(self) -> _Array: ...  # (n,)
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
     @property
     def position_error(self) -> float: ...  # m
     @property
@@ -666,12 +697,6 @@ class Solution:
     def iterations(self) -> int: ...
     @property
     def restarts(self) -> int: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
 
 def solve_all(
     robot: Robot,
@@ -690,23 +715,11 @@ def solve_all(
 ) -> SolutionSet: ...
 
 @final
-class SolutionSet:
+class SolutionSet(_Outcome):
     @property
     def q(self) -> _Array: ...  # (k, n)
     @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
     def miss(self) -> Solution | None: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
     def __len__(self) -> int: ...
     def __getitem__(self, index: int, /) -> Solution: ...
 
@@ -771,7 +784,7 @@ def minimize(
 ) -> Minimum: ...
 
 @final
-class Minimum:
+class Minimum(_Outcome):
     @property
     def x(self) -> _Array: ...  # (n,)
     @property
@@ -779,21 +792,9 @@ class Minimum:
     @property
     def history(self) -> _Array: ...  # (k, 2): evaluations, best value
     @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
     def iterations(self) -> int: ...
     @property
     def restarts(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # the box
 
 # --- postures -----------------------------------------------------------------------------------
 
@@ -834,7 +835,7 @@ def planar_posture(
 ) -> PlanarPosture: ...
 
 @final
-class PlanarPosture:
+class PlanarPosture(_Outcome):
     @property
     def q(self) -> _Array: ...  # (n,)
     @property
@@ -842,19 +843,7 @@ class PlanarPosture:
     @property
     def history(self) -> _Array: ...  # (generations,), or empty
     @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
     def position_error(self) -> float: ...  # m
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...
 
 # --- reference paths (public as beetle_ik.paths) ------------------------------------------------
 
@@ -926,7 +915,7 @@ def track(
 ) -> TrackResult: ...
 
 @final
-class TrackResult:
+class TrackResult(_Outcome):
     @property
     def time(self) -> _Array: ...  # (k,)
     @property
@@ -957,18 +946,6 @@ class TrackResult:
     def max_violation(self) -> float: ...  # rad or m; 0 within rounding
     @property
     def limit_margin(self) -> float: ...  # rad/s: smallest velocity_limit - |qd| of all; inf where no limit
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
     @property
     def robot(self) -> Robot: ...
     @property
@@ -1006,27 +983,15 @@ class Tracker:
     def limits(self) -> Limits: ...  # those in force
 
 @final
-class Step:
+class Step(_Outcome):
     @property
     def q(self) -> _Array: ...  # (n,): what to command
     @property
     def qd(self) -> _Array: ...  # (n,): the velocity that leads there
     @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
     def position_error(self) -> float: ...  # m
     @property
     def rotation_error(self) -> float: ...  # rad; NaN where no orientation was asked
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
     @property
     def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
 
@@ -1109,7 +1074,7 @@ def plan_point_to_point(
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,  # m
-    elbows: Sequence[int] = ...,  # (1, 1)
+    elbows: Sequence[int] | None = None,
     solver: _Solver | None = None,
     stop: Stop | None = None,
     seed: int = 0,
@@ -1135,7 +1100,7 @@ def plan_along_path(
     limits: Limits | None = None,
     method: Literal["timed", "tpbso"] = "timed",
     objective: Literal["time", "joint_travel"] = "time",
-    elbow: int = 1,
+    elbow: int | None = None,
     accuracy: float | None = None,  # m
     solver: _Solver | None = None,
     stop: Stop | None = None,
@@ -1144,7 +1109,7 @@ def plan_along_path(
 ) -> Plan: ...
 
 @final
-class Plan:
+class Plan(_Outcome):
     @property
     def trajectory(self) -> Trajectory: ...
     @property
@@ -1163,18 +1128,6 @@ class Plan:
     def redundancy(self) -> _Array: ...  # (points, links, 3): orientation chosen, lowest, highest (rad)
     @property
     def reference(self) -> _Array | None: ...  # (k, 3): the path asked for
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
     @property
     def robot(self) -> Robot: ...
     @property
@@ -1208,7 +1161,7 @@ def track_model_free(
 ) -> ModelFreeResult: ...
 
 @final
-class ModelFreeResult:
+class ModelFreeResult(_Outcome):
     @property
     def time(self) -> _Array: ...  # (k,)
     @property
@@ -1234,19 +1187,7 @@ class ModelFreeResult:
     @property
     def settled_error(self) -> float: ...  # m, root mean square over the second half
     @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
     def exception(self) -> BaseException | None: ...  # what the plant raised
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
     def plot(self) -> Figure: ...
     def __len__(self) -> int: ...
 

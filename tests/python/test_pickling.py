@@ -43,7 +43,11 @@ SOLVERS = [
     bik.MultiStart(bik.BAS(variant="greedy")),
     bik.MultiStart(bik.LevenbergMarquardt(initial_damping=0.5), max_starts=3),
 ]
-STOPS = [bik.Stop(), bik.Stop(max_evaluations=10, max_iterations=20, max_time=0.25, value_below=-0.5)]
+STOPS = [
+    bik.Stop(),
+    bik.Stop(value_below=float("inf")),
+    bik.Stop(max_evaluations=10, max_iterations=20, max_time=0.25, value_below=-0.5),
+]
 TURN = bik.pose([0, 0, 0], rpy=[0.1, 0.2, 0.3])[:3, :3]
 OBSTACLES = [
     bik.obstacles.Sphere([0.1, 0.2, 0.3], 0.5),
@@ -149,6 +153,20 @@ def test_limits_come_back(again: Callable[[bik.Limits], bik.Limits]) -> None:
     np.testing.assert_array_equal(other.upper, [1.0, 2.0])
     assert other.velocity == SINUSOIDS[1]
     assert eval(repr(other), vars(bik)) == limits
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [
+        bik.Limits(),
+        bik.Limits(lower=-1.0, upper=[1.0, 2.0], velocity=SINUSOIDS[1]),
+        bik.Limits(lower=[-np.inf, 0.5], velocity=np.inf, acceleration=2.0, jerk=[1e-9, 1e9]),
+        bik.Robot.planar([1.0, 0.5]).limits,
+    ],
+    ids=repr,
+)
+def test_the_repr_rebuilds_limits(limits: bik.Limits) -> None:
+    assert eval(repr(limits), vars(bik)) == limits
 
 
 def test_limits_compare_as_given() -> None:

@@ -75,10 +75,11 @@ def test_other_searches_serve(solver: Any) -> None:
 
 
 def test_a_path_is_followed_within_the_accuracy() -> None:
-    plan = along(np.array(CORNER), accuracy=0.05)
+    path = bik.paths.polyline(CORNER, 2.0)
+    plan = along(path, accuracy=0.05)
     assert plan.success, plan.message
     assert plan.accuracy <= 0.05
-    np.testing.assert_array_equal(plan.reference, CORNER)
+    np.testing.assert_allclose(plan.reference, path.sample(0.04)[1], atol=1e-12)
     value, lowest, highest = plan.redundancy[:, 0].T
     assert (lowest <= value).all()
     assert (value <= highest).all()
@@ -96,13 +97,13 @@ def test_what_no_plan_keeps_is_named() -> None:
     assert not plan.success
     assert plan.status == bik.Status.BUDGET_SPENT
     (missed,) = plan.violations
-    assert missed.what == "distance of the tip from point 1 of the path"
+    assert missed.what == "distance of the tip from the path between points 0 and 1"
     assert (missed.bound, missed.unit) == (1e-3, "m")
     assert missed.value == plan.accuracy
-    assert str(missed) == f"distance of the tip from point 1 of the path is {missed.value:.4f} m, allowed 0.001000 m"
+    assert str(missed) == f"{missed.what} is {missed.value:.5f} m, allowed 0.001000 m"
     assert plan.message == (
         f"no plan keeps everything; the least violating one breaks: {missed}; try another seed, a larger budget in "
-        "stop=Stop(...) or wider limits"
+        'stop=Stop(...), wider limits, a larger accuracy, or for method="tpbso" denser points'
     )
 
 

@@ -260,6 +260,17 @@ def test_what_the_extra_brings_is_asked_for_before_any_work(
     assert not registered
 
 
+def test_all_asks_for_every_extra_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    lacking = ("matplotlib", "skimage")
+    monkeypatch.setattr("beetle_ik.report.needs.find_spec", lambda name: None if name in lacking else object())
+    with pytest.raises(bik.BeetleIkError) as refused:
+        experiments.reproduce("all", tmp_path / "out")
+    assert str(refused.value) == (
+        "reports need matplotlib and scikit-image, which are not installed: pip install 'beetle-ik[report,vision]'"
+    )
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize("name", experiments.names())
 def test_every_experiment_is_registered_under_its_name(name: str) -> None:
     assert experiments.experiment(name).name == name

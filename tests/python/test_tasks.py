@@ -15,6 +15,7 @@ UR = bik.Robot.named("ur5e")
 Q = np.array([0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1])
 POSE = IIWA.fk(Q)
 TOOL = bik.pose([0.0, 0.05, 0.1], rpy=[0.1, 0.2, 0.3])
+ROOM = [[-np.inf] * 3, [np.inf] * 3]
 TASKS = [
     tasks.Pose(),
     tasks.Pose(weights=[1, 1, 1, 1, 1, 0], tolerance=[1e-3, 1e-3, 1e-3, 1e-2, 1e-2, np.inf], tool=TOOL),
@@ -22,6 +23,7 @@ TASKS = [
     tasks.Orientation(tolerance=[1e-2, 1e-3, 1e-3]),
     tasks.Pointing(),
     tasks.Pointing(axis=[1, 0, 1], tolerance=[1e-3, 1e-3, 1e-3, 1e-2]),
+    tasks.Position(region=[[-np.inf, -1.5, -1.0], [np.inf, 1.5, 2.0]]),
 ]
 GOALS = [
     goals.Posture(Q, weight=2.0),
@@ -76,6 +78,31 @@ def test_one_batch_of_every_task_agrees_with_solve() -> None:
         batch = bik.solve_batch(IIWA, poses, task=task, threads=1)
         assert batch.success.all(), batch.message
         np.testing.assert_array_equal(batch.q[0], bik.solve(IIWA, poses[0], task=task).q)
+
+
+def test_the_tip_is_kept_in_its_region() -> None:
+    low = np.array([-np.inf, -np.inf, 0.2])
+    high = np.array([np.inf, np.inf, 0.9])
+    task = tasks.Position(region=[low, high])
+    np.testing.assert_array_equal(task.region, [low, high])
+    assert tasks.Position().region is None
+    assert bik.solve(IIWA, [0.4, 0.3, 0.8], task=task).success
+    held = bik.solve(IIWA, [0.4, 0.3, 1.0], task=task)
+    assert (held.success, held.status) == (False, bik.Status.HELD_IN_REGION)
+    assert held.message == (
+        "as near as its region allows, 0.1000 m away (its region keeps z below 0.9): "
+        "move the target into the region, or widen the region"
+    )
+    batch = bik.solve_batch(IIWA, [[0.4, 0.3, 0.8], [0.4, 0.3, 1.0]], task=task, threads=1)
+    np.testing.assert_array_equal(batch.status, [bik.Status.SOLVED, bik.Status.HELD_IN_REGION])
+    tracker = bik.Tracker(IIWA, held.q, dt=0.01, task=task)
+    for height in np.linspace(0.9, 0.95, 20):
+        step = tracker.step([0.4, 0.3, height])
+        assert IIWA.fk(step.q)[2, 3] < 0.9
+    assert step.status == bik.Status.HELD_IN_REGION
+    assert step.message.startswith("as near as its region allows, 0.05000 m away: move the target")
+    with pytest.raises(bik.LimitError, match=r"^q: z of the tip, .* m, is outside its region \(0\.2, 0\.9\)$"):
+        tracker.reset(Q)
 
 
 def test_the_nearest_solution_is_nearest() -> None:
@@ -197,6 +224,22 @@ def solve(**options: object) -> bik.Solution:
         (lambda: tasks.Position(weights=[0, 0, 0]), Invalid, "the largest of weights must be positive, got 0"),
         (lambda: tasks.Position(tolerance=[1e-3, 0, 1e-3]), Invalid, "tolerance[1] must be positive, got 0"),
         (lambda: tasks.Orientation(tolerance=[1e-3, 1e-3, np.nan]), Invalid, "tolerance[2] must be positive, got NaN"),
+        (
+            lambda: tasks.Position(region=[0, 0, 1]),
+            Invalid,
+            "region: expected shape (2, 3), got (3,)",
+        ),
+        (
+            lambda: tasks.Position(region=[[0, 0, 1], [1, 1, 1]]),
+            Invalid,
+            "lower z of region must be below its upper one, 1, got 1",
+        ),
+        (
+            lambda: bik.Tracker(IIWA, Q, dt=0.1, task=tasks.Position(region=ROOM), limits=bik.Limits(acceleration=9.0)),
+            bik.UnsupportedLimit,
+            "a task with a region cannot honour acceleration limits: an arm that may not stop at once can be carried "
+            "out of it; leave one of the two out",
+        ),
         (lambda: tasks.Pointing(axis=[0, 0, 0]), Invalid, "the length of axis must be positive, got 0"),
         (lambda: tasks.Pointing(axis=[0, np.nan, 0]), Invalid, "axis must be finite, but entry 1 is NaN"),
         (

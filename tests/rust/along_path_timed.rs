@@ -5,10 +5,13 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::path::Reference;
-use ikcore::planning::{AlongPathOptions, Plan, plan_along_path};
+use ikcore::math::so3::{norm, rotation_between};
+use ikcore::path::{Circle, Path, Plane, Polyline, Reference};
+use ikcore::planning::{AlongPathOptions, Course, Elbow, Plan, plan_along_path};
 use ikcore::robot::Robot;
-use ikcore::solver::{Status, Unattended};
+use ikcore::solver::{Status, Stop, Unattended};
+use ikcore::task::Target;
+use nalgebra::Matrix3;
 
 const INTERVALS: usize = 50;
 
@@ -31,10 +34,13 @@ fn trefoil(u: f64) -> [f64; 3] {
     [1.0 + r * t.cos(), 1.0 + r * t.sin(), 0.0]
 }
 
-fn plan(curve: fn(f64) -> [f64; 3], seed: u64) -> Plan {
-    let robot = Robot::planar(&[1.0; 3]).unwrap();
+fn course(curve: fn(f64) -> [f64; 3]) -> Course {
     let points = (0..=INTERVALS).map(|i| curve(i as f64 / INTERVALS as f64)).collect();
-    let path = Reference::new(1.0, points, None).unwrap();
+    Course::through(&Reference::new(1.0, points, None).unwrap()).unwrap()
+}
+
+fn plan(course: &Course, options: AlongPathOptions) -> Plan {
+    let robot = Robot::planar(&[1.0; 3]).unwrap();
     let constant = |value: f64| vec![Profile::Constant(value)];
     let limits = Limits::of(&robot)
         .replace(Field::Lower, constant(f64::NEG_INFINITY))
@@ -42,8 +48,22 @@ fn plan(curve: fn(f64) -> [f64; 3], seed: u64) -> Plan {
         .and_then(|limits| limits.replace(Field::Velocity, constant(PI)))
         .and_then(|limits| limits.replace(Field::Acceleration, constant(4.0 * PI)))
         .unwrap();
-    let options = AlongPathOptions { limits: Some(limits), seed, ..AlongPathOptions::default() };
-    plan_along_path(&robot, &path, &options, &mut Unattended).unwrap()
+    plan_along_path(&robot, course, &AlongPathOptions { limits: Some(limits), ..options }, &mut Unattended).unwrap()
+}
+
+/// The configurations of a plan at so many instants.
+fn instants(plan: &Plan, count: usize) -> impl Iterator<Item = Vec<f64>> {
+    let n = plan.trajectory.joints().len();
+    (0..=count).map(move |i| {
+        let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; n]);
+        plan.trajectory.at(plan.trajectory.duration() * i as f64 / count as f64, &mut q, &mut qd, &mut qdd).unwrap();
+        q
+    })
+}
+
+/// How far the tip is from the course at the most (m), at many instants.
+fn farthest(robot: &Robot, course: &Course, plan: &Plan) -> f64 {
+    instants(plan, 4000).map(|q| course.distance(robot.tip_position(&q), 0.0, 1.0)).fold(0.0, f64::max)
 }
 
 #[test]
@@ -51,7 +71,7 @@ fn faster_than_the_optimum_in_uniform_time_by_what_was_measured() {
     // Durations of the optimum in uniform time, found by long searches, and the factor that must be beaten.
     for (curve, uniform, factor) in [(pentagram as fn(f64) -> [f64; 3], 5.501, 1.9), (trefoil, 3.234, 1.35)] {
         for seed in 0..3 {
-            let plan = plan(curve, seed);
+            let plan = plan(&course(curve), AlongPathOptions { seed, ..AlongPathOptions::default() });
             assert_eq!(plan.status, Status::Solved, "{}", plan.message());
             assert!(plan.violations.is_empty());
             assert!(uniform / plan.cost >= factor, "seed {seed}: {} s", plan.cost);
@@ -59,4 +79,112 @@ fn faster_than_the_optimum_in_uniform_time_by_what_was_measured() {
             assert!(plan.trajectory.max_acceleration().iter().all(|a| *a <= 4.0 * PI * (1.0 + 1e-9)));
         }
     }
+}
+
+#[test]
+fn accuracy_is_that_of_the_whole_motion_and_kept() {
+    let robot = Robot::planar(&[1.0; 3]).unwrap();
+    let star = Polyline::pentagram(&Plane::xy([1.0, 1.0, 0.0]).unwrap(), 0.5, 5.0).unwrap();
+    let circle = Circle::new(Plane::xy([1.2, 1.0, 0.0]).unwrap(), 0.8, 3.0).unwrap();
+    for (path, accuracies) in [(Path::new(star), [0.03, 1e-3, 1e-5]), (Path::new(circle), [0.01, 1e-4, 1e-5])] {
+        let course = Course::along(&path).unwrap();
+        for asked in accuracies {
+            let plan = plan(&course, AlongPathOptions { accuracy: Some(asked), stop: few(), ..Default::default() });
+            assert_eq!(plan.status, Status::Solved, "{}", plan.message());
+            let (told, found) = (plan.accuracy.unwrap(), farthest(&robot, &course, &plan));
+            assert!(told <= asked, "{told} of {asked} m");
+            assert!(0.98 * told <= found + 1e-9 && found <= 1.01 * told + 1e-9, "{found} m, told {told} m");
+        }
+    }
+}
+
+/// Enough for a plan, though not for the fastest.
+fn few() -> Option<Stop> {
+    Some(Stop { max_evaluations: 150, ..Stop::default() })
+}
+
+#[test]
+fn corners_of_a_path_are_reached() {
+    let robot = Robot::planar(&[1.0; 3]).unwrap();
+    let points = vec![[1.0, 1.0, 0.0], [1.31, 1.0, 0.0], [1.31, 1.27, 0.0], [1.05, 1.3, 0.0]];
+    let course = Course::through(&Reference::new(1.0, points.clone(), None).unwrap()).unwrap();
+    let plan = plan(&course, AlongPathOptions { stop: few(), ..Default::default() });
+    assert_eq!(plan.status, Status::Solved, "{}", plan.message());
+    let tips: Vec<[f64; 3]> = instants(&plan, 20_000).map(|q| robot.tip_position(&q)).collect();
+    for point in points {
+        let nearest = tips.iter().map(|tip| (tip[0] - point[0]).hypot(tip[1] - point[1])).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-4, "{nearest} m from {point:?}");
+    }
+}
+
+#[test]
+fn rotations_are_kept_between_points_too() {
+    let robot = Robot::named("iiwa14").unwrap();
+    let down = Matrix3::new(0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0);
+    let plane = Plane::new([0.6, 0.0, 0.5], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]).unwrap();
+    let circle = Path::new(Circle::new(plane, 0.4, 5.0).unwrap()).with_orientation(down).unwrap();
+    let course = Course::along(&circle).unwrap();
+    let limits = Limits::of(&robot).replace(Field::Acceleration, vec![Profile::Constant(5.0)]).unwrap();
+    let options = AlongPathOptions { limits: Some(limits), accuracy: Some(1e-4), stop: few(), ..Default::default() };
+    let plan = plan_along_path(&robot, &course, &options, &mut Unattended).unwrap();
+    assert_eq!(plan.status, Status::Solved, "{}", plan.message());
+    let Target::Pose(wanted) = course.target(0.3) else { panic!("a path of poses") };
+    for q in instants(&plan, 2000) {
+        assert!(norm(&rotation_between(&wanted, &robot.tip(&q))) <= 1e-4);
+    }
+}
+
+#[test]
+fn what_cannot_be_kept_is_told() {
+    // The tip of two links that reach 1 m passes (0, 0.99) and (0.99, 0), but not (0.99, 0.99) between.
+    let robot = Robot::planar(&[0.5, 0.5]).unwrap();
+    let points = Reference::new(1.0, vec![[0.0, 0.99, 0.0], [0.99, 0.99, 0.0], [0.99, 0.0, 0.0]], None).unwrap();
+    let limits = Limits::of(&robot).replace(Field::Acceleration, vec![Profile::Constant(5.0)]).unwrap();
+    let options = AlongPathOptions { limits: Some(limits), ..Default::default() };
+    let course = Course::through(&points).unwrap();
+    let error = plan_along_path(&robot, &course, &options, &mut Unattended).unwrap_err().to_string();
+    assert!(error.starts_with("the path between points 0 and 1 cannot be reached: the nearest"), "{error}");
+    let bent = AlongPathOptions { elbow: Some(Elbow::Negative), ..options };
+    let error = plan_along_path(&robot, &course, &bent, &mut Unattended).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "method=\"timed\" chooses how the arm bends: give start_q instead of elbow, or use method=\"tpbso\""
+    );
+}
+
+#[test]
+fn courses_know_their_corners_and_places() {
+    let square = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let course = Course::through(&Reference::new(1.0, square.clone(), None).unwrap()).unwrap();
+    let corners: Vec<f64> = course.corners().collect();
+    assert!(corners.len() == 2 && (corners[0] - 1.0 / 3.0).abs() < 1e-15 && (corners[1] - 2.0 / 3.0).abs() < 1e-15);
+    assert_eq!(course.place(corners[0]), "point 1 of the path");
+    assert_eq!(course.place(0.5), "the path between points 1 and 2");
+    assert_eq!(course.place(1.0), "point 3 of the path");
+    assert_eq!(course.coarseness(), 0.0);
+    assert!((course.distance([0.5, 0.2, 0.0], 0.0, 0.3) - 0.2).abs() < 1e-15);
+    let timed = Course::along(&Path::new(Polyline::new(&square, 6.0).unwrap())).unwrap();
+    assert_eq!(timed.corners().count(), 2);
+    assert_eq!(timed.place(0.5), "the path at t = 3.000 s");
+    assert_eq!(timed.points().len(), 51);
+    // A circle has none; its chords stand for arcs.
+    let circle = course_of_circle(51);
+    assert_eq!(circle.corners().count(), 0);
+    assert!((circle.coarseness() / (1.0 - (PI / 50.0).cos()) - 1.0).abs() < 1e-3, "{}", circle.coarseness());
+}
+
+fn course_of_circle(points: usize) -> Course {
+    let angle = |i: usize| TAU * i as f64 / (points - 1) as f64;
+    let points = (0..points).map(|i| [angle(i).cos(), angle(i).sin(), 0.0]).collect();
+    Course::through(&Reference::new(1.0, points, None).unwrap()).unwrap()
+}
+
+#[test]
+fn a_pause_of_a_path_does_not_matter_and_a_path_of_one_place_is_none() {
+    let times = Course::times(1.0, &[]);
+    let paused: Vec<[f64; 3]> = times.iter().map(|t| [t.clamp(0.3, 0.6), 0.0, 0.0]).collect();
+    let course = Course::sampled(times.clone(), paused, None).unwrap();
+    assert!((course.positions().len() as f64 - 301.0).abs() <= 1.0);
+    let error = Course::sampled(times.clone(), vec![[1.0; 3]; times.len()], None).unwrap_err();
+    assert_eq!(error.to_string(), "path: it must lead somewhere, but it is 0 m long");
 }

@@ -106,6 +106,22 @@ fn seven_joint_arms_find_the_best_of_the_scan() {
     }
 }
 
+/// Poses whose best posture is on a short arc between joint limits, which random starts seldom meet: the index of a scan along
+/// all curves in steps of 0.01 rad.
+#[test]
+fn the_best_is_found_where_limits_cut_it_off() {
+    let panda = robot("panda");
+    let measure = Manipulability::of(&panda, Motion::Pose);
+    for (stream, row, scanned) in [(1, 99, 0.040158), (2, 17, 0.051907), (2, 147, 0.058874), (3, 25, 0.063266)] {
+        let all = panda.random_configurations(150, &mut rng::stream(5, stream)).unwrap();
+        let target = Target::from(&panda.fk(&all[7 * row..7 * (row + 1)]).unwrap());
+        let found = best(&panda, &target, Goal::Manipulability { motion: Motion::Pose, weight: 1.0 });
+        let index = measure.index(&panda, &found.q);
+        assert!(index > 0.999 * scanned, "row {row} of stream {stream}: {index} {scanned}");
+        assert!(found.evaluations < 5000, "row {row} of stream {stream}: {}", found.evaluations);
+    }
+}
+
 #[test]
 fn the_best_needs_to_know_for_what() {
     let options = SolveOptions { prefer: Prefer::Best, ..SolveOptions::default() };

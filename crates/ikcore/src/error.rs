@@ -131,6 +131,20 @@ pub enum Error {
         /// Its upper limit (rad or m).
         upper: f64,
     },
+    /// A configuration that puts the tip outside its region.
+    #[error("{what}: {coordinate} of the tip, {value} m, is outside its region ({lower}, {upper})")]
+    OutsideRegion {
+        /// What was passed, such as "start".
+        what: String,
+        /// The coordinate, in the base's frame.
+        coordinate: String,
+        /// Its value (m).
+        value: f64,
+        /// Its lower bound (m).
+        lower: f64,
+        /// Its upper bound (m).
+        upper: f64,
+    },
     /// An end of a motion that the robot does not reach.
     #[error("{what} cannot be reached: {problem}")]
     Unreachable {

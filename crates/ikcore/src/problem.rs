@@ -42,6 +42,13 @@ impl<'a> Problem<'a> {
         self.target
     }
 
+    /// How the tip at `q` lies outside its region, in words, if it does.
+    pub(crate) fn outside_region(&self, q: &[f64]) -> Option<String> {
+        let (region, tip) = (self.criterion.region.as_ref()?, self.robot.tip_position(q));
+        (!region.contains(&tip))
+            .then(|| format!("the tip is outside its region, which asks for {}", region.passed(&tip)))
+    }
+
     /// The errors at `q` and what they come to, by forward kinematics.
     pub fn assess(&self, q: &[f64]) -> Assessment {
         self.target.assess(self.robot, q, &self.criterion)
@@ -76,7 +83,8 @@ impl Objective for Problem<'_> {
     /// from the joint's sampling range. Whoever brings a start of their own gets the nearest as their second.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
         if self.seeds.is_none() {
-            self.seeds = match (self.target, self.target.position()) {
+            let aim = self.criterion.aim(self.target);
+            self.seeds = match (&aim, aim.position()) {
                 (Target::Pose(pose), _) => Some(self.robot.seeds_near_pose(pose)),
                 (_, Some(position)) => Some(self.robot.seeds_near_position(&position)),
                 _ => None,
@@ -103,10 +111,10 @@ impl Residual for Problem<'_> {
 }
 
 impl Gradient for Problem<'_> {
-    /// E of eq. (11) of Yuan et al. 2016; where components have weights, half the weighted sum of squares.
+    /// E of eq. (11) of Yuan et al. 2016; where components have weights, or the tip a region, half the weighted sum of squares.
     #[inline]
     fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> Slope {
-        if self.criterion.components.is_some() {
+        if self.criterion.components.is_some() || self.criterion.region.is_some() {
             let mut linearization = Linearization::default();
             let score = self.linearize(q, &mut linearization);
             linearization.gradient(gradient);

@@ -1,4 +1,37 @@
-//! Numbers in sentences.
+//! Numbers in sentences, and the words of options.
+
+/// The words of an option: `name` and `Display` write them, `FromStr` reads them, and its error lists them in this order.
+macro_rules! words {
+    ($what:literal: $option:ident { $($variant:ident => $word:literal),+ $(,)? }) => {
+        impl $option {
+            /// The word for it.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $word,)+
+                }
+            }
+        }
+
+        impl std::fmt::Display for $option {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+
+        impl std::str::FromStr for $option {
+            type Err = $crate::Error;
+
+            fn from_str(name: &str) -> $crate::Result<Self> {
+                match name {
+                    $($word => Ok(Self::$variant),)+
+                    _ => Err($crate::Error::unknown_option($what, name, &[$($word),+])),
+                }
+            }
+        }
+    };
+}
+
+pub(crate) use words;
 
 /// Four significant digits; an exponent only where it helps to read.
 pub(crate) fn number(value: f64) -> String {

@@ -7,11 +7,11 @@ use ikcore::ik::SolveOptions;
 use ikcore::solver::{AnySolver, Status, Stop};
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
-use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
-use crate::convert::{Rows, array, count, optional_count, position_in, row, rows, shape_text, table};
+use crate::convert::{Numbers, Rows, array, count, optional_count, position_in, row, rows, shape_text, table};
 use crate::error::{invalid, raise};
 use crate::goal::read_goals;
 use crate::ik::PySolution;
@@ -209,7 +209,7 @@ pub fn solve_batch(
     PyBatchSolution::new(py, batch, in_force)
 }
 
-fn read_targets<'a>(numbers: &'a PyReadonlyArrayDyn<'_, f64>) -> PyResult<Targets<'a>> {
+fn read_targets<'a>(numbers: &'a Numbers<'_>) -> PyResult<Targets<'a>> {
     match numbers.shape() {
         [0] | [_, 3] => Ok(Targets::Positions(numbers.as_slice()?.as_chunks().0)),
         [_, 4, 4] => Ok(Targets::Poses(numbers.as_slice()?.as_chunks().0)),

@@ -1,12 +1,12 @@
 //! Python values to Rust and back: the only file that knows how numpy lays out memory.
 
-use std::convert::Infallible;
+use std::ops::Deref;
 
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix3, Matrix4};
+use numpy::npyffi::NPY_ARRAY_WRITEABLE;
 use numpy::{
-    Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
-    PyUntypedArrayMethods,
+    AsSliceError, Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyException;
 use pyo3::intern;
@@ -18,12 +18,34 @@ use crate::error::{invalid, raise};
 /// A float64 array of any shape, as results hold it.
 pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
+/// The numbers of an argument, in C order.
+///
+/// numpy's `readonly()` would register every one in a table of borrows, which costs as much as a step of a solver and guards
+/// against mutable borrows alone: there are none here.
+pub struct Numbers<'py>(Array<'py>);
+
+impl Numbers<'_> {
+    /// Row after row.
+    pub fn as_slice(&self) -> Result<&[f64], AsSliceError> {
+        // SAFETY: nothing in this library writes into an argument.
+        unsafe { self.0.as_slice() }
+    }
+}
+
+impl<'py> Deref for Numbers<'py> {
+    type Target = Array<'py>;
+
+    fn deref(&self) -> &Array<'py> {
+        &self.0
+    }
+}
+
 /// Any array-like as float64 in C order; not copied where it already is one. `what` names it in errors.
-pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
     if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
         && array.is_c_contiguous()
     {
-        return Ok(array.readonly());
+        return Ok(Numbers(array.clone()));
     }
     let no_numbers = || invalid(format!("{what} must be an array of numbers, got {}", summary(value)));
     if value.is_none() {
@@ -34,7 +56,7 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyA
         None => Err(error),
     });
     match converted {
-        Ok(array) => Ok(array.cast_into::<PyArrayDyn<f64>>()?.readonly()),
+        Ok(array) => Ok(Numbers(array.cast_into()?)),
         // A Ctrl-C that falls into the conversion is not the value's fault.
         Err(error) if error.is_instance_of::<PyException>(value.py()) => Err(no_numbers()),
         Err(interrupt) => Err(interrupt),
@@ -139,6 +161,15 @@ pub fn point(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
     entries(what, value)
 }
 
+/// Two corners of a box, one row each.
+pub fn corners(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 2]> {
+    let array = array(what, value)?;
+    match (array.shape(), array.as_slice()?) {
+        ([2, 3], [a, b, c, d, e, f]) => Ok([[*a, *b, *c], [*d, *e, *f]]),
+        (shape, _) => Err(invalid(format!("{what}: expected shape (2, 3), got {}", shape_text(shape)))),
+    }
+}
+
 /// A rigid transform from a 4x4 matrix.
 pub fn rigid(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Pose> {
     let array = array(what, value)?;
@@ -178,48 +209,19 @@ pub fn row<T: Element>(py: Python<'_>, values: Vec<T>) -> Bound<'_, PyArray1<T>>
     read_only(values.into_pyarray(py))
 }
 
+/// A read-only vector of these few numbers: cheaper than handing a buffer over.
+pub fn copied<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>> {
+    read_only(PyArray1::from_slice(py, values))
+}
+
 /// A read-only 4x4 matrix.
 pub fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyArray2<f64>>> {
     Ok(read_only(PyArray1::from_slice(py, &pose::rows(pose)).reshape([4, 4])?))
 }
 
-/// A point or the like as a class keeps it; Python gets a read-only vector.
-#[derive(Clone, Copy)]
-pub struct Coordinates<const N: usize>(pub [f64; N]);
-
-impl<'py, const N: usize> IntoPyObject<'py> for Coordinates<N> {
-    type Target = PyArray1<f64>;
-    type Output = Bound<'py, Self::Target>;
-    type Error = Infallible;
-
-    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
-        Ok(row(py, self.0.to_vec()))
-    }
-}
-
-/// How something is turned, as a class keeps it; Python gets a read-only matrix (3, 3).
-#[derive(Clone, Copy)]
-pub struct Rotation(Matrix3<f64>);
-
-impl Rotation {
-    /// This one, or that of something that was not turned.
-    pub fn or_none(given: Option<Matrix3<f64>>) -> Self {
-        Self(given.unwrap_or_else(Matrix3::identity))
-    }
-}
-
-impl<'py> IntoPyObject<'py> for Rotation {
-    type Target = PyArrayDyn<f64>;
-    type Output = Bound<'py, Self::Target>;
-    type Error = PyErr;
-
-    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
-        table(py, self.0.transpose().as_slice().to_vec(), &[3, 3])
-    }
-}
-
 fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
-    array.readwrite().make_nonwriteable();
+    // SAFETY: the array was made here and nobody else has seen it.
+    unsafe { (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE };
     array
 }
 
@@ -227,9 +229,9 @@ fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<
 /// a single row, and here for a batch.
 pub enum Rows<'py> {
     /// One row.
-    One(PyReadonlyArrayDyn<'py, f64>),
+    One(Numbers<'py>),
     /// m rows.
-    Many(PyReadonlyArrayDyn<'py, f64>, usize),
+    Many(Numbers<'py>, usize),
 }
 
 /// Reads (n,) or (m, n); `owner` is whose joints these are.

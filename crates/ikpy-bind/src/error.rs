@@ -23,7 +23,10 @@ impl Classes {
             Error::InRow { error, .. } => self.of(error),
             Error::UnknownRobot { .. } | Error::UnknownLink { .. } => &self.unknown_name,
             Error::Urdf { .. } | Error::AmbiguousTip { .. } => &self.urdf,
-            Error::EmptyRange { .. } | Error::OutsideLimits { .. } | Error::NegativeLimit { .. } => &self.limit,
+            Error::EmptyRange { .. }
+            | Error::OutsideLimits { .. }
+            | Error::OutsideRegion { .. }
+            | Error::NegativeLimit { .. } => &self.limit,
             Error::UnsupportedLimit { .. } => &self.unsupported_limit,
             Error::Infeasible { .. } => &self.infeasible,
             _ => &self.invalid_input,

@@ -8,7 +8,7 @@ use ikcore::task::{Target, Tolerance};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::convert::{array, count, point, rigid_rows, row, shape_text, vector};
+use crate::convert::{array, copied, count, point, rigid_rows, shape_text, vector};
 use crate::error::{invalid, raise};
 use crate::goal::read_goals;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
@@ -87,7 +87,7 @@ impl PySolution {
 
 impl PySolution {
     pub fn new(py: Python<'_>, core: ik::Solution, limits: Py<PyLimits>) -> Self {
-        Self { q: row(py, core.q.to_vec()).unbind(), limits, core }
+        Self { q: copied(py, &core.q).unbind(), limits, core }
     }
 }
 

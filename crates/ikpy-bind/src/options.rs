@@ -29,7 +29,7 @@ impl Shown for f64 {
         *self
     }
     fn text(&self) -> String {
-        format!("{self:?}")
+        if self.is_finite() { format!("{self:?}") } else { format!("float('{self}')") }
     }
 }
 
@@ -79,6 +79,11 @@ impl Taken for Option<usize> {
     fn take(name: &str, given: Option<i128>) -> PyResult<Self> {
         optional_count(name, given)
     }
+}
+
+/// A list of numbers as Python writes it.
+pub fn list_text(values: &[f64]) -> String {
+    format!("[{}]", values.iter().map(f64::text).collect::<Vec<_>>().join(", "))
 }
 
 /// Options that are one of a few names.

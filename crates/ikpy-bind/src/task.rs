@@ -1,15 +1,15 @@
 //! `tasks`: what of a target matters.
 
 use ikcore::math::{Pose, pose};
-use ikcore::task::{Kind, Task};
+use ikcore::task::{Kind, Region, Task};
 use numpy::{PyArray1, PyArray2};
 use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::convert::{point, pose_array, rigid, row, summary, vector};
+use crate::convert::{Array, copied, corners, point, pose_array, rigid, row, summary, table, vector};
 use crate::error::{invalid, raise};
-use crate::options::NewArguments;
+use crate::options::{NewArguments, list_text};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyTask>()?;
@@ -20,6 +20,11 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 }
 
 /// What of a target matters: one of `Pose`, `Position`, `Orientation` and `Pointing`.
+///
+/// With a `region`, the tip is kept in a box, p_min < p < p_max: eq. (5) of Cheng et al. (2020). A target outside is approached
+/// as far as the box allows, and the status is `HELD_IN_REGION`. No solution is `SOLVED` or `HELD_IN_REGION` with the tip
+/// outside; a track never leaves the box at the end of a tick, whatever its solver. Between two ticks the joints move in straight
+/// lines, the tip does not quite.
 #[pyclass(name = "Task", module = "beetle_ik.tasks", frozen, subclass, eq)]
 #[derive(Clone, PartialEq)]
 pub struct PyTask {
@@ -46,20 +51,26 @@ impl PyTask {
         self.core.tool.as_ref().map(|tool| pose_array(py, tool)).transpose()
     }
 
+    /// The corners of the box that the tip is kept in (2, 3) (m); None: anywhere.
+    #[getter]
+    fn region<'py>(&self, py: Python<'py>) -> PyResult<Option<Array<'py>>> {
+        let corners = |region: &Region| table(py, [*region.lower(), *region.upper()].concat(), &[2, 3]);
+        self.core.region.as_ref().map(corners).transpose()
+    }
+
     fn __repr__(&self) -> String {
-        let list = |entries: &[f64]| format!("{entries:?}");
         let axis = match &self.core.kind {
-            Kind::Pointing { axis } => Some(format!("axis={}", list(axis))),
+            Kind::Pointing { axis } => Some(format!("axis={}", list_text(axis))),
             _ => None,
         };
         let matrix = |tool: &Pose| format!("tool={:?}", pose::rows(tool).as_chunks::<4>().0);
+        let region = |region: &Region| format!("region=[{}, {}]", list_text(region.lower()), list_text(region.upper()));
         let options = [
             axis,
-            self.core.weights().map(|weights| format!("weights={}", list(&weights))),
-            self.core
-                .tolerance()
-                .map(|tolerance| format!("tolerance={}", list(&tolerance).replace("inf", "float('inf')"))),
+            self.core.weights().map(|weights| format!("weights={}", list_text(&weights))),
+            self.core.tolerance().map(|tolerance| format!("tolerance={}", list_text(&tolerance))),
             self.core.tool.as_ref().map(matrix),
+            self.core.region.as_ref().map(region),
         ];
         let given: Vec<_> = options.into_iter().flatten().collect();
         format!("tasks.{}({})", self.core.kind.name(), given.join(", "))
@@ -73,6 +84,7 @@ impl PyTask {
         options.set_item("weights", self.weights(py))?;
         options.set_item("tolerance", self.tolerance(py))?;
         options.set_item("tool", self.tool(py)?)?;
+        options.set_item("region", self.region(py)?)?;
         Ok((PyTuple::empty(py), options))
     }
 }
@@ -80,8 +92,13 @@ impl PyTask {
 /// What an argument was given.
 type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
-/// A task of a class that adds nothing to what all of them take besides their kind: weights, tolerance and tool.
-fn made<C>(kind: Kind, [weights, tolerance, tool]: [Given<'_, '_>; 3], class: C) -> PyResult<PyClassInitializer<C>>
+/// A task of a class that adds nothing to what all of them take besides their kind: weights, tolerance,
+/// tool and region.
+fn made<C>(
+    kind: Kind,
+    [weights, tolerance, tool, region]: [Given<'_, '_>; 4],
+    class: C,
+) -> PyResult<PyClassInitializer<C>>
 where
     C: PyClass<BaseType = PyTask>,
 {
@@ -89,6 +106,13 @@ where
     let tolerance = tolerance.map(|value| vector("tolerance", value)).transpose()?;
     let tool = tool.map(|value| rigid("tool", value)).transpose()?;
     let core = Task::new(kind, weights.as_deref(), tolerance.as_deref(), tool).map_err(raise)?;
+    let core = match region {
+        None => core,
+        Some(region) => {
+            let [lower, upper] = corners("region", region)?;
+            Region::new(lower, upper).and_then(|region| core.within(region)).map_err(raise)?
+        }
+    };
     Ok(PyClassInitializer::from(PyTask { core }).add_subclass(class))
 }
 
@@ -96,19 +120,23 @@ where
 macro_rules! task {
     ($(#[$doc:meta])* $class:ident, $name:literal, $kind:expr) => {
         $(#[$doc])*
+        ///     tool: (4, 4), from the tip to what is to reach the target.
+        ///     region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
+        ///         infinite where it is open. See `Task`.
         #[pyclass(name = $name, module = "beetle_ik.tasks", extends = PyTask, frozen)]
         pub struct $class;
 
         #[pymethods]
         impl $class {
             #[new]
-            #[pyo3(signature = (*, weights=None, tolerance=None, tool=None))]
+            #[pyo3(signature = (*, weights=None, tolerance=None, tool=None, region=None))]
             fn new(
                 weights: Given<'_, '_>,
                 tolerance: Given<'_, '_>,
                 tool: Given<'_, '_>,
+                region: Given<'_, '_>,
             ) -> PyResult<PyClassInitializer<Self>> {
-                made($kind, [weights, tolerance, tool], Self)
+                made($kind, [weights, tolerance, tool, region], Self)
             }
         }
     };
@@ -121,7 +149,6 @@ task! {
     ///     weights: (6,), factors on x, y, z and on the three components of the rotation vector, along the axes of the target;
     ///         zero leaves a component free.
     ///     tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
-    ///     tool: (4, 4), from the tip to what is to reach the target.
     PyPose, "Pose", Kind::Pose
 }
 
@@ -131,7 +158,6 @@ task! {
     /// Args:
     ///     weights: (3,), factors on x, y and z of the base; zero leaves a component free.
     ///     tolerance: (3,) (m), largest error of each component, instead of the tolerance of the call.
-    ///     tool: (4, 4), from the tip to what is to reach the target.
     PyPosition, "Position", Kind::Position
 }
 
@@ -141,7 +167,6 @@ task! {
     /// Args:
     ///     weights: (3,), factors on the components of the rotation vector along the axes of the target; zero leaves one free.
     ///     tolerance: (3,) (rad), largest error of each component, instead of the tolerance of the call.
-    ///     tool: (4, 4), from the tip to what is to reach the target.
     PyOrientation, "Orientation", Kind::Orientation
 }
 
@@ -153,21 +178,24 @@ task! {
 ///     weights: (4,), factors on x, y and z along the axes of the target, and on the angle; zero leaves a component free.
 ///     tolerance: (4,) (m, m, m, rad), largest error of each component, instead of the tolerances of the call.
 ///     tool: (4, 4), from the tip to what is to reach the target.
+///     region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
+///         infinite where it is open. See `Task`.
 #[pyclass(name = "Pointing", module = "beetle_ik.tasks", extends = PyTask, frozen)]
 pub struct PyPointing;
 
 #[pymethods]
 impl PyPointing {
     #[new]
-    #[pyo3(signature = (*, axis=None, weights=None, tolerance=None, tool=None))]
+    #[pyo3(signature = (*, axis=None, weights=None, tolerance=None, tool=None, region=None))]
     fn new(
         axis: Given<'_, '_>,
         weights: Given<'_, '_>,
         tolerance: Given<'_, '_>,
         tool: Given<'_, '_>,
+        region: Given<'_, '_>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let axis = axis.map_or(Ok([0.0, 0.0, 1.0]), |axis| point("axis", axis))?;
-        made(Kind::Pointing { axis }, [weights, tolerance, tool], Self)
+        made(Kind::Pointing { axis }, [weights, tolerance, tool, region], Self)
     }
 
     /// In the tip's coordinates (3,).
@@ -175,7 +203,7 @@ impl PyPointing {
     fn axis<'py>(self_: PyRef<'py, Self>) -> Option<Bound<'py, PyArray1<f64>>> {
         let py = self_.py();
         match self_.as_super().core.kind {
-            Kind::Pointing { axis } => Some(row(py, axis.to_vec())),
+            Kind::Pointing { axis } => Some(copied(py, &axis)),
             _ => None,
         }
     }

@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
 
-use crate::convert::{Array, array, row, shape_text, table, times, vector};
+use crate::convert::{Array, array, copied, row, shape_text, table, times, vector};
 use crate::error::{invalid, raise};
 use crate::options::NewArguments;
 use crate::upward;
@@ -98,7 +98,7 @@ impl PyTrajectory {
     /// The knots (k,) (s).
     #[getter]
     fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.0.knots().to_vec())
+        copied(py, self.0.knots())
     }
 
     /// (k - 1, n, degree + 1), in ascending powers of the time since the knot.

@@ -50,3 +50,5 @@ class Experiment:
     paper: str
     """Authors, title, journal, year."""
     run: Callable[[Context], Report]
+    extras: tuple[str, ...] = ()
+    """Of beetle-ik, beside `report`: what has to be installed."""

@@ -37,11 +37,11 @@ def reproduce(
 
     Raises:
         UnknownNameError: there is no such experiment; lists them.
-        BeetleIkError: what the extra `report` brings is not installed.
+        BeetleIkError: what the extra `report`, or another that an experiment needs, brings is not installed.
         InvalidInputError: `out` cannot be written, or holds files that are no report's.
     """
     chosen = [experiment(each) for each in (names() if name == ALL else [name])]
-    check_installed()
+    check_installed(extra for each in chosen for extra in each.extras)
     context = Context(short=short, seed=seed, progress=progress)
     with report_folder(Path(out), option=option) as folder:
         if name != ALL:

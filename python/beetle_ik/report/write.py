@@ -73,14 +73,16 @@ def _write_manifest(folder: Path, content: dict[str, Any]) -> None:
 
 
 def _png(figure: Figure, dpi: int) -> bytes:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     picture, drawing = io.BytesIO(), figure.drawing
     drawing.set_dpi(dpi)
     layout = drawing.get_layout_engine()
     if layout is not None:
-        # Savefig would draw everything twice, once to lay it out.
         layout.execute(drawing)
         drawing.set_layout_engine("none")
-    drawing.savefig(picture, format="png", dpi=dpi, metadata={"Software": None})  # same figure, same bytes
+    # Savefig would draw everything twice: once to lay it out, which is done.
+    FigureCanvasAgg(drawing).print_png(picture, metadata={"Software": None})  # same figure, same bytes
     return picture.getvalue()
 
 

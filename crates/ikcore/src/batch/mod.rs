@@ -10,7 +10,6 @@ mod targets;
 pub use record::{Batch, Item};
 pub use targets::Targets;
 
-use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
@@ -24,6 +23,7 @@ use crate::robot::Robot;
 use crate::solver::stop::Stopwatch;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
+use crate::wording::words;
 
 /// What to do about a target or a start that is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -35,17 +35,7 @@ pub enum OnInvalid {
     Skip,
 }
 
-impl FromStr for OnInvalid {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "raise" => Ok(Self::Raise),
-            "skip" => Ok(Self::Skip),
-            _ => Err(Error::unknown_option("on_invalid", name, &["raise", "skip"])),
-        }
-    }
-}
+words!("on_invalid": OnInvalid { Raise => "raise", Skip => "skip" });
 
 /// How to solve a batch. The default uses all cores.
 #[derive(Debug, Clone, Default)]

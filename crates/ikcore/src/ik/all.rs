@@ -108,7 +108,8 @@ fn search(
     }
     let (mut solutions, mut known) = (Vec::<Solution>::new(), 0);
     let last = loop {
-        let mut solution = run.attempt(prepared, &mut problem, &x0, &mut rng, monitor);
+        let attempt = run.attempt(prepared, &mut problem, &x0, &mut rng, monitor);
+        let mut solution = prepared.told_apart(target, attempt);
         if solution.status != Status::Solved {
             break Some(solution);
         }

@@ -4,6 +4,7 @@ mod all;
 mod best;
 mod nearest;
 mod prepared;
+mod round;
 mod run;
 mod self_motion;
 mod solution;
@@ -14,13 +15,12 @@ pub use solution::Solution;
 
 pub(crate) use prepared::Prepared;
 
-use std::str::FromStr;
-
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::limits::Limits;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Monitor, Stop};
 use crate::task::{Goal, Target, Task, Tolerance};
+use crate::wording::words;
 
 /// Which solution to return where there are several.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -34,18 +34,7 @@ pub enum Prefer {
     Best,
 }
 
-impl FromStr for Prefer {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "any" => Ok(Self::Any),
-            "nearest" => Ok(Self::Nearest),
-            "best" => Ok(Self::Best),
-            _ => Err(Error::unknown_option("prefer", name, &["any", "nearest", "best"])),
-        }
-    }
-}
+words!("prefer": Prefer { Any => "any", Nearest => "nearest", Best => "best" });
 
 /// How to solve. The default is Levenberg-Marquardt from many starts, within the robot's limits.
 #[derive(Debug, Clone, Default)]

@@ -59,12 +59,19 @@ impl Prepared<'_> {
         }
     }
 
-    /// Moves `q` along its self-motion to where `goals` are best.
-    pub(super) fn descend_to(&self, problem: &mut Problem<'_>, goals: &mut Goals, run: &mut Run, q: &mut Point) {
+    /// Moves `q` along its self-motion to where `goals` are best; false where it is at no solution, nor near one.
+    pub(super) fn descend_to(
+        &self,
+        problem: &mut Problem<'_>,
+        goals: &mut Goals,
+        run: &mut Run,
+        q: &mut Point,
+    ) -> bool {
         let (robot, max_evaluations) = (self.robot(), run.left());
         let mut motion = SelfMotion { robot, problem, goals, bounds: self.bounds(), evaluations: 0, max_evaluations };
-        motion.descend(q);
+        let is_solved = motion.descend(q);
         run.count(motion.evaluations);
+        is_solved
     }
 }
 

@@ -35,8 +35,7 @@ impl<'a> Prepared<'a> {
         options.solver.validate()?;
         options.stop.validate()?;
         options.task.as_ref().map_or(Ok(()), Task::validate)?;
-        let components = options.task.and_then(|task| task.components);
-        let criterion = Criterion { tolerance: options.tolerance, components };
+        let criterion = options.task.map_or(options.tolerance.into(), |task| task.criterion(options.tolerance));
         criterion.validate()?;
         options.goals.iter().try_for_each(|goal| goal.validate(robot))?;
         if options.prefer == Prefer::Nearest && !options.goals.is_empty() {
@@ -113,6 +112,21 @@ impl<'a> Prepared<'a> {
         stream: u64,
         monitor: &mut dyn Monitor,
     ) -> Solution {
+        let solution = self.search(target, start, stream, monitor);
+        self.told_apart(target, solution)
+    }
+
+    /// A solution of what the region lets the tip reach of a target is none of the target.
+    pub(super) fn told_apart(&self, target: &Target, solution: Solution) -> Solution {
+        match self.criterion.held_back(target) {
+            Some(obstruction) if solution.status == Status::Solved => {
+                Solution { status: Status::HeldInRegion, obstruction, ..solution }
+            }
+            _ => solution,
+        }
+    }
+
+    fn search(&self, target: &Target, start: Option<&[f64]>, stream: u64, monitor: &mut dyn Monitor) -> Solution {
         let mut rng = rng::stream(self.options.seed, stream);
         if let (Prefer::Nearest, Some(start)) = (self.options.prefer, start) {
             return self.run_nearest(target, start, &mut rng, monitor);
@@ -142,7 +156,8 @@ impl<'a> Prepared<'a> {
 
     /// How far the target is beyond the reach (m), where it is.
     pub(super) fn excess(&self, target: &Target) -> Option<f64> {
-        let position = target.position().filter(|_| self.criterion.components.is_none())?;
+        let aim = self.criterion.aim(target);
+        let position = aim.position().filter(|_| self.criterion.components.is_none())?;
         let excess = self.robot.reach(self.bounds.lower(), self.bounds.upper()).excess(&position);
         (excess > self.criterion.tolerance.position).then_some(excess)
     }

@@ -91,7 +91,7 @@ impl Run {
         self.evaluations += evaluator.evaluations();
         self.restarts += evaluator.attempts() - 1;
         self.iterations += outcome.iterations;
-        (outcome.status(), evaluator.best().x.clone())
+        (outcome.status(), Point::from_slice(&evaluator.best().x))
     }
 
     /// One descent to its end from `q`: whether it solved, and the best point.
@@ -112,7 +112,7 @@ impl Run {
         let outcome = run(descent, &mut evaluator, &q);
         self.evaluations += evaluator.evaluations();
         self.iterations += outcome.iterations;
-        (evaluator.best().solved, evaluator.best().x.clone())
+        (evaluator.best().solved, Point::from_slice(&evaluator.best().x))
     }
 
     /// The nearest of a few descents towards what cannot be reached.
@@ -155,7 +155,8 @@ impl Run {
         let mut solution = self.solution(status, q, problem);
         if status != Status::Solved {
             let excess = prepared.excess(problem.target());
-            solution.obstruction = obstruction(prepared.robot(), prepared.bounds(), &solution.q, excess);
+            let passed = problem.outside_region(&solution.q);
+            solution.obstruction = obstruction(prepared.robot(), prepared.bounds(), &solution.q, excess, passed);
         }
         solution
     }

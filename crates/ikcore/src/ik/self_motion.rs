@@ -42,15 +42,19 @@ struct Place {
 }
 
 impl SelfMotion<'_, '_> {
-    /// Moves `q`, which solves the task, to where the goals are best near it.
-    pub fn descend(&mut self, q: &mut Point) {
+    /// Moves `q`, which solves the task or nearly so, to where the goals are best near it; false where there is no solution near.
+    pub fn descend(&mut self, q: &mut Point) -> bool {
         let begin = self.place(q.clone());
-        if self.correct(q) {
-            let exact = self.place(q.clone());
-            let end = self.follow_slope(exact);
-            // Brought exactly to the task, an arm that had nowhere to go may have lost what it gained by leaning on the tolerance.
-            *q = if end.cost < begin.cost { end.q } else { begin.q };
+        let was_solved = self.problem.assess(q).score.solved;
+        if !self.correct(q) {
+            *q = begin.q;
+            return was_solved;
         }
+        let exact = self.place(q.clone());
+        let end = self.follow_slope(exact);
+        // Brought exactly to the task, an arm that had nowhere to go may have lost what it gained by leaning on the tolerance.
+        *q = if end.cost < begin.cost || !was_solved { end.q } else { begin.q };
+        true
     }
 
     /// Steps down the slope from `here` to where there is none.

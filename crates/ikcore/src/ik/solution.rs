@@ -41,6 +41,7 @@ impl Solution {
             Status::Improved => return format!("below the value asked for, {error} away"),
             Status::OutOfReach => "as near as it gets",
             Status::BelowThreshold => "error_threshold met",
+            Status::HeldInRegion => "as near as its region allows,",
             Status::OutsideLimits => "reached outside the limits only, inside them",
             Status::Stalled => "no further progress",
             Status::BudgetSpent => "budget spent",

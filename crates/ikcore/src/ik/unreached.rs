@@ -7,10 +7,17 @@ use crate::wording::number;
 /// Joints named at most; the others are counted.
 const MOST_NAMED: usize = 3;
 
-/// What is in the way at `q`: how far the target is out of reach (m), at least, if it provably is, and the joints at their limits.
-pub(super) fn obstruction(robot: &Robot, bounds: &Bounds, q: &[f64], excess: Option<f64>) -> String {
+/// What is in the way at `q`: how far the target is out of reach (m), at least, if it provably is, where the
+/// tip has `passed` its region, and the joints at their limits.
+pub(super) fn obstruction(
+    robot: &Robot,
+    bounds: &Bounds,
+    q: &[f64],
+    excess: Option<f64>,
+    passed: Option<String>,
+) -> String {
     let reach = excess.map(|excess| format!("out of reach by at least {} m", number(excess)));
-    reach.into_iter().chain(joints_at_limits(robot, bounds, q)).collect::<Vec<_>>().join("; ")
+    reach.into_iter().chain(passed).chain(joints_at_limits(robot, bounds, q)).collect::<Vec<_>>().join("; ")
 }
 
 fn joints_at_limits(robot: &Robot, bounds: &Bounds, q: &[f64]) -> Option<String> {

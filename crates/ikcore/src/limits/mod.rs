@@ -161,6 +161,23 @@ impl Limits {
         }
     }
 
+    /// Err unless the position limits stay as they are.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`].
+    pub fn require_still(&self, method: &str, remedy: &str) -> Result<()> {
+        for (field, profiles) in [(Field::Lower, &self.lower), (Field::Upper, &self.upper)] {
+            if !profiles.iter().all(|profile| matches!(profile, Profile::Constant(_))) {
+                return Err(Error::UnsupportedLimit {
+                    field: format!("time-varying {field}"),
+                    method: method.into(),
+                    remedy: remedy.into(),
+                });
+            }
+        }
+        Ok(())
+    }
+
     fn is_finite(&self, field: Field) -> bool {
         self.field(field).unwrap_or_default().iter().any(|profile| *profile != Profile::Constant(f64::INFINITY))
     }

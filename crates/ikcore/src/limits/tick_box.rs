@@ -1,10 +1,8 @@
 //! The box of one tick: position limits intersected with what the velocity limit lets the ACCEPTED configuration reach.
 
-use std::str::FromStr;
-
-use super::Limits;
-use crate::error::{Error, Result};
+use super::{Limits, Profile};
 use crate::objective::{Bounds, Point};
+use crate::wording::words;
 
 /// Where in a tick its limit is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -15,6 +13,8 @@ pub enum LimitAt {
     /// The limit at the tick's beginning, as Cheng et al. (2020) take it.
     Start,
 }
+
+words!("limit_at": LimitAt { Interval => "interval", Start => "start" });
 
 /// Where one tick may end, and the velocity limits that it came from.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,18 +29,6 @@ impl TickBox {
     /// The box of an arm that stands still at `q`.
     pub fn around(q: &[f64]) -> Self {
         Self { bounds: Bounds::from_ranges(q.iter().map(|q| (*q, *q))), velocity: Point::from_elem(0.0, q.len()) }
-    }
-}
-
-impl FromStr for LimitAt {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "interval" => Ok(Self::Interval),
-            "start" => Ok(Self::Start),
-            _ => Err(Error::unknown_option("limit_at", name, &["interval", "start"])),
-        }
     }
 }
 
@@ -66,22 +54,33 @@ impl Limits {
         let (lower, upper) = bounds.parts_mut();
         let mut feasible = true;
         for j in 0..q.len() {
-            // Most often all joints share a limit, and its extremes take longer to find than to compare.
-            velocity[j] = match j {
-                1.. if self.velocity[j] == self.velocity[j - 1] => velocity[j - 1],
+            velocity[j] = match &self.velocity[j] {
+                Profile::Constant(limit) => *limit,
+                // Most often all joints share a limit, and its extremes take longer to find than to compare.
+                varying if j > 0 && *varying == self.velocity[j - 1] => velocity[j - 1],
                 _ => self.velocity_over(j, from, to, at),
             };
             // Without a known end nobody can refuse a limit that will fall below zero: there the joint stands still.
-            let reach = (velocity[j] * dt).max(0.0);
+            let reach = larger(velocity[j] * dt, 0.0);
             let (slowest, fastest) = (reachable(q[j], -reach), reachable(q[j], reach));
             let [floor, ceiling] = self.position_range(j, from, to);
-            lower[j] = slowest.max(floor).min(fastest);
+            lower[j] = smaller(larger(slowest, floor), fastest);
             // Limits that cross later than could be checked leave a point between them, not an empty box.
-            upper[j] = fastest.min(ceiling).max(slowest).max(lower[j]);
+            upper[j] = larger(larger(smaller(fastest, ceiling), slowest), lower[j]);
             feasible &= floor <= fastest && slowest <= ceiling && floor <= ceiling;
         }
         feasible
     }
+}
+
+/// One instruction, where `max` would sort out NaN.
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// One instruction, where `min` would sort out NaN.
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 /// q + reach, rounded so that the displacement does not exceed `reach` by the last bit.
@@ -99,7 +98,7 @@ fn reachable(q: f64, reach: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limits::{Field, Profile};
+    use crate::limits::Field;
     use crate::math::pose;
     use crate::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
     use nalgebra::Vector3;

@@ -12,16 +12,15 @@ mod regular;
 pub use ellipsoid::Ellipsoid;
 pub use links::{LinkIndices, MAX_LINKS};
 
-use std::fmt;
 use std::ops::Range;
-use std::str::FromStr;
 
 use regular::Regular;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::math::MAX_DOF;
 use crate::math::singular::SingularValues;
 use crate::robot::{Columns, Directions, Robot};
+use crate::wording::words;
 
 /// Which motion of the tip counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -35,18 +34,9 @@ pub enum Motion {
     Rotation,
 }
 
+words!("motion": Motion { Pose => "pose", Position => "position", Rotation => "rotation" });
+
 impl Motion {
-    const ALL: [Self; 3] = [Self::Pose, Self::Position, Self::Rotation];
-
-    /// The word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pose => "pose",
-            Self::Position => "position",
-            Self::Rotation => "rotation",
-        }
-    }
-
     /// The rows that count.
     fn rows(self) -> Range<usize> {
         match self {
@@ -63,21 +53,6 @@ impl Motion {
             column[..start].fill(0.0);
             column[end..].fill(0.0);
         }
-    }
-}
-
-impl fmt::Display for Motion {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Motion {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        let found = Self::ALL.into_iter().find(|motion| motion.name() == name);
-        found.ok_or_else(|| Error::unknown_option("motion", name, &Self::ALL.map(Self::name)))
     }
 }
 

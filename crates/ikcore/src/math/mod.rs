@@ -3,11 +3,11 @@
 
 pub mod arithmetic;
 pub mod box_step;
+pub mod cubic_spline;
 pub mod frame;
 pub mod interval;
 pub mod knots;
 pub mod logarithm;
-pub mod natural_spline;
 pub mod polynomial;
 pub mod pose;
 pub mod secant;
@@ -15,6 +15,7 @@ pub mod sincos;
 pub mod singular;
 pub mod so3;
 pub mod ticks;
+pub mod vector;
 
 pub use frame::Frame;
 pub use knots::Knots;

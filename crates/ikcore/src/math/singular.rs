@@ -3,6 +3,7 @@
 
 use super::MAX_DOF;
 use super::box_step::ROWS;
+use super::vector::dot;
 
 /// Rows whose cosine is below this count as orthogonal.
 const ORTHOGONAL: f64 = 4.0 * f64::EPSILON;
@@ -92,10 +93,6 @@ fn turn<const L: usize>(rows: &mut [[f64; L]; ROWS], p: usize, q: usize, n: usiz
         rows[p][k] = cosine * a - sine * b;
         rows[q][k] = sine * a + cosine * b;
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

@@ -24,6 +24,11 @@ pub trait Curve: Debug + Send + Sync {
         None
     }
 
+    /// Times (s) at which the direction may jump: a planner stops or slows down there.
+    fn corners(&self) -> Vec<f64> {
+        vec![]
+    }
+
     /// The curve in the form in which a path is stored; None for a curve of your own.
     #[doc(hidden)]
     fn stored(&self) -> Option<StoredCurve> {

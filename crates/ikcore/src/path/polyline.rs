@@ -86,6 +86,10 @@ impl Curve for Polyline {
         let [from, to] = [self.vertices[stroke], self.vertices[stroke + 1]];
         std::array::from_fn(|i| (to[i] - from[i]) / self.knots.span(stroke))
     }
+
+    fn corners(&self) -> Vec<f64> {
+        self.knots.times()[1..self.vertices.len() - 1].to_vec()
+    }
 }
 
 /// Err unless there are at least two points and all are finite.

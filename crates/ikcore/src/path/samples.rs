@@ -59,6 +59,10 @@ impl Curve for Samples {
         self.positions.velocity(t)
     }
 
+    fn corners(&self) -> Vec<f64> {
+        self.positions.corners()
+    }
+
     fn rotation(&self, t: f64) -> Option<Matrix3<f64>> {
         let rotations = self.rotations.as_ref()?;
         let knots = self.positions.knots();

@@ -50,6 +50,11 @@ impl Path {
         self.curve.velocity(t)
     }
 
+    /// Times (s) at which the direction may jump.
+    pub fn corners(&self) -> Vec<f64> {
+        self.curve.corners()
+    }
+
     /// Orientation, if the path has one.
     pub fn rotation(&self, t: f64) -> Option<Matrix3<f64>> {
         self.orientation.or_else(|| self.curve.rotation(t))

@@ -1,16 +1,15 @@
 //! Along a given path.
 
-use std::str::FromStr;
-
 use super::cost::Cost;
+use super::course::Course;
 use super::plan::Plan;
 use super::planar_arm::Elbow;
 use super::{timed, tpbso};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::limits::Limits;
-use crate::path::Reference;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, DerivativeFree, Monitor, Stop};
+use crate::wording::words;
 
 /// How to plan along a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,17 +21,7 @@ pub enum AlongPathMethod {
     Tpbso,
 }
 
-impl FromStr for AlongPathMethod {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "timed" => Ok(Self::Timed),
-            "tpbso" => Ok(Self::Tpbso),
-            _ => Err(Error::unknown_option("method", name, &["timed", "tpbso"])),
-        }
-    }
-}
+words!("method": AlongPathMethod { Timed => "timed", Tpbso => "tpbso" });
 
 /// How to plan along a path, and what to keep.
 #[derive(Debug, Clone, Default)]
@@ -45,9 +34,9 @@ pub struct AlongPathOptions {
     pub start: Option<Vec<f64>>,
     /// Limits to keep; None keeps the robot's.
     pub limits: Option<Limits>,
-    /// Which way a planar arm bends, unless `start` says it.
-    pub elbow: Elbow,
-    /// How far the tip may be from the path's points (m); None: the method's own.
+    /// Which way a planar arm bends, for the published method, unless `start` says it; None: as printed.
+    pub elbow: Option<Elbow>,
+    /// How far the tip may be from the path (m), and how far turned from it (rad); None: the method's own.
     pub accuracy: Option<f64>,
     /// What searches; None: the method's own.
     pub solver: Option<AnySolver<DerivativeFree>>,
@@ -57,29 +46,19 @@ pub struct AlongPathOptions {
     pub seed: u64,
 }
 
-/// Plans a motion of `robot` whose tip follows the rows of `path`, in order; their times do not matter.
+/// Plans a motion of `robot` whose tip follows `course`.
 ///
 /// # Errors
-/// Any [`Error`] for wrong input, [`Error::Unreachable`] for a point out of reach. That no plan keeps everything is a
+/// Any [`Error`] for wrong input, [`Error::Unreachable`] for a place out of reach. That no plan keeps everything is a
 /// status, not an error.
 pub fn plan_along_path(
     robot: &Robot,
-    path: &Reference,
+    course: &Course,
     options: &AlongPathOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
-    refuse_repetition(path)?;
     match options.method {
-        AlongPathMethod::Timed => timed::along_path(robot, path, options, monitor),
-        AlongPathMethod::Tpbso => tpbso::along_path(robot, path, options, monitor),
-    }
-}
-
-/// Err where a point is the one before it again: no curve leads on from there.
-fn refuse_repetition(path: &Reference) -> Result<()> {
-    let repeats = |i: &usize| path.position(*i) == path.position(i - 1) && path.rotation(*i) == path.rotation(i - 1);
-    match (1..path.len()).find(repeats) {
-        None => Ok(()),
-        Some(i) => Err(Error::InvalidPath { problem: format!("point {i} repeats point {}: leave it out", i - 1) }),
+        AlongPathMethod::Timed => timed::along_path(robot, course, options, monitor),
+        AlongPathMethod::Tpbso => tpbso::along_path(robot, course, options, monitor),
     }
 }

@@ -1,13 +1,10 @@
 //! What a plan minimises.
 
-use std::fmt;
-use std::str::FromStr;
-
 use serde::{Deserialize, Serialize};
 
 use super::motion_limits::MotionLimits;
-use crate::error::{Error, Result};
 use crate::robot::Robot;
+use crate::wording::words;
 
 /// What a plan minimises (Wang et al. 2019, eq. 8-10).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -21,9 +18,9 @@ pub enum Cost {
     TipTravel,
 }
 
-impl Cost {
-    const ALL: [Self; 3] = [Self::Time, Self::JointTravel, Self::TipTravel];
+words!("objective": Cost { Time => "time", JointTravel => "joint_travel", TipTravel => "tip_travel" });
 
+impl Cost {
     /// What it measures, in words.
     pub fn noun(self) -> &'static str {
         match self {
@@ -50,29 +47,6 @@ impl Cost {
             Self::JointTravel => ranges.map(|(lower, upper)| upper - lower).sum(),
             Self::TipTravel => chain_length(robot),
         }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Time => "time",
-            Self::JointTravel => "joint_travel",
-            Self::TipTravel => "tip_travel",
-        }
-    }
-}
-
-impl fmt::Display for Cost {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Cost {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        let found = Self::ALL.into_iter().find(|cost| cost.name() == name);
-        found.ok_or_else(|| Error::unknown_option("objective", name, &Self::ALL.map(Self::name)))
     }
 }
 

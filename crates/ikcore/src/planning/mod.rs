@@ -7,6 +7,8 @@
 //! | [`end`] | where a motion starts or ends: a target of the tip, or a configuration |
 //! | [`motion_limits`] | constant limits of each joint, and what of them a trajectory breaks |
 //! | [`planar_arm`] | arms in a plane: inverse kinematics in closed form, the redundancy left open |
+//! | [`course`] | [`Course`]: where the tip is to go along a path |
+//! | `stray` | how far it strays from that |
 //! | `minmax` | from end to end by the nearest configurations, and around obstacles |
 //! | [`point_to_point`] | the planner from end to end, whatever its method |
 //! | [`along_path`] | the planner along a path, whatever its method |
@@ -16,18 +18,21 @@
 
 pub mod along_path;
 pub mod cost;
+pub mod course;
 pub mod end;
 mod minmax;
 pub mod motion_limits;
 pub mod plan;
 pub mod planar_arm;
 pub mod point_to_point;
+mod stray;
 pub mod time_optimal;
 mod timed;
 mod tpbso;
 
 pub use along_path::{AlongPathMethod, AlongPathOptions, plan_along_path};
 pub use cost::Cost;
+pub use course::Course;
 pub use end::End;
 pub use motion_limits::MotionLimits;
 pub use plan::{Improvement, Plan, Violation};

@@ -25,7 +25,8 @@ pub struct Plan {
     pub history: Vec<Improvement>,
     /// Smallest distance (m) between robot and obstacles on the trajectory; None where there are no obstacles.
     pub clearance: Option<f64>,
-    /// Largest distance (m) of the tip from the points of the path that it was to follow; None from end to end.
+    /// Largest distance (m) of the tip from the path that it was to follow, at its points and between them; None from end
+    /// to end.
     pub accuracy: Option<f64>,
     /// The orientations that a planar arm was free to choose, at every point of the path, from the tip's link down; empty
     /// where there is no such choice.
@@ -81,7 +82,21 @@ impl Plan {
             Status::Interrupted if self.violations.is_empty() => {
                 format!("stopped with {cost}: {}", self.status.advice())
             }
-            _ => format!("no plan keeps everything; the least violating one breaks: {}; {ADVICE}", self.broken()),
+            _ => format!(
+                "no plan keeps everything; the least violating one breaks: {}; {}",
+                self.broken(),
+                self.advice()
+            ),
+        }
+    }
+
+    fn advice(&self) -> &'static str {
+        match self.accuracy {
+            None => "try another seed, a larger budget in stop=Stop(...) or wider limits",
+            Some(_) => {
+                "try another seed, a larger budget in stop=Stop(...), wider limits, a larger accuracy, or for \
+                 method=\"tpbso\" denser points"
+            }
         }
     }
 
@@ -93,5 +108,3 @@ impl Plan {
         named.join("; ")
     }
 }
-
-const ADVICE: &str = "try another seed, a larger budget in stop=Stop(...) or wider limits";

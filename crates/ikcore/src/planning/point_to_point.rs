@@ -1,7 +1,5 @@
 //! From one end to another.
 
-use std::str::FromStr;
-
 use super::cost::Cost;
 use super::end::End;
 use super::plan::Plan;
@@ -12,6 +10,7 @@ use crate::limits::Limits;
 use crate::obstacle::Obstacle;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, DerivativeFree, Monitor, Stop};
+use crate::wording::words;
 
 /// How to plan from end to end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -23,17 +22,7 @@ pub enum PointToPointMethod {
     Tpbso,
 }
 
-impl FromStr for PointToPointMethod {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "minmax" => Ok(Self::MinMax),
-            "tpbso" => Ok(Self::Tpbso),
-            _ => Err(Error::unknown_option("method", name, &["minmax", "tpbso"])),
-        }
-    }
-}
+words!("method": PointToPointMethod { MinMax => "minmax", Tpbso => "tpbso" });
 
 /// How to plan from end to end, and what to keep.
 #[derive(Debug, Clone, Default)]
@@ -48,8 +37,9 @@ pub struct PointToPointOptions {
     pub margin: Option<f64>,
     /// Limits to keep; None keeps the robot's.
     pub limits: Option<Limits>,
-    /// Which way a planar arm bends at its ends, where [`Tpbso`](PointToPointMethod::Tpbso) chooses its configuration.
-    pub elbows: [Elbow; 2],
+    /// Which way a planar arm bends at its ends, where [`Tpbso`](PointToPointMethod::Tpbso) chooses its configuration;
+    /// None: as printed.
+    pub elbows: Option<[Elbow; 2]>,
     /// What searches; None: the method's own.
     pub solver: Option<AnySolver<DerivativeFree>>,
     /// Budgets; None: the method's own.

@@ -1,11 +1,11 @@
 //! A planar arm with its tip held in place: joint points on circles.
 
 use std::f64::consts::TAU;
-use std::str::FromStr;
 
 use crate::error::{Error, Result};
 use crate::manipulability::{Manipulability, Motion};
 use crate::robot::Robot;
+use crate::wording::words;
 
 /// A point of the plane (m).
 pub type Point2 = [f64; 2];
@@ -20,17 +20,7 @@ pub enum Measure {
     Overall,
 }
 
-impl FromStr for Measure {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "tip" => Ok(Self::Tip),
-            "overall" => Ok(Self::Overall),
-            _ => Err(Error::unknown_option("measure", name, &["tip", "overall"])),
-        }
-    }
-}
+words!("measure": Measure { Tip => "tip", Overall => "overall" });
 
 /// A rectangle that no joint point may leave.
 #[derive(Debug, Clone, Copy, PartialEq)]

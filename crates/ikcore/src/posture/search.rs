@@ -10,6 +10,7 @@ use super::circle_swarm::{CircleSwarm, Flight};
 use super::linkage::{Linkage, Measure, Region};
 use crate::error::Result;
 use crate::ik::{SolveOptions, solve};
+use crate::math::vector::distance;
 use crate::objective::{Bounds, Objective, Score};
 use crate::rng;
 use crate::robot::Robot;
@@ -85,8 +86,7 @@ pub fn best_posture(
     };
     let posture = |q: Vec<f64>, index, history, status, evaluations| {
         let tip = robot.tip_position(&q);
-        let distance = (0..3).map(|k| (tip[k] - target[k]).powi(2)).sum::<f64>().sqrt();
-        let error = TipError { position: distance, rotation: f64::NAN };
+        let error = TipError { position: distance(&tip, target), rotation: f64::NAN };
         Posture { q, index, history, status, error, evaluations, elapsed: stopwatch.elapsed() }
     };
     if let Some(Flight { q, index, history, evaluations }) = found {

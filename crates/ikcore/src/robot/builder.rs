@@ -1,12 +1,14 @@
 //! Describes a serial chain from base to tip, element by element; [`ChainBuilder::build`] checks it and makes a [`Robot`].
 
+use std::collections::HashSet;
+
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::joint::{Joint, JointKind};
 use super::model::Robot;
-use crate::error::Result;
-use crate::math::Pose;
+use crate::error::{Error, Result, require_finite};
+use crate::math::{MAX_DOF, Pose, pose};
 
 /// One element between base and tip, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -109,5 +111,43 @@ impl ChainBuilder {
     /// [`Error::NotFinite`](crate::Error::NotFinite) for transforms.
     pub fn build(self) -> Result<Robot> {
         Robot::new(self)
+    }
+
+    /// Everything that the kernels rely on.
+    pub(super) fn validate(&self) -> Result<()> {
+        let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem };
+        let moving = self.elements.iter().filter(|e| matches!(e, Element::Moving { .. })).count();
+        if moving == 0 || self.joints.is_empty() {
+            return Err(invalid("no joint moves between base and tip".into()));
+        }
+        if moving > MAX_DOF || self.joints.len() > MAX_DOF {
+            return Err(invalid(format!(
+                "{moving} moving joints between base and tip; at most {MAX_DOF} are supported"
+            )));
+        }
+        let mut names = HashSet::new();
+        for joint in &self.joints {
+            if !names.insert(&joint.name) {
+                return Err(invalid(format!("two joints are named '{}'", joint.name)));
+            }
+            joint.validate()?;
+        }
+        let mut links = HashSet::new();
+        self.elements.iter().try_for_each(|element| match element {
+            Element::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
+            Element::Link(name) if !links.insert(name) => Err(invalid(format!("two links are named '{name}'"))),
+            Element::Link(_) => Ok(()),
+            Element::Moving { axis, joint, scale, offset, .. } => {
+                let Some(driver) = self.joints.get(*joint) else {
+                    return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
+                };
+                if !((axis.norm() - 1.0).abs() < 1e-9) {
+                    return Err(invalid(format!("joint '{}' has a zero or non-finite axis", driver.name)));
+                }
+                require_finite("scale and offset of a joint", &[*scale, *offset], |_| {
+                    format!("joint '{}'", driver.name)
+                })
+            }
+        })
     }
 }

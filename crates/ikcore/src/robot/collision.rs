@@ -7,6 +7,7 @@ use super::kinematics::StageFrames;
 use super::model::Robot;
 use crate::error::{Error, Result, require_finite, suggestion};
 use crate::math::arithmetic::Separate;
+use crate::math::vector::distance;
 use crate::math::{Frame, MAX_DOF};
 
 /// All points within `radius` (m) of the segment from `a` to `b`, which are given in the frame of the link (m).
@@ -86,7 +87,7 @@ impl Robot {
             let end = if body < moving { chain.stages[body].origin } else { chain.tip.origin };
             let places = joint.into_iter().chain(frames.iter().map(|link| link.offset.origin)).chain([end]);
             let places: Vec<[f64; 3]> = places.collect();
-            for ends in places.windows(2).filter(|ends| distance(ends[0], ends[1]) > SHORTEST) {
+            for ends in places.windows(2).filter(|ends| distance(&ends[0], &ends[1]) > SHORTEST) {
                 let Some(carrier) = frames.first() else { return Err(self.nameless(body)) };
                 let from_link = carrier.offset.inverse();
                 let [a, b] = [ends[0], ends[1]].map(|end| from_link.place::<Separate>(&end));
@@ -128,8 +129,4 @@ impl Robot {
 fn checked_radius(what: &str, radius: f64) -> Result<()> {
     let valid = radius.is_finite() && radius >= 0.0;
     if valid { Ok(()) } else { Err(Error::out_of_range(what, "zero or more and finite", radius)) }
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }

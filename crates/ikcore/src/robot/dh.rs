@@ -1,7 +1,5 @@
 //! Robots from Denavit-Hartenberg tables, in both conventions.
 
-use std::str::FromStr;
-
 use nalgebra::Vector3;
 
 use super::builder::{ChainBuilder, Drive};
@@ -9,6 +7,7 @@ use super::joint::{Joint, JointKind};
 use super::model::Robot;
 use crate::error::{Error, Result, require_finite};
 use crate::math::{Pose, pose};
+use crate::wording::words;
 
 /// Where the frames of a Denavit-Hartenberg table sit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,17 +18,7 @@ pub enum Dh {
     Modified,
 }
 
-impl FromStr for Dh {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "standard" => Ok(Self::Standard),
-            "modified" => Ok(Self::Modified),
-            _ => Err(Error::unknown_option("convention", name, &["modified", "standard"])),
-        }
-    }
-}
+words!("convention": Dh { Modified => "modified", Standard => "standard" });
 
 /// A Denavit-Hartenberg table: one entry per joint in every list.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,10 @@
 //! A joint as the caller sees it.
 
-use std::str::FromStr;
-
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::math::interval;
+use crate::wording::words;
 
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -18,29 +17,12 @@ pub enum JointKind {
     Prismatic,
 }
 
-impl JointKind {
-    /// The name as URDF writes it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Revolute => "revolute",
-            Self::Continuous => "continuous",
-            Self::Prismatic => "prismatic",
-        }
-    }
+words!("kind of a joint": JointKind { Revolute => "revolute", Continuous => "continuous", Prismatic => "prismatic" });
 
+impl JointKind {
     /// Whether the joint turns rather than slides.
     pub fn turns(self) -> bool {
         self != Self::Prismatic
-    }
-}
-
-impl FromStr for JointKind {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        const ALL: [JointKind; 3] = [JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic];
-        let found = ALL.into_iter().find(|kind| kind.name() == name);
-        found.ok_or_else(|| Error::unknown_option("kind of a joint", name, &ALL.map(Self::name)))
     }
 }
 
@@ -88,5 +70,26 @@ impl Joint {
     pub fn sampling_range_within(&self, lower: f64, upper: f64) -> (f64, f64) {
         let reach = if self.kind.turns() { std::f64::consts::PI } else { UNLIMITED_SLIDE };
         interval::finite(lower, upper, reach)
+    }
+
+    /// Err for limits that contradict themselves.
+    pub(super) fn validate(&self) -> Result<()> {
+        let Self { lower, upper, velocity, .. } = *self;
+        let limits = [
+            ("lower", lower, lower < f64::INFINITY, "a number below infinity"),
+            ("upper", upper, upper > f64::NEG_INFINITY, "a number above -infinity"),
+            ("velocity", velocity, !velocity.is_nan(), "a number"),
+        ];
+        if let Some((side, value, _, requirement)) = limits.into_iter().find(|(_, _, valid, _)| !valid) {
+            return Err(Error::out_of_range(format!("{side} limit of joint '{}'", self.name), requirement, value));
+        }
+        let joint = self.name.clone();
+        if lower > upper {
+            return Err(Error::EmptyRange { joint, lower, upper, time: None });
+        }
+        if velocity < 0.0 {
+            return Err(Error::NegativeLimit { field: "velocity".into(), joint, value: velocity, time: 0.0 });
+        }
+        Ok(())
     }
 }

@@ -18,6 +18,7 @@ mod reach;
 mod screws;
 mod seed_index;
 mod seeds;
+mod stored;
 mod urdf;
 
 pub use builder::{ChainBuilder, Drive, Element};

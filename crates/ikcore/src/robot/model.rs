@@ -1,10 +1,8 @@
 //! The robot: immutable, validated once, shared between threads without locks.
 
-use std::collections::HashSet;
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::Matrix6xX;
-use serde::{Deserialize, Serialize};
 
 use super::builder::{ChainBuilder, Element};
 use super::chain::Chain;
@@ -41,17 +39,6 @@ impl PartialEq for Robot {
             == (&other.description, &other.base, &other.tool, &other.collision)
     }
 }
-
-/// What is stored of a robot; the first byte is [`FORMAT`]. Its [`CollisionModel`] follows where it has one.
-#[derive(Serialize, Deserialize)]
-struct Stored {
-    description: ChainBuilder,
-    base: Pose,
-    tool: Pose,
-}
-
-/// Version of the byte form.
-const FORMAT: u8 = 1;
 
 impl Robot {
     pub(super) fn new(description: ChainBuilder) -> Result<Self> {
@@ -260,103 +247,5 @@ impl Robot {
             let chain = Chain::new(elements, &Pose::identity(), &Pose::identity());
             SeedIndex::new(&chain, moving, self.joints())
         })
-    }
-
-    /// The robot as bytes, for storing and for copying between processes.
-    ///
-    /// # Errors
-    /// [`Error::Corrupt`] if the encoder fails.
-    pub fn to_bytes(&self) -> Result<Vec<u8>> {
-        let stored = Stored { description: self.description.clone(), base: self.base, tool: self.tool };
-        let bytes = postcard::to_extend(&stored, vec![FORMAT]).map_err(|e| corrupt(e.to_string()))?;
-        if self.collision == CollisionModel::default() {
-            return Ok(bytes);
-        }
-        postcard::to_extend(&self.collision, bytes).map_err(|e| corrupt(e.to_string()))
-    }
-
-    /// The robot that [`to_bytes`](Self::to_bytes) stored.
-    ///
-    /// # Errors
-    /// [`Error::Corrupt`] for bytes of another version or of something else.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let (version, rest) = bytes.split_first().ok_or_else(|| corrupt("no bytes".into()))?;
-        if *version != FORMAT {
-            return Err(corrupt(format!("format version {version}, this library reads version {FORMAT}")));
-        }
-        let (stored, rest): (Stored, _) = postcard::take_from_bytes(rest).map_err(|e| corrupt(e.to_string()))?;
-        let collision = match rest {
-            [] => CollisionModel::default(),
-            _ => postcard::from_bytes(rest).map_err(|e| corrupt(e.to_string()))?,
-        };
-        let bare = Self::assembled(stored.description, stored.base, stored.tool, CollisionModel::default())?;
-        let checked = bare.with_capsules(collision.capsules.clone())?;
-        Ok(checked.with_collision(collision))
-    }
-}
-
-fn corrupt(problem: String) -> Error {
-    Error::Corrupt { what: "robot".into(), problem }
-}
-
-impl ChainBuilder {
-    /// Everything that the kernels rely on.
-    fn validate(&self) -> Result<()> {
-        let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem };
-        let moving = self.elements.iter().filter(|e| matches!(e, Element::Moving { .. })).count();
-        if moving == 0 || self.joints.is_empty() {
-            return Err(invalid("no joint moves between base and tip".into()));
-        }
-        if moving > MAX_DOF || self.joints.len() > MAX_DOF {
-            return Err(invalid(format!(
-                "{moving} moving joints between base and tip; at most {MAX_DOF} are supported"
-            )));
-        }
-        let mut names = HashSet::new();
-        for joint in &self.joints {
-            if !names.insert(&joint.name) {
-                return Err(invalid(format!("two joints are named '{}'", joint.name)));
-            }
-            joint.validate()?;
-        }
-        let mut links = HashSet::new();
-        self.elements.iter().try_for_each(|element| match element {
-            Element::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
-            Element::Link(name) if !links.insert(name) => Err(invalid(format!("two links are named '{name}'"))),
-            Element::Link(_) => Ok(()),
-            Element::Moving { axis, joint, scale, offset, .. } => {
-                let Some(driver) = self.joints.get(*joint) else {
-                    return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
-                };
-                if !((axis.norm() - 1.0).abs() < 1e-9) {
-                    return Err(invalid(format!("joint '{}' has a zero or non-finite axis", driver.name)));
-                }
-                require_finite("scale and offset of a joint", &[*scale, *offset], |_| {
-                    format!("joint '{}'", driver.name)
-                })
-            }
-        })
-    }
-}
-
-impl Joint {
-    fn validate(&self) -> Result<()> {
-        let Self { lower, upper, velocity, .. } = *self;
-        let limits = [
-            ("lower", lower, lower < f64::INFINITY, "a number below infinity"),
-            ("upper", upper, upper > f64::NEG_INFINITY, "a number above -infinity"),
-            ("velocity", velocity, !velocity.is_nan(), "a number"),
-        ];
-        if let Some((side, value, _, requirement)) = limits.into_iter().find(|(_, _, valid, _)| !valid) {
-            return Err(Error::out_of_range(format!("{side} limit of joint '{}'", self.name), requirement, value));
-        }
-        let joint = self.name.clone();
-        if lower > upper {
-            return Err(Error::EmptyRange { joint, lower, upper, time: None });
-        }
-        if velocity < 0.0 {
-            return Err(Error::NegativeLimit { field: "velocity".into(), joint, value: velocity, time: 0.0 });
-        }
-        Ok(())
     }
 }

@@ -65,9 +65,8 @@ impl Seeds<'_> {
         let range = |i: usize| self.joints[i].sampling_range_within(lower[i], upper[i]);
         let mut frame = *frame;
         if let Some(first) = self.index.first {
-            let angle = self.turn_of_first(&frame);
-            q[first.joint] = first.turned(q[first.joint], angle, range(first.joint));
-            let (sine, cosine) = angle.sin_cos();
+            let (sine, cosine) = self.turn_of_first(&frame);
+            q[first.joint] = first.turned(q[first.joint], f64::atan2(sine, cosine), range(first.joint));
             frame = turned_about_base_z(&frame, sine, cosine);
         }
         if let (Some(last), Wanted::Frame(wanted)) = (self.index.last, &self.wanted) {
@@ -75,14 +74,14 @@ impl Seeds<'_> {
         }
     }
 
-    /// The turn about the base's z axis (rad) that brings `frame` nearest to what is wanted.
-    fn turn_of_first(&self, frame: &Frame) -> f64 {
+    /// Sine and cosine of the turn about the base's z axis that brings `frame` nearest to what is wanted.
+    fn turn_of_first(&self, frame: &Frame) -> (f64, f64) {
         match &self.wanted {
-            Wanted::Point { place, tip } => azimuth_between(&[(1.0, frame.place::<Separate>(tip), *place)]),
+            Wanted::Point { place, tip } => turn_between(&[(1.0, frame.place::<Separate>(tip), *place)]),
             Wanted::Frame(wanted) => {
                 let z = AXIS_WEIGHT * AXIS_WEIGHT;
                 let x = if self.index.last.is_some() { 0.0 } else { z };
-                azimuth_between(&[
+                turn_between(&[
                     (1.0, frame.origin, wanted.origin),
                     (z, frame.axes[2], wanted.axes[2]),
                     (x, frame.axes[0], wanted.axes[0]),
@@ -92,14 +91,15 @@ impl Seeds<'_> {
     }
 }
 
-/// The angle about z (rad) that minimises the weighted squared distances of the pairs (weight, from, to).
-fn azimuth_between(pairs: &[(f64, [f64; 3], [f64; 3])]) -> f64 {
+/// Sine and cosine of the turn about z that minimises the weighted squared distances of the pairs (weight, from, to).
+fn turn_between(pairs: &[(f64, [f64; 3], [f64; 3])]) -> (f64, f64) {
     let (mut sine, mut cosine) = (0.0, 0.0);
     for (weight, from, to) in pairs {
         sine += weight * (from[0] * to[1] - from[1] * to[0]);
         cosine += weight * (from[0] * to[0] + from[1] * to[1]);
     }
-    f64::atan2(sine, cosine)
+    let size = (sine * sine + cosine * cosine).sqrt();
+    if size > 0.0 { (sine / size, cosine / size) } else { (0.0, 1.0) }
 }
 
 /// The turn of `frame` about its own z axis (rad) that brings its x and y axes nearest to those of `wanted`.

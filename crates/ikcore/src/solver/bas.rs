@@ -11,15 +11,14 @@
 //! third of all evaluations repeats one already made; we repeat it too, for counts that compare. And the best point is
 //! kept over all evaluations, antennae included, which for c2 = 1 is the best beetle of line 15.
 
-use std::fmt;
-use std::str::FromStr;
-
 use smallvec::SmallVec;
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result, require_positive};
+use crate::math::vector::sign;
 use crate::objective::{Objective, Point};
+use crate::wording::words;
 
 /// From where the next exploration of a pass starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,28 +31,7 @@ pub enum Variant {
     Greedy,
 }
 
-impl fmt::Display for Variant {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Star => "star",
-            Self::Chain => "chain",
-            Self::Greedy => "greedy",
-        })
-    }
-}
-
-impl FromStr for Variant {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "star" => Ok(Self::Star),
-            "chain" => Ok(Self::Chain),
-            "greedy" => Ok(Self::Greedy),
-            _ => Err(Error::unknown_option("variant", name, &["star", "chain", "greedy"])),
-        }
-    }
-}
+words!("variant": Variant { Star => "star", Chain => "chain", Greedy => "greedy" });
 
 /// Beetle antennae search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -215,7 +193,7 @@ impl Bas {
         }
         let mut smells = [[0.0; 2]; LARGEST_GROUP];
         evaluator.evaluate_all(antennae, smells[..count].as_flattened_mut())?;
-        // v) move towards the lower value, eq. (11) and (13); equal smells leave the beetle where it is
+        // v) move towards the lower value, eq. (11) and (13); equal smells, also where neither is finite, leave the beetle
         let delta = self.c2 * lambda;
         for ((b, beetle), [left, right]) in
             group.directions.chunks_exact(n).zip(beetles.chunks_exact_mut(n)).zip(smells)
@@ -260,9 +238,4 @@ fn place(out: &mut [f64], x: &[f64], distance: f64, b: &[f64]) {
     for ((out, x), b) in out.iter_mut().zip(x).zip(b) {
         *out = x + distance * b;
     }
-}
-
-/// The plain sign of eq. (11): zero at zero, and for antennae that both smell nothing finite.
-pub(super) fn sign(z: f64) -> f64 {
-    f64::from(i8::from(z > 0.0) - i8::from(z < 0.0))
 }

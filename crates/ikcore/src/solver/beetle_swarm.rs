@@ -5,16 +5,14 @@
 //! which the swarm diverges; the antennae of eq. (28) to (30) stand at x +- V d/2 (the paper prints one name for both)
 //! with the velocity just updated, as line 7 of its Algorithm 1 has it. [`BeetleSwarm::literal`] has no inertia weight.
 
-use std::fmt;
-use std::str::FromStr;
-
-use super::bas::sign;
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use super::population::{Members, Memory, Population, Schedule};
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
+use crate::math::vector::sign;
 use crate::objective::Objective;
+use crate::wording::words;
 
 /// Which way a beetle goes along its velocity, given what its antennae smell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,26 +24,7 @@ pub enum Direction {
     Downhill,
 }
 
-impl fmt::Display for Direction {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Printed => "printed",
-            Self::Downhill => "downhill",
-        })
-    }
-}
-
-impl FromStr for Direction {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "printed" => Ok(Self::Printed),
-            "downhill" => Ok(Self::Downhill),
-            _ => Err(Error::unknown_option("direction", name, &["printed", "downhill"])),
-        }
-    }
-}
+words!("direction": Direction { Printed => "printed", Downhill => "downhill" });
 
 /// Beetle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]

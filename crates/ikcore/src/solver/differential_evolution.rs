@@ -1,14 +1,12 @@
 //! Differential evolution, DE/rand/1/bin (Storn and Price 1997).
 
-use std::fmt;
-use std::str::FromStr;
-
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use super::population::{Members, Population, Schedule};
 use crate::error::{Error, Result};
 use crate::objective::{Bounds, Objective};
 use crate::rng::LazyRng;
+use crate::wording::words;
 
 /// When a trial that does no worse takes its vector's place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,26 +17,7 @@ pub enum Update {
     Immediate,
 }
 
-impl fmt::Display for Update {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Generation => "generation",
-            Self::Immediate => "immediate",
-        })
-    }
-}
-
-impl FromStr for Update {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "generation" => Ok(Self::Generation),
-            "immediate" => Ok(Self::Immediate),
-            _ => Err(Error::unknown_option("update", name, &["generation", "immediate"])),
-        }
-    }
-}
+words!("update": Update { Generation => "generation", Immediate => "immediate" });
 
 /// Differential evolution.
 #[derive(Debug, Clone, Copy, PartialEq)]

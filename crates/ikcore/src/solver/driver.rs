@@ -21,6 +21,15 @@ pub trait Solver<O: Objective + ?Sized> {
     /// The evaluator's [`Halt`].
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Halt>;
 
+    /// Begins anew at `x0`; who has large buffers writes into those of `state`.
+    ///
+    /// # Errors
+    /// The evaluator's [`Halt`].
+    fn restart(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Halt> {
+        *state = self.start(evaluator, x0)?;
+        Ok(())
+    }
+
     /// One iteration.
     ///
     /// # Errors
@@ -37,6 +46,10 @@ impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for &S {
 
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Halt> {
         (*self).start(evaluator, x0)
+    }
+
+    fn restart(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Halt> {
+        (*self).restart(state, evaluator, x0)
     }
 
     fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {

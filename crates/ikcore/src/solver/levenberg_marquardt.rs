@@ -72,13 +72,21 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
         Ok(State { x, value, damping: self.initial_damping, linearizations, here: 0 })
     }
 
+    fn restart(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Halt> {
+        let State { x, value, damping, linearizations, here } = state;
+        x.copy_from_slice(x0);
+        *value = evaluator.linearize(x, &mut linearizations[*here])?;
+        *damping = self.initial_damping;
+        Ok(())
+    }
+
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
         let State { x, value, damping, linearizations, here } = state;
         if !value.is_finite() {
             return Err(Halt::Stalled);
         }
         let bounds = evaluator.bounds();
-        let mut trial = x.clone();
+        let mut trial = Point::from_slice(x);
         let lambda = *damping * *value;
         let Linearization { columns, residual } = &linearizations[*here];
         box_step(columns, residual, lambda, x, bounds.lower(), bounds.upper(), &mut trial);

@@ -104,7 +104,8 @@ impl<S> MultiStart<S> {
         }
         let mut x = Point::from_elem(0.0, evaluator.dimension());
         evaluator.next_attempt(&mut x);
-        *state = self.start(evaluator, &x)?;
+        self.solver.restart(&mut state.inner, evaluator, &x)?;
+        (state.steps, state.milestone) = (0, evaluator.attempt_value());
         Ok(())
     }
 }

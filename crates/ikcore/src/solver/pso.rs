@@ -2,10 +2,9 @@
 //! Eberhart 1998).
 //!
 //! The global-best swarm; velocities are clamped to a share of the box as Eberhart and Shi (2000) advise for both forms,
-//! and a particle that meets a wall stops there.
+//! and a particle that meets a wall stops there, if nothing else is said.
 
 use std::fmt;
-use std::str::FromStr;
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
@@ -13,6 +12,8 @@ use super::population::{Memory, Population, Schedule, repeat};
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Bounds, Objective};
+use crate::rng::LazyRng;
+use crate::wording::words;
 
 /// What keeps velocities from growing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,6 +59,17 @@ impl Form {
     }
 }
 
+/// What becomes of a coordinate that would leave the box; techniques compared by Helwig, Branke and Mostaghim (2013).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Walls {
+    /// It stops at the wall, and has no velocity left.
+    Absorbing,
+    /// It is drawn anew in the box, and keeps its velocity. What mealpy's PSO does.
+    Random,
+}
+
+words!("walls": Walls { Absorbing => "absorbing", Random => "random" });
+
 /// Whether a particle stays where it went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Accept {
@@ -67,26 +79,7 @@ pub enum Accept {
     Improving,
 }
 
-impl fmt::Display for Accept {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Always => "always",
-            Self::Improving => "improving",
-        })
-    }
-}
-
-impl FromStr for Accept {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "always" => Ok(Self::Always),
-            "improving" => Ok(Self::Improving),
-            _ => Err(Error::unknown_option("accept", name, &["always", "improving"])),
-        }
-    }
-}
+words!("accept": Accept { Always => "always", Improving => "improving" });
 
 /// Particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,6 +96,8 @@ pub struct Pso {
     pub velocity_limit: f64,
     /// Whether a particle stays where it went.
     pub accept: Accept,
+    /// What becomes of a coordinate that would leave the box.
+    pub walls: Walls,
 }
 
 impl Default for Pso {
@@ -122,6 +117,7 @@ impl Pso {
             c2: attraction,
             velocity_limit: 0.5,
             accept: Accept::Always,
+            walls: Walls::Absorbing,
         }
     }
 
@@ -133,7 +129,9 @@ impl Pso {
         self.schedule.validate(2)?;
         require_positive("c1", self.c1)?;
         require_positive("c2", self.c2)?;
-        require_positive("velocity_limit", self.velocity_limit)?;
+        if !(self.velocity_limit > 0.0) {
+            return Err(Error::out_of_range("velocity_limit", "positive", self.velocity_limit));
+        }
         match self.form {
             Form::Inertia(weight) if !(0.0..1.0).contains(&weight) => {
                 Err(Error::out_of_range("inertia", "at least 0 and below 1", weight))
@@ -165,7 +163,7 @@ pub struct State {
     population: Population,
     memory: Memory,
     velocities: Velocities,
-    walls: Walls,
+    room: Room,
 }
 
 impl<O: Objective + ?Sized> Solver<O> for Pso {
@@ -176,18 +174,22 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
         Ok(State {
             memory: Memory::new(self.schedule.population, x0.len()),
             velocities: Velocities::new(&population, self.velocity_limit),
-            walls: Walls::new(evaluator.bounds(), &population),
+            room: Room::new(evaluator.bounds(), &population),
             population,
         })
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
-        let State { population, memory, velocities, walls } = state;
+        let State { population, memory, velocities, room } = state;
         if population.is_drawn(&self.schedule, evaluator)? {
             velocities.draw(population, evaluator.rng());
         } else {
             velocities.turn(self.weights(), population, memory, evaluator.rng());
-            move_particles(&mut population.members.points, &mut velocities.all, walls);
+            let (points, velocities) = (&mut population.members.points, &mut velocities.all);
+            match self.walls {
+                Walls::Absorbing => room.stop(points, velocities),
+                Walls::Random => room.draw_anew(points, velocities, evaluator.rng()),
+            }
             population.members.evaluate_from(0, evaluator)?;
         }
         memory.update(population);
@@ -200,12 +202,12 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
 
 /// The box, laid out as the particles' coordinates are.
 #[derive(Debug, Clone)]
-struct Walls {
+struct Room {
     lower: Vec<f64>,
     upper: Vec<f64>,
 }
 
-impl Walls {
+impl Room {
     fn new(bounds: &Bounds, population: &Population) -> Self {
         let repeated = |row| {
             let mut rows = vec![0.0; population.members.points.len()];
@@ -214,13 +216,22 @@ impl Walls {
         };
         Self { lower: repeated(bounds.lower()), upper: repeated(bounds.upper()) }
     }
-}
 
-/// x = x + v; a particle stops at the walls.
-fn move_particles(points: &mut [f64], velocities: &mut [f64], walls: &Walls) {
-    let walls = walls.lower.iter().zip(&walls.upper);
-    for ((x, v), (lower, upper)) in points.iter_mut().zip(velocities).zip(walls) {
-        fly(x, v, *lower, *upper);
+    /// x = x + v; what meets a wall stops there.
+    fn stop(&self, points: &mut [f64], velocities: &mut [f64]) {
+        let walls = self.lower.iter().zip(&self.upper);
+        for ((x, v), (lower, upper)) in points.iter_mut().zip(velocities).zip(walls) {
+            fly(x, v, *lower, *upper);
+        }
+    }
+
+    /// x = x + v; what would leave the box is somewhere in it.
+    fn draw_anew(&self, points: &mut [f64], velocities: &[f64], rng: &mut LazyRng) {
+        let walls = self.lower.iter().zip(&self.upper);
+        for ((x, v), (lower, upper)) in points.iter_mut().zip(velocities).zip(walls) {
+            let wanted = *x + *v;
+            *x = if *lower <= wanted && wanted <= *upper { wanted } else { rng.uniform_in(*lower, *upper) };
+        }
     }
 }
 

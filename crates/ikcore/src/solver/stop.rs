@@ -82,11 +82,13 @@ pub enum Status {
     BelowThreshold = 11,
     /// The search arrived outside the limits, and whole turns do not bring it inside; the best inside is kept.
     OutsideLimits = 12,
+    /// The region of the task keeps the tip from the target; the tip is in it, as near as it may come.
+    HeldInRegion = 13,
 }
 
 impl Status {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Solved,
         Self::Improved,
         Self::Capped,
@@ -100,6 +102,7 @@ impl Status {
         Self::PlantFailed,
         Self::BelowThreshold,
         Self::OutsideLimits,
+        Self::HeldInRegion,
     ];
 
     /// The name as Python shows it.
@@ -118,6 +121,7 @@ impl Status {
             Self::PlantFailed => "PLANT_FAILED",
             Self::BelowThreshold => "BELOW_THRESHOLD",
             Self::OutsideLimits => "OUTSIDE_LIMITS",
+            Self::HeldInRegion => "HELD_IN_REGION",
         }
     }
 
@@ -137,6 +141,7 @@ impl Status {
             Self::Invalid => "on_invalid=\"raise\" says what is wrong",
             Self::PlantFailed => "mend the plant and run again",
             Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
+            Self::HeldInRegion => "move the target into the region, or widen the region",
             Self::OutsideLimits => {
                 "try another start or seed, MultiStart, or a solver that searches inside the limits, such as LevenbergMarquardt"
             }

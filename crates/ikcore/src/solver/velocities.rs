@@ -19,12 +19,13 @@ pub struct Velocities {
 }
 
 impl Velocities {
-    /// Particles at rest; `limit` is the largest velocity as a share of the box's width a generation.
+    /// Particles at rest; `limit` is the largest velocity as a share of the box's width a generation; infinite: none.
     pub fn new(population: &Population, limit: f64) -> Self {
         let none = vec![0.0; population.members.points.len()];
         let mut most = none.clone();
         repeat(&population.widths, &mut most);
-        most.iter_mut().for_each(|most| *most *= limit);
+        // Of an infinite share of no width there is no telling.
+        most.iter_mut().for_each(|most| *most = if limit.is_finite() { limit * *most } else { f64::INFINITY });
         Self { all: none.clone(), most, leader: none.clone(), draws: none }
     }
 

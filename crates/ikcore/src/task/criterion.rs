@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{SquaredError, Target, Tolerance};
+use super::region::Outside;
+use super::{Region, SquaredError, Target, Tolerance};
 use crate::error::{Error, Result};
 use crate::math::box_step::ROWS;
 use crate::objective::{Linearization, Score};
@@ -14,11 +15,15 @@ pub struct Criterion {
     pub tolerance: Tolerance,
     /// Where components are told apart.
     pub components: Option<Components>,
+    /// Where the tip is to stay; None: anywhere.
+    pub region: Option<Region>,
+    /// What a tip outside its region is worth.
+    pub outside: Outside,
 }
 
 impl From<Tolerance> for Criterion {
     fn from(tolerance: Tolerance) -> Self {
-        Self { tolerance, components: None }
+        Self { tolerance, ..Self::default() }
     }
 }
 
@@ -80,6 +85,12 @@ impl Criterion {
     pub fn validate(&self) -> Result<()> {
         self.tolerance.validate()?;
         self.components.as_ref().map_or(Ok(()), Components::validate)
+    }
+
+    /// Whether the coordinates of a position are told apart, so that its distance alone does not say enough.
+    #[inline(always)]
+    pub(super) fn tells_apart(&self) -> bool {
+        self.components.is_some() || self.region.is_some()
     }
 
     /// What `error`, with the sum of squares `value`, comes to where components are not told apart.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::criterion::{check_tolerances, check_weights};
-use super::{Components, Target};
+use super::{Components, Criterion, Region, Target, Tolerance};
 use crate::error::{Error, Result, require_finite};
 use crate::math::Pose;
 use crate::math::box_step::ROWS;
@@ -35,6 +35,8 @@ pub struct Task {
     pub components: Option<Components>,
     /// From the tip to what is to reach the target; None: the tip itself.
     pub tool: Option<Pose>,
+    /// Where that is to stay; None: anywhere.
+    pub region: Option<Region>,
 }
 
 impl Kind {
@@ -85,7 +87,7 @@ impl Kind {
 
 impl From<Kind> for Task {
     fn from(kind: Kind) -> Self {
-        Self { kind, components: None, tool: None }
+        Self { kind, components: None, tool: None, region: None }
     }
 }
 
@@ -107,8 +109,22 @@ impl Task {
                 tolerance: tolerance.map(|entries| kind.expand("tolerance", entries, f64::INFINITY)).transpose()?,
             }),
         };
-        let task = Self { kind, components, tool };
+        let task = Self { kind, components, tool, region: None };
         task.validate().map(|()| task)
+    }
+
+    /// The same task with the tip kept in `region`.
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub fn within(self, region: Region) -> Result<Self> {
+        let task = Self { region: Some(region), ..self };
+        task.validate().map(|()| task)
+    }
+
+    /// When a target of this task is reached.
+    pub(crate) fn criterion(&self, tolerance: Tolerance) -> Criterion {
+        Criterion { components: self.components, region: self.region, ..tolerance.into() }
     }
 
     /// The weights, one for each component that the kind has; None where they are all one by default.
@@ -128,7 +144,8 @@ impl Task {
     /// Checks axis, weights, tolerances and tool.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::OutOfRange`] names the entry.
+    /// [`Error::NotFinite`] or [`Error::OutOfRange`] names the entry; [`Error::Contradiction`] for a region beside weights
+    /// that leave some, not all, of a pose's x, y and z free: its axes are the base's, theirs are the target's.
     pub fn validate(&self) -> Result<()> {
         if let Kind::Pointing { axis } = &self.kind {
             require_finite("axis", axis, |i| format!("entry {i}"))?;
@@ -136,7 +153,17 @@ impl Task {
                 return Err(Error::out_of_range("the length of axis", "positive", 0.0));
             }
         }
-        self.components.as_ref().map_or(Ok(()), Components::validate)
+        let Some(components) = &self.components else { return Ok(()) };
+        components.validate()?;
+        let free = components.weights[..3].iter().filter(|weight| **weight == 0.0).count();
+        if self.region.is_some() && matches!(self.kind, Kind::Pose | Kind::Pointing { .. }) && (1..3).contains(&free) {
+            return Err(Error::Contradiction {
+                problem: "region keeps x, y and z of the base, but weights free some of x, y and z of the target: \
+                          free all three or none, or take task Position, whose axes are the base's"
+                    .into(),
+            });
+        }
+        Ok(())
     }
 
     /// What of `wanted`, a position or a pose, this task asks for.

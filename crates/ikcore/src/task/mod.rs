@@ -10,12 +10,14 @@ mod orientation;
 mod pointing;
 mod pose;
 mod position;
+mod region;
 
 pub use criterion::{Assessment, Components, Criterion};
 pub use error::{SquaredError, TipError, Tolerance};
 pub use goal::{Goal, Goals};
 pub use kind::{Kind, Task};
 pub use motion::{TargetMotion, Twist};
+pub use region::{Outside, Region};
 
 use crate::error::{Result, require_finite};
 use crate::math::box_step::ROWS;
@@ -73,8 +75,8 @@ impl Target {
     /// How far the tip of `robot` at `q` is from here, by `criterion`.
     #[inline]
     pub fn assess(&self, robot: &Robot, q: &[f64], criterion: &Criterion) -> Assessment {
-        match (self, &criterion.components) {
-            (Self::Position(target), None) => position_alone(target, &robot.tip_position(q), criterion),
+        match (self, criterion.tells_apart()) {
+            (Self::Position(target), false) => position_alone(target, &robot.tip_position(q), criterion),
             _ => self.assess_tip(&robot.tip(q), criterion),
         }
     }
@@ -83,8 +85,8 @@ impl Target {
     /// where only positions matter.
     #[inline]
     pub fn assess_all(&self, robot: &Robot, qs: &[f64], criterion: &Criterion, mut keep: impl FnMut(Assessment)) {
-        match (self, &criterion.components) {
-            (Self::Position(target), None) => {
+        match (self, criterion.tells_apart()) {
+            (Self::Position(target), false) => {
                 robot.tip_positions(qs, |tip| keep(position_alone(target, &tip, criterion)));
             }
             _ => qs.chunks(robot.dof()).for_each(|q| keep(self.assess(robot, q, criterion))),
@@ -94,6 +96,9 @@ impl Target {
     /// How far a tip is from here, by `criterion`.
     #[inline]
     pub fn assess_tip(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
+        if let Some(region) = &criterion.region {
+            return self.assess_in(region, tip, criterion);
+        }
         let (error, value) = self.error(tip);
         match &criterion.components {
             None => criterion.of_whole(error, value),
@@ -111,6 +116,9 @@ impl Target {
     /// The same from a tip and its geometric Jacobian, which stands in the first `dof` columns of `out`.
     #[inline]
     pub fn complete(&self, tip: &Frame, dof: usize, criterion: &Criterion, out: &mut Linearization) -> Assessment {
+        if let Some(region) = &criterion.region {
+            return self.complete_in(region, tip, dof, criterion, out);
+        }
         let (error, value) = self.complete_whole(tip, dof, out);
         let Some(components) = &criterion.components else { return criterion.of_whole(error, value) };
         let assessment = criterion.of_components(components, self, &out.residual, error);

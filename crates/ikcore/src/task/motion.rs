@@ -51,7 +51,7 @@ impl Target {
         self.placed(there, twist.angular.map(|entry| time * entry))
     }
 
-    fn frame(&self) -> Option<&Frame> {
+    pub(super) fn frame(&self) -> Option<&Frame> {
         match self {
             Self::Position(_) => None,
             Self::Pose(frame) | Self::Orientation(frame) | Self::Pointing { frame, .. } => Some(frame),

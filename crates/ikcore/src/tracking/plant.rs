@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
-use crate::error::{Result, require_finite};
+use crate::error::{Error, Result, require_finite};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::session::Step;
-use crate::limits::Limits;
+use crate::limits::{Field, Limits};
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::wording::{number, time};
@@ -125,22 +125,31 @@ impl Record {
             return;
         };
         self.velocity_limit.extend_from_slice(velocity_limit);
-        for (j, q) in q.iter().enumerate() {
-            let before = self.q[self.q.len() - self.dof + j];
+        let limited_acceleration = self.limits.field(Field::Acceleration).is_some();
+        let mut fastest = f64::NEG_INFINITY;
+        for (j, (q, velocity_limit)) in q.iter().zip(velocity_limit).enumerate() {
+            let step = q - self.q[self.q.len() - self.dof + j];
             let [lower, upper] = self.limits.position_range(j, from, to);
-            let too_fast = (q - before).abs() - velocity_limit[j] * self.dt;
-            // From displacements, which keep the limit to the last bit; velocities round once more.
-            self.limit_margin = self.limit_margin.min(0.0 - too_fast / self.dt);
-            let too_sudden = self.too_sudden(j, q - before, [from, to]);
-            let excess = too_fast.max(too_sudden).max(lower - q).max(q - upper);
+            let too_fast = step.abs() - velocity_limit * self.dt;
+            fastest = fastest.max(too_fast);
+            let mut excess = too_fast.max(lower - q).max(q - upper);
+            if limited_acceleration {
+                excess = excess.max(self.too_sudden(j, step, [from, to]));
+            }
             self.note_excess(excess, j, *q, to);
         }
+        // From displacements, which keep the limit to the last bit; velocities round once more.
+        self.limit_margin = self.limit_margin.min(0.0 - fastest / self.dt);
     }
 
     /// Remembers the worst `excess` (rad, m) over a limit of joint `j`, at `q` and `when` (s), unless it is rounding.
+    #[inline]
     pub(super) fn note_excess(&mut self, excess: f64, j: usize, q: f64, when: f64) {
+        if excess <= self.max_violation {
+            return;
+        }
         let rounding = ALLOWED_ULPS * f64::EPSILON * q.abs().max(1.0);
-        if excess > rounding && excess > self.max_violation {
+        if excess > rounding {
             self.max_violation = excess;
             self.worst_violation = Some((j, when));
         }
@@ -153,7 +162,8 @@ impl Record {
         (step - before).abs() - self.limits.acceleration_over(j, from, to) * self.dt * self.dt
     }
 
-    /// Sums up: the track has succeeded if, once in its band, it stayed there, and every limit was kept.
+    /// Sums up: the track has succeeded if, once in its band, it stayed there, and every limit was kept; it was held in its
+    /// region if, at times, it was as near to its band as that allows.
     pub(super) fn finish(&mut self, interrupted: bool, elapsed: Duration) {
         self.elapsed = elapsed;
         let last = *self.step_status.last().unwrap_or(&Status::Capped);
@@ -161,14 +171,15 @@ impl Record {
             _ if interrupted => Status::Interrupted,
             Some(_) if self.worst_violation.is_some() => Status::Lost,
             Some(joined) if self.step_status[joined..].iter().all(|s| *s == Status::Solved) => Status::Solved,
+            Some(joined) if self.step_status[joined..].iter().all(is_in_place) => Status::HeldInRegion,
             Some(_) => Status::Lost,
             None => last,
         };
     }
 
-    /// The first row within the band.
+    /// The first row within the band, or as near to it as the region allows.
     pub fn joined(&self) -> Option<usize> {
-        self.step_status.iter().position(|status| *status == Status::Solved)
+        self.step_status.iter().position(is_in_place)
     }
 
     /// Evaluations of the forward kinematics in all.
@@ -190,7 +201,7 @@ impl Record {
                 time(when)
             );
         }
-        let Criterion { tolerance, components } = self.criterion;
+        let Criterion { tolerance, components, .. } = self.criterion;
         let band = match components.and_then(|components| components.tolerance) {
             Some(_) => "its tolerance in each component".into(),
             None => self.in_words(tolerance.position, tolerance.rotation),
@@ -206,6 +217,14 @@ impl Record {
         if self.status == Status::Solved {
             return format!("in the band of {band} from t = {since} s on; worst error there {worst}");
         }
+        if self.status == Status::HeldInRegion {
+            let held = self.step_status[joined..].iter().filter(|status| **status == Status::HeldInRegion).count();
+            let advice = self.status.advice();
+            return format!(
+                "from t = {since} s on held in its region in {held} of {last} steps, up to {worst} away, and else in the \
+                 band of {band}: {advice}"
+            );
+        }
         let outside = self.step_status[joined..].iter().filter(|status| **status != Status::Solved).count();
         format!(
             "joined the path at t = {since} s, then outside the band of {band} in {outside} of {last} steps, by up to {worst}: {advice}"
@@ -219,6 +238,11 @@ impl Record {
         let position = asked(&self.position_error, position);
         TipError { position, rotation: asked(&self.rotation_error, rotation) }.to_string()
     }
+}
+
+/// Whether a tick ended where it was to: in the band, or as near to it as the region allows.
+fn is_in_place(status: &Status) -> bool {
+    matches!(status, Status::Solved | Status::HeldInRegion)
 }
 
 /// The smallest error; NaN, which was not asked for, does not count.

@@ -39,11 +39,17 @@ impl Step {
         let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
         match self.status {
             Status::Solved => format!("within the tolerances, {error} away{limits}"),
+            Status::HeldInRegion => {
+                format!("as near as its region allows, {error} away{limits}: {}", self.status.advice())
+            }
             Status::Improved => format!("nearer than before, {error} away{limits}"),
             status => format!("no nearer than before, {error} away{limits}: {}", status.advice()),
         }
     }
 }
+
+/// Halvings of a tick that would leave the region: what is taken back too much is below a thousandth of it.
+const HALVINGS: usize = 10;
 
 /// A tracker in progress.
 #[derive(Debug)]
@@ -86,9 +92,12 @@ impl Session {
         limits.validate(dt, 0)?;
         let remedy = "this tracker keeps position, velocity and acceleration limits; leave it out";
         limits.require_none(&[Field::Jerk], "track", remedy)?;
+        if criterion.region.is_some() {
+            require_room_to_stop(&limits)?;
+        }
         robot.check("start", start)?;
-        limits.require_inside("start", 0.0, start)?;
         let robot = options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone());
+        require_inside(&robot, &limits, &criterion, "start", start)?;
         // Where limits vary, what goals take for a joint's range is that at the start.
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &robot, &ranges);
@@ -172,7 +181,11 @@ impl Session {
         self.last_target = Some((target, velocity));
         let Assessment { score, error } = target.assess(&self.robot, &self.q, &self.criterion);
         self.last_value = Some(score.value);
-        let status = if score.solved { Status::Solved } else { Status::Improved };
+        let status = match score.solved {
+            true if self.criterion.held_back(&target).is_some() => Status::HeldInRegion,
+            true => Status::Solved,
+            false => Status::Improved,
+        };
         let (position, error) = (self.robot.tip_position(&self.q), error.into());
         Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false })
     }
@@ -219,9 +232,11 @@ impl Session {
             rng: &mut self.rng,
             monitor,
         };
-        let found = self.running.advance(&self.q, tick);
+        let mut found = self.running.advance(&self.q, tick);
+        self.keep_in_region(&target, &mut found);
         let Assessment { score: Score { value, solved }, error } = found.assessment;
         let status = match self.last_value {
+            _ if solved && self.criterion.held_back(&target).is_some() => Status::HeldInRegion,
             _ if solved => Status::Solved,
             Some(last) if value >= last => Status::Capped,
             _ => Status::Improved,
@@ -237,6 +252,24 @@ impl Session {
         let Found { position, evaluations, iterations, interrupted, .. } = found;
         let inside_limits = within && slow_enough;
         Ok(Step { status, error: error.into(), position, evaluations, iterations, inside_limits, interrupted })
+    }
+
+    /// Takes back as much of a tick as would bring the tip out of its region. Where it began the tip is inside, and what lies
+    /// between there and any end in the box lies in the box too.
+    fn keep_in_region(&mut self, target: &Target, found: &mut Found) {
+        let Some(region) = self.criterion.region.filter(|region| !region.contains(&found.position)) else { return };
+        let (mut kept, mut past) = (0.0, 1.0);
+        let end = found.q.clone();
+        for _ in 0..HALVINGS {
+            let share = 0.5 * (kept + past);
+            between(&self.q, &end, share, &mut found.q);
+            let inside = region.contains(&self.robot.tip_position(&found.q));
+            (kept, past) = if inside { (share, past) } else { (kept, share) };
+        }
+        between(&self.q, &end, kept, &mut found.q);
+        found.arrive(&self.robot.tip(&found.q), target, &self.criterion);
+        found.evaluations += HALVINGS + 1;
+        self.running.forget();
     }
 
     /// How `target`, which has this `velocity` at the end of the tick, comes there. Where nothing is known of the tick
@@ -262,11 +295,33 @@ impl Session {
     /// As [`new`](Self::new) for the start.
     pub fn reset(&mut self, q: &[f64]) -> Result<()> {
         self.robot.check("q", q)?;
-        self.limits.require_inside("q", 0.0, q)?;
+        require_inside(&self.robot, &self.limits, &self.criterion, "q", q)?;
         self.q.copy_from_slice(q);
         self.qd.fill(0.0);
         (self.ticks, self.last_value, self.last_target, self.running) = (0, None, None, self.rule.start());
         self.rng = rng::stream(self.seed, 0);
         Ok(())
     }
+}
+
+/// q + share * (end - q), never beyond `end` by rounding.
+fn between(q: &[f64], end: &[f64], share: f64, out: &mut [f64]) {
+    for (out, (q, end)) in out.iter_mut().zip(q.iter().zip(end)) {
+        *out = (q + share * (end - q)).clamp(q.min(*end), q.max(*end));
+    }
+}
+
+/// Err unless `q` is within the position limits, and puts the tip in its region; `what` names it.
+fn require_inside(robot: &Robot, limits: &Limits, criterion: &Criterion, what: &str, q: &[f64]) -> Result<()> {
+    limits.require_inside(what, 0.0, q)?;
+    criterion.region.map_or(Ok(()), |region| region.require_inside(what, &robot.tip_position(q)))
+}
+
+/// Err where an arm may not be able to stand still, and so to stay in a region.
+fn require_room_to_stop(limits: &Limits) -> Result<()> {
+    let method = "a task with a region";
+    let remedy = "an arm that may not stop at once can be carried out of it; leave one of the two out";
+    limits.require_none(&[Field::Acceleration], method, remedy)?;
+    let remedy = "limits that move can push the arm out of it; give numbers, or leave region out";
+    limits.require_still(method, remedy)
 }

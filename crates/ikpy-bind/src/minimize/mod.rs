@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 
 use function::{Attendant, Failure, Function};
 
-use crate::convert::{count, row, summary, table, vector};
+use crate::convert::{copied, count, summary, table, vector};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
 use crate::monitor::Watcher;
@@ -85,7 +85,7 @@ impl PyMinimum {
 impl PyMinimum {
     fn new(py: Python<'_>, core: minimize::Minimum, limits: Py<PyLimits>) -> PyResult<Self> {
         let history = table(py, core.history.as_flattened().to_vec(), &[core.history.len(), 2])?.unbind();
-        Ok(Self { x: row(py, core.x.to_vec()).unbind(), history, limits, core })
+        Ok(Self { x: copied(py, &core.x).unbind(), history, limits, core })
     }
 }
 

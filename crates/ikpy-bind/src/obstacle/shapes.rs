@@ -1,14 +1,51 @@
 //! The shapes that obstacles have: a class each, which keeps what it was given.
 
+use std::convert::Infallible;
+
 use ikcore::nalgebra::Matrix3;
 use ikcore::obstacle::Obstacle;
-use numpy::PyUntypedArrayMethods;
+use numpy::{PyArray1, PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::PyClass;
 use pyo3::prelude::*;
 
 use super::PyObstacle;
-use crate::convert::{Array, Coordinates, Rotation, array, entries, matrix3, point, shape_text, table};
+use crate::convert::{Array, array, copied, entries, matrix3, point, shape_text, table};
 use crate::error::{invalid, raise};
+
+/// A point or the like as a class keeps it; Python gets a read-only vector.
+#[derive(Clone, Copy)]
+struct Coordinates<const N: usize>([f64; N]);
+
+impl<'py, const N: usize> IntoPyObject<'py> for Coordinates<N> {
+    type Target = PyArray1<f64>;
+    type Output = Bound<'py, Self::Target>;
+    type Error = Infallible;
+
+    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
+        Ok(copied(py, &self.0))
+    }
+}
+
+/// How something is turned, as a class keeps it; Python gets a read-only matrix (3, 3).
+#[derive(Clone, Copy)]
+struct Rotation(Matrix3<f64>);
+
+impl Rotation {
+    /// This one, or that of something that was not turned.
+    fn or_none(given: Option<Matrix3<f64>>) -> Self {
+        Self(given.unwrap_or_else(Matrix3::identity))
+    }
+}
+
+impl<'py> IntoPyObject<'py> for Rotation {
+    type Target = PyArrayDyn<f64>;
+    type Output = Bound<'py, Self::Target>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
+        table(py, self.0.transpose().as_slice().to_vec(), &[3, 3])
+    }
+}
 
 fn read_rotation(rotation: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Matrix3<f64>>> {
     rotation.map(|rotation| matrix3("rotation", rotation)).transpose()

@@ -1,10 +1,10 @@
 //! `Path`: a curve and an orientation, of the core or of a Python function.
 
 mod curves;
+mod sampled;
 
-use ikcore::math::ticks::ticks;
 use ikcore::nalgebra::Matrix3;
-use ikcore::path::{Path, Reference};
+use ikcore::path::Path;
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -12,7 +12,6 @@ use pyo3::types::{PyBytes, PyTuple};
 
 use crate::convert::{Array, matrix3, point, row, table, times};
 use crate::error::{invalid, raise};
-use crate::limits::CALLS_BETWEEN_LOOKS;
 use crate::stored::{self, Reduced};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -173,35 +172,6 @@ impl PyPath {
             Orientation::Function(function) => Some(function.bind(py).clone()),
         };
         (curve, self.duration(), orientation).into_pyobject(py)
-    }
-
-    /// The path at all tick times; Python functions are called here, before the core runs.
-    pub fn reference(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
-        if let (Curve::Core(path), Orientation::OfCurve) = (&self.curve, &self.orientation) {
-            return path.sample(dt).map_err(raise);
-        }
-        let count = ticks(self.duration(), dt).map_err(raise)? + 1;
-        let time = |i: usize| (i as f64 * dt).min(self.duration());
-        let mut positions = Vec::with_capacity(count);
-        let mut rotations = Vec::new();
-        for i in 0..count {
-            if i % CALLS_BETWEEN_LOOKS == 0 {
-                py.check_signals()?;
-            }
-            positions.push(self.position_at(py, time(i))?);
-            rotations.extend(self.rotation_at(py, time(i))?);
-        }
-        let rotations = (!rotations.is_empty()).then_some(rotations);
-        Reference::new(dt, positions, rotations).map_err(raise)
-    }
-
-    /// The same with the velocities at the ticks.
-    pub fn moving_reference(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
-        let reference = self.reference(py, dt)?;
-        let velocities = (0..reference.len())
-            .map(|i| self.velocity_at(py, reference.time(i).min(self.duration())))
-            .collect::<PyResult<_>>()?;
-        reference.with_velocities(velocities).map_err(raise)
     }
 
     fn position_at(&self, py: Python<'_>, t: f64) -> PyResult<[f64; 3]> {

@@ -1,7 +1,7 @@
 //! `plan_along_path`.
 
 use ikcore::path::Reference;
-use ikcore::planning::{self, AlongPathOptions};
+use ikcore::planning::{self, AlongPathMethod, AlongPathOptions, Course};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -20,14 +20,15 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///
 /// Args:
 ///     robot: the arm.
-///     path: a `Path`, whose times do not matter here, or points (k, 3) (m) or poses (k, 4, 4).
+///     path: a `Path`, whose times do not matter here, or points (k, 3) (m) or poses (k, 4, 4), straight in between.
 ///     start_q: joint angles (n,) to start from; None: the planner's choice.
 ///     limits: positions, velocities and accelerations to keep; None: the robot's.
 ///     method: "timed": redundancy and the fastest timing found together; "tpbso": redundancy by a beetle swarm, uniform
 ///         time, splines through every second point (Wang et al. 2019).
 ///     objective: what to minimise: "time" or "joint_travel".
-///     elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it.
-///     accuracy: how far the tip may be from the points (m); None: what suits the method.
+///     elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it; None: 1.
+///     accuracy: how far the tip may be from the path (m), between its points too, and how far turned from it (rad); as
+///         many points are passed as that takes. None: a thousandth of the path's extent, for "tpbso" 4 %.
 ///     solver: what searches; None: the method's own.
 ///     stop: budgets; None: the method's own.
 ///     seed: of the random draws: the same seed, the same bits.
@@ -41,7 +42,7 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     LimitError: limits that contradict themselves.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
-#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", elbow=1, accuracy=None,
+#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", elbow=None, accuracy=None,
                     solver=None, stop=None, seed=0, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_along_path(
@@ -52,7 +53,7 @@ pub fn plan_along_path(
     limits: Option<&PyLimits>,
     method: &str,
     objective: &str,
-    elbow: i128,
+    elbow: Option<i128>,
     accuracy: Option<f64>,
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
@@ -60,33 +61,37 @@ pub fn plan_along_path(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyPlan> {
     let arm = robot.get().core.clone();
-    let reference = read_path(py, path)?;
+    let course = read_course(py, path)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
     let options = AlongPathOptions {
         method: method.parse().map_err(raise)?,
         objective: objective.parse().map_err(raise)?,
         start: start_q.map(|q| vector("start_q", q)).transpose()?,
         limits: resolved,
-        elbow: read_elbow("elbow", elbow)?,
+        elbow: elbow.map(|sign| read_elbow("elbow", sign)).transpose()?,
         accuracy,
         solver: solver.map(|solver| derivative_free_solver("plan_along_path", solver)).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
-    let plan = watched(py, progress, |watcher| planning::plan_along_path(&arm, &reference, &options, watcher))?;
-    let positions = (0..reference.len()).flat_map(|i| reference.position(i)).collect();
+    let plan = watched(py, progress, |watcher| planning::plan_along_path(&arm, &course, &options, watcher))?;
+    let positions = match options.method {
+        AlongPathMethod::Timed => course.positions().as_flattened().to_vec(),
+        AlongPathMethod::Tpbso => (0..course.points().len()).flat_map(|i| course.points().position(i)).collect(),
+    };
     PyPlan::new(plan, Some(positions), robot, in_force, PyTuple::empty(py).unbind())
 }
 
-/// Intervals that a `Path` is divided into: the published planner's.
-const INTERVALS: f64 = 50.0;
-
 /// A `Path`, or points (k, 3), or poses (k, 4, 4).
-fn read_path(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<Reference> {
-    if let Ok(path) = path.cast::<PyPath>() {
-        let path = path.get();
-        return path.reference(py, path.duration() / INTERVALS);
+fn read_course(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<Course> {
+    match path.cast::<PyPath>() {
+        Ok(path) => path.get().course(py),
+        Err(_) => Course::through(&read_points(path)?).map_err(raise),
     }
+}
+
+/// Points (k, 3), or poses (k, 4, 4).
+fn read_points(path: &Bound<'_, PyAny>) -> PyResult<Reference> {
     let rows = array("path", path)?;
     let numbers = rows.as_slice()?;
     match rows.shape() {

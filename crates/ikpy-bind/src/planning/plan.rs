@@ -31,7 +31,7 @@ pub struct PyPlan {
     /// and highest possible (rad), from the tip's link down; without such a choice (0, 0, 3).
     #[pyo3(get)]
     redundancy: Py<PyArrayDyn<f64>>,
-    /// Positions (k, 3) (m) that the tip was to follow; None for a plan from end to end.
+    /// Positions (k, 3) (m) that the tip was to follow, straight in between; None for a plan from end to end.
     #[pyo3(get)]
     reference: Option<Py<PyArrayDyn<f64>>>,
     /// What the robot was not to touch, as given.
@@ -77,7 +77,7 @@ impl PyPlan {
         self.core.clearance.unwrap_or(f64::NAN)
     }
 
-    /// Largest distance of the tip from the points of the path (m); NaN for a plan from end to end.
+    /// Largest distance of the tip from the path (m), at its points and between them; NaN for a plan from end to end.
     #[getter]
     fn accuracy(&self) -> f64 {
         self.core.accuracy.unwrap_or(f64::NAN)

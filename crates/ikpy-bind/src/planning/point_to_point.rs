@@ -3,7 +3,7 @@
 use ikcore::planning::{self, End, PointToPointOptions};
 use pyo3::prelude::*;
 
-use super::elbow::read_elbow;
+use super::elbow::read_elbows;
 use super::plan::PyPlan;
 use crate::convert::{count, vector};
 use crate::error::{invalid, raise};
@@ -26,7 +26,7 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     method: "minmax": the ends' configurations that are nearest in time, joined at the limits' pace; "tpbso":
 ///         polynomials through a via point, searched by a beetle swarm (Wang et al. 2019).
 ///     objective: what to minimise: "time", "joint_travel" or "tip_travel".
-///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1.
+///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1; None: (1, 1).
 ///     solver: what searches; None: the method's own.
 ///     stop: budgets; None: the method's own.
 ///     seed: of the random draws: the same seed, the same bits.
@@ -41,7 +41,7 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
 #[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method="minmax",
-                    objective="time", obstacles=None, margin=None, elbows=[1, 1], solver=None, stop=None, seed=0,
+                    objective="time", obstacles=None, margin=None, elbows=None, solver=None, stop=None, seed=0,
                     progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point(
@@ -56,7 +56,7 @@ pub fn plan_point_to_point(
     objective: &str,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
-    elbows: [i128; 2],
+    elbows: Option<[i128; 2]>,
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
     seed: i128,
@@ -72,7 +72,7 @@ pub fn plan_point_to_point(
         objective: objective.parse().map_err(raise)?,
         obstacles: obstacles.core,
         margin,
-        elbows: [read_elbow("elbows[0]", elbows[0])?, read_elbow("elbows[1]", elbows[1])?],
+        elbows: elbows.map(read_elbows).transpose()?,
         limits: resolved,
         solver: solver.map(|solver| derivative_free_solver("plan_point_to_point", solver)).transpose()?,
         stop: stop.map(PyStop::core),

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use super::PyRobot;
-use crate::convert::{point, pose_array, rigid, row};
+use crate::convert::{copied, point, pose_array, rigid};
 use crate::error::raise;
 
 /// Everything between base and tip: ("fixed", pose (4, 4)), ("moving", joint, turns, axis (3,), scale, offset) or ("link",
@@ -21,7 +21,7 @@ fn shown<'py>(py: Python<'py>, element: &Element) -> PyResult<Bound<'py, PyTuple
         Element::Fixed(pose) => ("fixed", pose_array(py, pose)?).into_pyobject(py),
         Element::Link(name) => ("link", name).into_pyobject(py),
         Element::Moving { axis, turns, joint, scale, offset } => {
-            let axis: Bound<'py, PyArray1<f64>> = row(py, axis.as_slice().to_vec());
+            let axis: Bound<'py, PyArray1<f64>> = copied(py, axis.as_slice());
             ("moving", *joint, *turns, axis, *scale, *offset).into_pyobject(py)
         }
     }

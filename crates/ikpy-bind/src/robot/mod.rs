@@ -17,7 +17,7 @@ use pyo3::types::{PyDict, PyTuple};
 
 pub use manipulability::PyVelocityEllipsoid;
 
-use crate::convert::row;
+use crate::convert::{copied, row};
 use crate::error::raise;
 use crate::limits::PyLimits;
 use crate::stored::{self, Reduced};
@@ -118,7 +118,7 @@ impl PyRobot {
     #[getter]
     fn capsules<'py>(&self, py: Python<'py>) -> Vec<Capsule<'py>> {
         let capsules = self.core.capsules().iter();
-        capsules.map(|c| (c.link.clone(), row(py, c.a.to_vec()), row(py, c.b.to_vec()), c.radius)).collect()
+        capsules.map(|c| (c.link.clone(), copied(py, &c.a), copied(py, &c.b), c.radius)).collect()
     }
 
     fn __repr__(&self) -> String {

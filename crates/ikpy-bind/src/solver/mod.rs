@@ -14,6 +14,7 @@ mod stop;
 mod swarm;
 
 use ikcore::solver::{Algorithm, AnySolver, DerivativeFree};
+use pyo3::PyClass;
 use pyo3::prelude::*;
 
 use apps::PyApps;
@@ -31,86 +32,76 @@ use crate::convert::summary;
 use crate::error::invalid;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_class::<PyApps>()?;
-    module.add_class::<PyBas>()?;
-    module.add_class::<PyBroydenBas>()?;
-    module.add_class::<PyBeeColony>()?;
-    module.add_class::<PyBeetleSwarm>()?;
-    module.add_class::<PyDifferentialEvolution>()?;
-    module.add_class::<PyFirefly>()?;
-    module.add_class::<PyGenetic>()?;
-    module.add_class::<PyJacobianTranspose>()?;
-    module.add_class::<PyLevenbergMarquardt>()?;
+    add_classes(module)?;
     module.add_class::<PyMultiStart>()?;
-    module.add_class::<PyNewtonRaphson>()?;
-    module.add_class::<PyPso>()?;
-    module.add_class::<PyQpso>()?;
     module.add_class::<PyStop>()?;
     module.add("Status", stop::status_class(module.py())?)
 }
 
-/// The names of those that need values alone, for messages.
-const DERIVATIVE_FREE: &str = "BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO";
-/// The names of those that need more.
-const WITH_MORE: &str = "APPS, BroydenBAS, JacobianTranspose, LevenbergMarquardt, NewtonRaphson";
+/// The one list of solver classes, by the names that the core has for what they hold.
+macro_rules! solvers {
+    (derivative_free: $($simple:ident = $simple_class:ident),+; with_more: $($richer:ident = $richer_class:ident),+ $(;)?) => {
+        /// The names of those that need values alone, for messages.
+        const DERIVATIVE_FREE: &[&str] = &[$(<$simple_class as PyClass>::NAME),+];
+        /// The names of those that need more.
+        const WITH_MORE: &[&str] = &[$(<$richer_class as PyClass>::NAME),+];
 
-/// Returns from the function with the solver if it is of one of these classes.
-macro_rules! return_if_one_of {
-    ($value:expr; $($class:ty),*) => {$(
-        if let Ok(solver) = $value.cast::<$class>() {
-            return Ok(AnySolver::Single(solver.get().0.clone().into()));
+        fn add_classes(module: &Bound<'_, PyModule>) -> PyResult<()> {
+            $(module.add_class::<$simple_class>()?;)+
+            $(module.add_class::<$richer_class>()?;)+
+            Ok(())
         }
-    )*};
+
+        /// The algorithm that a Python value holds; None for anything else.
+        fn algorithm(value: &Bound<'_, PyAny>) -> Option<Algorithm> {
+            $(if let Ok(solver) = value.cast::<$simple_class>() {
+                return Some(solver.get().0.clone().into());
+            })+
+            $(if let Ok(solver) = value.cast::<$richer_class>() {
+                return Some(solver.get().0.clone().into());
+            })+
+            None
+        }
+
+        /// The Python value of an algorithm.
+        fn to_python<'py>(py: Python<'py>, algorithm: &Algorithm) -> PyResult<Bound<'py, PyAny>> {
+            Ok(match algorithm {
+                $(Algorithm::DerivativeFree(DerivativeFree::$simple(solver)) => {
+                    Bound::new(py, $simple_class(*solver))?.into_any()
+                })+
+                $(Algorithm::$richer(solver) => Bound::new(py, $richer_class(*solver))?.into_any(),)+
+            })
+        }
+    };
+}
+
+solvers! {
+    derivative_free: Bas = PyBas, BeeColony = PyBeeColony, BeetleSwarm = PyBeetleSwarm,
+        DifferentialEvolution = PyDifferentialEvolution, Firefly = PyFirefly, Genetic = PyGenetic, Pso = PyPso, Qpso = PyQpso;
+    with_more: Apps = PyApps, BroydenBas = PyBroydenBas, JacobianTranspose = PyJacobianTranspose,
+        LevenbergMarquardt = PyLevenbergMarquardt, NewtonRaphson = PyNewtonRaphson;
 }
 
 /// A solver argument.
 pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
-    any_solver_or("", solver)
+    known_solver(solver).ok_or_else(|| invalid(format!("solver must be {}, got {}", solver_names(), summary(solver))))
 }
 
-/// A solver argument where something else, named in `other`, could have been given too.
-pub fn any_solver_or(other: &str, solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
-    return_if_one_of!(solver; PyBas, PyBeeColony, PyBeetleSwarm, PyDifferentialEvolution, PyFirefly, PyGenetic);
-    return_if_one_of!(solver; PyPso, PyQpso, PyApps, PyBroydenBas, PyJacobianTranspose, PyLevenbergMarquardt);
-    return_if_one_of!(solver; PyNewtonRaphson);
-    if let Ok(multi_start) = solver.cast::<PyMultiStart>() {
-        return Ok(AnySolver::MultiStart(multi_start.get().0.clone()));
-    }
-    let (or, got) = (if other.is_empty() { "" } else { " or " }, summary(solver));
-    Err(invalid(format!(
-        "solver must be {DERIVATIVE_FREE}, {WITH_MORE} or MultiStart of one of them{or}{other}, got {got}"
-    )))
+/// The solver that a Python value is; None for anything else.
+pub fn known_solver(value: &Bound<'_, PyAny>) -> Option<AnySolver> {
+    let multi_start = || value.cast::<PyMultiStart>().ok().map(|solver| AnySolver::MultiStart(solver.get().0.clone()));
+    algorithm(value).map(AnySolver::Single).or_else(multi_start)
+}
+
+/// What an argument may be that takes any solver, for messages.
+pub fn solver_names() -> String {
+    format!("{} or MultiStart of one of them", [DERIVATIVE_FREE, WITH_MORE].concat().join(", "))
 }
 
 /// A solver argument of a method that knows values alone.
 pub fn derivative_free_solver(method: &str, solver: &Bound<'_, PyAny>) -> PyResult<AnySolver<DerivativeFree>> {
     any_solver(solver)?.into_derivative_free().ok_or_else(|| {
-        let got = summary(solver);
-        invalid(format!(
-            "{method} knows no derivative: solver must be {DERIVATIVE_FREE} or MultiStart of one of them, got {got}"
-        ))
-    })
-}
-
-/// The Python value of an algorithm.
-fn to_python<'py>(py: Python<'py>, algorithm: &Algorithm) -> PyResult<Bound<'py, PyAny>> {
-    Ok(match algorithm {
-        Algorithm::DerivativeFree(solver) => match solver {
-            DerivativeFree::Bas(solver) => Bound::new(py, PyBas(*solver))?.into_any(),
-            DerivativeFree::BeeColony(solver) => Bound::new(py, PyBeeColony(*solver))?.into_any(),
-            DerivativeFree::BeetleSwarm(solver) => Bound::new(py, PyBeetleSwarm(*solver))?.into_any(),
-            DerivativeFree::DifferentialEvolution(solver) => {
-                Bound::new(py, PyDifferentialEvolution(*solver))?.into_any()
-            }
-            DerivativeFree::Firefly(solver) => Bound::new(py, PyFirefly(*solver))?.into_any(),
-            DerivativeFree::Genetic(solver) => Bound::new(py, PyGenetic(*solver))?.into_any(),
-            DerivativeFree::Pso(solver) => Bound::new(py, PyPso(*solver))?.into_any(),
-            DerivativeFree::Qpso(solver) => Bound::new(py, PyQpso(*solver))?.into_any(),
-        },
-        Algorithm::BroydenBas(solver) => Bound::new(py, PyBroydenBas(*solver))?.into_any(),
-        Algorithm::Apps(solver) => Bound::new(py, PyApps(*solver))?.into_any(),
-        Algorithm::JacobianTranspose(solver) => Bound::new(py, PyJacobianTranspose(*solver))?.into_any(),
-        Algorithm::NewtonRaphson(solver) => Bound::new(py, PyNewtonRaphson(*solver))?.into_any(),
-        Algorithm::LevenbergMarquardt(solver) => Bound::new(py, PyLevenbergMarquardt(*solver))?.into_any(),
+        let (names, got) = (DERIVATIVE_FREE.join(", "), summary(solver));
+        invalid(format!("{method} knows no derivative: solver must be {names} or MultiStart of one of them, got {got}"))
     })
 }

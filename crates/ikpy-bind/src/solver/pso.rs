@@ -1,7 +1,7 @@
 //! `PSO`.
 
 use ikcore::solver::Pso;
-use ikcore::solver::pso::{Accept, Form};
+use ikcore::solver::pso::{Accept, Form, Walls};
 use pyo3::prelude::*;
 
 use super::schedule::{limited, schedule, scheduled, show_schedule};
@@ -11,7 +11,7 @@ use crate::options::{NewArguments, Shown, keywords};
 /// Particle swarm optimisation: uses values alone.
 ///
 /// Defaults: `PSO(population=40, form='constriction', c1=2.05, c2=2.05, velocity_limit=0.5, accept='always',
-/// max_generations=None, stall_generations=50)`.
+/// walls='absorbing', max_generations=None, stall_generations=50)`.
 ///
 /// Args:
 ///     population: particles.
@@ -20,9 +20,11 @@ use crate::options::{NewArguments, Shown, keywords};
 ///     inertia: that weight; None: 0.729. Only with form "inertia".
 ///     c1: attraction to the particle's own best place; None: 2.05 with constriction, 1.49445 with inertia.
 ///     c2: attraction to the swarm's best place; None: as c1's.
-///     velocity_limit: largest velocity, as a share of the box's width a generation.
+///     velocity_limit: largest velocity, as a share of the box's width a generation; `inf`: none.
 ///     accept: "always", a particle stays where it went (as published); "improving", it returns to its best place if that
 ///         is better.
+///     walls: "absorbing", a coordinate that would leave the box stops at the wall, and has no velocity left; "random", it
+///         is drawn anew in the box, and keeps its velocity (compared by Helwig, Branke and Mostaghim 2013).
 ///     max_generations: after so many it gives up; None: as many as the budget allows.
 ///     stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None: never.
 #[pyclass(name = "PSO", module = "beetle_ik", frozen, eq, from_py_object)]
@@ -36,7 +38,7 @@ impl PyPso {
     #[new]
     #[pyo3(signature = (*, population=Pso::default().schedule.population.value(), form="constriction", inertia=None, c1=None,
                         c2=None, velocity_limit=Pso::default().velocity_limit, accept="always",
-                        max_generations=limited(Pso::default().schedule.max_generations).value(),
+                        walls="absorbing", max_generations=limited(Pso::default().schedule.max_generations).value(),
                         stall_generations=limited(Pso::default().schedule.stall_generations).value()))]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -47,6 +49,7 @@ impl PyPso {
         c2: Option<f64>,
         velocity_limit: f64,
         accept: &str,
+        walls: &str,
         max_generations: Option<i128>,
         stall_generations: Option<i128>,
     ) -> PyResult<Self> {
@@ -57,6 +60,7 @@ impl PyPso {
             c2: c2.unwrap_or(standard.c2),
             velocity_limit,
             accept: accept.parse::<Accept>().map_err(raise)?,
+            walls: walls.parse::<Walls>().map_err(raise)?,
             ..standard
         };
         solver.validate().map_err(raise)?;
@@ -102,18 +106,25 @@ impl PyPso {
         self.0.accept.to_string()
     }
 
+    /// "absorbing" or "random".
+    #[getter]
+    fn walls(&self) -> String {
+        self.0.walls.to_string()
+    }
+
     fn __repr__(&self) -> String {
-        let Pso { schedule, form, c1, c2, velocity_limit, accept } = &self.0;
-        let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={weight:?}, "));
+        let Pso { schedule, form, c1, c2, velocity_limit, accept, walls } = &self.0;
+        let inertia = self.inertia().map_or_else(String::new, |weight| format!("inertia={}, ", weight.text()));
+        let [c1, c2, velocity_limit] = [c1, c2, velocity_limit].map(f64::text);
         format!(
-            "PSO(population={}, form='{form}', {inertia}c1={c1:?}, c2={c2:?}, velocity_limit={velocity_limit:?}, accept='{accept}', {})",
+            "PSO(population={}, form='{form}', {inertia}c1={c1}, c2={c2}, velocity_limit={velocity_limit}, accept='{accept}', walls='{walls}', {})",
             schedule.population,
             show_schedule(schedule)
         )
     }
 
     fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
-        let own = ["form", "inertia", "c1", "c2", "velocity_limit", "accept"];
+        let own = ["form", "inertia", "c1", "c2", "velocity_limit", "accept", "walls"];
         keywords(slf, &[&["population", "max_generations", "stall_generations"], &own[..]].concat())
     }
 }

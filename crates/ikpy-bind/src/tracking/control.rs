@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use super::session::in_progress;
 use super::step::PyStep;
 use super::znnbas::PyZnnbas;
-use crate::convert::{count, point, row, summary, vector};
+use crate::convert::{copied, count, point, summary, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::solver::PyBroydenBas;
@@ -42,7 +42,7 @@ impl PyControlSession {
     /// limits, and within what the velocity limits let the configuration accepted last reach.
     fn command<'py>(&self, py: Python<'py>, target: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let target = point("target", target)?;
-        Ok(row(py, self.session().command(target).map_err(raise)?.to_vec()))
+        Ok(copied(py, self.session().command(target).map_err(raise)?))
     }
 
     /// The tip was at `position` (3,) (m) at the last command. Returns what became of the tick, a `Step`; None while it

@@ -15,7 +15,7 @@ macro_rules! in_progress {
             /// The configuration accepted last (n,) (rad, m).
             #[getter]
             fn q<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
-                $crate::convert::row(py, self.session().q().to_vec())
+                $crate::convert::copied(py, self.session().q())
             }
 
             /// Time of that configuration (s).

@@ -10,15 +10,15 @@ use pyo3::prelude::*;
 
 use super::record::{Columns, counts, record};
 use super::weighted_pseudo_inverse::PyWeightedPseudoInverse;
-use crate::convert::{count, row, table, vector};
-use crate::error::raise;
+use crate::convert::{count, row, summary, table, vector};
+use crate::error::{invalid, raise};
 use crate::goal::read_goals;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::outcome::outcome;
 use crate::path::PyPath;
 use crate::robot::PyRobot;
-use crate::solver::any_solver_or;
+use crate::solver::{known_solver, solver_names};
 use crate::stored::{self, Reduced};
 use crate::task::read_task;
 use crate::trajectory::PyTrajectory;
@@ -203,8 +203,11 @@ pub fn track(
 /// A rule, a solver, or the library's own rule.
 pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
     let Some(solver) = solver else { return Ok(TickRule::default()) };
-    match solver.cast::<PyWeightedPseudoInverse>() {
-        Ok(rule) => Ok(rule.get().rule()),
-        Err(_) => any_solver_or("WeightedPseudoInverse", solver).map(TickRule::EachTick),
+    if let Ok(rule) = solver.cast::<PyWeightedPseudoInverse>() {
+        return Ok(rule.get().rule());
     }
+    known_solver(solver).map(TickRule::EachTick).ok_or_else(|| {
+        let (names, got) = (solver_names(), summary(solver));
+        invalid(format!("solver must be {names} or WeightedPseudoInverse, got {got}"))
+    })
 }

@@ -38,7 +38,7 @@ def along_path(
         Method, typer.Option(help="Redundancy and timing together, or a beetle swarm in uniform time.")
     ] = Method.TIMED,
     objective: Annotated[Objective, typer.Option(help="What to minimise.")] = Objective.TIME,
-    accuracy: Annotated[float | None, typer.Option(help="Allowed distance from the points in m.")] = None,
+    accuracy: Annotated[float | None, typer.Option(help="Allowed distance from the path in m.")] = None,
     start_q: StartQ = None,
     velocity: Velocity = None,
     acceleration: Acceleration = None,

@@ -5,6 +5,7 @@ from ..experiment import Context, Experiment
 from .motion import motion
 from .rivals import compare, rivals
 from .search_box import search_box
+from .tip_box import tip_box
 from .trends import trends
 
 _SUMMARY = """
@@ -22,7 +23,13 @@ there are trackers that need one to four evaluations a step for what takes the b
 def run(context: Context) -> Report:
     """Run all of it."""
     comparison = compare(context)
-    parts = (motion(context), trends(context), rivals(comparison), search_box(context, comparison.precise))
+    parts = (
+        motion(context),
+        tip_box(context),
+        trends(context),
+        rivals(comparison),
+        search_box(context, comparison.precise),
+    )
     return Report(
         summary=_SUMMARY,
         sections=[section for section, _ in parts],

@@ -148,7 +148,7 @@ def motion(context: Context) -> tuple[Section, list[Claim]]:
             _table(cases),
         ],
     )
-    return section, [*_error_claims(cases), _limit_claim(cases), _tip_box_claim(cases)]
+    return section, [*_error_claims(cases), _limit_claim(cases)]
 
 
 def _table(cases: list[Case]) -> Table:
@@ -217,21 +217,3 @@ def _limit_claim(cases: list[Case]) -> Claim:
         ),
         section=TITLE,
     )
-
-
-def _tip_box_claim(cases: list[Case]) -> Claim:
-    outside = max(_outside_circle(result) for case in cases for result in case.results)
-    return Claim.not_reproducible(
-        "The end-effector stays within specific spaces, p_min < p(t) < p_max.",
-        source="Section II-B, eq. (5)",
-        measured=f"on the circle the tip leaves the box around it by {number(outside, 2)} m at most",
-        reason="The paper gives no such bounds, and Algorithm 1 does not use them.",
-        section=TITLE,
-    )
-
-
-def _outside_circle(result: bik.TrackResult) -> float:
-    """How far the tip is outside the box around the circle, at most, over the second half (m)."""
-    low, high = result.reference.min(axis=0), result.reference.max(axis=0)
-    tip = result.position[STEADY]
-    return float(np.maximum(low - tip, tip - high).max())

@@ -49,6 +49,7 @@ class Task:
         seed: int = 0,
         start: NDArray[np.float64] | None = None,
         limits: bik.Limits | None = None,
+        task: bik.tasks.Position | None = None,
     ) -> bik.TrackResult:
         """Follow the circle: from off the path and under the paper's limits where nothing else is said.
 
@@ -64,6 +65,7 @@ class Task:
             position_tolerance=band,
             seed=seed,
             limit_at="start",
+            task=task,
         )
 
 

@@ -32,4 +32,5 @@ EXPERIMENT = Experiment(
     title="Postures in which a redundant arm moves easily, and tracking with them",
     paper="“Trajectory Tracking of Redundant Manipulator Based on PSO Algorithm Optimization”",
     run=run,
+    extras=("vision",),
 )

@@ -43,8 +43,8 @@ _ACCEPTED = {"pentagram": 6.14, "closed curve": 3.72}  # s, mean of TPBSO
 _TEXT = """
 An arm of three links of 1 m follows 51 points of a path. How the last link stands is free within a range that follows
 from the law of cosines; five numbers between 0 and 1 say where in its range it is along the way (eq. 7), and a sixth
-how long all takes. Splines lead through every second point, each interval takes the same time, and what the tip misses
-of the points between is the *accuracy* (eq. 24).
+how long all takes. Splines lead through every second point, each interval takes the same time, and how far
+the tip is from the points between is its accuracy (eq. 24). The table has the largest distance from the path anywhere.
 
 The dashed line is the fastest timing of the very joint path that the best plan takes, from rest to rest (reachability
 analysis, `time_optimal`): time need not be spread evenly. The dotted one lets the redundancy be chosen for that timing

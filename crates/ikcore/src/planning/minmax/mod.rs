@@ -48,6 +48,10 @@ pub(super) fn point_to_point(
         let problem = "method=\"minmax\" has a search of its own: leave solver out, or use method=\"tpbso\"";
         return Err(Error::Contradiction { problem: problem.into() });
     }
+    if options.elbows.is_some() {
+        let problem = "method=\"minmax\" chooses how the arm bends: leave elbows out, or use method=\"tpbso\"";
+        return Err(Error::Contradiction { problem: problem.into() });
+    }
     let mut search = Search::new(robot, &limits, [start, end], options.seed)?;
     let shape_known = !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
     let mut plan = if options.obstacles.is_empty() && !shape_known {

@@ -4,6 +4,7 @@ use super::grid::Segment;
 use super::joint_path::JointPath;
 use super::limits::TimingLimits;
 use super::shape::Shape;
+use crate::math::polynomial::quadratic_roots;
 
 /// Stands for "as fast as you like", and leaves room to calculate.
 pub(super) const UNLIMITED: f64 = 1e100;
@@ -66,9 +67,6 @@ fn growth(bound: f64) -> f64 {
 }
 
 /// By how much the chord x(s) from `left` to `right` must be lowered to keep the velocity limits in between.
-///
-/// sqrt(x) lies below its tangent at any m^2, sqrt(x) <= (x / m + m) / 2, which is linear in s as x is; so the speed of a
-/// joint lies below a cubic, whose Bernstein coefficients are those of the product.
 fn chord_factor(shape: &Shape, limits: &TimingLimits, left: f64, right: f64) -> f64 {
     let m = (0.5 * (left + right)).sqrt();
     if m == 0.0 || m >= UNLIMITED.sqrt() {
@@ -78,11 +76,30 @@ fn chord_factor(shape: &Shape, limits: &TimingLimits, left: f64, right: f64) -> 
     let [d0, d1, d2] = &shape.slope;
     let mut excess = 1.0_f64;
     for (j, limit) in limits.velocity.iter().enumerate() {
+        // sqrt(x) lies below its tangent at any m^2, sqrt(x) <= (x / m + m) / 2, which is linear in s as x is; so the
+        // speed of a joint lies below a cubic, and that below its Bernstein coefficients. Few joints come near.
         let inner = [(2.0 * d1[j] * g0 + d0[j] * g1) / 3.0, (d2[j] * g0 + 2.0 * d1[j] * g1) / 3.0];
-        let largest = inner[0].abs().max(inner[1].abs()).max((d0[j] * g0).abs()).max((d2[j] * g1).abs());
-        if largest > excess * limit {
-            excess = largest / limit;
+        let bound = inner[0].abs().max(inner[1].abs()).max((d0[j] * g0).abs()).max((d2[j] * g1).abs());
+        if bound * bound > excess * limit * limit {
+            excess = excess.max(fastest([d0[j], d1[j], d2[j]], [left, right]) / (limit * limit));
         }
     }
-    1.0 / (excess * excess)
+    1.0 / excess
+}
+
+/// The largest q'(s)^2 x(s) between the ends of a segment, for q' with these Bernstein coefficients and x linear.
+///
+/// It is level where q' = 0, or where 2 q'' x + q' x' = 0, a quadratic.
+fn fastest([d0, d1, d2]: [f64; 3], [left, right]: [f64; 2]) -> f64 {
+    let (slope, bend) = (2.0 * (d1 - d0), d0 - 2.0 * d1 + d2);
+    let rise = right - left;
+    let level = quadratic_roots(
+        2.0 * slope * left + d0 * rise,
+        2.0 * (slope * rise + 2.0 * bend * left) + slope * rise,
+        4.0 * bend * rise + bend * rise,
+        0.0,
+        1.0,
+    );
+    let squared = |s: f64| (d0 + s * (slope + s * bend)).powi(2) * (left + s * rise);
+    level.into_iter().map(squared).fold(squared(0.0).max(squared(1.0)), f64::max)
 }

@@ -4,7 +4,7 @@ use crate::error::{Error, Result, require_finite};
 use crate::math::polynomial::{derivative, roots};
 
 /// Powers of a cubic.
-const POWERS: usize = 4;
+pub(super) const POWERS: usize = 4;
 
 /// How far a derivative may differ on both sides of a break before it counts as a jump (relative to its size there).
 const JUMP_TOLERANCE: f64 = 1e-9;
@@ -27,6 +27,15 @@ impl JointPath {
     /// Pieces that are known to be in order.
     pub(super) fn from_parts(joints: Vec<String>, breaks: Vec<f64>, coefficients: Vec<f64>) -> Self {
         Self { joints, breaks, coefficients }
+    }
+
+    /// One path after the other, each of which begins where the one before it ends; at least one.
+    pub(in crate::planning) fn joined(paths: impl IntoIterator<Item = Self>) -> Option<Self> {
+        paths.into_iter().reduce(|mut all, next| {
+            all.breaks.extend(&next.breaks[1..]);
+            all.coefficients.extend(&next.coefficients);
+            all
+        })
     }
 
     /// Names of the joints.

@@ -27,9 +27,9 @@ mod shape;
 mod spline;
 mod strips;
 
+pub use crate::math::cubic_spline::SplineEnds;
 pub use joint_path::JointPath;
 pub use limits::TimingLimits;
-pub use spline::SplineEnds;
 
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;

@@ -2,31 +2,29 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::self_motion::{NODES, SelfMotion, passed, travel};
+use super::passage::{Interpolation, Passage};
+use super::self_motion::{NODES, SelfMotion, travel};
 use crate::error::Result;
-use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Objective, Score};
-use crate::path::Reference;
+use crate::planning::stray::Stray;
 use crate::planning::time_optimal::coarse_duration;
-use crate::planning::{Cost, JointPath, MotionLimits, SplineEnds, TimingLimits};
+use crate::planning::{Cost, JointPath, MotionLimits, TimingLimits};
 
-/// The duration, or the joint travel, of the motion through the points of a path, as a function of the offsets along the
-/// self-motion at its nodes.
+/// The duration, or the joint travel, of the motion along a course, as a function of the offsets along the self-motion at
+/// its nodes.
 pub struct TimedCost<'a> {
     /// What the arm may choose.
     pub motion: SelfMotion<'a>,
+    /// The splines through what it chose.
+    pub interpolation: Interpolation<'a>,
     /// Limits that the motion keeps.
     pub limits: &'a MotionLimits,
     /// The same for its timing.
     pub timing_limits: &'a TimingLimits,
     /// What is minimised.
     pub objective: Cost,
-    /// How far the tip may be from points that the splines do not pass (m).
+    /// How far the tip may be from the course (m, rad).
     pub accuracy: f64,
-    /// The path.
-    pub path: &'a Reference,
-    /// The splines pass every so many-th point.
-    pub stride: usize,
     /// What is a lot of the cost: the measure of penalties.
     pub scale: f64,
 }
@@ -49,51 +47,36 @@ impl TimedCost<'_> {
         (freedom > 0).then(|| Bounds::from_ranges((0..NODES * freedom).map(reach)))
     }
 
-    /// The joint path for these offsets, and by how much it misses the points that it is to pass (m, rad).
-    ///
-    /// # Errors
-    /// None in practice: waypoints that differ make a spline.
-    pub fn joint_path(&mut self, z: &[f64]) -> Result<(JointPath, f64)> {
-        let mut waypoints = vec![0.0; self.motion.points() * self.motion.dof()];
-        let missed = self.motion.place(z, &mut waypoints);
-        self.spline(&waypoints).map(|path| (path, missed))
-    }
-
-    fn spline(&self, waypoints: &[f64]) -> Result<JointPath> {
-        let last = (self.path.len() - 1) as f64;
-        let knots: Vec<f64> = passed(self.path.len(), self.stride).map(|row| row as f64 / last).collect();
-        JointPath::spline(self.limits.joint_names(), waypoints, Some(&knots), SplineEnds::Natural)
-    }
-
-    /// Distances (m) of the tip from the points that the splines do not pass.
-    pub fn distances(&self, path: &JointPath) -> impl Iterator<Item = (usize, f64)> {
-        let last = self.path.len() - 1;
-        let skipped = (0..last).filter(|row| !row.is_multiple_of(self.stride));
-        skipped.map(move |row| {
-            let mut q = [0.0; MAX_DOF];
-            let q = &mut q[..self.motion.dof()];
-            path.position(row as f64 / last as f64, q);
-            let (tip, wanted) = (self.motion.tip(q), self.path.position(row));
-            (row, (0..3).map(|i| (tip[i] - wanted[i]).powi(2)).sum::<f64>().sqrt())
-        })
+    /// The joint positions for these offsets, at the nominal motion's knots, and by how much they miss the course (m, rad).
+    pub fn passage(&mut self, z: &[f64]) -> (Passage, f64) {
+        let knots = self.motion.nominal().knots.clone();
+        let mut passage = Passage { waypoints: vec![0.0; knots.len() * self.motion.dof()], knots };
+        let missed = self.motion.place(z, &mut passage.waypoints);
+        (passage, missed)
     }
 
     fn value(&mut self, z: &[f64]) -> Result<f64> {
         let n = self.motion.dof();
-        let mut waypoints = vec![0.0; self.motion.points() * n];
-        let missed = self.motion.place(z, &mut waypoints);
+        let (passage, missed) = self.passage(z);
         if missed > 0.0 {
             // Above everything that reaches all points.
             return Ok(BROKEN * BROKEN * self.scale * (1.0 + missed));
         }
-        let path = self.spline(&waypoints)?;
-        let beyond: f64 = self.distances(&path).map(|(_, d)| (d / self.accuracy - 1.0).max(0.0)).sum();
+        let path = self.interpolation.path(&passage)?;
         let outside: f64 = (0..n).map(|j| path.excess(j, self.limits.lower[j], self.limits.upper[j])).sum();
         let cost = match self.objective {
-            Cost::JointTravel => travel(&waypoints, n),
+            Cost::JointTravel => travel(&passage.waypoints, n),
             _ => coarse_duration(&path, self.timing_limits, SEGMENTS_A_PIECE * path.pieces())?,
         };
-        Ok(cost + BROKEN * self.scale * (beyond + outside))
+        Ok(cost + BROKEN * self.scale * (self.beyond(&passage, &path) + outside))
+    }
+
+    /// By how much the tip strays too far in the middle between knots, in shares of the accuracy.
+    fn beyond(&self, passage: &Passage, path: &JointPath) -> f64 {
+        let Interpolation { robot, course, .. } = self.interpolation;
+        let stray = Stray { robot, course, configurations: |share: f64, q: &mut [f64]| path.position(share, q) };
+        let off = |ends: &[f64]| (stray.at_most(0.5 * (ends[0] + ends[1])) / self.accuracy - 1.0).max(0.0);
+        passage.knots.windows(2).map(off).sum()
     }
 }
 

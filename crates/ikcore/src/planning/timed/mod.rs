@@ -6,24 +6,31 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `self_motion` | configurations at the path's points, and what may be chosen of them |
+//! | `self_motion` | configurations along the path, and what may be chosen of them |
+//! | `null_space` | what moves the joints and leaves the tip |
+//! | `project` | the nearest configuration that reaches a target |
+//! | `passage` | splines through configurations, fine enough to keep to the path |
 //! | `cost` | the duration as a function of the choice |
 
 mod cost;
+mod null_space;
+mod passage;
+mod project;
 mod self_motion;
 
-use super::time_optimal::time;
-use super::tpbso::extent;
+use super::course::Course;
+use super::stray::Stray;
+use super::time_optimal::{coarse_duration, time};
 use super::tpbso::search::{Found, Search};
-use super::{AlongPathOptions, Cost, MotionLimits, Plan, TimingLimits, TimingOptions, Violation};
+use super::{AlongPathOptions, Cost, MotionLimits, Plan, TimingLimits, TimingOptions};
 use crate::error::{Error, Result, require_positive};
 use crate::limits::Limits;
-use crate::path::Reference;
 use crate::robot::Robot;
 use crate::solver::stop::Stopwatch;
 use crate::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Monitor, Schedule, Status, Stop};
 use crate::wording::number;
 use cost::TimedCost;
+use passage::{Corners, Interpolation, Passage};
 use self_motion::SelfMotion;
 
 const METHOD: &str = "method=\"timed\"";
@@ -34,11 +41,11 @@ const EVALUATIONS: usize = 2000;
 /// Members of a generation of the search.
 const POPULATION: usize = 30;
 
-/// The splines pass every second point of the path; where those in between are not met well enough, every point.
-const SPARSE: usize = 2;
+/// Allowed distance of the tip from the path, as a share of its extent.
+const ACCURACY: f64 = 1e-3;
 
-/// Allowed distance of the tip from the points between, as a share of the path's extent.
-const ACCURACY: f64 = 0.04;
+/// Segments of the timing in each piece of the spline when ways to take corners are compared.
+const SEGMENTS_A_PIECE: usize = 4;
 
 /// Plans along a path.
 ///
@@ -46,52 +53,64 @@ const ACCURACY: f64 = 0.04;
 /// As [`plan_along_path`](super::plan_along_path).
 pub(super) fn along_path(
     robot: &Robot,
-    path: &Reference,
+    course: &Course,
     options: &AlongPathOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let stopwatch = Stopwatch::start();
-    if options.objective == Cost::TipTravel {
-        let known = ["time", "joint_travel"];
-        return Err(Error::unknown_option("objective along a path", "tip_travel", &known));
-    }
+    require_supported(options)?;
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     let timing_limits = timing_limits_of(robot, options.limits.as_ref())?;
+    // Points that stand for a curve do not say more of it than this.
+    let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * course.extent() + course.coarseness());
+    require_positive("accuracy", accuracy)?;
     if let Some(q) = &options.start {
         robot.check("start_q", q)?;
         limits.require_inside("start_q", q)?;
+        require_on_path(robot, q, course, accuracy)?;
     }
-    let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * extent(path));
-    require_positive("accuracy", accuracy)?;
-    if let Some(q) = &options.start {
-        require_on_path(robot, q, path, accuracy)?;
-    }
-    let bounded = limits.applied_to(robot)?;
-    let plan_with = |stride: usize, monitor: &mut dyn Monitor| {
-        let motion = SelfMotion::new(&bounded, path, stride, options.start.as_deref(), options.seed)?;
-        let cost = TimedCost {
-            motion,
-            limits: &limits,
-            timing_limits: &timing_limits,
-            objective: options.objective,
-            accuracy,
-            path,
-            stride,
-            scale: options.objective.scale(robot, &limits),
-        };
-        plan(robot, cost, options, stopwatch, monitor)
+    let robot = limits.applied_to(robot)?;
+    let mut motion = SelfMotion::new(&robot, course, options.start.as_deref(), options.seed)?;
+    let interpolation = settle(&mut motion, &robot, course, accuracy, &timing_limits)?;
+    let cost = TimedCost {
+        motion,
+        interpolation,
+        limits: &limits,
+        timing_limits: &timing_limits,
+        objective: options.objective,
+        accuracy,
+        scale: options.objective.scale(&robot, &limits),
     };
-    let sparse = plan_with(SPARSE, monitor)?;
-    if sparse.violations.is_empty() || sparse.status == Status::Interrupted {
-        return Ok(sparse);
+    plan(cost, options, stopwatch, monitor)
+}
+
+/// Decides how corners are taken, by what is quicker on the nominal motion, and gives that the knots it needs.
+fn settle<'a>(
+    motion: &mut SelfMotion<'_>,
+    robot: &'a Robot,
+    course: &'a Course,
+    accuracy: f64,
+    limits: &TimingLimits,
+) -> Result<Interpolation<'a>> {
+    let mut quickest: Option<(f64, Interpolation, Passage)> = None;
+    for corners in Corners::on(course) {
+        let interpolation = Interpolation { robot, course, corners: *corners };
+        let passage = interpolation.refined(motion.nominal().clone(), accuracy)?;
+        let path = interpolation.path(&passage)?;
+        let duration = coarse_duration(&path, limits, SEGMENTS_A_PIECE * path.pieces())?;
+        if quickest.as_ref().is_none_or(|(least, ..)| duration < *least) {
+            quickest = Some((duration, interpolation, passage));
+        }
     }
-    let dense = plan_with(1, monitor)?;
-    Ok(if dense.violations.len() < sparse.violations.len() { dense } else { sparse })
+    let stopping = || (Interpolation { robot, course, corners: Corners::Stopped }, motion.nominal().clone());
+    let (interpolation, passage) =
+        quickest.map_or_else(stopping, |(_, interpolation, passage)| (interpolation, passage));
+    motion.take(passage);
+    Ok(interpolation)
 }
 
 /// Searches the postures, and times the best.
 fn plan(
-    robot: &Robot,
     mut cost: TimedCost<'_>,
     options: &AlongPathOptions,
     stopwatch: Stopwatch,
@@ -99,23 +118,21 @@ fn plan(
 ) -> Result<Plan> {
     let found = search(&mut cost, options, monitor)?;
     let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
-    let (joint_path, _) = cost.joint_path(z)?;
-    let trajectory = time(&joint_path, cost.timing_limits, &TimingOptions::default())?;
+    let (passage, _) = cost.passage(z);
+    let passage = cost.interpolation.refined(passage, cost.accuracy)?;
+    let path = cost.interpolation.path(&passage)?;
+    let trajectory = time(&path, cost.timing_limits, &TimingOptions::default())?;
+    let Interpolation { robot, course, .. } = cost.interpolation;
+    let configurations = |share: f64, q: &mut [f64]| path.position(share, q);
+    let farthest = Stray { robot, course, configurations }.farthest(&passage.knots);
     let mut violations = cost.limits.violations(&trajectory);
-    violations.extend(cost.distances(&joint_path).filter(|(_, distance)| *distance > cost.accuracy).map(
-        |(row, distance)| Violation {
-            what: format!("distance of the tip from point {row} of the path"),
-            value: distance,
-            bound: cost.accuracy,
-            unit: "m".into(),
-        },
-    ));
+    violations.extend(farthest.violations(course, cost.accuracy));
     let keeps_everything = violations.is_empty();
     Ok(Plan {
         objective: options.objective,
         cost: options.objective.of(robot, &trajectory),
         clearance: None,
-        accuracy: Some(cost.distances(&joint_path).map(|(_, distance)| distance).fold(0.0, f64::max)),
+        accuracy: Some(farthest.distance.value),
         redundancy: vec![],
         violations,
         status: match &found {
@@ -144,10 +161,25 @@ fn search(cost: &mut TimedCost<'_>, options: &AlongPathOptions, monitor: &mut dy
     search.run(cost, &bounds, monitor).map(Some)
 }
 
-/// Err unless `q` has the tip at the first point of the path, as near as any point must be met.
-fn require_on_path(robot: &Robot, q: &[f64], path: &Reference, accuracy: f64) -> Result<()> {
-    let (tip, wanted) = (robot.tip_position(q), path.position(0));
-    let distance = (0..3).map(|i| (tip[i] - wanted[i]).powi(2)).sum::<f64>().sqrt();
+/// Err for what only the other planner, or none, can do.
+fn require_supported(options: &AlongPathOptions) -> Result<()> {
+    if options.objective == Cost::TipTravel {
+        let known = ["time", "joint_travel"];
+        return Err(Error::unknown_option("objective along a path", "tip_travel", &known));
+    }
+    match options.elbow {
+        None => Ok(()),
+        Some(_) => Err(Error::Contradiction {
+            problem: format!(
+                "{METHOD} chooses how the arm bends: give start_q instead of elbow, or use method=\"tpbso\""
+            ),
+        }),
+    }
+}
+
+/// Err unless `q` has the tip at the beginning of the course, as near as it must be all along.
+fn require_on_path(robot: &Robot, q: &[f64], course: &Course, accuracy: f64) -> Result<()> {
+    let distance = course.distance(robot.tip_position(q), 0.0, 0.0);
     if distance <= accuracy {
         return Ok(());
     }

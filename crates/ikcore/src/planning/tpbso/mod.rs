@@ -20,10 +20,10 @@ mod surroundings;
 mod via_point;
 mod weights;
 
+use super::course::{Course, refuse_repetition};
 use super::planar_arm::{Elbow, PlanarArm};
-use super::{AlongPathOptions, Cost, End, MotionLimits, Plan, PointToPointOptions, Violation};
+use super::{AlongPathOptions, Cost, End, MotionLimits, Plan, PointToPointOptions};
 use crate::error::{Error, Result, require_positive};
-use crate::path::Reference;
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::solver::stop::Stopwatch;
@@ -54,7 +54,7 @@ pub(super) fn point_to_point(
         }
         Placement::new(what, end, robot, &limits, elbow, options.seed, monitor)
     };
-    let [start_elbow, end_elbow] = options.elbows;
+    let [start_elbow, end_elbow] = options.elbows.unwrap_or_default();
     let (start, end) = (place("start", start, start_elbow)?, place("end", end, end_elbow)?);
     let mut cost = ViaPointCost::new(robot, &limits, [start, end], options.objective, surroundings.as_ref());
     let search = Search { solver: options.solver.as_ref(), stop: options.stop, seed: options.seed };
@@ -94,7 +94,7 @@ fn no_configuration() -> Error {
 /// Plans along a path, for planar arms.
 pub(super) fn along_path(
     robot: &Robot,
-    path: &Reference,
+    course: &Course,
     options: &AlongPathOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
@@ -107,27 +107,24 @@ pub(super) fn along_path(
         robot.check("start_q", q)?;
         limits.require_inside("start_q", q)?;
     }
-    let elbow = options.start.as_ref().map_or(options.elbow, |q| arm.elbow(q));
-    let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * extent(path));
+    let elbow = options.start.as_ref().map_or(options.elbow.unwrap_or_default(), |q| arm.elbow(q));
+    let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * course.extent());
     require_positive("accuracy", accuracy)?;
-    let redundancy = Redundancy::new(arm, path, elbow)?;
+    refuse_repetition(course.points())?;
+    let redundancy = Redundancy::new(arm, course.points(), elbow)?;
     let mut cost = PathCost::new(robot, &limits, redundancy, options.objective, accuracy, options.start.as_deref());
     let search = Search { solver: options.solver.as_ref(), stop: options.stop, seed: options.seed };
     let bounds = cost.bounds()?;
     let found = search.run(&mut cost, &bounds, monitor)?;
     let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration()))?;
     let mut violations = limits.violations(&trajectory);
-    violations.extend(cost.distances().filter(|(_, distance)| *distance > accuracy).map(|(i, distance)| Violation {
-        what: format!("distance of the tip from point {i} of the path"),
-        value: distance,
-        bound: accuracy,
-        unit: "m".into(),
-    }));
+    let farthest = cost.stray(course);
+    violations.extend(farthest.violations(course, accuracy));
     Ok(Plan {
         objective: options.objective,
         cost: options.objective.of(robot, &trajectory),
         clearance: None,
-        accuracy: Some(cost.distances().map(|(_, distance)| distance).fold(0.0, f64::max)),
+        accuracy: Some(farthest.distance.value),
         redundancy: cost.orientations(&found.x),
         status: found.status(violations.is_empty()),
         violations,
@@ -138,18 +135,9 @@ pub(super) fn along_path(
     })
 }
 
-/// Allowed distance from the points that the splines do not pass, as a share of the path's extent: what the published
+/// Allowed distance from the path, as a share of the path's extent: what the published
 /// planner needs for a pentagram with every second of 50 points.
 const ACCURACY: f64 = 0.04;
-
-/// The longest edge of the box that holds the path (m).
-pub(super) fn extent(path: &Reference) -> f64 {
-    let along = |k: usize| {
-        let values = (0..path.len()).map(move |i| path.position(i)[k]);
-        values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
-    };
-    (0..3).map(along).fold(0.0, f64::max)
-}
 
 fn require_path_cost(options: &AlongPathOptions) -> Result<()> {
     match options.objective {

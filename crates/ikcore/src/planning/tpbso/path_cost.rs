@@ -3,11 +3,13 @@
 use super::redundancy::{NODES, Redundancy, nearest_turn};
 use super::weights::{BROKEN_LIMIT, NO_CONFIGURATION};
 use crate::error::Result;
-use crate::math::natural_spline::{NaturalSpline, Piece};
+use crate::math::cubic_spline::{CubicSpline, Piece};
 use crate::objective::{Bounds, Objective, Score};
 use crate::planning::cost::Cost;
+use crate::planning::course::Course;
 use crate::planning::motion_limits::MotionLimits;
 use crate::planning::planar_arm::Orientations;
+use crate::planning::stray::{Farthest, Stray};
 use crate::robot::Robot;
 use crate::trajectory::{Trajectory, polynomial};
 
@@ -30,7 +32,7 @@ pub struct PathCost<'a> {
     robot: &'a Robot,
     limits: &'a MotionLimits,
     redundancy: Redundancy,
-    spline: NaturalSpline,
+    spline: CubicSpline,
     cost: Cost,
     accuracy: f64,
     scale: f64,
@@ -60,7 +62,7 @@ impl<'a> PathCost<'a> {
     ) -> Self {
         let last = redundancy.points() - 1;
         let passed = (0..last).step_by(STRIDE).chain([last]);
-        let spline = NaturalSpline::over(passed.map(|i| i as f64 / last as f64).collect());
+        let spline = CubicSpline::natural(passed.map(|i| i as f64 / last as f64).collect());
         let size = robot.dof() * spline.knots().len();
         Self {
             scale: cost.scale(robot, limits),
@@ -131,9 +133,23 @@ impl<'a> PathCost<'a> {
         points.filter_map(|i| self.redundancy.configuration(i, nodes, &self.node_bends, &mut q).ok()).collect()
     }
 
-    /// Distances (m) of the tip from the points that the splines do not pass, in the motion of the last
-    /// [`trajectory`](Self::trajectory): the skipped point of each stride.
-    pub fn distances(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+    /// How far the tip strays from `course` in the motion of the last [`trajectory`](Self::trajectory), at its points and
+    /// between them.
+    pub fn stray(&self, course: &Course) -> Farthest {
+        // Points at equal times need not lie at equal distances.
+        let shares = course.point_shares();
+        let last = shares.len() - 1;
+        let configurations = |share: f64, q: &mut [f64]| {
+            let i = shares.partition_point(|start| *start <= share).clamp(1, last) - 1;
+            let part = (share - shares[i]) / (shares[i + 1] - shares[i]);
+            self.place((i as f64 + part) / last as f64, q);
+        };
+        let knots: Vec<f64> = (0..last).step_by(STRIDE).chain([last]).map(|i| shares[i]).collect();
+        Stray { robot: self.robot, course, configurations }.farthest(&knots)
+    }
+
+    /// Distances (m) of the tip from the points that the splines do not pass: the skipped point of each stride.
+    fn distances(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let last = self.redundancy.points() - 1;
         (0..=last).filter(move |i| i % STRIDE != 0 && *i != last).map(move |i| (i, self.distance(i)))
     }
@@ -217,16 +233,21 @@ impl<'a> PathCost<'a> {
         (travel, speed, acceleration, outside)
     }
 
-    /// Distance of the tip from point `i` of the path when it is due there: eq. (24).
-    fn distance(&self, i: usize) -> f64 {
+    /// Joint positions after a share `u` of the time.
+    fn place(&self, u: f64, q: &mut [f64]) {
         let knots = self.spline.knots().len();
-        let u = i as f64 / (self.redundancy.points() - 1) as f64;
-        let mut q = [0.0; crate::math::MAX_DOF];
         let joints = self.motion.values.chunks_exact(knots).zip(self.motion.bends.chunks_exact(knots));
         for (q, (values, bends)) in q.iter_mut().zip(joints) {
             *q = self.spline.at(u, values, bends);
         }
-        let tip = self.robot.tip_position(&q[..self.robot.dof()]);
+    }
+
+    /// Distance of the tip from point `i` of the path when it is due there: eq. (24).
+    fn distance(&self, i: usize) -> f64 {
+        let mut q = [0.0; crate::math::MAX_DOF];
+        let q = &mut q[..self.robot.dof()];
+        self.place(i as f64 / (self.redundancy.points() - 1) as f64, q);
+        let tip = self.robot.tip_position(q);
         let [x, y] = self.redundancy.place(i).position;
         (tip[0] - x).hypot(tip[1] - y)
     }

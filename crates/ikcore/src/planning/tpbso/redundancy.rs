@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use smallvec::SmallVec;
 
 use crate::error::{Error, Result};
-use crate::math::natural_spline::NaturalSpline;
+use crate::math::cubic_spline::CubicSpline;
 use crate::path::Reference;
 use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Orientation, Orientations, Place, PlanarArm, wrapped};
 use crate::task::Target;
@@ -20,7 +20,7 @@ pub struct Redundancy {
     arm: PlanarArm,
     elbow: Elbow,
     places: Vec<Place>,
-    nodes: NaturalSpline,
+    nodes: CubicSpline,
 }
 
 impl Redundancy {
@@ -30,7 +30,7 @@ impl Redundancy {
     /// [`Error::Unreachable`] for a point beside the arm's plane or out of its reach, or a path of poses for an arm of two
     /// links.
     pub fn new(arm: PlanarArm, path: &Reference, elbow: Elbow) -> Result<Self> {
-        let nodes = NaturalSpline::over((0..NODES).map(|i| i as f64 / (NODES - 1) as f64).collect());
+        let nodes = CubicSpline::natural((0..NODES).map(|i| i as f64 / (NODES - 1) as f64).collect());
         let places = (0..path.len()).map(|i| place(&arm, path, i)).collect::<Result<Vec<_>>>()?;
         Ok(Self { arm, elbow, places, nodes })
     }

@@ -7,9 +7,10 @@
 //! noisy the sensor is to begin with, three measurements of the start tell.
 
 use super::noise::{ABOVE_NOISE, Noise, median};
-use super::{Tick, Verdict, distance};
+use super::{Tick, Verdict};
 use crate::math::box_step::ROWS;
 use crate::math::secant::{LEAST_DAMPING, Secant, antenna};
+use crate::math::vector::{distance, norm};
 use crate::objective::Point;
 use crate::solver::BroydenBas;
 use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
@@ -32,7 +33,8 @@ pub(super) struct Memory {
     /// The last command, and what it was for.
     sent: Point,
     purpose: Purpose,
-    next: Next,
+    /// What the next command is to be for.
+    next: Purpose,
     damping: f64,
     /// Steps in a row that left more than half of the error, and steps in a row that came no nearer at all.
     slow: usize,
@@ -49,39 +51,16 @@ pub(super) struct Memory {
 /// What a command is for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
-    Repeat {
-        first: [f64; 3],
-        second: Option<[f64; 3]>,
-    },
+    /// To measure at the start again, which was at `first` before, and then at `second` (m).
+    Repeat { first: [f64; 3], second: Option<[f64; 3]> },
+    /// To measure at the accepted configuration, before antennae are put out.
     Stand,
-    Antenna {
-        joint: usize,
-    },
+    /// To put out the antenna of a joint. As a plan: of this one or, where it has no room, of the next that has.
+    Antenna { joint: usize },
+    /// To come nearer.
     Step,
-    /// A step sent again, because this position (m) surprised.
-    Again {
-        first: [f64; 3],
-    },
-}
-
-/// What to do next.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Next {
-    /// Measure at the start again, which was at `first` before, and then at `second` (m).
-    Repeat {
-        first: [f64; 3],
-        second: Option<[f64; 3]>,
-    },
-    /// Measure at the accepted configuration, then put out antennae.
-    Stand,
-    /// Put out the antenna of this joint, if there is one, then that of the next.
-    Antenna {
-        joint: usize,
-    },
-    Step,
-    Again {
-        first: [f64; 3],
-    },
+    /// The same step again, because this position (m) surprised.
+    Again { first: [f64; 3] },
 }
 
 impl Memory {
@@ -94,7 +73,7 @@ impl Memory {
             position: [f64::NAN; 3],
             sent: start.into(),
             purpose: Purpose::Stand,
-            next: Next::Antenna { joint: 0 },
+            next: Purpose::Antenna { joint: 0 },
             damping: LEAST_DAMPING,
             slow: 0,
             failed: 0,
@@ -107,7 +86,7 @@ impl Memory {
 
     pub fn begin(&mut self, position: [f64; 3]) {
         self.position = position;
-        self.next = Next::Repeat { first: position, second: None };
+        self.next = Purpose::Repeat { first: position, second: None };
     }
 
     pub fn accepted(&self) -> &[f64] {
@@ -127,14 +106,12 @@ impl Memory {
         self.return_to_box(tick);
         self.sent.copy_from_slice(&self.q);
         self.purpose = match self.next {
-            Next::Repeat { first, second } => Purpose::Repeat { first, second },
-            Next::Stand => Purpose::Stand,
-            Next::Antenna { joint } => self.put_out_antenna(joint, tick),
-            Next::Step => self.step(tick),
-            Next::Again { first } => {
+            Purpose::Antenna { joint } => self.put_out_antenna(joint, tick),
+            Purpose::Step | Purpose::Again { .. } => {
                 self.step(tick);
-                Purpose::Again { first }
+                self.next
             }
+            measuring @ (Purpose::Repeat { .. } | Purpose::Stand) => measuring,
         };
         &self.sent
     }
@@ -143,7 +120,7 @@ impl Memory {
     fn return_to_box(&mut self, tick: Tick<'_>) {
         if !tick.bounds.contains(&self.q) {
             tick.bounds.clip(&mut self.q);
-            self.next = Next::Stand;
+            self.next = Purpose::Stand;
         }
     }
 
@@ -158,21 +135,21 @@ impl Memory {
             }
         }
         self.antennae_are_out();
-        self.step(tick)
+        self.step(tick);
+        Purpose::Step
     }
 
     fn antennae_are_out(&mut self) {
-        (self.next, self.slow, self.failed, self.fresh) = (Next::Step, 0, 0, true);
+        (self.next, self.slow, self.failed, self.fresh) = (Purpose::Step, 0, 0, true);
     }
 
-    fn step(&mut self, tick: Tick<'_>) -> Purpose {
+    fn step(&mut self, tick: Tick<'_>) {
         let residual = rows(self.position, tick.target);
         let bounds = [tick.bounds.lower(), tick.bounds.upper()];
         // What noise has left of a column in the dark must not be taken for a way to move.
         let doubt = self.noise.level() / self.options.antenna_length;
         let damping = self.damping + doubt * doubt / self.jacobian.size(self.q.len()).max(f64::MIN_POSITIVE);
         self.jacobian.step(&residual, damping, &self.q, bounds, &mut self.sent);
-        Purpose::Step
     }
 
     pub fn observe(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
@@ -191,7 +168,7 @@ impl Memory {
     fn learn(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
         let verdict = match self.purpose {
             Purpose::Repeat { first, second: None } => {
-                self.next = Next::Repeat { first, second: Some(position) };
+                self.next = Purpose::Repeat { first, second: Some(position) };
                 Verdict::GoOn
             }
             Purpose::Repeat { first, second: Some(second) } => {
@@ -199,7 +176,7 @@ impl Memory {
                 Verdict::GoOn
             }
             Purpose::Stand => {
-                (self.position, self.next) = (position, Next::Antenna { joint: 0 });
+                (self.position, self.next) = (position, Purpose::Antenna { joint: 0 });
                 Verdict::GoOn
             }
             Purpose::Antenna { joint } => {
@@ -210,22 +187,22 @@ impl Memory {
             Purpose::Again { first } => self.believe(tick, position, Some(first)),
         };
         let near_enough = self.tolerance.max(2.0 * self.noise.level());
-        let arrived = self.next == Next::Step && distance(self.position, tick.target) <= near_enough;
+        let arrived = self.next == Purpose::Step && distance(&self.position, &tick.target) <= near_enough;
         if arrived { Verdict::TickOver } else { verdict }
     }
 
     /// Where the start is, and how noisy the sensor: one of the three measurements may be an outlier.
     fn know_start(&mut self, [a, b, c]: [[f64; 3]; 3]) {
         self.position = std::array::from_fn(|k| median(a[k], b[k], c[k]));
-        let nearest = distance(a, b).min(distance(b, c)).min(distance(a, c));
+        let nearest = distance(&a, &b).min(distance(&b, &c)).min(distance(&a, &c));
         self.noise.note(nearest);
         self.noise.note(nearest);
-        self.next = Next::Antenna { joint: 0 };
+        self.next = Purpose::Antenna { joint: 0 };
     }
 
     fn feel(&mut self, joint: usize, position: [f64; 3]) {
         self.jacobian.set_column(joint, self.sent[joint] - self.q[joint], &rows(position, self.position));
-        self.next = Next::Antenna { joint: joint + 1 };
+        self.next = Purpose::Antenna { joint: joint + 1 };
         if joint + 1 == self.q.len() {
             self.antennae_are_out();
         }
@@ -240,15 +217,15 @@ impl Memory {
         let surprise: [f64; ROWS] = std::array::from_fn(|k| seen[k] - predicted[k]);
         let (motion, miss) = (norm(&predicted), norm(&surprise));
         let surprising = miss > SURPRISING * motion;
-        self.next = Next::Step;
+        self.next = Purpose::Step;
         let mut noisy = motion < ABOVE_NOISE * self.noise.level();
         match first {
             None if surprising && !noisy => {
-                self.next = Next::Again { first: position };
+                self.next = Purpose::Again { first: position };
                 return Verdict::GoOn;
             }
-            Some(first) if surprising && distance(position, first) > 0.5 * miss => {
-                self.noise.note(distance(position, first));
+            Some(first) if surprising && distance(&position, &first) > 0.5 * miss => {
+                self.noise.note(distance(&position, &first));
                 noisy = true;
             }
             _ => {}
@@ -261,7 +238,7 @@ impl Memory {
 
     /// Keeps a step that came nearer; else does something about it, unless noise hides what.
     fn judge(&mut self, tick: Tick<'_>, position: [f64; 3], noisy: bool) -> Verdict {
-        let (before, after) = (distance(self.position, tick.target), distance(position, tick.target));
+        let (before, after) = (distance(&self.position, &tick.target), distance(&position, &tick.target));
         if after < before {
             self.q.copy_from_slice(&self.sent);
             self.position = position;
@@ -269,7 +246,7 @@ impl Memory {
             (self.fresh, self.failed) = (false, 0);
             self.slow = if after > 0.5 * before && !noisy { self.slow + 1 } else { 0 };
             if self.slow >= SLOW_STEPS {
-                self.next = Next::Stand;
+                self.next = Purpose::Stand;
             }
             return Verdict::GoOn;
         }
@@ -280,7 +257,7 @@ impl Memory {
         if !self.fresh {
             // The first failure has taught the Jacobian something, and may have been noise.
             if self.failed >= FAILED_STEPS {
-                self.next = Next::Stand;
+                self.next = Purpose::Stand;
             }
             return Verdict::GoOn;
         }
@@ -297,8 +274,4 @@ impl Memory {
 /// a - b in the rows of a task.
 fn rows(a: [f64; 3], b: [f64; 3]) -> [f64; ROWS] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2], 0.0, 0.0, 0.0]
-}
-
-fn norm(rows: &[f64; ROWS]) -> f64 {
-    rows.iter().map(|row| row * row).sum::<f64>().sqrt()
 }

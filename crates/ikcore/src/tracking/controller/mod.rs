@@ -120,8 +120,3 @@ impl Running {
         }
     }
 }
-
-/// Distance (m).
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt()
-}

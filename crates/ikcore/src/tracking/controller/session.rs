@@ -1,9 +1,10 @@
 //! A controller at work on an arm that somebody else moves: clock, limits, and whose turn it is.
 
-use super::{Controller, Running, Tick, Verdict, distance};
+use super::{Controller, Running, Tick, Verdict};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::math::MAX_DOF;
+use crate::math::vector::distance;
 use crate::objective::Point;
 use crate::rng::{self, LazyRng};
 use crate::solver::Status;
@@ -184,7 +185,7 @@ impl Session {
 
     fn end_tick(&mut self, target: [f64; 3]) -> Step {
         let position = self.running.measured().1;
-        let error = distance(target, position);
+        let error = distance(&target, &position);
         let status = match error {
             error if error <= self.tolerance => Status::Solved,
             error if error < self.last_error => Status::Improved,

@@ -4,10 +4,13 @@ use super::{Found, Tick};
 use crate::objective::Differentiable;
 use crate::problem::Problem;
 use crate::solver::{AnySolver, Evaluator, Halt, Stop};
+use crate::task::{Criterion, Outside};
 
 pub fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> Found {
     let Tick { robot, target, criterion, tick_box, last_value, rng, monitor, .. } = tick;
-    let mut problem = Problem::new(robot, target, *criterion);
+    // The arm begins inside its region: nothing outside need be looked at.
+    let kept = Criterion { outside: Outside::Worthless, ..*criterion };
+    let mut problem = Problem::new(robot, target, kept);
     let objective: &mut dyn Differentiable = &mut problem;
     let mut evaluator = Evaluator::new(objective, tick_box, stop(solver, last_value), rng, monitor);
     let outcome = solver.run(&mut evaluator, q);

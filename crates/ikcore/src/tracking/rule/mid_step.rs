@@ -62,7 +62,7 @@ pub fn advance(memory: &mut Memory, q: &[f64], mut tick: Tick<'_>) -> Found {
         memory.before_known = false;
         found.evaluations += 1;
     }
-    found.arrive(&memory.begin.tip, &tick);
+    found.arrive(&memory.begin.tip, tick.target, tick.criterion);
     let mut moved = memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick);
     if !found.is_solved() {
         moved = true;
@@ -73,6 +73,11 @@ pub fn advance(memory: &mut Memory, q: &[f64], mut tick: Tick<'_>) -> Found {
 }
 
 impl Memory {
+    /// The arm did not go where it was sent.
+    pub fn forget(&mut self) {
+        (self.begin_known, self.before_known) = (false, false);
+    }
+
     /// A step on which the freedom that the target leaves goes down the gradient of the goals, for the length of the tick,
     /// and steps by the model from there. Whether that ended in the band; if not, nothing was done.
     fn towards_goals(&mut self, found: &mut Found, tick: &mut Tick<'_>) -> bool {
@@ -88,7 +93,7 @@ impl Memory {
         tick.tick_box.clip(&mut wished);
         self.step(&mut trial, tick, self.before_known, false, Some(&wished));
         std::mem::swap(&mut self.here, &mut self.trial);
-        trial.arrive(&self.here.tip, tick);
+        trial.arrive(&self.here.tip, tick.target, tick.criterion);
         while !trial.is_solved() && trial.iterations < MOST_STEPS && self.lowers(&mut trial, tick, false, true) {}
         found.evaluations = trial.evaluations;
         if trial.is_solved() {
@@ -116,11 +121,11 @@ impl Memory {
     /// One step from where `found` is: at `here` once the arm `moved`, before that at `begin`. It is kept if it lowers the
     /// error; whether it did.
     fn lowers(&mut self, found: &mut Found, tick: &Tick<'_>, extrapolate: bool, moved: bool) -> bool {
-        let from = found.q.clone();
+        let from = Point::from_slice(&found.q);
         self.step(found, tick, extrapolate, moved, None);
         if tick.target.assess_tip(&self.trial.tip, tick.criterion).score.value < found.value() {
             std::mem::swap(&mut self.here, &mut self.trial);
-            found.arrive(&self.here.tip, tick);
+            found.arrive(&self.here.tip, tick.target, tick.criterion);
             return true;
         }
         found.q = from;
@@ -141,7 +146,7 @@ impl Memory {
         let Linearization { columns, residual } = &*self.linearization;
         let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
         let damping = least_damping(&columns[..n]);
-        let from = found.q.clone();
+        let from = Point::from_slice(&found.q);
         match wished {
             None => box_step(columns, residual, damping, &from, lower, upper, &mut found.q),
             Some(wished) => box_step_near(columns, residual, damping, &from, wished, lower, upper, &mut found.q),
@@ -160,8 +165,7 @@ impl Memory {
         let evaluations = evaluator.evaluations();
         found.q.copy_from_slice(&evaluator.best().x);
         self.here.update(tick.robot, &found.q);
-        (found.assessment, found.position) =
-            (tick.target.assess_tip(&self.here.tip, tick.criterion), self.here.tip.origin);
+        found.arrive(&self.here.tip, tick.target, tick.criterion);
         found.evaluations += evaluations + 1;
         found.iterations += outcome.iterations;
         found.interrupted = outcome.halt == Halt::Interrupted;

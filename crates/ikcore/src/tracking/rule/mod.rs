@@ -71,8 +71,8 @@ impl Found {
     }
 
     /// The tip is there.
-    fn arrive(&mut self, tip: &Frame, tick: &Tick<'_>) {
-        (self.assessment, self.position) = (tick.target.assess_tip(tip, tick.criterion), tip.origin);
+    pub fn arrive(&mut self, tip: &Frame, target: &Target, criterion: &Criterion) {
+        (self.assessment, self.position) = (target.assess_tip(tip, criterion), tip.origin);
     }
 
     fn value(&self) -> f64 {
@@ -135,6 +135,13 @@ impl TickRule {
 }
 
 impl Running {
+    /// What is remembered of the last tick is no longer so.
+    pub fn forget(&mut self) {
+        if let Self::MidStep(memory) = self {
+            memory.forget();
+        }
+    }
+
     /// Ends one tick that begins at `q`.
     pub fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> Found {
         match self {

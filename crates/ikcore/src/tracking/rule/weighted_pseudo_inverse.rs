@@ -7,16 +7,17 @@
 //! no K; without it errors add up. Its q' is the point of the tick's box nearest to q0' in the norm of W that moves the tip
 //! as wanted: joints at a limit leave their share to the others, which the plain formula does not.
 
-use std::str::FromStr;
 use std::sync::Arc;
 
 use super::{Found, Tick};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::MAX_DOF;
 use crate::math::box_step::box_step;
+use crate::math::vector::norm;
 use crate::objective::{Linearization, Point};
 use crate::robot::Robot;
 use crate::trajectory::Trajectory;
+use crate::wording::words;
 
 /// How velocities become configurations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -28,26 +29,7 @@ pub enum Integrator {
     RungeKutta4,
 }
 
-impl Integrator {
-    const ALL: [Self; 2] = [Self::Euler, Self::RungeKutta4];
-
-    /// The word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Euler => "euler",
-            Self::RungeKutta4 => "rk4",
-        }
-    }
-}
-
-impl FromStr for Integrator {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        let found = Self::ALL.into_iter().find(|integrator| integrator.name() == name);
-        found.ok_or_else(|| Error::unknown_option("integrator", name, &Self::ALL.map(Self::name)))
-    }
-}
+words!("integrator": Integrator { Euler => "euler", RungeKutta4 => "rk4" });
 
 /// The options of the rule.
 #[derive(Debug, Clone, PartialEq)]
@@ -152,7 +134,7 @@ pub fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, q: &[f64], m
         }
     }
     tick.tick_box.clip(&mut found.q);
-    found.arrive(&tick.robot.tip(&found.q), &tick);
+    found.arrive(&tick.robot.tip(&found.q), tick.target, tick.criterion);
     found.evaluations += 1;
     found.iterations = 1;
     found
@@ -244,10 +226,6 @@ impl Demand<'_> {
         }
         left
     }
-}
-
-fn norm(rows: &[f64; 6]) -> f64 {
-    rows.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
 }
 
 /// Residual and Jacobian at `from` into the scratch; how the residual changes per second by the target's own motion.

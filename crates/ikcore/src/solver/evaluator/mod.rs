@@ -1,66 +1,19 @@
 //! Between solver and objective: counts, clips, checks, and keeps the best.
 
-use std::mem;
+mod best;
+mod derivatives;
+mod halt;
+
+pub use best::Best;
+pub use halt::Halt;
 
 use smallvec::SmallVec;
 
-use crate::math::MAX_DOF;
-use crate::math::box_step::ROWS;
-use crate::objective::{
-    Bounds, Differentiable, Gradient, LeastSquares, Linearization, Objective, Pace, Point, Residual, Score, Slope,
-};
-use crate::rng::LazyRng;
-
 use super::conduct::{Conduct, Domain, Goal};
 use super::stop::{Monitor, Stop, Stopwatch};
-
-/// Why a solver cannot go on; passed up with `?`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Halt {
-    /// The best point passes the problem's own test.
-    Solved,
-    /// The best value fell below [`Stop::value_below`].
-    BelowValue,
-    /// The solver's own threshold was met.
-    BelowThreshold,
-    /// The search arrived at a solution outside the box that whole periods do not bring inside.
-    OutsideBox,
-    /// The solver's own rule: nothing more to gain from here.
-    Stalled,
-    /// The evaluation or iteration budget is spent.
-    Budget,
-    /// The time limit is over.
-    Time,
-    /// The monitor asked to stop.
-    Interrupted,
-}
-
-/// The best point met so far.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Best {
-    /// Where; empty before the first evaluation.
-    pub x: Point,
-    /// Its value; infinite where the objective was never finite.
-    pub value: f64,
-    /// Whether it passes the problem's own test.
-    pub solved: bool,
-}
-
-impl Default for Best {
-    /// Nothing met yet.
-    fn default() -> Self {
-        Self { x: Point::new(), value: f64::INFINITY, solved: false }
-    }
-}
-
-impl Best {
-    #[cold]
-    fn replace(&mut self, x: &[f64], value: f64, solved: bool) {
-        self.x.resize(x.len(), 0.0);
-        self.x.copy_from_slice(x);
-        (self.value, self.solved) = (value, solved);
-    }
-}
+use crate::math::MAX_DOF;
+use crate::objective::{Bounds, Objective, Pace, Score};
+use crate::rng::LazyRng;
 
 /// Points whose scores are kept on the stack.
 const CHUNK: usize = 8;
@@ -295,7 +248,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         }
     }
 
-    /// Keeps the best: solved before unsolved, then the lower value, then the earlier.
+    /// Remembers the value, and the point where it is better than the best.
     #[inline]
     fn record(&mut self, x: &[f64], score: Score) -> f64 {
         let value = if score.value.is_finite() { score.value } else { f64::INFINITY };
@@ -308,87 +261,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
                 return value;
             }
         }
-        let better = (solved && !self.best.solved) || (solved == self.best.solved && value < self.best.value);
-        if better || self.best.x.is_empty() {
-            self.best.replace(x, value, solved);
-        }
+        self.best.challenge(x, value, solved);
         value
-    }
-}
-
-impl<O: Residual + ?Sized> Evaluator<'_, O> {
-    /// Clips `x` to the box; value and residual there.
-    ///
-    /// # Errors
-    /// As [`evaluate`](Self::evaluate).
-    #[inline]
-    pub fn residual(&mut self, x: &mut [f64], out: &mut [f64; ROWS]) -> Result<f64, Halt> {
-        self.spend(1)?;
-        self.bounds.clip(x);
-        let score = self.objective.residual(x, out);
-        Ok(self.record(x, score))
-    }
-}
-
-impl Evaluator<'_, dyn Differentiable + '_> {
-    /// Lends the run to a solver that asks for values alone, so that there is one compiled copy of such a solver whatever
-    /// the objective offers beyond.
-    pub fn with_values_only<R>(&mut self, work: impl FnOnce(&mut Evaluator<'_, dyn Objective + '_>) -> R) -> R {
-        let mut narrowed = Evaluator {
-            objective: &mut *self.objective as &mut dyn Objective,
-            bounds: self.bounds,
-            stop: self.stop,
-            rng: &mut *self.rng,
-            monitor: &mut *self.monitor,
-            stopwatch: self.stopwatch,
-            evaluations: self.evaluations,
-            next_poll: self.next_poll,
-            best: mem::take(&mut self.best),
-            attempt_value: self.attempt_value,
-            attempts: self.attempts,
-            dimension: self.dimension,
-            pace: self.pace,
-            conduct: self.conduct,
-            periods: SmallVec::new(),
-            strayed: false,
-        };
-        let result = work(&mut narrowed);
-        let Evaluator { evaluations, next_poll, best, attempt_value, attempts, .. } = narrowed;
-        self.evaluations = evaluations;
-        self.next_poll = next_poll;
-        self.best = best;
-        self.attempt_value = attempt_value;
-        self.attempts = attempts;
-        result
-    }
-}
-
-impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
-    /// Clips `x` to the box; value, residual and Jacobian there, counted as one evaluation.
-    ///
-    /// # Errors
-    /// As [`evaluate`](Self::evaluate).
-    #[inline]
-    pub fn linearize(&mut self, x: &mut [f64], out: &mut Linearization) -> Result<f64, Halt> {
-        self.spend(1)?;
-        self.admit(x);
-        let score = self.objective.linearize(x, out);
-        Ok(self.record(x, score))
-    }
-}
-
-impl<O: Gradient + ?Sized> Evaluator<'_, O> {
-    /// Brings `x` into the domain; error and gradient there, counted as one evaluation. The error is infinite where the
-    /// value is not finite.
-    ///
-    /// # Errors
-    /// As [`evaluate`](Self::evaluate).
-    #[inline]
-    pub fn differentiate(&mut self, x: &mut [f64], gradient: &mut [f64]) -> Result<f64, Halt> {
-        self.spend(1)?;
-        self.admit(x);
-        let Slope { error, score } = self.objective.differentiate(x, gradient);
-        let value = self.record(x, score);
-        Ok(if value.is_finite() { error } else { f64::INFINITY })
     }
 }

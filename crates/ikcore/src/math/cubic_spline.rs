@@ -1,0 +1,252 @@
+//! Cubic splines over knots that stay the same while the values change.
+
+/// What a spline does at its two ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SplineEnds {
+    /// No curvature.
+    #[default]
+    Natural,
+    /// The first two pieces are one cubic, and the last two.
+    NotAKnot,
+    /// No slope.
+    Clamped,
+}
+
+/// The second derivative at an end, from the slope of the chord and the second derivatives at the two knots next to it:
+/// q''_end = chord_share chord + near q''_1 + far q''_2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct EndRule {
+    chord_share: f64,
+    near: f64,
+    far: f64,
+}
+
+impl SplineEnds {
+    /// The rule of an end whose piece has length `h`, the piece after it `next`, of `pieces` in all. `sign` is 1 at the
+    /// beginning and -1 at the end.
+    fn rule(self, h: f64, next: f64, pieces: usize, sign: f64) -> EndRule {
+        let rule = |chord_share, near, far| EndRule { chord_share, near, far };
+        match self {
+            Self::Clamped if pieces == 1 => rule(sign * 6.0 / h, 0.0, 0.0),
+            Self::Clamped => rule(sign * 3.0 / h, -0.5, 0.0),
+            // Three points: both conditions say that the curve is one parabola.
+            Self::NotAKnot if pieces == 2 => rule(0.0, 1.0, 0.0),
+            Self::NotAKnot if pieces > 2 => rule(0.0, 1.0 + h / next, -h / next),
+            Self::NotAKnot | Self::Natural => rule(0.0, 0.0, 0.0),
+        }
+    }
+}
+
+/// The knots' part of the equations, solved beforehand: a spline through new values costs a pass there and one back.
+///
+/// Slopes agree on both sides of each inner knot: h_(i-1) q''_(i-1) + 2 (h_(i-1) + h_i) q''_i + h_i q''_(i+1) =
+/// 6 (chord_i - chord_(i-1)), with the rules of the ends put in for q'' there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CubicSpline {
+    knots: Vec<f64>,
+    rules: [EndRule; 2],
+    /// Knot by knot: the factors below and above the diagonal, and the inverse of that on it, as elimination leaves them.
+    below: Vec<f64>,
+    above: Vec<f64>,
+    inverse: Vec<f64>,
+}
+
+/// A cubic piece: value + slope s + bend/2 s^2 + rate/6 s^3 in the time s since its knot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// Length in the parameter.
+    pub span: f64,
+    /// Value at its knot.
+    pub value: f64,
+    /// First derivative there.
+    pub slope: f64,
+    /// Second derivative there.
+    pub bend: f64,
+    /// Third derivative.
+    pub rate: f64,
+}
+
+impl CubicSpline {
+    /// Splines over `knots`, at least two, which increase.
+    pub fn over(knots: Vec<f64>, ends: SplineEnds) -> Self {
+        let last = knots.len() - 1;
+        let h = |i: usize| knots[i + 1] - knots[i];
+        let [second, last_but_one] = [1.min(last - 1), last.saturating_sub(2)].map(h);
+        let rules = [ends.rule(h(0), second, last, 1.0), ends.rule(h(last - 1), last_but_one, last, -1.0)];
+        let [mut below, mut above, mut inverse] = [(); 3].map(|()| vec![0.0; knots.len()]);
+        for i in 1..last {
+            let (before, after) = (h(i - 1), h(i));
+            let mut diagonal = 2.0 * (before + after);
+            (below[i], above[i]) = (before, after);
+            if i == 1 {
+                diagonal += before * rules[0].near;
+                above[i] += before * rules[0].far;
+                below[i] = 0.0;
+            }
+            if i == last - 1 {
+                diagonal += after * rules[1].near;
+                below[i] += after * rules[1].far;
+            }
+            inverse[i] = 1.0 / (diagonal - below[i] * above[i - 1]);
+            above[i] *= inverse[i];
+        }
+        Self { knots, rules, below, above, inverse }
+    }
+
+    /// Splines without curvature at their ends.
+    pub fn natural(knots: Vec<f64>) -> Self {
+        Self::over(knots, SplineEnds::Natural)
+    }
+
+    /// The knots.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// Writes the second derivatives at the knots of the spline through `values`; `bends` is as long.
+    pub fn bends(&self, values: &[f64], bends: &mut [f64]) {
+        let last = self.knots.len() - 1;
+        let h = |i: usize| self.knots[i + 1] - self.knots[i];
+        let chord = |i: usize| (values[i + 1] - values[i]) / h(i);
+        let [first_rule, last_rule] = &self.rules;
+        bends[0] = 0.0;
+        for i in 1..last {
+            let (before, after) = (chord(i - 1), chord(i));
+            let mut right = 6.0 * (after - before);
+            if i == 1 {
+                right -= h(0) * first_rule.chord_share * before;
+            }
+            if i == last - 1 {
+                right -= h(i) * last_rule.chord_share * after;
+            }
+            bends[i] = (right - self.below[i] * bends[i - 1]) * self.inverse[i];
+        }
+        for i in (1..last - 1).rev() {
+            bends[i] -= self.above[i] * bends[i + 1];
+        }
+        // Where a rule looks farther than there are inner knots, its share of what it finds is zero.
+        let inner = |i: usize| if 0 < i && i < last { bends[i] } else { 0.0 };
+        let ends = [
+            first_rule.bend(chord(0), inner(1), inner(2)),
+            last_rule.bend(chord(last - 1), inner(last - 1), inner(last.wrapping_sub(2))),
+        ];
+        [bends[0], bends[last]] = ends;
+    }
+
+    /// The piece that begins at knot `i`, of the spline with these values and second derivatives.
+    pub fn piece(&self, i: usize, values: &[f64], bends: &[f64]) -> Piece {
+        let span = self.knots[i + 1] - self.knots[i];
+        Piece {
+            span,
+            value: values[i],
+            slope: (values[i + 1] - values[i]) / span - span * (2.0 * bends[i] + bends[i + 1]) / 6.0,
+            bend: bends[i],
+            rate: (bends[i + 1] - bends[i]) / span,
+        }
+    }
+
+    /// Its value at `u`, inside the knots.
+    pub fn at(&self, u: f64, values: &[f64], bends: &[f64]) -> f64 {
+        let i = self.knots.partition_point(|knot| *knot <= u).clamp(1, self.knots.len() - 1) - 1;
+        self.piece(i, values, bends).at(u - self.knots[i])
+    }
+}
+
+impl EndRule {
+    fn bend(&self, chord: f64, near: f64, far: f64) -> f64 {
+        self.chord_share * chord + self.near * near + self.far * far
+    }
+}
+
+impl Piece {
+    /// What it multiplies the powers of s by, from the zeroth on.
+    pub fn coefficients(&self) -> [f64; 4] {
+        [self.value, self.slope, 0.5 * self.bend, self.rate / 6.0]
+    }
+
+    /// Its value `s` after its knot.
+    pub fn at(&self, s: f64) -> f64 {
+        self.value + s * (self.slope + s * (self.bend / 2.0 + s * self.rate / 6.0))
+    }
+
+    /// The largest slope, in magnitude: at an end or where the bend vanishes.
+    pub fn steepest(&self) -> f64 {
+        let slope_at = |s: f64| (self.slope + s * (self.bend + 0.5 * s * self.rate)).abs();
+        let level = -self.bend / self.rate;
+        let inside = if 0.0 < level && level < self.span { slope_at(level) } else { 0.0 };
+        inside.max(slope_at(0.0)).max(slope_at(self.span))
+    }
+
+    /// Where it turns round, at most twice; ascending.
+    pub fn turning_points(&self) -> smallvec::SmallVec<[f64; 2]> {
+        super::polynomial::quadratic_roots(self.slope, self.bend, 0.5 * self.rate, 0.0, self.span)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meets_its_values_with_one_slope_and_no_bend_at_the_ends() {
+        let spline = CubicSpline::natural(vec![0.0, 0.3, 0.5, 1.1, 1.2]);
+        let values = [0.4, -0.2, 1.5, 0.7, 0.9];
+        let mut bends = [f64::NAN; 5];
+        spline.bends(&values, &mut bends);
+        assert_eq!([bends[0], bends[4]], [0.0, 0.0]);
+        for i in 0..4 {
+            let piece = spline.piece(i, &values, &bends);
+            assert!((piece.at(piece.span) - values[i + 1]).abs() < 1e-15);
+            if i < 3 {
+                let next = spline.piece(i + 1, &values, &bends);
+                let slope = piece.slope + piece.span * (piece.bend + 0.5 * piece.span * piece.rate);
+                assert!((slope - next.slope).abs() < 1e-13, "{i}: {slope} and {}", next.slope);
+            }
+        }
+    }
+
+    #[test]
+    fn without_a_knot_at_the_second_and_last_but_one_polynomials_come_back() {
+        let cubic = |u: f64| 0.3 + u * (-2.0 + u * (1.5 - 4.0 * u));
+        let parabola = |u: f64| 0.3 + u * (-2.0 + 1.5 * u);
+        let line = |u: f64| 0.3 - 2.0 * u;
+        let all = [0.0, 0.3, 0.5, 1.1, 1.2];
+        for (count, polynomial) in [(5, cubic as fn(f64) -> f64), (4, cubic), (3, parabola), (2, line)] {
+            let knots = &all[..count];
+            let values: Vec<f64> = knots.iter().map(|u| polynomial(*u)).collect();
+            let mut bends = vec![f64::NAN; count];
+            let spline = CubicSpline::over(knots.to_vec(), SplineEnds::NotAKnot);
+            spline.bends(&values, &mut bends);
+            for u in [0.05, 0.2, 0.29] {
+                assert!((spline.at(u, &values, &bends) - polynomial(u)).abs() < 1e-14, "{count} knots, u = {u}");
+            }
+        }
+    }
+
+    #[test]
+    fn clamped_ends_are_level() {
+        let (all, values) = ([0.0, 0.3, 0.5, 1.1, 1.2], [0.4, -0.2, 1.5, 0.7, 0.9]);
+        for count in 2..=5 {
+            let (knots, values) = (&all[..count], &values[..count]);
+            let mut bends = vec![f64::NAN; count];
+            let spline = CubicSpline::over(knots.to_vec(), SplineEnds::Clamped);
+            spline.bends(values, &mut bends);
+            let last = spline.piece(count - 2, values, &bends);
+            let at_end = last.slope + last.span * (last.bend + 0.5 * last.span * last.rate);
+            assert!(spline.piece(0, values, &bends).slope.abs() < 1e-13, "{count} knots");
+            assert!(at_end.abs() < 1e-12, "{count} knots: {at_end}");
+        }
+    }
+
+    #[test]
+    fn extremes_are_those_of_samples() {
+        let piece = Piece { span: 2.0, value: 0.3, slope: 1.0, bend: -2.5, rate: 2.0 };
+        let samples = (0..=20_000).map(|i| 2.0 * f64::from(i) / 20_000.0);
+        let slope = |s: f64| 1.0 - 2.5 * s + s * s;
+        let steepest = samples.map(|s| slope(s).abs()).fold(0.0, f64::max);
+        assert!((piece.steepest() - steepest).abs() < 1e-7);
+        let turning = piece.turning_points();
+        assert_eq!(turning.len(), 1);
+        assert!(slope(turning[0]).abs() < 1e-15);
+    }
+}

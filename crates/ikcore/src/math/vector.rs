@@ -1,0 +1,31 @@
+//! Sizes of vectors of any number of entries; those of three in hot places are in [`so3`](super::so3).
+
+/// a'b.
+#[inline]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// |v|.
+#[inline]
+pub fn norm(v: &[f64]) -> f64 {
+    dot(v, v).sqrt()
+}
+
+/// |a - b|^2.
+#[inline]
+pub fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+}
+
+/// |a - b|.
+#[inline]
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    squared_distance(a, b).sqrt()
+}
+
+/// The plain sign: zero at zero, and for NaN.
+#[inline]
+pub fn sign(z: f64) -> f64 {
+    f64::from(i8::from(z > 0.0) - i8::from(z < 0.0))
+}

@@ -1,0 +1,257 @@
+//! Where the tip is to go, whatever the time.
+
+mod stroke;
+
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
+
+use crate::error::{Error, Result};
+use crate::math::{Frame, pose};
+use crate::path::{Path, Reference};
+use crate::task::Target;
+use crate::wording::number;
+use stroke::{distance, distance_to_stroke, turn};
+
+/// The places that the tip is to pass, in order, straight from one to the next and turning about a fixed axis in between.
+///
+/// A place on it is told by its share of the whole way, from 0 to 1; a radian of turning counts as a metre.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Course {
+    shares: Vec<f64>,
+    positions: Vec<[f64; 3]>,
+    rotations: Option<Vec<UnitQuaternion<f64>>>,
+    /// Rows where the direction jumps.
+    corners: Vec<usize>,
+    /// When each row of a path is passed (s); None for given points, which go by their numbers.
+    times: Option<Vec<f64>>,
+    points: Reference,
+    /// Shares of the way at which they lie.
+    point_shares: Vec<f64>,
+}
+
+/// Intervals of equal time that a [`Path`] is looked at in: its chords leave a circle by 5e-6 of the radius.
+const INTERVALS: usize = 1000;
+
+/// Intervals of equal time between the points that the published planner passes.
+const POINTS: usize = 50;
+
+/// Turning by more than this (rad) from one step to the next is a corner; by less, a curve that was sampled.
+const CORNER: f64 = 0.5;
+
+/// Steps below this share of the way lead nowhere: a path that pauses.
+const PAUSE: f64 = 1e-9;
+
+impl Course {
+    /// Straight from row to row of `points`; their times do not matter.
+    ///
+    /// # Errors
+    /// [`Error::InvalidPath`] where a point repeats the one before it: no curve leads on from there.
+    pub fn through(points: &Reference) -> Result<Self> {
+        refuse_repetition(points)?;
+        Self::from_rows(points.clone(), (0..points.len()).collect(), None)
+    }
+
+    /// Along `path`, looked at closely.
+    ///
+    /// # Errors
+    /// As [`sampled`](Self::sampled).
+    pub fn along(path: &Path) -> Result<Self> {
+        let times = Self::times(path.duration(), &path.corners());
+        let positions = times.iter().map(|t| path.position(*t)).collect();
+        let rotations = times.iter().map(|t| path.rotation(*t)).collect();
+        Self::sampled(times, positions, rotations)
+    }
+
+    /// The times (s) at which a path of this `duration` is looked at, those of its `corners` among them.
+    pub fn times(duration: f64, corners: &[f64]) -> Vec<f64> {
+        let even = (0..=INTERVALS).map(|i| duration * (i as f64 / INTERVALS as f64));
+        let inside = corners.iter().copied().filter(|t| 0.0 < *t && *t < duration);
+        let mut times: Vec<f64> = even.chain(inside).collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup_by(|later, earlier| *later - *earlier <= PAUSE * duration);
+        times
+    }
+
+    /// Through a path's `positions` (m) and rotations at its [`times`](Self::times). Where it pauses does not matter.
+    ///
+    /// # Errors
+    /// [`Error::InvalidPath`] for a path that stays in one place; [`Error::NotFinite`], [`Error::NotRigid`].
+    pub fn sampled(times: Vec<f64>, positions: Vec<[f64; 3]>, rotations: Option<Vec<Matrix3<f64>>>) -> Result<Self> {
+        let reference = Reference::new(1.0, positions, rotations)?;
+        let last = times.len() - 1;
+        let at = |i: usize| {
+            let t = times[last] * (i as f64 / POINTS as f64);
+            let after = times.partition_point(|time| *time < t).clamp(1, last);
+            if t - times[after - 1] < times[after] - t { after - 1 } else { after }
+        };
+        let rows = (0..=POINTS).map(at).collect();
+        Self::from_rows(reference, rows, Some(times))
+    }
+
+    fn from_rows(reference: Reference, points: Vec<usize>, times: Option<Vec<f64>>) -> Result<Self> {
+        let rows = 0..reference.len();
+        let quaternion = |r: Matrix3<f64>| UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(r));
+        let rotations: Option<Vec<_>> = rows.clone().map(|i| reference.rotation(i).map(quaternion)).collect();
+        let step = |i: usize| {
+            let turned = rotations.as_ref().map_or(0.0, |rows| rows[i - 1].angle_to(&rows[i]));
+            distance(reference.position(i), reference.position(i - 1)).hypot(turned)
+        };
+        let steps: Vec<f64> = rows.clone().map(|i| if i == 0 { 0.0 } else { step(i) }).collect();
+        let way: f64 = steps.iter().sum();
+        if !(way > 0.0 && way.is_finite()) {
+            return Err(Error::InvalidPath { problem: format!("it must lead somewhere, but it is {way} m long") });
+        }
+        let mut travelled = 0.0;
+        let shares: Vec<f64> = steps
+            .iter()
+            .map(|step| {
+                travelled += step / way;
+                travelled
+            })
+            .collect();
+        // The last one is 1 whatever the rounding.
+        let share = |i: usize| shares[i] / travelled;
+        let kept: Vec<usize> = rows.filter(|i| *i == 0 || steps[*i] > PAUSE * way).collect();
+        let positions: Vec<[f64; 3]> = kept.iter().map(|i| reference.position(*i)).collect();
+        let place = points.iter().map(|i| reference.position(*i)).collect();
+        let turned = points.iter().map(|i| reference.rotation(*i)).collect();
+        Ok(Self {
+            shares: kept.iter().map(|i| share(*i)).collect(),
+            corners: corners(&positions),
+            rotations: rotations.map(|rows| kept.iter().map(|i| rows[*i]).collect()),
+            times: times.map(|times| kept.iter().map(|i| times[*i]).collect()),
+            points: Reference::new(1.0, place, turned)?,
+            point_shares: points.iter().map(|i| share(*i)).collect(),
+            positions,
+        })
+    }
+
+    /// The points that the published planner passes: those given, or 51 at equal times.
+    pub fn points(&self) -> &Reference {
+        &self.points
+    }
+
+    /// Shares of the way at which they lie.
+    pub fn point_shares(&self) -> &[f64] {
+        &self.point_shares
+    }
+
+    /// Positions (m) between which it is straight.
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// The longest edge of the box that holds it (m); of a turn on the spot, its angle (rad).
+    pub fn extent(&self) -> f64 {
+        let along = |k: usize| {
+            let values = self.positions.iter().map(|p| p[k]);
+            values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
+        };
+        let extent = (0..3).map(along).fold(0.0, f64::max);
+        if extent > 0.0 { extent } else { self.turned() }
+    }
+
+    fn turned(&self) -> f64 {
+        self.rotations.as_ref().map_or(0.0, |rows| rows.windows(2).map(|pair| pair[0].angle_to(&pair[1])).sum())
+    }
+
+    /// By how much (m) chords between its rows may leave the curve that was sampled: the rise of an arc that turns as they
+    /// do.
+    pub fn coarseness(&self) -> f64 {
+        let smooth = |row: &usize| !self.corners.contains(row);
+        let rise = |row: usize| {
+            let [before, here, after] = [row - 1, row, row + 1].map(|i| self.positions[i]);
+            let chord = distance(before, here).max(distance(here, after));
+            0.5 * chord * (0.25 * turn(before, here, after)).tan()
+        };
+        (1..self.positions.len() - 1).filter(smooth).map(rise).fold(0.0, f64::max)
+    }
+
+    /// Shares of the way at which its direction jumps.
+    pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
+        self.corners.iter().map(|row| self.shares[*row])
+    }
+
+    /// Shares of the way from 0 to 1, all corners among them, the others about one `intervals`-th apart and at rows as far
+    /// as there are any.
+    pub fn knots(&self, intervals: usize) -> Vec<f64> {
+        let spacing = 1.0 / intervals as f64;
+        let (mut knots, mut fixed) = (vec![0.0], true);
+        for (row, share) in self.shares.iter().enumerate().skip(1) {
+            let needed = row + 1 == self.shares.len() || self.corners.contains(&row);
+            let since = share - knots[knots.len() - 1];
+            if since < (1.0 - PAUSE) * spacing && !needed {
+                continue;
+            }
+            if since < 0.5 * spacing && !fixed {
+                knots.pop(); // too near to what must be there
+            }
+            let from = knots[knots.len() - 1];
+            let count = ((share - from) / spacing).round().max(1.0) as usize;
+            knots.extend((1..count).map(|i| from + (share - from) * i as f64 / count as f64));
+            knots.push(*share);
+            fixed = needed;
+        }
+        knots
+    }
+
+    /// What the tip is to reach at this share of the way.
+    pub fn target(&self, share: f64) -> Target {
+        let (row, part) = self.locate(share);
+        let [from, to] = [self.positions[row], self.positions[row + 1]];
+        let position = std::array::from_fn(|k| (1.0 - part) * from[k] + part * to[k]);
+        match &self.rotations {
+            None => Target::Position(position),
+            Some(rows) => {
+                let rotation = rows[row].rotation_to(&rows[row + 1]).powf(part) * rows[row];
+                let pose = pose::from_parts(position, rotation.to_rotation_matrix().into_inner());
+                Target::Pose(Frame::from(&pose))
+            }
+        }
+    }
+
+    /// How far (m) a position is from the stretch between two shares of the way.
+    pub fn distance(&self, position: [f64; 3], from: f64, to: f64) -> f64 {
+        let (first, last) = (self.locate(from.max(0.0)).0, self.locate(to.min(1.0)).0);
+        let strokes = self.positions[first..=last + 1].windows(2);
+        strokes.map(|ends| distance_to_stroke(position, ends[0], ends[1])).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The place at this share of the way, in words.
+    pub fn place(&self, share: f64) -> String {
+        let (row, part) = self.locate(share);
+        match &self.times {
+            Some(times) => {
+                let time = times[row] + part * (times[row + 1] - times[row]);
+                format!("the path at t = {} s", number(time))
+            }
+            None if part == 0.0 => format!("point {row} of the path"),
+            None if part == 1.0 => format!("point {} of the path", row + 1),
+            None => format!("the path between points {row} and {}", row + 1),
+        }
+    }
+
+    /// The row that begins the stroke at this share of the way, and how much of the stroke lies behind.
+    fn locate(&self, share: f64) -> (usize, f64) {
+        let row = self.shares.partition_point(|start| *start <= share).clamp(1, self.shares.len() - 1) - 1;
+        let [from, to] = [self.shares[row], self.shares[row + 1]];
+        (row, ((share - from) / (to - from)).clamp(0.0, 1.0))
+    }
+}
+
+/// Err where a point is the one before it again: no curve leads on from there.
+///
+/// # Errors
+/// [`Error::InvalidPath`].
+pub(super) fn refuse_repetition(points: &Reference) -> Result<()> {
+    let repeats =
+        |i: &usize| points.position(*i) == points.position(i - 1) && points.rotation(*i) == points.rotation(i - 1);
+    match (1..points.len()).find(repeats) {
+        None => Ok(()),
+        Some(i) => Err(Error::InvalidPath { problem: format!("point {i} repeats point {}: leave it out", i - 1) }),
+    }
+}
+
+fn corners(positions: &[[f64; 3]]) -> Vec<usize> {
+    let is_corner = |i: &usize| turn(positions[i - 1], positions[*i], positions[i + 1]) > CORNER;
+    (1..positions.len() - 1).filter(is_corner).collect()
+}

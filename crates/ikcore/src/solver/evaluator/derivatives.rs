@@ -1,0 +1,86 @@
+//! Evaluations that tell more than a value, and fewer for who asks for values alone.
+
+use std::mem;
+
+use smallvec::SmallVec;
+
+use super::{Evaluator, Halt};
+use crate::math::box_step::ROWS;
+use crate::objective::{Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, Slope};
+
+impl<O: Residual + ?Sized> Evaluator<'_, O> {
+    /// Clips `x` to the box; value and residual there.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    #[inline]
+    pub fn residual(&mut self, x: &mut [f64], out: &mut [f64; ROWS]) -> Result<f64, Halt> {
+        self.spend(1)?;
+        self.admit(x);
+        let score = self.objective.residual(x, out);
+        Ok(self.record(x, score))
+    }
+}
+
+impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
+    /// Clips `x` to the box; value, residual and Jacobian there, counted as one evaluation.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    #[inline]
+    pub fn linearize(&mut self, x: &mut [f64], out: &mut Linearization) -> Result<f64, Halt> {
+        self.spend(1)?;
+        self.admit(x);
+        let score = self.objective.linearize(x, out);
+        Ok(self.record(x, score))
+    }
+}
+
+impl<O: Gradient + ?Sized> Evaluator<'_, O> {
+    /// Brings `x` into the domain; error and gradient there, counted as one evaluation. The error is infinite where the
+    /// value is not finite.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    #[inline]
+    pub fn differentiate(&mut self, x: &mut [f64], gradient: &mut [f64]) -> Result<f64, Halt> {
+        self.spend(1)?;
+        self.admit(x);
+        let Slope { error, score } = self.objective.differentiate(x, gradient);
+        let value = self.record(x, score);
+        Ok(if value.is_finite() { error } else { f64::INFINITY })
+    }
+}
+
+impl Evaluator<'_, dyn Differentiable + '_> {
+    /// Lends the run to a solver that asks for values alone, so that there is one compiled copy of such a solver whatever
+    /// the objective offers beyond.
+    pub fn with_values_only<R>(&mut self, work: impl FnOnce(&mut Evaluator<'_, dyn Objective + '_>) -> R) -> R {
+        let mut narrowed = Evaluator {
+            objective: &mut *self.objective as &mut dyn Objective,
+            bounds: self.bounds,
+            stop: self.stop,
+            rng: &mut *self.rng,
+            monitor: &mut *self.monitor,
+            stopwatch: self.stopwatch,
+            evaluations: self.evaluations,
+            next_poll: self.next_poll,
+            best: mem::take(&mut self.best),
+            attempt_value: self.attempt_value,
+            attempts: self.attempts,
+            dimension: self.dimension,
+            pace: self.pace,
+            conduct: self.conduct,
+            periods: SmallVec::new(),
+            strayed: false,
+        };
+        let result = work(&mut narrowed);
+        let Evaluator { evaluations, next_poll, best, attempt_value, attempts, .. } = narrowed;
+        self.evaluations = evaluations;
+        self.next_poll = next_poll;
+        self.best = best;
+        self.attempt_value = attempt_value;
+        self.attempts = attempts;
+        result
+    }
+}

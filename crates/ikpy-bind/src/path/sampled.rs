@@ -1,0 +1,59 @@
+//! Paths as the core runs along them: Python functions are called here, before it does.
+
+use ikcore::math::ticks::ticks;
+use ikcore::nalgebra::Matrix3;
+use ikcore::path::Reference;
+use ikcore::planning::Course;
+use pyo3::prelude::*;
+
+use super::{Curve, Orientation, PyPath};
+use crate::error::raise;
+use crate::limits::CALLS_BETWEEN_LOOKS;
+
+/// Positions (m), and orientations where there are any.
+type Sampled = (Vec<[f64; 3]>, Option<Vec<Matrix3<f64>>>);
+
+impl PyPath {
+    /// The path at all tick times; Python functions are called here, before the core runs.
+    pub fn reference(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
+        if let (Curve::Core(path), Orientation::OfCurve) = (&self.curve, &self.orientation) {
+            return path.sample(dt).map_err(raise);
+        }
+        let count = ticks(self.duration(), dt).map_err(raise)? + 1;
+        let (positions, rotations) = self.at(py, (0..count).map(|i| (i as f64 * dt).min(self.duration())))?;
+        Reference::new(dt, positions, rotations).map_err(raise)
+    }
+
+    /// The same with the velocities at the ticks.
+    pub fn moving_reference(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
+        let reference = self.reference(py, dt)?;
+        let velocities = (0..reference.len())
+            .map(|i| self.velocity_at(py, reference.time(i).min(self.duration())))
+            .collect::<PyResult<_>>()?;
+        reference.with_velocities(velocities).map_err(raise)
+    }
+
+    /// The path as a planner sees it; Python functions are called here, before the core runs.
+    pub fn course(&self, py: Python<'_>) -> PyResult<Course> {
+        let corners = match &self.curve {
+            Curve::Core(path) => path.corners(),
+            Curve::Function { .. } => vec![],
+        };
+        let times = Course::times(self.duration(), &corners);
+        let (positions, rotations) = self.at(py, times.iter().copied())?;
+        Course::sampled(times, positions, rotations).map_err(raise)
+    }
+
+    /// Positions and, where there are any, orientations at these times.
+    fn at(&self, py: Python<'_>, times: impl Iterator<Item = f64>) -> PyResult<Sampled> {
+        let (mut positions, mut rotations) = (vec![], vec![]);
+        for (i, t) in times.enumerate() {
+            if i % CALLS_BETWEEN_LOOKS == 0 {
+                py.check_signals()?;
+            }
+            positions.push(self.position_at(py, t)?);
+            rotations.extend(self.rotation_at(py, t)?);
+        }
+        Ok((positions, (!rotations.is_empty()).then_some(rotations)))
+    }
+}

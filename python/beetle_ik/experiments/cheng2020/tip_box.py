@@ -1,0 +1,132 @@
+"""Eq. (5): the tip kept in a box."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import beetle_ik as bik
+
+from ...report import BLUE, FORBIDDEN, VERMILION, Claim, Figure, Section, drawing, number
+from ..experiment import Context
+from .settings import FIVE_LINK, IIWA, STAR, Task, excess_velocity
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+TITLE = "The tip kept in a box"
+_SEEDS = 10
+_SEEDS_SHORT = 1
+_ROUNDING = 1e-12  # rad/s
+
+# Lower and upper corner (m). Each cuts three sides off its circle, by 0.2 m or 0.03 m; the arms start on the fourth.
+_BOXES = {
+    FIVE_LINK.name: np.array([[3.5, 0.5, -np.inf], [np.inf, 1.5, np.inf]]),
+    IIWA.name: np.array([[0.23, 0.23, -np.inf], [np.inf, 0.37, np.inf]]),
+}
+
+_TEXT = """
+Where the room is narrow, the tip is to stay within p_min < p < p_max, eq. (5). The paper says no more of it: Algorithm
+1 clips joints, not the tip. The library takes the box as a `region` of the task. The beetle looks for the point within
+that is nearest to the target, and what would still end a step outside is taken back. Nothing else changes: the same
+beetle, the same velocity limits.
+"""
+
+
+@dataclass(frozen=True)
+class Boxed:
+    """An arm in its box, over several seeds."""
+
+    task: Task
+    results: list[bik.TrackResult]
+
+    @property
+    def box(self) -> NDArray[np.float64]:
+        """Lower and upper corner (m)."""
+        return _BOXES[self.task.name]
+
+    @property
+    def outside(self) -> float:
+        """How far the tip is beyond a face, at most (m); negative inside."""
+        tips = np.concatenate([result.position for result in self.results])
+        return float(np.maximum(self.box[0] - tips, tips - self.box[1]).max())
+
+    @property
+    def away(self) -> float:
+        """How far the tip is from the point of the box nearest to its target, at most (m)."""
+        nearest = [np.clip(result.reference, *self.box) for result in self.results]
+        tips = [result.position for result in self.results]
+        return float(np.linalg.norm(np.array(tips) - np.array(nearest), axis=2).max())
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether no step broke box or limits, and all were as near to their targets as the band and the box allow."""
+        excess = max(excess_velocity(result) for result in self.results)
+        # The tip is led along the inside of a face, up to half a band from it, and the beetle rests within its band.
+        return self.outside < 0.0 and excess <= _ROUNDING and self.away <= 2.0 * STAR[self.task.name].band
+
+
+def tip_box(context: Context) -> tuple[Section, list[Claim]]:
+    """Both arms on circles that leave their boxes."""
+    seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
+    boxed = [
+        Boxed(task, [_track(task, seed) for seed in seeds])
+        for task in context.each("cheng2020: eq. (5)", [FIVE_LINK, IIWA])
+    ]
+    figure = Figure(
+        name="equation_5",
+        title="Eq. (5): circles that leave the box",
+        drawing=_draw(boxed),
+        caption="Seen from above. The shade is forbidden; the tip follows its faces where the circle is beyond them.",
+    )
+    return Section(TITLE, [_TEXT, figure]), [_claim(boxed)]
+
+
+def _track(task: Task, seed: int) -> bik.TrackResult:
+    setting = STAR[task.name]
+    kept = bik.tasks.Position(region=_BOXES[task.name])
+    return task.track(setting.solver, band=setting.band, seed=seed, start=task.on_path, task=kept)
+
+
+def _claim(boxed: list[Boxed]) -> Claim:
+    runs = sum(len(one.results) for one in boxed)
+    nearest = min(-one.outside for one in boxed)
+    away = ", ".join(f"{number(one.away, 2)} m ({one.task.name})" for one in boxed)
+    return Claim.checked(
+        "The end-effector stays within specific spaces, p_min < p(t) < p_max.",
+        source="Section II-B, eq. (5)",
+        measured=(
+            f"in all steps of {runs} runs the tip is inside, by {number(nearest, 2)} m at least, and at most {away} "
+            "from the point of the box nearest to its target"
+        ),
+        holds=all(one.is_kept for one in boxed),
+        reading="The paper gives no bounds, and Algorithm 1 does not use them: ours cut three sides off each circle.",
+        section=TITLE,
+    )
+
+
+def _draw(boxed: list[Boxed]) -> Drawing:
+    with drawing(3.6) as figure:
+        panels = figure.subplots(1, len(boxed))
+        for axes, one in zip(panels, boxed, strict=True):
+            _draw_one(axes, one)
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    return figure
+
+
+def _draw_one(axes: Axes, one: Boxed) -> None:
+    result = one.results[0]
+    reference, (low, high) = result.reference[:, :2], one.box[:, :2]
+    reach = 0.15 * np.ptp(reference, axis=0)
+    (left, bottom), (right, top) = reference.min(axis=0) - reach, reference.max(axis=0) + reach
+    axes.axvspan(left, low[0], color=FORBIDDEN, linewidth=0)
+    for edges in ((bottom, low[1]), (high[1], top)):
+        axes.fill_between([low[0], right], *edges, color=FORBIDDEN, linewidth=0)
+    axes.plot(*reference.T, color=VERMILION, linewidth=4.0, alpha=0.45, label="circle")
+    axes.plot(*result.position[:, :2].T, color=BLUE, label="tip")
+    axes.set(title=one.task.name, xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    axes.set(xlim=(left, right), ylim=(bottom, top))
