@@ -97,6 +97,7 @@ class Measured:
     followed: list[tracking.Followed] = field(default_factory=list)
     kinematics: list[list[str]] = field(default_factory=list)
     batches: list[list[str]] = field(default_factory=list)
+    loads: list[float] = field(default_factory=list)  # load averages of the last minute; a busy machine spoils ratios
 
 
 def main() -> None:
@@ -109,6 +110,7 @@ def main() -> None:
         for chain in load_chains(arguments.robots, Path(scratch)):
             print(f"{chain.name} ({chain.dof} joints)", flush=True)
             measure(chain, measured)
+            measured.loads.append(os.getloadavg()[0])
             write(measured, arguments.out)
     print(f"wrote compare.csv, summary.csv, tracking.csv, compare.md and compare.png to {arguments.out}")
 
@@ -216,7 +218,8 @@ def markdown(measured: Measured) -> str:
         f"and finds the caches cold. In a row: each library gets {ORDERS[IN_A_ROW]} targets before the next library "
         f"has its turn. Of a target's {ROUNDS} calls in each order the median counts (the libraries that solve "
         f"once from the start are measured among themselves, by one call on {count // LOCAL_SHARE} of the targets).\n\n"
-        f"{processor()}, Python {platform.python_version()}, {platform.system()}.\n",
+        f"{processor()}, Python {platform.python_version()}, {platform.system()}; load average (this run is one) from "
+        f"{min(measured.loads):.1f} to {max(measured.loads):.1f}.\n",
         plain_section(
             "Libraries and settings",
             ["library", "version", "settings"],
