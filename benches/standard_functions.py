@@ -172,7 +172,9 @@ PAIRS = [
     Pair("BeetleSwarm, 17 beetles", bik.BeetleSwarm(**{**SAME, "population": 17}), CLERC),
     Pair("BeetleSwarm, 50 beetles", bik.BeetleSwarm(**SAME), CLERC),
     # As mealpy's does: what left the box is drawn anew in it, and nothing limits a velocity.
-    Pair('PSO, accept="improving", walls="random"', bik.PSO(walls="random", velocity_limit=np.inf, **IMPROVING), GREEDY),
+    Pair(
+        'PSO, accept="improving", walls="random"', bik.PSO(walls="random", velocity_limit=np.inf, **IMPROVING), GREEDY
+    ),
     Pair('PSO, accept="improving", walls="absorbing"', bik.PSO(**IMPROVING), GREEDY),
     Pair("Genetic, single coordinates mutated", bik.Genetic(**SEPARABLE, **SAME), GA),
     Pair("Genetic, its defaults", bik.Genetic(**SAME), GA),
@@ -234,17 +236,19 @@ def page(rivals: dict[tuple[str, str], list[float]], seeds: int, evaluations: in
 
 
 NOTES = (
-    "How the settings were chosen: an option that both have takes the value of the rival, which is its default or, for",
-    "pyswarms, Clerc's. An option that only ours has takes our default, unless it says how the rival works, such as what",
-    "becomes of a coordinate that leaves the box: then it is set as there. Rows that differ from that are named below.",
+    "How the settings were chosen: an option that both have takes the rival's value: its default or, for pyswarms,",
+    "Clerc's. One that only ours has takes our default, unless it says how the rival works, such as what becomes of a",
+    "coordinate that leaves the box: then it is set as there. Rows that differ from that are named below.",
     "",
     "What the rows say:",
     "",
-    "- Where a solver stands twice, the row with a **worse** came first. The other's settings were chosen to mend",
-    "  it, on these functions and seeds: it shows what the algorithm can do, not what to expect of it on others.",
+    "- PSO that returns to its best place is worse on Rastrigin with walls that absorb, and not with walls and",
+    "  velocities as mealpy's has them: the difference is what becomes of a coordinate that leaves the box. Here the",
+    "  row without a **worse** was set by how mealpy works, before it was run.",
+    "- Where another solver stands twice, the row with a **worse** came first. The other's settings were chosen to",
+    "  mend it, on these functions and seeds: it shows what the algorithm can do, not what to expect of it on others.",
     "- A beetle takes three evaluations a generation and a bee's source two: with as many of them as a swarm has",
     "  particles, there are fewer generations within the budget.",
-    "- PSO that returns to its best place stands twice: with walls as mealpy's has them, and with ours.",
     "- Differential evolution as published replaces vectors after the generation, so that all trials are evaluated",
     '  together; mealpy replaces them at once. With `update="immediate"` so do we.',
     "- The genetic algorithms share the scheme, not the operators: ours are MATLAB's, which move all coordinates of a",

@@ -88,13 +88,14 @@ def _png(figure: Figure, dpi: int) -> bytes:
 
     picture = io.BytesIO()
     _lay_out(figure, dpi)
-    # Savefig would draw everything twice: once to lay it out, which is done.
-    FigureCanvasAgg(figure.drawing).print_png(picture, metadata={"Software": None})  # same figure, same bytes
+    # Savefig would draw everything twice: once to lay it out, which is done. Without metadata: same figure, same bytes.
+    canvas: Any = FigureCanvasAgg(figure.drawing)
+    canvas.print_png(picture, metadata={"Software": None})
     return picture.getvalue()
 
 
 def _lay_out(figure: Figure, dpi: int) -> None:
-    """Once and for all: not again for each frame."""
+    """Once and for all: saving would do so for every frame."""
     drawing = figure.drawing
     drawing.set_dpi(dpi)
     layout = drawing.get_layout_engine()

@@ -70,7 +70,7 @@ pub struct SolveOptions {
 /// a row, each moved along the self-motion, serve the goals no better.
 ///
 /// # Errors
-/// Any [`enum@Error`] for wrong input. A target that is not reached is a status, not an error.
+/// Any [`Error`](crate::Error) for wrong input. A target that is not reached is a status, not an error.
 pub fn solve(robot: &Robot, target: &Target, options: &SolveOptions, monitor: &mut dyn Monitor) -> Result<Solution> {
     let prepared = Prepared::new(robot, options)?;
     let start = options.start.as_deref();
