@@ -5,8 +5,6 @@ use super::course::Course;
 use super::plan::Plan;
 use super::planar_arm::Elbow;
 use super::{timed, tpbso};
-#[cfg(doc)]
-use crate::error::Error;
 use crate::error::Result;
 use crate::limits::Limits;
 use crate::robot::Robot;
