@@ -20,6 +20,7 @@ import functools
 import platform
 import tempfile
 import warnings
+from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -87,34 +88,53 @@ ROUNDS = 3
 BATCH = 20_000
 
 
+@dataclass
+class Measured:
+    """All figures so far; texts are cells of tables."""
+
+    targets: int  # a robot
+    rows: list[Row] = field(default_factory=list)
+    followed: list[tracking.Followed] = field(default_factory=list)
+    kinematics: list[list[str]] = field(default_factory=list)
+    batches: list[list[str]] = field(default_factory=list)
+    loads: list[float] = field(default_factory=list)  # load averages of the last minute; a busy machine spoils ratios
+
+
 def main() -> None:
-    """Measure everything and write it down."""
+    """Measure everything and write it down, anew after each robot: the run is long."""
     arguments = parse_arguments()
     warnings.filterwarnings("ignore", category=DeprecationWarning)  # libraries of libraries
     arguments.out.mkdir(parents=True, exist_ok=True)
-    rows: list[Row] = []
-    calls: list[list[str]] = []
-    rates: list[list[str]] = []
-    followed: list[tracking.Followed] = []
+    measured = Measured(arguments.targets)
     with tempfile.TemporaryDirectory() as scratch:
         for chain in load_chains(arguments.robots, Path(scratch)):
             print(f"{chain.name} ({chain.dof} joints)", flush=True)
-            for task in TASKS:
-                rows += compare(chain, task, GENERAL, arguments.targets, ROUNDS)
-            rows += compare(chain, POSE, LOCAL, max(1, arguments.targets // LOCAL_SHARE), 1)
-            calls += time_kinematics(chain)
-            rates.append(time_batch(chain))
-            if chain.name == tracking.ROBOT:
-                followed += tracking.compare_tracking(chain, load(chain, tracking.TOLERANCE, TRACKING)[0])
-    write_table(arguments.out / "compare.csv", ROW_COLUMNS, [*map(row_line, rows)])
-    summary = summary_lines(rows, POSE, ORDERS, versions())
-    write_table(arguments.out / "summary.csv", summary_columns(ORDERS), summary)
-    write_table(arguments.out / "tracking.csv", TRACKING_COLUMNS, tracking_lines(followed))
-    report = markdown(rows, calls, rates, followed, arguments.targets)
-    (arguments.out / "compare.md").write_text(report, encoding="utf-8")
-    title = f"{arguments.targets} random reachable targets a robot: {POSE}, {IN_A_ROW}"
-    plot(rows, POSE, IN_A_ROW, title, arguments.out / "compare.png")
+            measure(chain, measured)
+            measured.loads.append(os.getloadavg()[0])
+            write(measured, arguments.out)
     print(f"wrote compare.csv, summary.csv, tracking.csv, compare.md and compare.png to {arguments.out}")
+
+
+def measure(chain: Chain, measured: Measured) -> None:
+    """Everything on one robot."""
+    for task in TASKS:
+        measured.rows += compare(chain, task, GENERAL, measured.targets, ROUNDS)
+    measured.rows += compare(chain, POSE, LOCAL, max(1, measured.targets // LOCAL_SHARE), 1)
+    measured.kinematics += time_kinematics(chain)
+    measured.batches.append(time_batch(chain))
+    if chain.name == tracking.ROBOT:
+        measured.followed += tracking.compare_tracking(chain, load(chain, tracking.TOLERANCE, TRACKING)[0])
+
+
+def write(measured: Measured, out: Path) -> None:
+    """The tables, the report and the picture."""
+    write_table(out / "compare.csv", ROW_COLUMNS, [*map(row_line, measured.rows)])
+    summary = summary_lines(measured.rows, POSE, ORDERS, versions())
+    write_table(out / "summary.csv", summary_columns(ORDERS), summary)
+    write_table(out / "tracking.csv", TRACKING_COLUMNS, tracking_lines(measured.followed))
+    (out / "compare.md").write_text(markdown(measured), encoding="utf-8")
+    title = f"{measured.targets} random reachable targets a robot: {POSE}, {IN_A_ROW}"
+    plot(measured.rows, POSE, IN_A_ROW, title, out / "compare.png")
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -186,10 +206,9 @@ def time_batch(chain: Chain) -> list[str]:
     return [chain.name, *(f"{batch_rate(adapter, targets, threads):,.0f}" for threads in (1, os.cpu_count() or 1))]
 
 
-def markdown(
-    rows: list[Row], calls: list[list[str]], rates: list[list[str]], followed: list[tracking.Followed], count: int
-) -> str:
+def markdown(measured: Measured) -> str:
     """The whole report."""
+    rows, count = measured.rows, measured.targets
     sections = [
         f"# Inverse kinematics libraries compared\n\n{count} reachable targets a robot, drawn uniformly inside the "
         "limits, and one random start each. One thread, one call a target from Python, call included. Solved: within "
@@ -199,19 +218,22 @@ def markdown(
         f"and finds the caches cold. In a row: each library gets {ORDERS[IN_A_ROW]} targets before the next library "
         f"has its turn. Of a target's {ROUNDS} calls in each order the median counts (the libraries that solve "
         f"once from the start are measured among themselves, by one call on {count // LOCAL_SHARE} of the targets).\n\n"
-        f"{processor()}, Python {platform.python_version()}, {platform.system()}.\n",
+        f"{processor()}, Python {platform.python_version()}, {platform.system()}; load average (this run is one) from "
+        f"{min(measured.loads):.1f} to {max(measured.loads):.1f}.\n",
         plain_section(
             "Libraries and settings",
             ["library", "version", "settings"],
             [[library.name, versions()[library.name], library.settings] for library in EVERY],
         ),
         *(times_section(task, order, rows) for task in TASKS for order in ORDERS),
-        plain_section("A circle of 0.2 m, iiwa14, position, warm-started", TRACKING_COLUMNS, tracking_lines(followed)),
-        plain_section("Kinematics, ns a call", ["robot", "library", "FK", "FK + Jacobian"], calls),
+        plain_section(
+            "A circle of 0.2 m, iiwa14, position, warm-started", TRACKING_COLUMNS, tracking_lines(measured.followed)
+        ),
+        plain_section("Kinematics, ns a call", ["robot", "library", "FK", "FK + Jacobian"], measured.kinematics),
         plain_section(
             f"Batch of {BATCH:,} poses by beetle-ik, poses a second",
             ["robot", "one thread", f"{os.cpu_count()} threads"],
-            rates,
+            measured.batches,
         ),
     ]
     return "\n".join(sections)

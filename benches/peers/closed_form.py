@@ -50,7 +50,10 @@ class Eaik(Adapter):
 class Ssik(Adapter):
     name = "ssik"
     distribution = "ssik"
-    settings = "module built for the robot by `ssik build`, solve(..., max_solutions=1)"
+    settings = (
+        "module built for the robot by `ssik build`, solve(..., max_solutions=1, allow_rescue=False): "
+        "the rescue of a target, rarely asked for, can take seconds"
+    )
 
     def __init__(self, chain: Chain, tolerance: float) -> None:
         import ssik  # noqa: F401  a library that is missing is named as such
@@ -64,7 +67,7 @@ class Ssik(Adapter):
         self._solve = built.solve
 
     def solve_pose(self, target: np.ndarray, start: np.ndarray) -> np.ndarray | None:
-        solutions = self._solve(target, max_solutions=1)
+        solutions = self._solve(target, max_solutions=1, allow_rescue=False)
         return solutions[0].q if solutions else None
 
 

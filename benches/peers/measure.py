@@ -42,8 +42,9 @@ def interleave(
 ) -> dict[str, Calls]:
     """Every call of every solver, `in_a_row` targets by one before the next solver gets the same.
 
-    With 1, each call comes after other work and finds the caches cold; with 50, the caches are its own. The order is
-    drawn anew each time: a busy machine hurts all alike, and none always follows the same other.
+    With 1, each call comes after other work and finds the caches cold; with more, the caches are its own. The order is
+    drawn anew each time, so that none always follows the same other. A busy machine hurts long calls more than short
+    ones, which fit between two interruptions.
     """
     calls = {
         name: Calls(np.empty((rounds, len(targets))), [[None] * len(targets) for _ in range(rounds)])
@@ -56,6 +57,8 @@ def interleave(
         for first in range(0, len(targets), in_a_row):
             for name in order.permutation(list(solvers)):
                 solve, times, answers = solvers[name], calls[name].times[a_round], calls[name].answers[a_round]
+                if in_a_row > 1:
+                    solve(targets[first - 1], starts[first - 1])  # not timed: the call that finds the caches cold
                 for i in range(first, min(first + in_a_row, len(targets))):
                     target, start = targets[i], starts[i]
                     begin = perf_counter_ns()

@@ -154,3 +154,4 @@ def plot(rows: list[Row], task: str, order: str, title: str, path: Path) -> None
     axes.grid(alpha=0.3, which="both")
     axes.legend(title="ringed: mean over robots", fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
     figure.savefig(path, dpi=150)
+    plt.close(figure)

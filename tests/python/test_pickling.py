@@ -155,6 +155,20 @@ def test_limits_come_back(again: Callable[[bik.Limits], bik.Limits]) -> None:
     assert eval(repr(other), vars(bik)) == limits
 
 
+@pytest.mark.parametrize(
+    "limits",
+    [
+        bik.Limits(),
+        bik.Limits(lower=-1.0, upper=[1.0, 2.0], velocity=SINUSOIDS[1]),
+        bik.Limits(lower=[-np.inf, 0.5], velocity=np.inf, acceleration=2.0, jerk=[1e-9, 1e9]),
+        bik.Robot.planar([1.0, 0.5]).limits,
+    ],
+    ids=repr,
+)
+def test_the_repr_rebuilds_limits(limits: bik.Limits) -> None:
+    assert eval(repr(limits), vars(bik)) == limits
+
+
 def test_limits_compare_as_given() -> None:
     limits = bik.Limits(lower=-1.0, upper=[1.0, 2.0], velocity=SINUSOIDS[1], acceleration=ramp)
     assert limits == bik.Limits(lower=-1.0, upper=[1.0, 2.0], velocity=SINUSOIDS[1], acceleration=ramp)

@@ -81,6 +81,11 @@ impl Taken for Option<usize> {
     }
 }
 
+/// A list of numbers as Python writes it.
+pub fn list_text(values: &[f64]) -> String {
+    format!("[{}]", values.iter().map(f64::text).collect::<Vec<_>>().join(", "))
+}
+
 /// Options that are one of a few names.
 macro_rules! named {
     ($($option:ty),*) => {$(

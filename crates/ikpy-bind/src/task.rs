@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::convert::{Array, copied, corners, point, pose_array, rigid, row, summary, table, vector};
 use crate::error::{invalid, raise};
-use crate::options::NewArguments;
+use crate::options::{NewArguments, list_text};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyTask>()?;
@@ -59,17 +59,16 @@ impl PyTask {
     }
 
     fn __repr__(&self) -> String {
-        let list = |entries: &[f64]| format!("{entries:?}").replace("inf", "float('inf')");
         let axis = match &self.core.kind {
-            Kind::Pointing { axis } => Some(format!("axis={}", list(axis))),
+            Kind::Pointing { axis } => Some(format!("axis={}", list_text(axis))),
             _ => None,
         };
         let matrix = |tool: &Pose| format!("tool={:?}", pose::rows(tool).as_chunks::<4>().0);
-        let region = |region: &Region| format!("region=[{}, {}]", list(region.lower()), list(region.upper()));
+        let region = |region: &Region| format!("region=[{}, {}]", list_text(region.lower()), list_text(region.upper()));
         let options = [
             axis,
-            self.core.weights().map(|weights| format!("weights={}", list(&weights))),
-            self.core.tolerance().map(|tolerance| format!("tolerance={}", list(&tolerance))),
+            self.core.weights().map(|weights| format!("weights={}", list_text(&weights))),
+            self.core.tolerance().map(|tolerance| format!("tolerance={}", list_text(&tolerance))),
             self.core.tool.as_ref().map(matrix),
             self.core.region.as_ref().map(region),
         ];

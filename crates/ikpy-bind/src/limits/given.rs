@@ -3,14 +3,14 @@
 use ikcore::limits::{Field, Profile};
 use pyo3::prelude::*;
 
-use super::numbers::Numbers;
+use super::per_joint::PerJoint;
 use super::sampling::{Sampling, sampled};
 use super::sinusoid::PySinusoid;
 use crate::convert::summary;
 
 /// Numbers, a sinusoid, or a function of time.
 pub enum Given {
-    Numbers(Numbers),
+    Numbers(PerJoint),
     Sinusoid(PySinusoid),
     Function(Py<PyAny>),
 }
@@ -23,7 +23,7 @@ impl Given {
         if value.is_callable() {
             return Ok(Self::Function(value.clone().unbind()));
         }
-        Numbers::read(&format!("{field} limit"), value).map(Self::Numbers)
+        PerJoint::read(&format!("{field} limit"), value).map(Self::Numbers)
     }
 
     pub fn clone_ref(&self, py: Python<'_>) -> Self {

@@ -1,8 +1,8 @@
 //! `Limits`.
 
 mod given;
-mod numbers;
 mod of_call;
+mod per_joint;
 mod sampling;
 mod sinusoid;
 
@@ -13,8 +13,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use given::Given;
-pub use numbers::Numbers;
 pub use of_call::{limits_of_call, limits_without_robot};
+pub use per_joint::PerJoint;
 pub use sampling::{CALLS_BETWEEN_LOOKS, Sampling};
 pub use sinusoid::PySinusoid;
 
@@ -204,5 +204,5 @@ impl PyLimits {
 
 /// A field that was given one number per joint.
 fn numbers(values: Vec<f64>) -> Option<Given> {
-    Some(Given::Numbers(Numbers { values, single: false }))
+    Some(Given::Numbers(PerJoint { values, single: false }))
 }

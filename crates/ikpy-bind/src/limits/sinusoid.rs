@@ -3,7 +3,7 @@
 use ikcore::limits::{Profile, Sinusoid};
 use pyo3::prelude::*;
 
-use super::numbers::Numbers;
+use super::per_joint::PerJoint;
 use crate::error::invalid;
 use crate::options::{NewArguments, keywords};
 
@@ -17,10 +17,10 @@ use crate::options::{NewArguments, keywords};
 #[pyclass(name = "Sinusoid", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Clone, PartialEq)]
 pub struct PySinusoid {
-    mean: Numbers,
-    amplitude: Numbers,
-    angular_frequency: Numbers,
-    phase: Numbers,
+    mean: PerJoint,
+    amplitude: PerJoint,
+    angular_frequency: PerJoint,
+    phase: PerJoint,
 }
 
 #[pymethods]
@@ -33,12 +33,12 @@ impl PySinusoid {
         angular_frequency: &Bound<'_, PyAny>,
         phase: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let none = Numbers { values: vec![0.0], single: true };
+        let none = PerJoint { values: vec![0.0], single: true };
         let sinusoid = Self {
-            mean: Numbers::read("mean", mean)?,
-            amplitude: Numbers::read("amplitude", amplitude)?,
-            angular_frequency: Numbers::read("angular_frequency", angular_frequency)?,
-            phase: phase.map_or(Ok(none), |phase| Numbers::read("phase", phase))?,
+            mean: PerJoint::read("mean", mean)?,
+            amplitude: PerJoint::read("amplitude", amplitude)?,
+            angular_frequency: PerJoint::read("angular_frequency", angular_frequency)?,
+            phase: phase.map_or(Ok(none), |phase| PerJoint::read("phase", phase))?,
         };
         sinusoid.profiles()?;
         Ok(sinusoid)

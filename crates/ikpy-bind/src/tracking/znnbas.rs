@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use crate::convert::count;
 use crate::error::{invalid, raise};
-use crate::limits::Numbers;
+use crate::limits::PerJoint;
 use crate::options::{NewArguments, keywords};
 
 /// Zeroing neural network with beetle antennae search (Khan et al. 2022, eq. 10 to 16): a controller that measures once a
@@ -34,7 +34,7 @@ use crate::options::{NewArguments, keywords};
 pub struct PyZnnbas {
     core: Znnbas,
     /// The constant antenna, as given.
-    antenna: Option<Numbers>,
+    antenna: Option<PerJoint>,
 }
 
 #[pymethods]
@@ -52,7 +52,7 @@ impl PyZnnbas {
         accept: &str,
         sensor_delay: i128,
     ) -> PyResult<Self> {
-        let antenna = antenna_length.map(|length| Numbers::read("antenna_length", length)).transpose()?;
+        let antenna = antenna_length.map(|length| PerJoint::read("antenna_length", length)).transpose()?;
         let core = Znnbas {
             gain,
             antenna: match (&antenna, c1) {

@@ -4,15 +4,16 @@ use pyo3::prelude::*;
 
 use crate::convert::{row, scalar_or_vector};
 use crate::error::invalid;
+use crate::options::{Shown, list_text};
 
 /// A number, or one per joint.
 #[derive(Clone, PartialEq)]
-pub struct Numbers {
+pub struct PerJoint {
     pub values: Vec<f64>,
     pub single: bool,
 }
 
-impl Numbers {
+impl PerJoint {
     pub fn read(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
         let (values, single) = scalar_or_vector(what, value)?;
         if values.is_empty() {
@@ -34,6 +35,6 @@ impl Numbers {
     }
 
     pub fn repr(&self) -> String {
-        if self.single { format!("{:?}", self.values[0]) } else { format!("{:?}", self.values) }
+        if self.single { self.values[0].text() } else { list_text(&self.values) }
     }
 }
