@@ -103,3 +103,10 @@ def test_it_is_a_value() -> None:
 def test_wrong_options_are_named(options: dict[str, object], message: str) -> None:
     with pytest.raises(bik.InvalidInputError, match=message):
         bik.Tracker(ARM, wanted(0.0), dt=0.01, solver=bik.WeightedPseudoInverse(**options))
+
+
+def test_the_gain_of_a_posture_matters_where_there_is_one() -> None:
+    iiwa = bik.Robot.named("iiwa14")
+    circle = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=20.0)
+    result = bik.track(iiwa, circle, dt=0.2, solver=bik.WeightedPseudoInverse(), position_tolerance=0.02)
+    assert result.success, result.message

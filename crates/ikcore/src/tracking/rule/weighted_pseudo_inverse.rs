@@ -83,7 +83,8 @@ impl WeightedPseudoInverse {
 
     /// Checks them for a robot and ticks of `dt` (s).
     pub(super) fn validate_for(&self, robot: &Robot, dt: f64) -> Result<()> {
-        for (what, gain) in [("gain", self.gain.unwrap_or(0.0)), ("posture_gain", self.posture_gain)] {
+        let posture_gain = if self.posture.is_some() { self.posture_gain } else { 0.0 };
+        for (what, gain) in [("gain", self.gain.unwrap_or(0.0)), ("posture_gain", posture_gain)] {
             if gain * dt >= 2.0 {
                 let requirement = format!("below 2 / dt = {}, beyond which errors grow", 2.0 / dt);
                 return Err(Error::out_of_range(what, &requirement, gain));
