@@ -172,7 +172,9 @@ PAIRS = [
     Pair("BeetleSwarm, 17 beetles", bik.BeetleSwarm(**{**SAME, "population": 17}), CLERC),
     Pair("BeetleSwarm, 50 beetles", bik.BeetleSwarm(**SAME), CLERC),
     # As mealpy's does: what left the box is drawn anew in it, and nothing limits a velocity.
-    Pair('PSO, accept="improving", walls="random"', bik.PSO(walls="random", velocity_limit=np.inf, **IMPROVING), GREEDY),
+    Pair(
+        'PSO, accept="improving", walls="random"', bik.PSO(walls="random", velocity_limit=np.inf, **IMPROVING), GREEDY
+    ),
     Pair('PSO, accept="improving", walls="absorbing"', bik.PSO(**IMPROVING), GREEDY),
     Pair("Genetic, single coordinates mutated", bik.Genetic(**SEPARABLE, **SAME), GA),
     Pair("Genetic, its defaults", bik.Genetic(**SAME), GA),
