@@ -13,7 +13,7 @@ help:  ## list the targets
 # The limit is the BAS paper's. It is above the real arm's in four joints: the command says so.
 demo: $(VENV)/with-plot  ## a KUKA iiwa 14 follows the BAS paper's circle; results in demo/
 	$(BIN)/beetle-ik track iiwa14 --curve circle --center 0.3,0.3,1.0 --diameter 0.2 --duration 30 --dt 0.2 \
-	    --start 0.6449,0.2037,0.1969,-0.7714,0.2028,0.7179,0.1 --velocity-limit 2,0.004,1 --solver bas --out demo
+	    --start 0.6449,0.2037,0.1969,-0.7714,0.2028,0.7179,0.1 --velocity-sinusoid 2,0.004,1 --solver bas --out demo
 
 test: lint  ## all checks and tests, of Rust and of Python
 	cargo test --locked

@@ -1,9 +1,10 @@
-//! Forward kinematics and Jacobians: nanoseconds a configuration.
+//! Forward kinematics, Jacobians, and the gradient of manipulability: nanoseconds a configuration.
 
 use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use ikcore::manipulability::{Manipulability, Motion};
 use ikcore::math::MAX_DOF;
 use ikcore::rng;
 use ikcore::robot::Robot;
@@ -26,6 +27,14 @@ fn single(c: &mut Criterion) {
         group.bench_function("tip position", |b| b.iter(|| robot.tip_position(black_box(q))));
         group.bench_function("four tip positions", |b| {
             b.iter(|| robot.tip_positions(black_box(&qs), |tip| _ = black_box(tip)));
+        });
+        // A planar arm turns about one axis only: of its pose there is no index.
+        let motion = if name == "planar5" { Motion::Position } else { Motion::Pose };
+        let measure = Manipulability::of(&robot, motion);
+        let mut gradient = vec![0.0; robot.dof()];
+        group.bench_function("manipulability", |b| b.iter(|| measure.index(&robot, black_box(q))));
+        group.bench_function("manipulability and gradient", |b| {
+            b.iter(|| measure.gradient(&robot, black_box(q), &mut gradient));
         });
         group.finish();
     }

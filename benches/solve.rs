@@ -1,16 +1,17 @@
-//! Targets by the default solver: random and reachable, without a start, within the robot's limits; and what the index
-//! of starts costs to build.
+//! Targets by the default solver: random and reachable, without a start, within the robot's limits; the best posture at
+//! such poses; and what the index of starts costs to build.
 
 use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use ikcore::ik::{SolveOptions, solve};
+use ikcore::ik::{Prefer, SolveOptions, solve};
+use ikcore::manipulability::Motion;
 use ikcore::math::Frame;
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
-use ikcore::task::{Target, Tolerance};
+use ikcore::task::{Goal, Target, Tolerance};
 
 const ROBOTS: [&str; 4] = ["iiwa14", "panda", "ur5e", "kr210"];
 const TARGETS: u64 = 200;
@@ -50,6 +51,26 @@ fn targets(c: &mut Criterion) {
     }
 }
 
+fn best_postures(c: &mut Criterion) {
+    const POSES: usize = 50;
+    let mut group = c.benchmark_group("best posture");
+    group.throughput(Throughput::Elements(POSES as u64));
+    for name in ["iiwa14", "panda"] {
+        let robot = named(name);
+        let goals = robot.random_configurations(POSES, &mut rng::stream(1, 0)).expect("they fit into memory");
+        let targets: Vec<_> = goals.chunks_exact(robot.dof()).map(|q| Target::Pose(robot.tip(q))).collect();
+        let goals = vec![Goal::Manipulability { motion: Motion::Pose, weight: 1.0 }];
+        let options = SolveOptions { goals, prefer: Prefer::Best, ..SolveOptions::default() };
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                targets.iter().for_each(|target| {
+                    solve(&robot, target, &options, &mut Unattended).expect("a solution");
+                });
+            });
+        });
+    }
+}
+
 fn index(c: &mut Criterion) {
     let mut group = c.benchmark_group("index of starts");
     for name in ROBOTS {
@@ -74,6 +95,6 @@ criterion_group! {
         .sample_size(20)
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(2));
-    targets = targets, index
+    targets = targets, best_postures, index
 }
 criterion_main!(benches);

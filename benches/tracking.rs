@@ -11,7 +11,7 @@ use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::robot::Robot;
 use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, Unattended, Variant};
 use ikcore::task::Tolerance;
-use ikcore::tracking::{TickRule, TrackOptions, track};
+use ikcore::tracking::{Integrator, TickRule, TrackOptions, WeightedPseudoInverse, track};
 
 const SEEDS: u64 = 20;
 
@@ -59,6 +59,10 @@ fn each_tick(algorithm: Algorithm) -> TickRule {
     TickRule::EachTick(AnySolver::Single(algorithm))
 }
 
+fn weighted_pseudo_inverse(integrator: Integrator) -> TickRule {
+    TickRule::WeightedPseudoInverse(WeightedPseudoInverse { integrator, ..WeightedPseudoInverse::default() })
+}
+
 fn beetle(variant: Variant, c1: f64, explorations: usize) -> TickRule {
     each_tick(Algorithm::from(Bas { variant, c1, explorations, ..Bas::default() }))
 }
@@ -79,6 +83,9 @@ fn circles(c: &mut Criterion) {
         ("planar5 Levenberg-Marquardt 1 nm", &planar5, lm, 1e-9),
         ("iiwa14 model-based 1 nm", &iiwa14, TickRule::MidStep, 1e-9),
         ("planar5 model-based 1 nm", &planar5, TickRule::MidStep, 1e-9),
+        // These make one step a tick, whatever the band.
+        ("iiwa14 weighted pseudo-inverse, Euler", &iiwa14, weighted_pseudo_inverse(Integrator::Euler), 1e-3),
+        ("iiwa14 weighted pseudo-inverse, RK4", &iiwa14, weighted_pseudo_inverse(Integrator::RungeKutta4), 1e-3),
     ] {
         let options = TrackOptions {
             rule,

@@ -15,6 +15,7 @@ extensions = [
     "docstrings",
     "matplotlib.sphinxext.plot_directive",
     "myst_parser",
+    "paper_figures",
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",

@@ -70,7 +70,7 @@ class InfeasibleError(InvalidInputError): ...
 
 @final
 class Robot:
-    def __new__(cls, *_arguments: Never, **_options: Never) -> Never: ...  # raises: use one of the makers below
+    def __new__(cls, *_arguments: Never, **_options: Never) -> Robot: ...  # raises: use one of the makers below
     @staticmethod
     def from_urdf(path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None) -> Robot: ...
     @staticmethod

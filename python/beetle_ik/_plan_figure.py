@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _SAMPLES = 801
 _SNAPSHOTS = 6
 _FLAT = 1e-9  # m
+_FEW = 60  # points of a path that are marked
 _FRAMES_A_SECOND = 15
 _PAUSE = 10  # frames at the end
 
@@ -38,11 +39,12 @@ class Scene:
         self.axes = figure.add_subplot(place, projection=None if self._flat else "3d")
 
     def draw_way(self) -> None:
-        """Obstacles, the tip's way with beginning and end, and the points that it was to follow."""
+        """Obstacles, the tip's way with beginning and end, and the path that it was to follow."""
         draw_obstacles(self.axes, self._plan.obstacles)
         if self._plan.reference is not None:
             points = np.asarray(self._plan.reference)
-            self._plot(points, color=VERMILION, marker="x", markersize=4, linestyle="none", label="points to follow")
+            few = {"marker": "x", "markersize": 4} if len(points) <= _FEW else {}
+            self._plot(points, color=VERMILION, linewidth=0.8, label="path to follow", **few)
         self._plot(self._tip, color=BLUE, label="tip")
         self._plot(self._tip[:1], color=GREEN, marker="o", linestyle="none", label="start")
         self._plot(self._tip[-1:], color=BLACK, marker="o", linestyle="none", label="end")
@@ -71,6 +73,9 @@ class Scene:
 
     def _scale(self) -> None:
         if self._flat:
+            # The arm may go where none of its pictures is.
+            self.axes.update_datalim(self._corners.reshape(-1, 3)[:, :2])
+            self.axes.autoscale_view()
             self.axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
             return
         corners = self._corners.reshape(-1, 3)

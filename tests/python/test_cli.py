@@ -108,12 +108,12 @@ def test_out_of_reach_is_computed_and_exits_with_1() -> None:
 
 def test_track_writes_its_files(tmp_path: Path) -> None:
     folder = tmp_path / "new" / "results"
-    summary = run_json(*TRACK, "--velocity-limit", "0.2,0.004,1", "--out", str(folder))
+    summary = run_json(*TRACK, "--velocity-sinusoid", "0.2,0.004,1", "--out", str(folder))
     assert {file.name for file in folder.iterdir()} == FILES
     assert json.loads((folder / "summary.json").read_text()) == summary
     assert (summary["success"], summary["steps"]) == (True, 150)
     assert summary["position_error"]["steady_mean"] <= 4e-5
-    assert summary["velocity_limit"]["source"] == "--velocity-limit"
+    assert summary["velocity_limit"]["source"] == "--velocity-sinusoid"
     from_csv = bik.Trajectory.from_csv(folder / "trajectory.csv")
     from_npz = bik.Trajectory.from_npz(folder / "trajectory.npz")
     assert (from_csv.q == from_npz.q).all()
@@ -145,7 +145,7 @@ def test_every_arm_follows_every_curve_as_it_is_placed_for_it(robot: str, curve:
 
 
 def test_a_limit_above_the_real_arm_is_told() -> None:
-    result = run("track", "iiwa14", "--curve", "circle", "--velocity-limit", "2,0.004,1")
+    result = run("track", "iiwa14", "--curve", "circle", "--velocity-sinusoid", "2,0.004,1")
     assert (
         "Note: a velocity limit of up to 2.004 rad/s is above the real iiwa14's own in 4 of its 7 joints"
         in result.stdout
@@ -204,8 +204,12 @@ def test_points_from_a_file(tmp_path: Path) -> None:
             "--path takes its points from the file: leave out --curve and its parameters",
         ),
         (
-            [*TRACK, "--velocity-limit", "1,2"],
-            "--velocity-limit: expected a number, or mean,amplitude,angular_frequency; got '1,2'",
+            [*TRACK, "--velocity-limit", "1", "--velocity-sinusoid", "1,0.1,1"],
+            "--velocity-limit and --velocity-sinusoid are two ways to say the same: leave one out",
+        ),
+        (
+            [*TRACK, "--velocity-sinusoid", "1,2"],
+            "--velocity-sinusoid: expected 3 numbers separated by commas, got 2 in '1,2'",
         ),
     ],
 )
@@ -222,7 +226,7 @@ def test_wrong_input_is_told_exactly(arguments: list[str], message: str) -> None
         [*TRACK, "--dt", "0"],
         [*TRACK, "--start", "9,9,9,9,9"],
         [*TRACK, "--velocity-limit", "-1"],
-        [*TRACK, "--velocity-limit", "0.1,0.2,1"],
+        [*TRACK, "--velocity-sinusoid", "0.1,0.2,1"],
         ["track", "planar5", "--path", "no-such-file.csv"],
         ["track", "planar5", "--curve", "spiral"],
     ],

@@ -61,3 +61,33 @@ def test_a_solve_may_stop_at_a_value() -> None:
     assert found.status == bik.Status.IMPROVED
     assert not found.success
     assert found.message.startswith("below the value asked for, ")
+
+
+@pytest.mark.parametrize("walls", ["absorbing", "random"])
+def test_walls_hold_particles_of_any_speed(walls: Any) -> None:
+    swarm = bik.PSO(walls=walls, velocity_limit=np.inf, form="inertia", inertia=0.9)
+    assert eval(repr(swarm), {"PSO": bik.PSO}) == swarm
+    lower, upper = np.array([-1.0, 0.5, 2.0]), np.array([1.0, 0.5, 9.0])
+    places = []
+
+    def function(x: Any) -> Any:
+        places.append(x.copy())
+        return np.sum((x - [3.0, 0.0, 5.0]) ** 2, axis=1)  # least beyond the walls
+
+    found = bik.minimize(
+        function, lower, upper, solver=swarm, stop=bik.Stop(max_evaluations=4000), seed=1, vectorized=True
+    )
+    met = np.concatenate(places)
+    assert ((lower <= met) & (met <= upper)).all()
+    at_wall = (met[40:, 0] == 1.0).mean()
+    assert at_wall > 0.3 if walls == "absorbing" else at_wall == 0.0
+    np.testing.assert_allclose(found.x, [1.0, 0.5, 5.0], atol=0.02)
+
+
+def test_wrong_walls_are_named() -> None:
+    with pytest.raises(bik.InvalidInputError) as refused:
+        bik.PSO(walls="soft")
+    assert str(refused.value) == "walls must be one of 'absorbing', 'random', got 'soft'"
+    with pytest.raises(bik.InvalidInputError) as refused:
+        bik.PSO(velocity_limit=0.0)
+    assert str(refused.value) == "velocity_limit must be positive, got 0"

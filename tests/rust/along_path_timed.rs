@@ -8,6 +8,7 @@ use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::so3::{norm, rotation_between};
 use ikcore::path::{Circle, Path, Plane, Polyline, Reference};
 use ikcore::planning::{AlongPathOptions, Course, Elbow, Plan, plan_along_path};
+use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Stop, Unattended};
 use ikcore::task::Target;
@@ -171,6 +172,23 @@ fn courses_know_their_corners_and_places() {
     let circle = course_of_circle(51);
     assert_eq!(circle.corners().count(), 0);
     assert!((circle.coarseness() / (1.0 - (PI / 50.0).cos()) - 1.0).abs() < 1e-3, "{}", circle.coarseness());
+}
+
+#[test]
+fn noise_of_measured_points_is_no_corner_and_a_sampled_corner_is_one() {
+    let mut rng = rng::stream(4, 0);
+    let noisy = |i: usize| {
+        let angle = 3.0 * i as f64 / 4000.0;
+        let radius = 0.3 + rng.uniform_in(-1e-4, 1e-4);
+        [radius * angle.cos(), radius * angle.sin(), 0.0]
+    };
+    let points = Reference::new(1.0, (0..=4000).map(noisy).collect(), None).unwrap();
+    assert_eq!(Course::through(&points).unwrap().corners().count(), 0);
+    // A corner between two looks.
+    let times = Course::times(1.0, &[]);
+    let bent = times.iter().map(|t| [t.min(0.50042), (t - 0.50042).max(0.0), 0.0]).collect();
+    let corners: Vec<f64> = Course::sampled(times, bent, None).unwrap().corners().collect();
+    assert!(corners.len() == 1 && (corners[0] - 0.5).abs() < 1e-3, "{corners:?}");
 }
 
 fn course_of_circle(points: usize) -> Course {

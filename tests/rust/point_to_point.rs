@@ -2,9 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
 
+use std::f64::consts::TAU;
+
+use ikcore::ik::{AllOptions, solve_all};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::{Obstacle, Scene};
-use ikcore::planning::{End, Plan, PointToPointOptions, plan_point_to_point};
+use ikcore::planning::{Elbow, End, Plan, PointToPointOptions, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Stop, Unattended};
@@ -37,7 +40,7 @@ fn plane_arms_come_near_the_time_of_bang_bang() {
     // Best over elbows and redundancy of max 2 sqrt(D / a): what no motion of this kind can beat.
     for (links, bound) in [(2, 0.7403), (3, 0.5912), (4, 0.5201), (5, 0.4702)] {
         let robot = Robot::planar(&vec![2.0 / links as f64; links]).unwrap();
-        let limits = limits(&robot, Some(std::f64::consts::PI), std::f64::consts::TAU);
+        let limits = limits(&robot, Some(std::f64::consts::PI), TAU);
         let mut sum = 0.0;
         for seed in 0..20 {
             let options = PointToPointOptions { limits: Some(limits.clone()), seed, ..Default::default() };
@@ -45,10 +48,37 @@ fn plane_arms_come_near_the_time_of_bang_bang() {
             let plan = plan.unwrap();
             assert_eq!(plan.status, Status::Solved, "{}", plan.message());
             assert!(plan.trajectory.max_velocity().iter().all(|v| *v <= std::f64::consts::PI));
-            assert!(plan.trajectory.max_acceleration().iter().all(|a| *a <= std::f64::consts::TAU));
+            assert!(plan.trajectory.max_acceleration().iter().all(|a| *a <= TAU));
             sum += plan.cost / 20.0;
         }
         assert!(sum <= 1.25 * bound, "{links} links: {sum} {bound}");
+    }
+}
+
+#[test]
+fn the_nearest_of_all_branches_and_turns_are_taken() {
+    let robot = Robot::named("ur5e").unwrap();
+    let limits = limits(&robot, None, 10.0);
+    let options = PointToPointOptions { limits: Some(limits), ..Default::default() };
+    let rest_to_rest =
+        |j: usize, way: f64| (1.875 * way / robot.joints()[j].velocity).max((5.7736 * way / 10.0).sqrt());
+    let qs = robot.random_configurations(12, &mut rng::stream(3, 0)).unwrap();
+    let targets: Vec<Target> = qs.chunks(6).map(|q| Target::from(&robot.fk(q).unwrap())).collect();
+    for pair in targets.windows(2) {
+        let [starts, ends] = [0, 1].map(|i| {
+            let found = solve_all(&robot, &pair[i], &AllOptions::default(), &mut Unattended).unwrap();
+            found.solutions.into_iter().map(|solution| solution.q).collect::<Vec<_>>()
+        });
+        // A joint that turns once to either side can always take the shorter way round.
+        let turns = |j: usize| if robot.joints()[j].upper >= TAU { 1.0 } else { 0.0 };
+        let way = |j: usize, d: f64| (d - turns(j) * TAU * (d / TAU).round()).abs();
+        let quintic = |a: &[f64], b: &[f64]| (0..6).map(|j| rest_to_rest(j, way(j, b[j] - a[j]))).fold(0.0, f64::max);
+        let all = starts.iter().flat_map(|start| ends.iter().map(move |end| quintic(start, end)));
+        let least = all.fold(f64::INFINITY, f64::min);
+        let [start, end] = [0, 1].map(|i| End::Target(pair[i]));
+        let plan = plan_point_to_point(&robot, &start, &end, &options, &mut Unattended).unwrap();
+        assert_eq!(plan.status, Status::Solved, "{}", plan.message());
+        assert!(plan.cost <= least * (1.0 + 1e-3), "{} s, {least} s", plan.cost);
     }
 }
 
@@ -216,6 +246,14 @@ fn mistakes_are_named() {
     assert_eq!(
         refused(&thin, &here, &there, with(vec![ball.clone()], &thin)),
         "start: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere)"
+    );
+    assert_eq!(
+        refused(&thin, &there, &here, with(vec![ball.clone()], &thin)),
+        "end: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere)"
+    );
+    assert_eq!(
+        refused(&arm, &here, &there, PointToPointOptions { elbows: Some([Elbow::Positive; 2]), ..with(vec![], &arm) }),
+        "method=\"minmax\" chooses how the arm bends: leave elbows out, or use method=\"tpbso\""
     );
     assert_eq!(
         refused(&arm, &here, &position(3.0, 0.0), with(vec![], &arm)),

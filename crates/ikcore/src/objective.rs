@@ -4,6 +4,7 @@ use smallvec::SmallVec;
 
 use crate::error::{Error, Result};
 use crate::math::box_step::ROWS;
+use crate::math::ordered::{larger, smaller};
 use crate::math::{MAX_DOF, interval};
 use crate::rng::LazyRng;
 
@@ -179,9 +180,8 @@ impl Bounds {
     #[inline]
     pub fn clip(&self, x: &mut [f64]) {
         for ((x, lower), upper) in x.iter_mut().zip(self.lower()).zip(self.upper()) {
-            // One instruction each, where `max` and `min` would sort out NaN; a NaN becomes the lower bound.
-            let raised = if *x > *lower { *x } else { *lower };
-            *x = if raised < *upper { raised } else { *upper };
+            // A NaN becomes the lower bound.
+            *x = smaller(larger(*x, *lower), *upper);
         }
     }
 

@@ -104,15 +104,10 @@ def limit(option: str, text: str | None) -> float | list[float] | None:
     return values[0] if len(values) == 1 else values
 
 
-def velocity_limit(text: str) -> float | Sinusoid:
-    """A limit as `number` or as `mean,amplitude,angular_frequency`."""
-    values = numbers("--velocity-limit", text)
-    match values:
-        case [constant]:
-            return constant
-        case [mean, amplitude, angular_frequency]:
-            return Sinusoid(mean=mean, amplitude=amplitude, angular_frequency=angular_frequency)
-    raise InvalidInputError(f"--velocity-limit: expected a number, or mean,amplitude,angular_frequency; got '{text}'")
+def sinusoid(option: str, text: str) -> Sinusoid:
+    """A limit as `mean,amplitude,angular_frequency`."""
+    mean, amplitude, angular_frequency = numbers(option, text, 3)
+    return Sinusoid(mean=mean, amplitude=amplitude, angular_frequency=angular_frequency)
 
 
 def _number(option: str, entry: str) -> float:

@@ -13,8 +13,8 @@ from .files import print_files
 from .show import listed, print_pairs
 
 
-def summarize(result: TrackResult, solver: str, dt: float, seed: int, velocity_limit: str | None) -> dict[str, Any]:
-    """Errors, limits and cost of a tracked path; `velocity_limit` is what the user asked for."""
+def summarize(result: TrackResult, solver: str, dt: float, seed: int, limits_from: str | None) -> dict[str, Any]:
+    """Errors, limits and cost of a tracked path; `limits_from` is the option that gave limits, if one did."""
     error = result.position_error
     highest = np.nanmax(result.velocity_limit, axis=0)
     own = result.robot.velocity_limit
@@ -36,7 +36,7 @@ def summarize(result: TrackResult, solver: str, dt: float, seed: int, velocity_l
         "limit_margin": result.limit_margin,
         "max_violation": result.max_violation,
         "velocity_limit": {
-            "source": f"{result.robot.name}'s own" if velocity_limit is None else "--velocity-limit",
+            "source": limits_from or f"{result.robot.name}'s own",
             "lowest": np.nanmin(result.velocity_limit, axis=0),
             "highest": highest,
             "above_robot": {

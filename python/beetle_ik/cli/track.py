@@ -21,10 +21,11 @@ from .options import (
     Start,
     TipLink,
     UrdfFile,
+    limit,
     load_robot,
     make_solver,
     numbers,
-    velocity_limit,
+    sinusoid,
 )
 from .show import print_json
 from .summary import print_summary, summarize
@@ -62,11 +63,15 @@ def track(
     k: Annotated[int | None, typer.Option("--k", help="Of the rose radius cos(k u).", rich_help_panel=_CURVE)] = None,
     a: Direction = None,
     b: Direction = None,
-    velocity_limit_text: Annotated[
+    velocity: Annotated[
+        str | None,
+        typer.Option("--velocity-limit", help="In rad/s: a number, or one a joint: v1,v2,...; else the robot's."),
+    ] = None,
+    velocity_sinusoid: Annotated[
         str | None,
         typer.Option(
-            "--velocity-limit",
-            help="In rad/s: a number, or mean,amplitude,omega of a sinusoid; without it the robot's own.",
+            metavar="MEAN,AMPLITUDE,OMEGA",
+            help="Or a limit that varies, the same for all joints: mean + amplitude sin(omega t), in rad/s.",
         ),
     ] = None,
     solver: Annotated[
@@ -101,7 +106,7 @@ def track(
     given: dict[str, Any] = {name: numbers(f"--{name}", text, 3) for name, text in triples.items() if text is not None}
     given |= {name: value for name, value in others.items() if value is not None}
     path = _reference(arm, curve, points, duration, given)
-    limits = None if velocity_limit_text is None else Limits(velocity=velocity_limit(velocity_limit_text))
+    limits, limits_from = _limits(velocity, velocity_sinusoid)
     with nullcontext() if out is None else whole_folder(out, option="--out") as folder:
         result = track_path(
             arm,
@@ -114,7 +119,7 @@ def track(
             seed=seed,
             progress=not as_json,
         )
-        summary = summarize(result, solver or "model-based", dt, seed, velocity_limit_text)
+        summary = summarize(result, solver or "model-based", dt, seed, limits_from)
         if folder is not None:
             write_files(folder, result.trajectory, summary, {"track.png": result.plot})
     if as_json:
@@ -122,6 +127,19 @@ def track(
     else:
         print_summary(summary, out)
     raise typer.Exit(0 if result.success else 1)
+
+
+def _limits(velocity: str | None, velocity_sinusoid: str | None) -> tuple[Limits | None, str | None]:
+    """The limits that were asked for, and the option that said so."""
+    if velocity is not None and velocity_sinusoid is not None:
+        raise InvalidInputError("--velocity-limit and --velocity-sinusoid are two ways to say the same: leave one out")
+    if velocity_sinusoid is not None:
+        option = "--velocity-sinusoid"
+        return Limits(velocity=sinusoid(option, velocity_sinusoid)), option
+    if velocity is not None:
+        option = "--velocity-limit"
+        return Limits(velocity=limit(option, velocity)), option
+    return None, None
 
 
 def _reference(

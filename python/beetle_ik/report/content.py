@@ -12,6 +12,7 @@ from enum import Enum, StrEnum
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure as Drawing
 
 _FILE_STEM = re.compile(r"[a-z0-9_]+")
@@ -150,7 +151,7 @@ class Table:
 
 @dataclass(frozen=True, kw_only=True)
 class Figure:
-    """A figure of the report, and a PNG file of the same name."""
+    """A figure of the report, and a PNG file of the same name; a GIF file where it moves."""
 
     name: str
     """Stem of its file: "figure_2"."""
@@ -159,6 +160,8 @@ class Figure:
     """Made by `report.drawing`."""
     caption: str = ""
     """What to look at, and what it means."""
+    frames: FuncAnimation | None = None
+    """What moves in the drawing."""
 
     def __post_init__(self) -> None:
         """Refuse a name that is no file's."""

@@ -18,7 +18,7 @@ _INCHES = 96  # pixels of a page
 
 
 def report_page(report: Report, provenance: Provenance, pictures: dict[str, str]) -> str:
-    """The page of one report; `pictures` are the figures by name, PNG in base 64."""
+    """The page of one report; `pictures` are the figures by name, as data addresses."""
     page = _templates().get_template("report.html")
     return page.render(report=report, made=provenance, pictures=pictures, counts=_counts([report]))
 

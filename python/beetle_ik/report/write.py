@@ -16,6 +16,7 @@ from .tables import to_csv
 
 _DPI = 150
 _DPI_SHORT = 75
+_DPI_MOVING = 80
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,16 +38,14 @@ class Provenance:
 
 
 def write_report(folder: Path, report: Report, provenance: Provenance) -> None:
-    """Write `report.html`, `report.json`, `claims.csv`, `tables/*.csv` and `figures/*.png` into `folder`."""
-    pictures = {figure.name: _png(figure, _DPI_SHORT if provenance.short else _DPI) for figure in report.figures}
+    """Write `report.html`, `report.json`, `claims.csv`, `tables/*.csv`, `figures/*.png` and `*.gif` into `folder`."""
+    dpi = _DPI_SHORT if provenance.short else _DPI
     for kind in ("tables", "figures"):
         (folder / kind).mkdir()
     for table in report.tables:
         (folder / "tables" / f"{table.name}.csv").write_text(to_csv(table), encoding="utf-8")
-    for name, picture in pictures.items():
-        (folder / "figures" / f"{name}.png").write_bytes(picture)
+    embedded = {figure.name: _picture(figure, folder / "figures", dpi) for figure in report.figures}
     (folder / "claims.csv").write_text(_claims_csv(report.claims), encoding="utf-8")
-    embedded = {name: base64.b64encode(picture).decode() for name, picture in pictures.items()}
     (folder / "report.html").write_text(report_page(report, provenance, embedded), encoding="utf-8")
     _write_manifest(folder, described(report, provenance))
 
@@ -72,18 +71,37 @@ def _write_manifest(folder: Path, content: dict[str, Any]) -> None:
     (folder / MANIFEST).write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
+def _picture(figure: Figure, folder: Path, dpi: int) -> str:
+    """Write a figure into `folder`; the same as an address that a page can hold."""
+    kind = "png" if figure.frames is None else "gif"
+    file = folder / f"{figure.name}.{kind}"
+    if figure.frames is None:
+        file.write_bytes(_png(figure, dpi))
+    else:
+        _lay_out(figure, _DPI_MOVING)
+        figure.frames.save(file, writer="pillow", dpi=_DPI_MOVING)
+    return f"data:image/{kind};base64,{base64.b64encode(file.read_bytes()).decode()}"
+
+
 def _png(figure: Figure, dpi: int) -> bytes:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    picture, drawing = io.BytesIO(), figure.drawing
+    picture = io.BytesIO()
+    _lay_out(figure, dpi)
+    # Savefig would draw everything twice: once to lay it out, which is done. Without metadata: same figure, same bytes.
+    canvas: Any = FigureCanvasAgg(figure.drawing)
+    canvas.print_png(picture, metadata={"Software": None})
+    return picture.getvalue()
+
+
+def _lay_out(figure: Figure, dpi: int) -> None:
+    """Once and for all: saving would do so for every frame."""
+    drawing = figure.drawing
     drawing.set_dpi(dpi)
     layout = drawing.get_layout_engine()
     if layout is not None:
         layout.execute(drawing)
         drawing.set_layout_engine("none")
-    # Savefig would draw everything twice: once to lay it out, which is done.
-    FigureCanvasAgg(drawing).print_png(picture, metadata={"Software": None})  # same figure, same bytes
-    return picture.getvalue()
 
 
 def _claims_csv(claims: Sequence[Claim]) -> str:

@@ -11,6 +11,7 @@ mod solution;
 mod unreached;
 
 pub use all::{AllOptions, Found, solve_all};
+pub(crate) use nearest::bring_near;
 pub use solution::Solution;
 
 pub(crate) use prepared::Prepared;
@@ -69,7 +70,7 @@ pub struct SolveOptions {
 /// a row, each moved along the self-motion, serve the goals no better.
 ///
 /// # Errors
-/// Any [`enum@Error`] for wrong input. A target that is not reached is a status, not an error.
+/// Any [`Error`](crate::Error) for wrong input. A target that is not reached is a status, not an error.
 pub fn solve(robot: &Robot, target: &Target, options: &SolveOptions, monitor: &mut dyn Monitor) -> Result<Solution> {
     let prepared = Prepared::new(robot, options)?;
     let start = options.start.as_deref();

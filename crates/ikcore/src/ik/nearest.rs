@@ -76,7 +76,7 @@ impl Prepared<'_> {
 }
 
 /// Turns each joint by whole turns to the place nearest to `reference` between its limits.
-pub(super) fn bring_near(robot: &Robot, bounds: &Bounds, reference: &[f64], q: &mut [f64]) {
+pub(crate) fn bring_near(robot: &Robot, bounds: &Bounds, reference: &[f64], q: &mut [f64]) {
     for j in (0..q.len()).filter(|j| robot.repeats_every_turn(*j)) {
         let (lower, upper) = (bounds.lower()[j], bounds.upper()[j]);
         let wished = ((reference[j] - q[j]) / TAU).round();

@@ -37,6 +37,14 @@ impl Limits {
         feasible
     }
 
+    /// The longest step (rad, m) of joint `j` over the tick from `from` to `to` (s) after which it can still stop within
+    /// `distance` of where it is.
+    pub fn longest_step_before(&self, j: usize, distance: f64, [from, to]: [f64; 2]) -> f64 {
+        let acceleration = self.acceleration_over(j, from, to);
+        let dt = to - from;
+        if acceleration == f64::INFINITY { distance } else { longest_step(distance, PLANNED * acceleration * dt * dt) }
+    }
+
     /// The acceleration limit of joint `j` over the tick from `from` to `to` (s); infinite where there is none.
     pub fn acceleration_over(&self, j: usize, from: f64, to: f64) -> f64 {
         self.acceleration.as_ref().map_or(f64::INFINITY, |profiles| profiles[j].smallest(from, to).1)

@@ -1,6 +1,7 @@
 //! The box of one tick: position limits intersected with what the velocity limit lets the ACCEPTED configuration reach.
 
 use super::{Limits, Profile};
+use crate::math::ordered::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::wording::words;
 
@@ -71,16 +72,6 @@ impl Limits {
         }
         feasible
     }
-}
-
-/// One instruction, where `max` would sort out NaN.
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
-/// One instruction, where `min` would sort out NaN.
-fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
 }
 
 /// q + reach, rounded so that the displacement does not exceed `reach` by the last bit.

@@ -8,6 +8,7 @@ pub mod frame;
 pub mod interval;
 pub mod knots;
 pub mod logarithm;
+pub mod ordered;
 pub mod polynomial;
 pub mod pose;
 pub mod secant;

@@ -49,8 +49,8 @@ pub struct AlongPathOptions {
 /// Plans a motion of `robot` whose tip follows `course`.
 ///
 /// # Errors
-/// Any [`Error`] for wrong input, [`Error::Unreachable`] for a place out of reach. That no plan keeps everything is a
-/// status, not an error.
+/// Any [`Error`](crate::Error) for wrong input, [`Error::Unreachable`](crate::Error::Unreachable) for a place out of
+/// reach. That no plan keeps everything is a status, not an error.
 pub fn plan_along_path(
     robot: &Robot,
     course: &Course,

@@ -66,7 +66,12 @@ pub struct Violation {
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { what, value, bound, unit } = self;
-        write!(f, "{what} is {} {unit}, allowed {} {unit}", number(*value), number(*bound))
+        let [shown, allowed] = [number(*value), number(*bound)];
+        if shown == allowed {
+            let beyond = number((value - bound).abs());
+            return write!(f, "{what} is {beyond} {unit} beyond the {allowed} {unit} allowed");
+        }
+        write!(f, "{what} is {shown} {unit}, allowed {allowed} {unit}")
     }
 }
 
@@ -91,9 +96,12 @@ impl Plan {
     }
 
     fn advice(&self) -> &'static str {
-        match self.accuracy {
-            None => "try another seed, a larger budget in stop=Stop(...) or wider limits",
-            Some(_) => {
+        match (self.accuracy, self.clearance) {
+            (None, None) => "try another seed, a larger budget in stop=Stop(...) or wider limits",
+            (None, Some(_)) => {
+                "try another seed, a larger budget in stop=Stop(...), a smaller margin, ends that are clear or wider limits"
+            }
+            (Some(_), _) => {
                 "try another seed, a larger budget in stop=Stop(...), wider limits, a larger accuracy, or for \
                  method=\"tpbso\" denser points"
             }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::session::Step;
 use crate::limits::{Field, Limits};
+use crate::math::ordered::larger;
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::wording::{number, time};
@@ -131,8 +132,8 @@ impl Record {
             let step = q - self.q[self.q.len() - self.dof + j];
             let [lower, upper] = self.limits.position_range(j, from, to);
             let too_fast = step.abs() - velocity_limit * self.dt;
-            fastest = fastest.max(too_fast);
-            let mut excess = too_fast.max(lower - q).max(q - upper);
+            fastest = larger(too_fast, fastest);
+            let mut excess = larger(too_fast, larger(lower - q, q - upper));
             if limited_acceleration {
                 excess = excess.max(self.too_sudden(j, step, [from, to]));
             }

@@ -226,6 +226,7 @@ impl Session {
             motion,
             time: from,
             dt: self.dt,
+            limits: &self.limits,
             velocity_limit: &self.tick_box.velocity,
             tick_box: &self.tick_box.bounds,
             last_value: self.last_value,

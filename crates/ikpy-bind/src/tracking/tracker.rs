@@ -22,6 +22,9 @@ use crate::task::read_task;
 
 /// One control loop, one call a tick: the same as `track`, for targets that come one at a time.
 ///
+/// A target may jump farther than a tick reaches: the model-based rule then moves all joints in proportion, the first of them at
+/// its velocity limit, and brakes in time where accelerations are limited.
+///
 /// Args:
 ///     robot: the arm.
 ///     start: (n,), configuration at t = 0.

@@ -30,7 +30,7 @@ _BOXES = {
 }
 
 _TEXT = """
-Where the room is narrow, the tip is to stay within p_min < p < p_max, eq. (5). The paper says no more of it: Algorithm
+Where the room is narrow, the tip is to stay within pₘᵢₙ < p < pₘₐₓ, eq. (5). The paper says no more of it: Algorithm
 1 clips joints, not the tip. The library takes the box as a `region` of the task. The beetle looks for the point within
 that is nearest to the target, and what would still end a step outside is taken back. Nothing else changes: the same
 beetle, the same velocity limits.
@@ -97,7 +97,7 @@ def _claim(boxed: list[Boxed]) -> Claim:
     nearest = min(-one.outside for one in boxed)
     away = ", ".join(f"{number(one.away, 2)} m ({one.task.name})" for one in boxed)
     return Claim.checked(
-        "The end-effector stays within specific spaces, p_min < p(t) < p_max.",
+        "The end-effector stays within specific spaces, pₘᵢₙ < p(t) < pₘₐₓ.",
         source="Section II-B, eq. (5)",
         measured=(
             f"in all steps of {runs} runs the tip is inside, by {number(nearest, 2)} m at least, and at most {away} "

@@ -203,6 +203,7 @@ def _draw_run(run: Run) -> Drawing:
         space.plot(*tip.T, color=BLUE, label="at θ")
         space.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
         space.locator_params(nbins=4)
+        space.zaxis.labelpad = -2.0  # beside its numbers, not beside the next panel
         space.view_init(elev=18.0, azim=-25.0)
         space.legend(loc="upper left", bbox_to_anchor=(-0.1, 1.08))
         coordinates, joints, errors = (figure.add_subplot(grid[row, 1]) for row in range(3))
@@ -235,8 +236,9 @@ def _draw_stars() -> Drawing:
         ("as it must be meant", STAR.position(time)),
     )
     with drawing(3.0) as figure:
-        for axes, (name, points) in zip(figure.subplots(1, 2), curves, strict=True):
+        panels = figure.subplots(1, 2, sharex=True, sharey=True)
+        for axes, (name, points) in zip(panels, curves, strict=True):
             axes.plot(points[:, 1], points[:, 2], color=BLUE)
-            axes.set(title=name, xlabel="y [m]", ylabel="z [m]", aspect="equal")
-            axes.locator_params(axis="x", nbins=3)
+            axes.set(title=name, xlabel="y [m]", aspect="equal")
+        panels[0].set_ylabel("z [m]")
     return figure

@@ -230,7 +230,11 @@ def draw_arm(axes: Axes, robot: Robot, q: NDArray[np.float64], *, scale: float =
         axes.fill(*outline.T, color=color, alpha=0.12, linewidth=0)
     axes.plot(*joints.T, color=BLUE, linewidth=4, marker="o", markersize=7, label="arm")
     for name, point in zip("ACBE", joints, strict=False):
-        axes.annotate(name, point, textcoords="offset points", xytext=(7, 7))
+        # Beyond the joint, as seen from the middle of the arm: no link is there.
+        outward = point - joints.mean(axis=0)
+        away = 14.0 * outward / np.linalg.norm(outward)
+        axes.annotate(name, point, textcoords="offset points", xytext=tuple(away), ha="center", va="center")
     axes.set(xlabel="x [m]", ylabel="y [m]")
+    axes.margins(0.2)
     axes.set_aspect("equal", adjustable="datalim")
     axes.legend(loc="best", fontsize="small")

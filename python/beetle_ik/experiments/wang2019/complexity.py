@@ -16,11 +16,13 @@ from .settings import ALONG_PATH, END, FROM_END_TO_END, START, arm
 TITLE = "Tables 2 and 3"
 _REPEATS = 5
 _REPEATS_SHORT = 1
-_FIRST_GENERATION = 0.01  # its share of all evaluations
+_LEFT_OVER = 0.05  # by which counts may miss proportion: a first generation, members that are kept as they are
+_ENOUGH = 10**7  # evaluations
 
 _TEXT = """
-The paper states orders of growth and measures none. Below, each quantity is doubled while the others stay, and the
-shortest of several runs is taken. An exponent of 1 means that time doubles with it.
+The paper states orders of growth and measures none. Below, each quantity grows while the others stay. Evaluations are
+counted, and the claim rests on them; times are the shortest of several runs, and depend on what else the machine does.
+An exponent of 1 means that time doubles with what grows.
 
 Two things differ from the paper's tables. Our search looks at no output points: extremes come from formulas, so that
 Experiment I does not depend on their number at all. And a beetle needs three evaluations where a particle needs one,
@@ -37,11 +39,7 @@ def complexity(context: Context) -> tuple[Section, list[Claim]]:
     repeats = context.pick(full=_REPEATS, short=_REPEATS_SHORT)
     swarm = bik.BeetleSwarm(stall_generations=None)
     particles = bik.PSO(population=50, stall_generations=None)
-    population: dict[str, tuple[Any, int]] = {
-        "TPBSO": (bik.BeetleSwarm, 3),
-        "PSO": (bik.PSO, 1),
-        "GA": (bik.Genetic, 1),
-    }
+    population: dict[str, Any] = {"TPBSO": bik.BeetleSwarm, "PSO": bik.PSO, "GA": bik.Genetic}
     rows: list[list[str | int | float]] = []
 
     def add(what: str, low: int, high: int, run: Callable[[int], bik.Plan]) -> None:
@@ -61,18 +59,17 @@ def complexity(context: Context) -> tuple[Section, list[Claim]]:
         )
 
     def with_members(name: str) -> Callable[[int], bik.Plan]:
-        make, looks = population[name]
-        return lambda members: _plan(4, make(population=members, stall_generations=None), members * (100 * looks + 1))
+        return lambda members: _plan(4, population[name](population=members, stall_generations=None), 100)
 
     for name in context.each("wang2019: Tables 2 and 3", list(population)):
         add(f"{name}: members, n_p", 25, 100, with_members(name))
-    add("TPBSO: iterations, n_i", 50, 200, lambda generations: _plan(4, swarm, 50 * (3 * generations + 1)))
-    add("TPBSO: links (dimension 4 k - 2)", 3, 6, lambda links: _plan(links, swarm, 50 * 301))
-    add("PSO: links", 3, 6, lambda links: _plan(links, particles, 50 * 301))
+    add("TPBSO: iterations, n_i", 50, 200, lambda generations: _plan(4, swarm, generations))
+    add("TPBSO: links (dimension 4 k - 2)", 3, 6, lambda links: _plan(links, swarm, 100))
+    add("PSO: links", 3, 6, lambda links: _plan(links, particles, 300))
     add("TPBSO along a path: points, n_in", 51, 201, _follow)
     table = Table(
         name="tables_2_and_3",
-        title="Growth of time, by doubling",
+        title="Growth of evaluations and time",
         columns=[
             Column(name="what grows"),
             Column(name="from"),
@@ -86,31 +83,32 @@ def complexity(context: Context) -> tuple[Section, list[Claim]]:
         rows=rows,
     )
     exponents = [float(row[-1]) for row in rows]
+    ratios = [_growth(row) for row in rows if "members" in str(row[0]) or "iterations" in str(row[0])]
     claim = Claim.checked(
         "Cost grows in proportion to population and iterations.",
         source="Section IV-D.3, Table 2",
         measured=(
-            "evaluations grow in exact proportion; exponents of time between "
-            f"{number(min(exponents), 2)} and {number(max(exponents), 2)}, which depend on what else the machine does"
+            f"evaluations grow {number(min(ratios))} to {number(max(ratios))} times as much as their cause; no part of "
+            f"the verdict: exponents of time between {number(min(exponents), 2)} and {number(max(exponents), 2)}"
         ),
-        holds=all(_in_proportion(row) for row in rows if "members" in str(row[0]) or "iterations" in str(row[0])),
+        holds=all(abs(ratio - 1.0) < _LEFT_OVER for ratio in ratios),
         section=TITLE,
     )
     return Section(TITLE, [_TEXT, table]), [claim]
 
 
-def _in_proportion(row: list[str | int | float]) -> bool:
-    """Whether evaluations, but for the first generation, grow as their cause does."""
+def _growth(row: list[str | int | float]) -> float:
+    """How much evaluations grow for what makes them grow."""
     _, low, high, first, second, *_ = row
-    return abs(float(second) / float(first) / (float(high) / float(low)) - 1.0) < _FIRST_GENERATION
+    return float(second) / float(first) / (float(high) / float(low))
 
 
 def _shortest(run: Callable[[], bik.Plan], repeats: int) -> bik.Plan:
     return min((run() for _ in range(repeats)), key=lambda plan: plan.elapsed)
 
 
-def _plan(links: int, solver: bik.BeetleSwarm | bik.PSO | bik.Genetic, evaluations: int) -> bik.Plan:
-    stop = bik.Stop(max_evaluations=evaluations)
+def _plan(links: int, solver: bik.BeetleSwarm | bik.PSO | bik.Genetic, iterations: int) -> bik.Plan:
+    stop = bik.Stop(max_iterations=iterations, max_evaluations=_ENOUGH)
     return bik.plan_point_to_point(
         arm(links), START, END, method="tpbso", limits=FROM_END_TO_END, solver=solver, stop=stop
     )

@@ -1,5 +1,6 @@
 //! Where the tip is to go, whatever the time.
 
+mod corners;
 mod stroke;
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
@@ -33,9 +34,6 @@ const INTERVALS: usize = 1000;
 
 /// Intervals of equal time between the points that the published planner passes.
 const POINTS: usize = 50;
-
-/// Turning by more than this (rad) from one step to the next is a corner; by less, a curve that was sampled.
-const CORNER: f64 = 0.5;
 
 /// Steps below this share of the way lead nowhere: a path that pauses.
 const PAUSE: f64 = 1e-9;
@@ -114,15 +112,16 @@ impl Course {
         let positions: Vec<[f64; 3]> = kept.iter().map(|i| reference.position(*i)).collect();
         let place = points.iter().map(|i| reference.position(*i)).collect();
         let turned = points.iter().map(|i| reference.rotation(*i)).collect();
-        Ok(Self {
+        let course = Self {
             shares: kept.iter().map(|i| share(*i)).collect(),
-            corners: corners(&positions),
+            corners: vec![],
             rotations: rotations.map(|rows| kept.iter().map(|i| rows[*i]).collect()),
             times: times.map(|times| kept.iter().map(|i| times[*i]).collect()),
             points: Reference::new(1.0, place, turned)?,
             point_shares: points.iter().map(|i| share(*i)).collect(),
             positions,
-        })
+        };
+        Ok(Self { corners: course.sharpest_turns(), ..course })
     }
 
     /// The points that the published planner passes: those given, or 51 at equal times.
@@ -157,7 +156,7 @@ impl Course {
     /// By how much (m) chords between its rows may leave the curve that was sampled: the rise of an arc that turns as they
     /// do.
     pub fn coarseness(&self) -> f64 {
-        let smooth = |row: &usize| !self.corners.contains(row);
+        let smooth = |row: &usize| self.corners.binary_search(row).is_err();
         let rise = |row: usize| {
             let [before, here, after] = [row - 1, row, row + 1].map(|i| self.positions[i]);
             let chord = distance(before, here).max(distance(here, after));
@@ -177,7 +176,7 @@ impl Course {
         let spacing = 1.0 / intervals as f64;
         let (mut knots, mut fixed) = (vec![0.0], true);
         for (row, share) in self.shares.iter().enumerate().skip(1) {
-            let needed = row + 1 == self.shares.len() || self.corners.contains(&row);
+            let needed = row + 1 == self.shares.len() || self.corners.binary_search(&row).is_ok();
             let since = share - knots[knots.len() - 1];
             if since < (1.0 - PAUSE) * spacing && !needed {
                 continue;
@@ -197,8 +196,7 @@ impl Course {
     /// What the tip is to reach at this share of the way.
     pub fn target(&self, share: f64) -> Target {
         let (row, part) = self.locate(share);
-        let [from, to] = [self.positions[row], self.positions[row + 1]];
-        let position = std::array::from_fn(|k| (1.0 - part) * from[k] + part * to[k]);
+        let position = self.position(share);
         match &self.rotations {
             None => Target::Position(position),
             Some(rows) => {
@@ -207,6 +205,12 @@ impl Course {
                 Target::Pose(Frame::from(&pose))
             }
         }
+    }
+
+    fn position(&self, share: f64) -> [f64; 3] {
+        let (row, part) = self.locate(share);
+        let [from, to] = [self.positions[row], self.positions[row + 1]];
+        std::array::from_fn(|k| (1.0 - part) * from[k] + part * to[k])
     }
 
     /// How far (m) a position is from the stretch between two shares of the way.
@@ -249,9 +253,4 @@ pub(super) fn refuse_repetition(points: &Reference) -> Result<()> {
         None => Ok(()),
         Some(i) => Err(Error::InvalidPath { problem: format!("point {i} repeats point {}: leave it out", i - 1) }),
     }
-}
-
-fn corners(positions: &[[f64; 3]]) -> Vec<usize> {
-    let is_corner = |i: &usize| turn(positions[i - 1], positions[*i], positions[i + 1]) > CORNER;
-    (1..positions.len() - 1).filter(is_corner).collect()
 }

@@ -3,7 +3,7 @@
 
 use super::clear::InTime;
 use super::connect::{Room, Way};
-use super::ends::{Pair, Search};
+use super::ends::{NAMES, Pair, Search};
 use super::pace::Polyline;
 use super::{NO_TIME, PAIRS, no_pair, straight};
 use crate::error::{Error, Result};
@@ -41,8 +41,10 @@ pub(super) fn plan(search: &mut Search, options: &PointToPointOptions, monitor: 
     let pairs = search.pairs(PAIRS, monitor)?;
     let first = pairs.first().ok_or_else(no_pair)?;
     let is_clear = |q: &[f64]| scene.is_clear(q, margin + EXTRA);
-    if let End::Configuration(q) = search.ends[0] {
-        refuse_collision("start", &scene, q, margin)?;
+    for (what, end) in NAMES.into_iter().zip(search.ends) {
+        if let End::Configuration(q) = end {
+            refuse_collision(what, &scene, q, margin)?;
+        }
     }
     let is_open = |pair: &Pair| is_clear(&pair.start) && is_clear(&pair.end);
     let mut open: Vec<Pair> = pairs.iter().filter(|pair| is_open(pair)).cloned().collect();

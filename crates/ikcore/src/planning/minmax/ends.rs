@@ -27,12 +27,12 @@ pub(super) struct Search<'a> {
     pub ends: [&'a End; 2],
     pub rng: LazyRng,
     pub evaluations: usize,
-    seed: u64,
-    position_limits: Limits,
+    pub(super) seed: u64,
+    pub(super) position_limits: Limits,
 }
 
 /// Names of the two ends in messages.
-const NAMES: [&str; 2] = ["start", "end"];
+pub(super) const NAMES: [&str; 2] = ["start", "end"];
 
 impl<'a> Search<'a> {
     /// # Errors
@@ -50,7 +50,8 @@ impl<'a> Search<'a> {
         Ok(Self { robot, limits, ends, rng: rng::stream(seed, 0), evaluations: 0, seed, position_limits })
     }
 
-    /// `count` pairs, the quickest first, each improved from another random start; fewer where the ends are given.
+    /// Up to twice `count` pairs, the quickest first: improved ones from that many random starts, and from the quickest of
+    /// all branches; one where the ends are given.
     ///
     /// # Errors
     /// [`Error::Unreachable`] for an end that no configuration was found for.
@@ -70,6 +71,14 @@ impl<'a> Search<'a> {
             let pair = self.improved(self.pair(first, second), monitor);
             if pairs.iter().all(|known| !known.is_same(&pair)) {
                 pairs.push(pair);
+            }
+        }
+        if !given {
+            for pair in self.branches(count, monitor)? {
+                let pair = self.improved(pair, monitor);
+                if pairs.iter().all(|known| !known.is_same(&pair)) {
+                    pairs.push(pair);
+                }
             }
         }
         pairs.sort_by(|one, other| one.duration.total_cmp(&other.duration));

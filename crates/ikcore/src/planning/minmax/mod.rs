@@ -4,6 +4,7 @@
 //! | file | what |
 //! |---|---|
 //! | [`ends`] | pairs of configurations for start and end |
+//! | [`branches`] | the same from all solutions of inverse kinematics |
 //! | [`nearer`] | smallest largest displacement, along what the targets leave free |
 //! | [`pace`] | the quickest smooth timing of straight lines |
 //! | [`around`] | a way around obstacles, its timing certified |
@@ -12,6 +13,7 @@
 //! | [`travel`] | what a motion costs |
 
 mod around;
+mod branches;
 mod clear;
 mod connect;
 mod ends;
@@ -30,8 +32,8 @@ use crate::solver::stop::Stopwatch;
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
-/// Pairs of configurations that are tried.
-const PAIRS: usize = 12;
+/// Pairs of configurations that are tried from random starts, and as many of the quickest branches.
+const PAIRS: usize = 8;
 
 /// Plans from `start` to `end`; see [`plan_point_to_point`](super::plan_point_to_point).
 pub(super) fn point_to_point(

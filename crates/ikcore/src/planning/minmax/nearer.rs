@@ -71,6 +71,9 @@ fn weighted_step(
     // Rows that no joint moves, such as z for an arm in the plane, say nothing.
     let says_something = |(a, row): &(usize, usize)| linearizations[*a].columns[..n].iter().any(|c| c[*row] != 0.0);
     let rows: Vec<(usize, usize)> = rows.into_iter().filter(says_something).collect();
+    if rows.len() >= unknowns {
+        return None; // nothing is left free
+    }
     let size = unknowns + rows.len();
     let (mut matrix, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
     let sign = |end: usize| if end == 0 { -1.0 } else { 1.0 };

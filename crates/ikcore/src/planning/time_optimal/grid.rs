@@ -33,7 +33,7 @@ pub(super) fn check_gridpoints(gridpoints: usize) -> Result<()> {
 const HALVINGS: usize = 5;
 
 /// Of the segments of a piece, one in so many may go into that.
-const SHARE: usize = 6;
+const SHARE: usize = 4;
 
 /// Cuts the path into about `wanted` segments, so that no segment reaches over a break and a piece that begins or ends at
 /// rest has one to speed up and one to slow down. They are of equal length, except towards rest.

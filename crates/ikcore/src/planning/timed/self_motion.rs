@@ -171,7 +171,11 @@ impl<'a> SelfMotion<'a> {
 
     fn error(&self, lost: &Lost) -> Error {
         let problem = if lost.missed > 0.0 {
-            format!("the nearest configuration found within the limits misses it by {}", number(lost.missed))
+            let unit = match self.targets[lost.point] {
+                Target::Position(_) => "m",
+                _ => "(m and rad)",
+            };
+            format!("the nearest configuration found within the limits misses it by {} {unit}", number(lost.missed))
         } else {
             "only another branch of configurations does, and the arm cannot jump to it".into()
         };

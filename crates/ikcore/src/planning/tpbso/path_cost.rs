@@ -215,17 +215,21 @@ impl<'a> PathCost<'a> {
         cost + BROKEN_LIMIT * self.scale * (broken + missed)
     }
 
-    /// Travel, largest speed and acceleration over the path from 0 to 1, and how far the joint leaves its limits.
+    /// Travel (where it counts), largest speed and acceleration over the path from 0 to 1, and how far the joint leaves its limits.
     fn joint_extremes(&self, j: usize) -> (f64, f64, f64, f64) {
         let (mut travel, mut speed, mut acceleration, mut outside) = (0.0, 0.0_f64, 0.0_f64, f64::NEG_INFINITY);
+        let [lower, upper] = [self.limits.lower[j], self.limits.upper[j]];
+        let turns_freely = lower.is_infinite() && upper.is_infinite();
         for i in 0..self.spline.knots().len() - 1 {
             let piece = self.piece(j, i);
-            let mut from = piece.value;
-            for s in piece.turning_points().into_iter().chain([piece.span]) {
-                let to = piece.at(s);
-                travel += (to - from).abs();
-                outside = outside.max(self.limits.lower[j] - to).max(to - self.limits.upper[j]);
-                from = to;
+            if !(turns_freely && self.cost == Cost::Time) {
+                let mut from = piece.value;
+                for s in piece.turning_points().into_iter().chain([piece.span]) {
+                    let to = piece.at(s);
+                    travel += (to - from).abs();
+                    outside = outside.max(lower - to).max(to - upper);
+                    from = to;
+                }
             }
             speed = speed.max(piece.steepest());
             acceleration = acceleration.max(piece.bend.abs());
@@ -244,9 +248,12 @@ impl<'a> PathCost<'a> {
 
     /// Distance of the tip from point `i` of the path when it is due there: eq. (24).
     fn distance(&self, i: usize) -> f64 {
+        let u = i as f64 / (self.redundancy.points() - 1) as f64;
+        let knot = i / STRIDE;
+        let since = u - self.spline.knots()[knot];
         let mut q = [0.0; crate::math::MAX_DOF];
         let q = &mut q[..self.robot.dof()];
-        self.place(i as f64 / (self.redundancy.points() - 1) as f64, q);
+        q.iter_mut().enumerate().for_each(|(j, q)| *q = self.piece(j, knot).at(since));
         let tip = self.robot.tip_position(q);
         let [x, y] = self.redundancy.place(i).position;
         (tip[0] - x).hypot(tip[1] - y)

@@ -6,7 +6,9 @@
 //! alive. Where a step does not lower the error, the box or a singularity is in the way: Levenberg-Marquardt, which only
 //! ever lowers it, takes over for the tick.
 
+use super::approach::Way;
 use super::{Found, Tick};
+use crate::limits::Field;
 use crate::math::{
     Frame, MAX_DOF,
     box_step::{box_step, box_step_near, least_damping},
@@ -63,10 +65,15 @@ pub fn advance(memory: &mut Memory, q: &[f64], mut tick: Tick<'_>) -> Found {
         found.evaluations += 1;
     }
     found.arrive(&memory.begin.tip, tick.target, tick.criterion);
-    let mut moved = memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick);
+    let value_at_rest = found.value();
+    let way = memory.way_with_braking(q, &found.q, &tick);
+    let mut moved =
+        way.is_none() && (memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick));
     if !found.is_solved() {
         moved = true;
-        memory.levenberg_marquardt(&mut found, tick);
+        if !memory.approach(way, q, value_at_rest, &mut found, &tick) {
+            memory.levenberg_marquardt(&mut found, tick);
+        }
     }
     memory.hand_on(moved);
     found
@@ -154,6 +161,52 @@ impl Memory {
         self.trial.update(tick.robot, &found.q);
         found.evaluations += 1;
         found.iterations += 1;
+    }
+
+    /// The way to a target that the arm has not caught up with, and that it could reach faster than it could stop there.
+    fn way_with_braking(&self, q: &[f64], near: &[f64], tick: &Tick<'_>) -> Option<Way> {
+        let limited = tick.limits.field(Field::Acceleration).is_some();
+        if !limited || tick.motion.begin.assess_tip(&self.begin.tip, tick.criterion).score.solved {
+            return None;
+        }
+        Some(self.way(q, near, tick)).filter(Way::needs_braking)
+    }
+
+    fn way(&self, q: &[f64], near: &[f64], tick: &Tick<'_>) -> Way {
+        Way::new(q, near, &self.begin.tip, &self.begin.columns, tick)
+    }
+
+    /// One tick from `q` towards a target that is far, or before which the arm has to brake; whether it is one, and the tick
+    /// brought it nearer.
+    fn approach(
+        &mut self,
+        braking: Option<Way>,
+        q: &[f64],
+        value_at_rest: f64,
+        found: &mut Found,
+        tick: &Tick<'_>,
+    ) -> bool {
+        let must_brake = braking.is_some();
+        let mut x = Point::from_slice(q);
+        let way = braking.unwrap_or_else(|| {
+            let mut near = Point::from_slice(q);
+            tick.tick_box.clip(&mut near);
+            self.way(q, &near, tick)
+        });
+        if !must_brake && !way.is_long() {
+            return false;
+        }
+        way.walk(&mut x, tick);
+        self.trial.update(tick.robot, &x);
+        let mut ahead = Found { q: x, evaluations: found.evaluations + 1, iterations: found.iterations + 1, ..*found };
+        ahead.arrive(&self.trial.tip, tick.target, tick.criterion);
+        // An arm that has to brake may be carried away from its target.
+        if !must_brake && ahead.value() >= value_at_rest {
+            return false;
+        }
+        std::mem::swap(&mut self.here, &mut self.trial);
+        *found = ahead;
+        true
     }
 
     /// What the model's steps could not do, as far as it can be done.

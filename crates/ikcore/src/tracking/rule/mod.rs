@@ -1,5 +1,6 @@
 //! Tick rules: what moves a modelled arm by one tick inside a given box.
 
+mod approach;
 mod each_tick;
 mod mid_step;
 mod weighted_pseudo_inverse;
@@ -7,6 +8,7 @@ mod weighted_pseudo_inverse;
 pub use weighted_pseudo_inverse::{Integrator, WeightedPseudoInverse};
 
 use crate::error::Result;
+use crate::limits::Limits;
 use crate::math::Frame;
 use crate::objective::{Bounds, Point, Score};
 use crate::rng::LazyRng;
@@ -39,6 +41,8 @@ pub(super) struct Tick<'a> {
     pub time: f64,
     /// Length of the tick (s).
     pub dt: f64,
+    /// The limits that the tick's box comes from.
+    pub limits: &'a Limits,
     /// The velocity limits of the tick (n,) (rad/s, m/s).
     pub velocity_limit: &'a [f64],
     /// Where the tick may end.
