@@ -212,6 +212,11 @@ def solve(**options: object) -> bik.Solution:
             "weights of task Pose: expected 6 entries (x, y, z and the rotation's three), got 3",
         ),
         (
+            lambda: tasks.Pose(tolerance=1e-3),
+            Invalid,
+            "tolerance of task Pose: expected 6 entries (x, y, z and the rotation's three), got 1",
+        ),
+        (
             lambda: tasks.Pointing(tolerance=[1e-3]),
             Invalid,
             "tolerance of task Pointing: expected 4 entries (x, y, z and the angle), got 1",

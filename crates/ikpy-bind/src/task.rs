@@ -7,7 +7,7 @@ use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::convert::{Array, copied, corners, point, pose_array, rigid, row, summary, table, vector};
+use crate::convert::{Array, copied, corners, point, pose_array, rigid, row, scalar_or_vector, summary, table};
 use crate::error::{invalid, raise};
 use crate::options::{NewArguments, list_text};
 
@@ -102,8 +102,10 @@ fn made<C>(
 where
     C: PyClass<BaseType = PyTask>,
 {
-    let weights = weights.map(|value| vector("weights", value)).transpose()?;
-    let tolerance = tolerance.map(|value| vector("tolerance", value)).transpose()?;
+    // One number is one too few: the core says how many there should be.
+    let entries = |what, value: Given<'_, '_>| value.map(|value| scalar_or_vector(what, value)).transpose();
+    let weights = entries("weights", weights)?.map(|(weights, _)| weights);
+    let tolerance = entries("tolerance", tolerance)?.map(|(tolerance, _)| tolerance);
     let tool = tool.map(|value| rigid("tool", value)).transpose()?;
     let core = Task::new(kind, weights.as_deref(), tolerance.as_deref(), tool).map_err(raise)?;
     let core = match region {
