@@ -167,13 +167,13 @@ impl<'a> Round<'a> {
         }
         let (mut q, mut gradient) = (here.q.clone(), here.q.clone());
         for look in 0..LOOKS {
+            // Most places are outside, by their first joints.
             let share = look as f64 / LOOKS as f64;
-            for j in 0..n {
+            let inside = (0..n).all(|j| {
                 let slopes = [here.along[j], there.along[j]].map(|slope| length * slope);
-                q[j] = cubic(share, [here.q[j], there.q[j]], slopes);
-            }
-            self.turn_to_middle(&mut q);
-            let inside = self.bounds.contains(&q);
+                q[j] = self.turned_to_middle(j, cubic(share, [here.q[j], there.q[j]], slopes));
+                self.bounds.lower()[j] <= q[j] && q[j] <= self.bounds.upper()[j]
+            });
             if inside && (look == 0 || !arcs.inside) {
                 arcs.add(goals.cost(self.robot, &q, &mut gradient), &q);
             } else if !inside {
@@ -197,11 +197,10 @@ impl<'a> Round<'a> {
         apart
     }
 
-    /// Brings `q` by whole turns as near as they can to the middle of the limits.
-    fn turn_to_middle(&self, q: &mut [f64]) {
-        for (j, q) in q.iter_mut().enumerate().filter(|(j, _)| self.repeats[*j]) {
-            *q -= TAU * ((*q - self.middle[j]) / TAU).round();
-        }
+    /// The angle of joint `j`, by whole turns as near as it can be to the middle of its limits.
+    fn turned_to_middle(&self, j: usize, angle: f64) -> f64 {
+        let turns = if self.repeats[j] { ((angle - self.middle[j]) / TAU).round() } else { 0.0 };
+        angle - TAU * turns
     }
 }
 
