@@ -85,7 +85,10 @@ impl<'a> Round<'a> {
 
     /// Whether `q` lies on a curve that was followed.
     fn knows(&self, q: &[f64]) -> bool {
-        self.passed.iter().any(|(begin, chord)| {
+        // No step leads as far in any joint: most are told by the first.
+        let may_reach =
+            |(begin, _): &&(Point, Point)| (0..q.len()).all(|j| self.turned(j, q[j] - begin[j]).abs() < 2.0 * LONGEST);
+        self.passed.iter().filter(may_reach).any(|(begin, chord)| {
             let there = self.apart(q, begin);
             let share = (dot(&there, chord) / dot(chord, chord)).clamp(0.0, 1.0);
             let aside: Point = there.iter().zip(chord).map(|(there, chord)| there - share * chord).collect();
@@ -190,11 +193,12 @@ impl<'a> Round<'a> {
 
     /// a - b, whole turns aside.
     fn apart(&self, a: &[f64], b: &[f64]) -> Point {
-        let mut apart = difference(a, b);
-        for (apart, _) in apart.iter_mut().zip(&self.repeats).filter(|(_, repeats)| **repeats) {
-            *apart -= TAU * (*apart / TAU).round();
-        }
-        apart
+        (0..a.len()).map(|j| self.turned(j, a[j] - b[j])).collect()
+    }
+
+    /// `angle` of joint `j`, brought near zero by whole turns.
+    fn turned(&self, j: usize, angle: f64) -> f64 {
+        if self.repeats[j] { angle - TAU * (angle / TAU).round() } else { angle }
     }
 
     /// The angle of joint `j`, by whole turns as near as it can be to the middle of its limits.
