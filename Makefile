@@ -38,7 +38,8 @@ bench: $(VENV)/wheel  ## criterion benchmarks of the core, then the comparison w
 
 # `cargo install cargo-tarpaulin --locked` brings what counts the lines of Rust.
 coverage: $(VENV)/with-test  ## lines that the tests reach, of Rust and of Python
-	cargo tarpaulin --locked --package ikcore --engine llvm --skip-clean --target-dir target/coverage --timeout 3600
+	cargo tarpaulin --locked -p ikcore --engine llvm --skip-clean --target-dir target/coverage --timeout 3600 \
+	    --exclude-files 'tests/*' 'benches/*' 'examples/*'
 	$(BIN)/pip install --quiet --disable-pip-version-check 'pytest-cov>=6'
 	$(BIN)/python -m pytest --cov=beetle_ik --cov-report=term-missing:skip-covered
 

@@ -51,16 +51,18 @@ def summary_lines(rows: list[Row], task: str, orders: Iterable[str], versions: d
     """A line a library, over all arms that it takes."""
     measured = [row for row in rows if row.task == task and row.times]
     lines = []
-    for library in dict.fromkeys(row.library for row in measured):
+    for library in dict.fromkeys(row.library for row in rows if row.task == task):
         solved = [row.times.solved for row in measured if row.library == library]
+        if not solved:
+            continue
         lowest, highest = f"{min(solved):.3g}", f"{max(solved):.3g}"
         lines.append(
-            [f"{library} {versions[library]}", str(len({row.robot for row in measured if row.library == library}))]
+            [f"{library} ({versions[library]})", str(len({row.robot for row in measured if row.library == library}))]
         )
         lines[-1].append(highest if lowest == highest else f"{lowest} to {highest}")
         for order in orders:
             cells = {(row.library, row.robot): row for row in measured if row.order == order}
-            lines[-1].append(f"{_geometric_mean(_ratios(cells, library, 'mean')):.2g}")
+            lines[-1].append(_rounded(_geometric_mean(_ratios(cells, library, "mean"))))
     return lines
 
 
@@ -97,6 +99,11 @@ def _ratios(cells: Cells, library: str, figure: str) -> list[float]:
     return [getattr(its, figure) / getattr(ours, figure) for its, ours in pairs if its and ours]
 
 
+def _rounded(value: float) -> str:
+    """Two digits, without an exponent."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
 def _geometric_mean(values: list[float]) -> float:
     return float(np.exp(np.mean(np.log(values))))
 
@@ -115,9 +122,9 @@ def tracking_lines(followed: list[Followed]) -> list[list[str]]:
         lines.append([library])
         for steps in STEPS:
             row, reference = cells[library, steps], cells[libraries[0], steps]
-            missed = f" ({row.missed} points missed)" if row.missed else ""
+            missed = f" ({row.missed} missed)" if row.missed else ""
             ratio = row.milliseconds / reference.milliseconds
-            lines[-1] += [f"{row.milliseconds:.2g}", f"{row.largest_error:.0e}{missed}", f"{ratio:.2g}"]
+            lines[-1] += [_rounded(row.milliseconds), f"{row.largest_error:.0e}{missed}", _rounded(ratio)]
     return lines
 
 

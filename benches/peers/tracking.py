@@ -19,7 +19,7 @@ CENTER, RADIUS, DURATION = np.array([0.3, 0.3, 1.0]), 0.1, 30.0
 START = np.array([0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.6179441060, 0.0])
 TOLERANCE = 1e-6  # m, at every point
 STEPS = (150, 1500)
-ROUNDS = 5
+ROUNDS = 10
 
 
 class BeetleIkTracker(BeetleIk):

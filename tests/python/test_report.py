@@ -25,6 +25,7 @@ from beetle_ik.report import (
 from beetle_ik.report.markup import inline, paragraphs
 from beetle_ik.report.numbers import spread
 from beetle_ik.report.tables import shown_rows, to_csv
+from beetle_ik.report.write import _picture
 
 NBSP = "\u00a0"
 
@@ -184,6 +185,17 @@ def test_a_report_and_its_files(tmp_path: Path, registered: list[Context]) -> No
     assert set(told["files"]) == found
     assert told["claims"][0]["verdict"] == "reproduced"
     assert [context.short for context in registered] == [True]
+
+
+def test_a_figure_may_move(tmp_path: Path) -> None:
+    from matplotlib.animation import FuncAnimation
+
+    with drawing(2.0, 2.0) as figure:
+        (dot,) = figure.subplots().plot([0.0], [0.0], marker="o")
+    frames = FuncAnimation(figure, lambda i: (dot.set_data([i], [0.0]), (dot,))[1], frames=2)
+    address = _picture(Figure(name="moving", title="A dot", drawing=figure, frames=frames), tmp_path, 50)
+    assert address.startswith("data:image/gif;base64,")
+    assert (tmp_path / "moving.gif").read_bytes().startswith(b"GIF89a")
 
 
 def test_all_reports_have_a_page_over_them(tmp_path: Path, registered: list[Context]) -> None:

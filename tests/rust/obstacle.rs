@@ -210,3 +210,36 @@ fn pairs_that_belong_to_the_model_are_left_out() {
     let contact = scene.nearest(&folded).unwrap().unwrap();
     assert!(matches!(contact.other, Party::Link(_)), "{contact:?}");
 }
+
+/// Volume of a convex body of this surface (m^3): pyramids from a point inside.
+fn volume(obstacle: &Obstacle) -> f64 {
+    let triangles: Vec<_> = obstacle.triangles().into_iter().map(|corners| corners.map(Vector3::from)).collect();
+    let inside = triangles.iter().flatten().sum::<Vector3<f64>>() / (3 * triangles.len()) as f64;
+    let pyramid = |[a, b, c]: &[Vector3<f64>; 3]| (a - inside).dot(&(b - inside).cross(&(c - inside))).abs() / 6.0;
+    triangles.iter().map(pyramid).sum()
+}
+
+#[test]
+fn drawn_surfaces_close_around_the_shape() {
+    let (center, turn) = ([0.3, -0.2, 0.5], *Rotation3::new(Vector3::new(0.4, -0.7, 0.2)).matrix());
+    let ball = 4.0 / 3.0 * std::f64::consts::PI;
+    let cuboid = Obstacle::cuboid(center, [0.2, 0.3, 0.4], Some(turn)).unwrap();
+    assert!((volume(&cuboid) - 0.024).abs() < 1e-12);
+    let rod = std::f64::consts::PI * 0.01 * 0.5; // between the two halves of a capsule's ball
+    let round = [
+        (Obstacle::sphere(center, 0.1), ball * 0.001),
+        (Obstacle::ellipsoid(center, [0.1, 0.2, 0.3], Some(turn)), ball * 0.006),
+        (Obstacle::capsule([0.0, 0.0, 0.1], [0.3, 0.4, 0.1], 0.1), ball * 0.001 + rod),
+    ];
+    for (obstacle, exact) in round {
+        let share = volume(&obstacle.unwrap()) / exact;
+        assert!((0.9..1.0).contains(&share), "{share}"); // corners on the surface, so a little is left out
+    }
+    let ellipse = Obstacle::ellipse([0.3, 0.1], [0.2, 0.1], 0.4).unwrap();
+    let area = |[a, b, c]: [[f64; 3]; 3]| {
+        let (ab, ac) = (Vector3::from(b) - Vector3::from(a), Vector3::from(c) - Vector3::from(a));
+        ab.cross(&ac).norm() / 2.0
+    };
+    let share = ellipse.triangles().into_iter().map(area).sum::<f64>() / (std::f64::consts::PI * 0.02);
+    assert!((0.95..1.0).contains(&share), "{share}");
+}

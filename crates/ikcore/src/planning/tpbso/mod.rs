@@ -60,7 +60,7 @@ pub(super) fn point_to_point(
     let search = Search { solver: options.solver.as_ref(), stop: options.stop, seed: options.seed };
     let bounds = cost.bounds();
     let found = search.run(&mut cost, &bounds, monitor)?;
-    let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration()))?;
+    let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration("start or end")))?;
     let mut violations = limits.violations(&trajectory);
     let nearest = surroundings.and_then(|surroundings| surroundings.clearance(&trajectory));
     let clearance = nearest.map(|(distance, violation)| {
@@ -85,10 +85,11 @@ pub(super) fn point_to_point(
 
 const METHOD: &str = "method=\"tpbso\"";
 
-/// All that a search met had no inverse kinematics: of thousands of vectors that means a budget of a few.
-fn no_configuration() -> Error {
+/// All that a search met had no inverse kinematics: of thousands of vectors that means a budget of a few, or free links that
+/// rarely leave the others a way.
+fn no_configuration(what: &str) -> Error {
     let problem = "the search met no configuration that reaches it: raise the budget in stop=Stop(...)".into();
-    Error::Unreachable { what: "start or end".into(), problem }
+    Error::Unreachable { what: what.into(), problem }
 }
 
 /// Plans along a path, for planar arms.
@@ -116,7 +117,7 @@ pub(super) fn along_path(
     let search = Search { solver: options.solver.as_ref(), stop: options.stop, seed: options.seed };
     let bounds = cost.bounds()?;
     let found = search.run(&mut cost, &bounds, monitor)?;
-    let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration()))?;
+    let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration("some point of the path")))?;
     let mut violations = limits.violations(&trajectory);
     let farthest = cost.stray(course);
     violations.extend(farthest.violations(course, accuracy));
