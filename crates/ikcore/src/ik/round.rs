@@ -85,7 +85,10 @@ impl<'a> Round<'a> {
 
     /// Whether `q` lies on a curve that was followed.
     fn knows(&self, q: &[f64]) -> bool {
-        self.passed.iter().any(|(begin, chord)| {
+        // No step leads as far in any joint: most are told by the first.
+        let may_reach =
+            |(begin, _): &&(Point, Point)| (0..q.len()).all(|j| self.turned(j, q[j] - begin[j]).abs() < 2.0 * LONGEST);
+        self.passed.iter().filter(may_reach).any(|(begin, chord)| {
             let there = self.apart(q, begin);
             let share = (dot(&there, chord) / dot(chord, chord)).clamp(0.0, 1.0);
             let aside: Point = there.iter().zip(chord).map(|(there, chord)| there - share * chord).collect();
@@ -167,13 +170,13 @@ impl<'a> Round<'a> {
         }
         let (mut q, mut gradient) = (here.q.clone(), here.q.clone());
         for look in 0..LOOKS {
+            // Most places are outside, by their first joints.
             let share = look as f64 / LOOKS as f64;
-            for j in 0..n {
+            let inside = (0..n).all(|j| {
                 let slopes = [here.along[j], there.along[j]].map(|slope| length * slope);
-                q[j] = cubic(share, [here.q[j], there.q[j]], slopes);
-            }
-            self.turn_to_middle(&mut q);
-            let inside = self.bounds.contains(&q);
+                q[j] = self.turned_to_middle(j, cubic(share, [here.q[j], there.q[j]], slopes));
+                self.bounds.lower()[j] <= q[j] && q[j] <= self.bounds.upper()[j]
+            });
             if inside && (look == 0 || !arcs.inside) {
                 arcs.add(goals.cost(self.robot, &q, &mut gradient), &q);
             } else if !inside {
@@ -190,18 +193,18 @@ impl<'a> Round<'a> {
 
     /// a - b, whole turns aside.
     fn apart(&self, a: &[f64], b: &[f64]) -> Point {
-        let mut apart = difference(a, b);
-        for (apart, _) in apart.iter_mut().zip(&self.repeats).filter(|(_, repeats)| **repeats) {
-            *apart -= TAU * (*apart / TAU).round();
-        }
-        apart
+        (0..a.len()).map(|j| self.turned(j, a[j] - b[j])).collect()
     }
 
-    /// Brings `q` by whole turns as near as they can to the middle of the limits.
-    fn turn_to_middle(&self, q: &mut [f64]) {
-        for (j, q) in q.iter_mut().enumerate().filter(|(j, _)| self.repeats[*j]) {
-            *q -= TAU * ((*q - self.middle[j]) / TAU).round();
-        }
+    /// `angle` of joint `j`, brought near zero by whole turns.
+    fn turned(&self, j: usize, angle: f64) -> f64 {
+        if self.repeats[j] { angle - TAU * (angle / TAU).round() } else { angle }
+    }
+
+    /// The angle of joint `j`, by whole turns as near as it can be to the middle of its limits.
+    fn turned_to_middle(&self, j: usize, angle: f64) -> f64 {
+        let turns = if self.repeats[j] { ((angle - self.middle[j]) / TAU).round() } else { 0.0 };
+        angle - TAU * turns
     }
 }
 
