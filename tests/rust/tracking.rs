@@ -104,7 +104,7 @@ fn the_model_keeps_no_motion_alive_that_the_path_does_not_ask_for() {
     // Extrapolated joint velocities would: after a start beside the path the arm would go on turning about its elbow.
     let rms = |rule: TickRule| {
         let record = iiwa().track(rule, 1e-9, 0);
-        let steady = &record.qd[75 * record.dof..];
+        let steady = &record.qd()[75 * record.dof..];
         (steady.iter().map(|v| v * v).sum::<f64>() / steady.len() as f64).sqrt()
     };
     let (model, descent) = (rms(TickRule::MidStep), rms(descent()));
@@ -115,15 +115,15 @@ fn the_model_keeps_no_motion_alive_that_the_path_does_not_ask_for() {
 fn a_record_holds_a_row_for_the_start_and_one_a_tick() {
     let task = iiwa();
     let record = task.track(beetle(Variant::Chain, 1.0, 30), 2.2e-5, 3);
-    let (rows, n) = (151, 7);
-    assert_eq!((record.dof, record.time.len(), record.q.len(), record.qd.len()), (n, rows, rows * n, rows * n));
+    let (rows, n, qd) = (151, 7, record.qd());
+    assert_eq!((record.dof, record.time.len(), record.q.len(), qd.len()), (n, rows, rows * n, rows * n));
     assert_eq!((record.position.len(), record.reference.len(), record.velocity_limit.len()), (rows, rows, rows * n));
     assert_eq!(
         (record.step_status.len(), record.step_evaluations.len(), record.step_iterations.len()),
         (rows, rows, rows)
     );
     assert_eq!(record.evaluations(), record.step_evaluations.iter().sum::<usize>());
-    assert_eq!((&record.q[..n], &record.qd[..n], record.time[0]), (&OFF7[..], &[0.0; 7][..], 0.0));
+    assert_eq!((&record.q[..n], &qd[..n], record.time[0]), (&OFF7[..], &[0.0; 7][..], 0.0));
     assert!(record.velocity_limit[..n].iter().all(|limit| limit.is_nan()));
     assert!((record.position_error[0] - 0.1).abs() < 0.02, "{}", record.position_error[0]);
     assert!(record.rotation_error.iter().all(|error| error.is_nan()));
@@ -135,7 +135,7 @@ fn a_record_holds_a_row_for_the_start_and_one_a_tick() {
         assert!((record.position_error[i] - distance).abs() < 1e-15);
     }
     for i in n..rows * n {
-        assert_eq!(record.qd[i], (record.q[i] - record.q[i - n]) / DT);
+        assert_eq!(qd[i], (record.q[i] - record.q[i - n]) / DT);
     }
     assert_eq!(record.limits, velocity_limits(&task.robot, Profile::Sinusoid(sinusoid(2.0))), "the limits in force");
 }
@@ -174,7 +174,7 @@ fn a_limit_is_taken_over_the_tick_or_at_its_start() {
         let limits = Some(velocity_limits(&task.robot, falling));
         let record = task.track_with(&TrackOptions { limits, limit_at, ..task.options(descent(), 1e-6, 0) });
         assert_eq!(record.velocity_limit[5..10], [expected; 5]);
-        let fastest = record.qd[5..10].iter().fold(0.0_f64, |fastest, qd| fastest.max(qd.abs()));
+        let fastest = record.qd()[5..10].iter().fold(0.0_f64, |fastest, qd| fastest.max(qd.abs()));
         assert!((fastest - expected).abs() < 1e-12, "{limit_at:?}: the arm is in a hurry, {fastest}");
         assert_eq!(record.max_violation, 0.0);
     }
@@ -303,7 +303,7 @@ fn an_arm_inside_its_band_moves_on_evenly() {
         let options = TrackOptions { limits: None, ..task.options(rule.clone(), 1e-3, 0) };
         let record = track(&task.robot, &reference, None, &options, &mut Unattended).unwrap();
         assert_eq!(record.status, Status::Solved, "{rule:?}: {}", record.message());
-        let fastest = record.qd.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let fastest = record.qd().iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         // A beetle's steps are uneven, by how much depends on the start; full speed is above 1.4 rad/s.
         assert!(fastest < 0.4, "{rule:?}: {fastest} rad/s; the path asks for 0.06");
     }

@@ -22,7 +22,8 @@ fn steady_error(record: &Record) -> f64 {
 /// Root mean square of the change of joint velocity from tick to tick (rad/s), from step 75 on.
 fn roughness(record: &Record) -> f64 {
     let n = record.dof;
-    let changes: Vec<f64> = (76 * n..record.qd.len()).map(|i| record.qd[i] - record.qd[i - n]).collect();
+    let qd = record.qd();
+    let changes: Vec<f64> = (76 * n..qd.len()).map(|i| qd[i] - qd[i - n]).collect();
     (changes.iter().map(|change| change * change).sum::<f64>() / changes.len() as f64).sqrt()
 }
 

@@ -129,12 +129,7 @@ fn tick(
 
 impl ModelFreeRecord {
     fn push(&mut self, session: &controller::Session, reference: [f64; 3], step: &Step) {
-        let accepted = Accepted {
-            time: session.time(),
-            q: session.q(),
-            qd: session.qd(),
-            velocity_limit: session.velocity_limit(),
-        };
+        let accepted = Accepted { time: session.time(), q: session.q(), velocity_limit: session.velocity_limit() };
         self.track.push(&accepted, reference, step);
         self.command.extend_from_slice(session.measured_command());
     }

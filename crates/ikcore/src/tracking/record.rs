@@ -24,8 +24,6 @@ pub struct Record {
     pub time: Vec<f64>,
     /// Configurations (k, n) (rad, m).
     pub q: Vec<f64>,
-    /// Velocities (k, n): (q_i - q_{i-1}) / dt; zero in row 0.
-    pub qd: Vec<f64>,
     /// The velocity limit that each velocity was held against (k, n); NaN in row 0.
     pub velocity_limit: Vec<f64>,
     /// Tip positions (k, 3) (m).
@@ -64,9 +62,8 @@ pub struct Record {
 pub(super) struct Accepted<'a> {
     /// When it ended (s).
     pub time: f64,
-    /// Configuration and velocity (n,).
+    /// Configuration (n,).
     pub q: &'a [f64],
-    pub qd: &'a [f64],
     /// The velocity limit that this one was held against (n,).
     pub velocity_limit: &'a [f64],
 }
@@ -78,7 +75,6 @@ impl Record {
             dof,
             time: Vec::with_capacity(rows),
             q: Vec::with_capacity(rows * dof),
-            qd: Vec::with_capacity(rows * dof),
             velocity_limit: Vec::with_capacity(rows * dof),
             position: Vec::with_capacity(rows),
             reference: Vec::with_capacity(rows),
@@ -105,7 +101,7 @@ impl Record {
 
     /// Appends what a tick has accepted.
     pub(super) fn push(&mut self, accepted: &Accepted<'_>, reference: [f64; 3], step: &Step) {
-        self.push_velocities(accepted);
+        self.push_limits(accepted);
         self.time.push(accepted.time);
         self.q.extend_from_slice(accepted.q);
         self.position.push(step.position);
@@ -117,10 +113,9 @@ impl Record {
         self.step_iterations.push(step.iterations);
     }
 
-    /// Velocities of the tick that has just ended, what they were held against, and the violations.
-    fn push_velocities(&mut self, accepted: &Accepted<'_>) {
-        let Accepted { time: to, q, qd, velocity_limit } = *accepted;
-        self.qd.extend_from_slice(qd);
+    /// What the velocities of the tick that has just ended were held against, and the violations.
+    fn push_limits(&mut self, accepted: &Accepted<'_>) {
+        let Accepted { time: to, q, velocity_limit } = *accepted;
         let Some(from) = self.time.last().copied() else {
             self.velocity_limit.resize(self.dof, f64::NAN);
             return;
@@ -176,6 +171,13 @@ impl Record {
             Some(_) => Status::Lost,
             None => last,
         };
+    }
+
+    /// Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt; zero in row 0.
+    pub fn qd(&self) -> Vec<f64> {
+        let at_rest = std::iter::repeat_n(0.0, self.dof);
+        let moving = self.q.iter().zip(self.q.iter().skip(self.dof)).map(|(before, q)| (q - before) / self.dt);
+        at_rest.chain(moving).collect()
     }
 
     /// The first row within the band, or as near to it as the region allows.

@@ -24,7 +24,7 @@ impl Columns {
         Ok(Self {
             time: row(py, record.time.clone()).unbind(),
             q: table(py, record.q.clone(), &[k, n])?.unbind(),
-            qd: table(py, record.qd.clone(), &[k, n])?.unbind(),
+            qd: table(py, record.qd(), &[k, n])?.unbind(),
             position: table(py, record.position.as_flattened().to_vec(), &[k, 3])?.unbind(),
             reference: table(py, record.reference.as_flattened().to_vec(), &[k, 3])?.unbind(),
             position_error: row(py, record.position_error.clone()).unbind(),
