@@ -8,8 +8,10 @@ use std::f64::consts::TAU;
 
 use smallvec::SmallVec;
 
+use super::self_motion::difference;
 use crate::math::MAX_DOF;
 use crate::math::box_step::{box_step, box_step_near, least_damping};
+use crate::math::vector::{dot, norm};
 use crate::objective::{Bounds, LeastSquares, Linearization, Point};
 use crate::problem::Problem;
 use crate::robot::Robot;
@@ -280,18 +282,6 @@ fn cubic(share: f64, [from, to]: [f64; 2], [left, right]: [f64; 2]) -> f64 {
     let chord = to - from;
     let (second, third) = (3.0 * chord - 2.0 * left - right, left + right - 2.0 * chord);
     from + share * (left + share * (second + share * third))
-}
-
-fn difference(a: &[f64], b: &[f64]) -> Point {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn norm(vector: &[f64]) -> f64 {
-    dot(vector, vector).sqrt()
 }
 
 fn normalized(vector: Point) -> Point {

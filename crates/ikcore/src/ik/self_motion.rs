@@ -5,6 +5,7 @@
 //! self-motion of a 7-joint arm is the secant method.
 
 use crate::math::box_step::{box_step, box_step_near, least_damping};
+use crate::math::vector::dot;
 use crate::objective::{Bounds, LeastSquares, Linearization, Point};
 use crate::problem::Problem;
 use crate::robot::Robot;
@@ -160,10 +161,7 @@ fn largest(slope: &[f64]) -> f64 {
     slope.iter().fold(f64::MIN_POSITIVE, |largest, slope| largest.max(slope.abs()))
 }
 
-fn difference(a: &[f64], b: &[f64]) -> Point {
+/// a - b.
+pub(super) fn difference(a: &[f64], b: &[f64]) -> Point {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

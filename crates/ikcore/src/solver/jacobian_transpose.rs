@@ -4,6 +4,7 @@
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Result, require_positive};
+use crate::math::vector::dot;
 use crate::objective::{LeastSquares, Linearization, Point};
 
 /// How far a step goes along -J'r.
@@ -49,14 +50,10 @@ impl JacobianTranspose {
                 for (column, slope) in linearization.columns.iter().zip(gradient) {
                     change.iter_mut().zip(column).for_each(|(sum, entry)| *sum += entry * slope);
                 }
-                squared_norm(gradient) / squared_norm(&change)
+                dot(gradient, gradient) / dot(&change, &change)
             }
         }
     }
-}
-
-fn squared_norm(v: &[f64]) -> f64 {
-    v.iter().map(|entry| entry * entry).sum()
 }
 
 /// Where the descent stands.
