@@ -1,7 +1,5 @@
 //! Redundancy and timing together: how much faster than in uniform time, and that every limit is kept.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use ikcore::limits::{Field, Limits, Profile};

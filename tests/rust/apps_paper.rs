@@ -2,13 +2,9 @@
 //!
 //! Printed values that contradict the rest of the paper are corrected here, with the evidence.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
 use std::f64::consts::TAU;
 
-use common::robot;
+use crate::common::robot;
 use ikcore::Error;
 use ikcore::ik::{Solution, SolveOptions, solve};
 use ikcore::math::Frame;

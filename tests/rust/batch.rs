@@ -1,12 +1,8 @@
 //! Batches: the same bits however they are run, wrong rows, interruption and progress.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
 use std::thread::{self, ThreadId};
 
-use common::{bits, message, robot};
+use crate::common::{bits, message, robot};
 use ikcore::batch::{Batch, BatchOptions, OnInvalid, Targets, solve_batch};
 use ikcore::ik::{Solution, SolveOptions, solve};
 use ikcore::math::pose;

@@ -1,12 +1,8 @@
 //! The best posture for a target, over all of its self-motion, against dense scans.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{message, robot};
+use crate::common::{message, robot};
 use ikcore::ik::{AllOptions, Prefer, SolveOptions, solve, solve_all};
 use ikcore::manipulability::{Manipulability, Motion};
 use ikcore::math::so3::rotation_between;

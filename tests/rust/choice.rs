@@ -1,12 +1,8 @@
 //! Which solution: the nearest, all of them, the best by a goal; and what is said of targets that have none.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
 use std::f64::consts::{PI, TAU};
 
-use common::{bits, configurations, message, pose_at, robot};
+use crate::common::{bits, configurations, message, pose_at, robot};
 use ikcore::ik::{AllOptions, Prefer, Solution, SolveOptions, solve, solve_all};
 use ikcore::limits::LimitAt;
 use ikcore::manipulability::{self, Motion};

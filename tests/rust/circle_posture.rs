@@ -1,12 +1,8 @@
 //! Postures on circles: the published swarm and our own search, against the optima of a dense scan.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{message, robot};
+use crate::common::{message, robot};
 use ikcore::posture::{CircleSwarm, Measure, Posture, Region, SearchOptions, best_posture};
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};

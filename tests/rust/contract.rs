@@ -1,14 +1,10 @@
 //! The contract that every algorithm keeps, alone and from many starts: one table of solvers and problems, and one check
 //! of each promise over all of it.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use common::{bits, pose_at, robot};
+use crate::common::{bits, pose_at, robot};
 use ikcore::math::box_step::ROWS;
 use ikcore::objective::{
     Bounds, Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, Score, Slope,

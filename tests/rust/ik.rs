@@ -1,10 +1,6 @@
 //! Solving: derivatives of the residuals, reachable and unreachable targets, starts, seeds and limits.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
-use common::{assert_derivative, bits, configurations, message, pose_at, position_at, robot};
+use crate::common::{assert_derivative, bits, configurations, message, pose_at, position_at, robot};
 use ikcore::ik::{Solution, SolveOptions, solve};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::math::pose;

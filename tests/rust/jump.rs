@@ -1,11 +1,7 @@
 //! A control loop whose target jumps: all joints go there in proportion, brake in time, and turn round no more than the way
 //! asks for.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
-use common::{pose_at, robot};
+use crate::common::{pose_at, robot};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};

@@ -1,11 +1,7 @@
 //! Forward kinematics, Jacobians and storage of generated chains, against plain matrix products and finite differences.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
-use common::chains::RandomChain;
-use common::{bits, message, robot};
+use crate::common::chains::RandomChain;
+use crate::common::{bits, message, robot};
 use ikcore::math::pose;
 use ikcore::nalgebra::{Matrix4, Matrix6xX, Rotation3, Vector3};
 use ikcore::objective::{Objective, Score};

@@ -1,13 +1,9 @@
 //! Yoshikawa's index, its gradient, the ellipsoid, and the indices of the links.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
 use std::f64::consts::PI;
 
-use common::chains::RandomChain;
-use common::{message, robot};
+use crate::common::chains::RandomChain;
+use crate::common::{message, robot};
 use ikcore::manipulability::{Manipulability, Motion, manipulability, manipulability_all};
 use ikcore::math::pose;
 use ikcore::nalgebra::Vector6;

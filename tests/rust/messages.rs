@@ -1,13 +1,9 @@
 //! Wrong input of every kind, and the exact sentence that answers it. (URDF files, curves, samples and DH tables have
 //! theirs in `urdf.rs`, `path.rs` and `robots.rs`.)
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{message, robot};
+use crate::common::{message, robot};
 use ikcore::Error;
 use ikcore::ik::{SolveOptions, solve};
 use ikcore::limits::{Field, LimitAt, Limits, Profile, Sinusoid};

@@ -1,10 +1,6 @@
 //! Any function in a box: found, recorded, and refused.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
-use common::{bits, message};
+use crate::common::{bits, message};
 use ikcore::minimize::{MinimizeOptions, Minimum, minimize};
 use ikcore::objective::{Objective, Score};
 use ikcore::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Monitor, Status, Stop, Unattended};

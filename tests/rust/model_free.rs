@@ -1,12 +1,8 @@
 //! The secant controller without a model, and what holds of every controller whatever the plant does.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
 use std::collections::VecDeque;
 
-use common::{bits, message, robot};
+use crate::common::{bits, message, robot};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::rng;

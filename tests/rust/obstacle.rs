@@ -1,7 +1,5 @@
 //! Distances, capsules and sweeps against brute force.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
 use ikcore::nalgebra::{Point3, Rotation3, Vector3};
 use ikcore::obstacle::{Edge, Obstacle, Party, Scene, Shape, Sweep};
 use ikcore::rng::{self, LazyRng};

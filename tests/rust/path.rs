@@ -1,7 +1,5 @@
 //! Curves against their own derivatives and their geometry; paths, references and every error by its message.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
 use ikcore::math::pose;
 use ikcore::nalgebra::{Matrix3, Rotation3, Vector3};
 use ikcore::path::{

@@ -1,7 +1,5 @@
 //! The planners of Wang et al. (2019): their trajectories, limits, obstacles, and how good they are.
 
-mod common;
-
 use std::f64::consts::PI;
 
 use ikcore::limits::{Field, Limits, Profile};

@@ -1,7 +1,5 @@
 //! Point to point: against the bound of the plane's arms, and around a box.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
 use std::f64::consts::TAU;
 
 use ikcore::ik::{AllOptions, solve_all};

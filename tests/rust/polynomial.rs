@@ -1,7 +1,5 @@
 //! Polynomials: roots and extrema against dense sampling and against roots chosen beforehand.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
 use ikcore::math::polynomial::{derivative, evaluate, largest_magnitude, roots};
 use proptest::prelude::*;
 

@@ -1,10 +1,6 @@
 //! The tip kept in a box, eq. (5) of Cheng et al. (2020): whatever the solver, and said where it binds.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
-use common::{assert_derivative, configurations, message, pose_at, position_at, robot};
+use crate::common::{assert_derivative, configurations, message, pose_at, position_at, robot};
 use ikcore::ik::{AllOptions, SolveOptions, solve, solve_all};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::path::{Circle, Path, Plane, Reference};

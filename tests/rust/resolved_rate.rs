@@ -3,14 +3,10 @@
 //! The 2R1P arm of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization" on its reference
 //! q = (0.5 cos(pi t / 2), 0.5 cos(pi t / 2), 0.2 sin(pi t / 2)), t from 0 to 2 s.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use common::{message, robot};
+use crate::common::{message, robot};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::nalgebra::{Matrix3, Rotation3, Vector3};
 use ikcore::path::{Circle, Path, Plane, Reference};

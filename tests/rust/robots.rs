@@ -1,7 +1,5 @@
 //! Robots from DH tables, planar arms and the catalogue, against published positions and the makers' URDFs.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::PathBuf;
 

@@ -1,12 +1,8 @@
 //! Starts from the robot's index: near the target, inside the box, shared, repeatable; and what they are for: random
 //! robots reach random targets.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
-use common::chains::RandomChain;
-use common::{pose_at, position_at, robot};
+use crate::common::chains::RandomChain;
+use crate::common::{pose_at, position_at, robot};
 use ikcore::ik::{Solution, SolveOptions, solve};
 use ikcore::math::{Frame, pose};
 use ikcore::nalgebra::Vector3;

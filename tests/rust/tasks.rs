@@ -1,10 +1,6 @@
 //! What can be asked of the tip: kinds of task, weights and tolerances by component, tools.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
-use common::{assert_derivative, configurations, message, pose_at, robot};
+use crate::common::{assert_derivative, configurations, message, pose_at, robot};
 use ikcore::ik::{SolveOptions, solve};
 use ikcore::math::{Frame, Pose, pose};
 use ikcore::nalgebra::{Rotation3, Vector3};

@@ -1,7 +1,5 @@
 //! The fastest timing of joint paths: known optima, limits at every instant, errors by their messages.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::planning::{JointPath, SplineEnds, TimingLimits, TimingOptions, time_optimal};
 use ikcore::trajectory::Trajectory;

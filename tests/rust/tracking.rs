@@ -1,15 +1,11 @@
 //! Tracking: limits that are never broken, targets that cannot be followed, the model-based rule, and what a record holds.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
 use std::f64::consts::FRAC_PI_2;
 
-use common::circles::{
+use crate::common::circles::{
     DT, OFF5, OFF7, Task, beetle, circle, count, descent, five_links, iiwa, sinusoid, velocity_limits,
 };
-use common::{bits, robot};
+use crate::common::{bits, robot};
 use ikcore::limits::{Field, LimitAt, Limits, Profile, Sinusoid};
 use ikcore::nalgebra::{Rotation3, Vector3};
 use ikcore::path::{Path, Polyline};

@@ -3,11 +3,7 @@
 //! The bounds on errors and counts are those of this library's own study of the paper, which prints no seeds, bands or
 //! numbers of evaluations; they leave 25 to 50 per cent over the extremes of a hundred seeds.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
-use common::circles::{Task, beetle, count, five_links, iiwa};
+use crate::common::circles::{Task, beetle, count, five_links, iiwa};
 use ikcore::solver::{Status, Variant};
 use ikcore::tracking::{Record, TickRule};
 

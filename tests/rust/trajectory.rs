@@ -1,7 +1,5 @@
 //! Piecewise polynomial joint motion: values, exact extrema, samples, errors by their messages.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
 use ikcore::trajectory::{Coefficients, Trajectory, polynomial};
 use proptest::prelude::*;
 

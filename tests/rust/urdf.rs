@@ -1,7 +1,5 @@
 //! Reading URDF: exact messages for what is wrong, and chains that move as the file says.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::PathBuf;
 

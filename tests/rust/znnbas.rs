@@ -2,11 +2,7 @@
 //!
 //! The bounds are those of this library's own study of the paper, which prints no seeds.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
-mod common;
-
-use common::robot;
+use crate::common::robot;
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::path::{Path, Plane, Polyline, Reference};
 use ikcore::robot::Robot;

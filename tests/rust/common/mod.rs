@@ -1,8 +1,5 @@
 //! What several test files need: robots, targets, generated chains with a slow twin, error messages.
 
-#![allow(dead_code, reason = "every test file uses its own share")]
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
-
 pub mod chains;
 pub mod circles;
 

@@ -1,0 +1,37 @@
+//! The core through its public face. One binary holds all files: what they share is compiled and linked once.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that cannot go on should say so")]
+
+mod common;
+
+mod along_path_timed;
+mod apps_paper;
+mod batch;
+mod best_posture;
+mod choice;
+mod circle_posture;
+mod contract;
+mod ik;
+mod jump;
+mod kinematics;
+mod layers;
+mod manipulability;
+mod messages;
+mod minimize;
+mod model_free;
+mod obstacle;
+mod path;
+mod planning;
+mod point_to_point;
+mod polynomial;
+mod region;
+mod resolved_rate;
+mod robots;
+mod seed_index;
+mod tasks;
+mod time_optimal;
+mod tracking;
+mod tracking_paper;
+mod trajectory;
+mod urdf;
+mod znnbas;
