@@ -244,7 +244,7 @@ impl Turn {
 
 /// The frame of the last joint, seen from the first, when the tip of `chain` is at `tip`.
 pub(super) fn between_joints(chain: &Chain, tip: &Frame) -> Frame {
-    chain.stages[0].inverse().then::<Separate>(tip).then::<Separate>(&chain.tip.inverse())
+    chain.stages.frame(0).inverse().then::<Separate>(tip).then::<Separate>(&chain.tip.inverse())
 }
 
 /// `frame` carried round the base's z axis, given sine and cosine of the angle.
