@@ -115,7 +115,7 @@ impl SeedIndex {
 
     fn features(&self, frame: &Frame) -> [f32; FEATURES] {
         let [x, y, _] = frame.origin;
-        let radius = x.hypot(y);
+        let radius = (x * x + y * y).sqrt();
         let frame = if self.first.is_some() && radius > 0.0 {
             turned_about_base_z(frame, -y / radius, x / radius)
         } else {
