@@ -257,7 +257,7 @@ fn a_plant_that_fails_ends_the_run_with_what_was_recorded() {
         track_model_free(&mut plant, &circle(), &ON_CIRCLE, &every_tick, &mut Unattended)
     };
     let record = run(41, || Err(Fault("raised ValueError: no".into()))).unwrap();
-    assert_eq!((record.track.status, record.track.time.len()), (Status::PlantFailed, 41));
+    assert_eq!((record.track.status, record.track.rows()), (Status::PlantFailed, 41));
     assert_eq!(record.message(), "the plant raised ValueError: no at t = 8.2 s; the 41 rows before are recorded");
     let record = run(3, || Ok([0.0, f64::NAN, 0.0])).unwrap();
     let expected = "the plant returned a position that is not finite: [0.0, NaN, 0.0] at t = 0.6 s; the 3 rows before are recorded";
@@ -279,7 +279,7 @@ impl Monitor for Countdown {
 #[test]
 fn a_monitor_that_says_stop_leaves_the_steps_that_were_finished() {
     let record = track_model_free(&mut exact_plant(), &circle(), &ON_CIRCLE, &options(0), &mut Countdown(8)).unwrap();
-    assert_eq!((record.track.status, record.track.time.len()), (Status::Interrupted, 7));
+    assert_eq!((record.track.status, record.track.rows()), (Status::Interrupted, 7));
 }
 
 #[test]
@@ -298,7 +298,7 @@ fn a_session_gives_the_same_commands_as_the_run() {
                 }
             };
             assert_eq!(bits(session.q()), bits(&record.track.q[7 * i..][..7]), "{controller:?}, row {i}");
-            assert_eq!((step.status, session.time()), (record.track.step_status[i], record.track.time[i]));
+            assert_eq!((step.status, session.time()), (record.track.step_status[i], i as f64 * session.dt()));
         }
     }
 }

@@ -93,8 +93,8 @@ pub fn track(
         None => first_configuration(robot, reference, &limits, options, monitor)?,
     };
     let mut session = Session::new(robot, &start, reference.dt(), options)?;
-    let mut record =
-        Record::new(start.len(), reference.len(), session.limits().clone(), *session.criterion(), reference.dt());
+    let (limits, criterion) = (session.limits().clone(), *session.criterion());
+    let mut record = Record::new(start.len(), reference.len(), limits, options.limit_at, criterion, reference.dt());
     let beginning = session.begin(&target(reference, 0), reference.velocity(0))?;
     record.push(&session.accepted(), reference.position(0), &beginning);
     let finished = follow(reference, &mut session, &mut record, monitor)?;

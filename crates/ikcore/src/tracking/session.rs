@@ -164,7 +164,7 @@ impl Session {
 
     /// What the last tick has accepted.
     pub(super) fn accepted(&self) -> Accepted<'_> {
-        Accepted { time: self.time(), q: &self.q, velocity_limit: self.velocity_limit() }
+        Accepted { q: &self.q, velocity_limit: self.velocity_limit() }
     }
 
     /// The robot that is moved.

@@ -89,7 +89,7 @@ impl PyTrackResult {
     #[getter]
     fn trajectory(&self) -> PyResult<PyTrajectory> {
         let names = self.robot.get().core.joints().iter().map(|joint| joint.name.clone()).collect();
-        Trajectory::from_samples(names, &self.core.time, &self.core.q, None, None)
+        Trajectory::from_samples(names, &self.core.time(), &self.core.q, None, None)
             .map(PyTrajectory::from)
             .map_err(raise)
     }
@@ -100,7 +100,7 @@ impl PyTrackResult {
     }
 
     fn __repr__(&self) -> String {
-        format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.time.len(), self.core.message())
+        format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.rows(), self.core.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
@@ -119,7 +119,7 @@ impl PyTrackResult {
     fn new(py: Python<'_>, core: Record, robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
         Ok(Self {
             columns: Columns::new(py, &core)?,
-            velocity_limit: table(py, core.velocity_limit.clone(), &[core.time.len(), core.dof])?.unbind(),
+            velocity_limit: table(py, core.velocity_limit(), &[core.rows(), core.dof])?.unbind(),
             rotation_error: row(py, core.rotation_error.clone()).unbind(),
             step_iterations: counts(py, &core.step_iterations),
             robot,
