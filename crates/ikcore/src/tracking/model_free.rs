@@ -71,9 +71,11 @@ pub fn track_model_free(
     let mut record = ModelFreeRecord { track, command, fault: None };
     let mut interrupted = false;
     for i in 0..=ticks {
-        interrupted = !monitor.keep_going();
-        if interrupted {
-            break;
+        if i % plant.ticks_between_looks() == 0 {
+            interrupted = !monitor.keep_going();
+            if interrupted {
+                break;
+            }
         }
         match tick(plant, &mut session, reference.position(i), &mut record.track)? {
             Ok(step) => record.push(&session, reference.position(i), &step),
