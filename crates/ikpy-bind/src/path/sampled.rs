@@ -3,7 +3,7 @@
 use ikcore::math::ticks::ticks;
 use ikcore::nalgebra::Matrix3;
 use ikcore::path::Reference;
-use ikcore::planning::Course;
+use ikcore::planning::TipPath;
 use pyo3::prelude::*;
 
 use super::{Curve, Orientation, PyPath};
@@ -34,14 +34,14 @@ impl PyPath {
     }
 
     /// The path as a planner sees it; Python functions are called here, before the core runs.
-    pub fn course(&self, py: Python<'_>) -> PyResult<Course> {
+    pub fn tip_path(&self, py: Python<'_>) -> PyResult<TipPath> {
         let corners = match &self.curve {
             Curve::Core(path) => path.corners(),
             Curve::Function { .. } => vec![],
         };
-        let times = Course::times(self.duration(), &corners);
+        let times = TipPath::times(self.duration(), &corners);
         let (positions, rotations) = self.at(py, times.iter().copied())?;
-        Course::sampled(times, positions, rotations).map_err(raise)
+        TipPath::sampled(times, positions, rotations).map_err(raise)
     }
 
     /// Positions and, where there are any, orientations at these times.

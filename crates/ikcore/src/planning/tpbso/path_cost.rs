@@ -1,30 +1,30 @@
 //! Along a path in uniform time: the decision vector and cost of Wang et al. (2019), eq. (7) and (19)-(25).
 
+use super::penalties::{BROKEN_LIMIT, NO_CONFIGURATION};
 use super::redundancy::{NODES, Redundancy, nearest_turn};
-use super::weights::{BROKEN_LIMIT, NO_CONFIGURATION};
 use crate::error::Result;
 use crate::math::cubic_spline::{CubicSpline, Piece};
 use crate::objective::{Bounds, Objective, Score};
 use crate::planning::cost::Cost;
-use crate::planning::course::Course;
+use crate::planning::deviation::{LargestDeviation, TipDeviation};
 use crate::planning::motion_limits::MotionLimits;
 use crate::planning::planar_arm::Orientations;
-use crate::planning::stray::{Farthest, Stray};
+use crate::planning::tip_path::TipPath;
 use crate::robot::Robot;
 use crate::trajectory::{Trajectory, polynomial};
 
 /// The spline goes through every second point; those between measure its accuracy.
 const STRIDE: usize = 2;
 
-/// The motion may last from this share of the slowest joint's way through its range ...
+/// The shortest duration allowed, over the time that the slowest joint takes through its range.
 const SHORTEST: f64 = 0.025;
 
-/// ... to so many times that ...
+/// The longest duration allowed, over the same time ...
 const LONGEST: f64 = 5.0;
 
-/// ... or, on a path that turns the joints more than once through it, to so many times what the middle of all free
-/// orientations takes.
-const LONGER_THAN_MIDDLE: f64 = 1.5;
+/// ... or, where that is longer, as on a path that takes joints through their range more than once, over the duration with all
+/// free orientations in the middle of their ranges.
+const LONGEST_OVER_MIDDLE: f64 = 1.5;
 
 /// The cost F of eq. (25), as a function of \[x_phi (5 a free link), T\].
 #[derive(Debug, Clone)]
@@ -78,7 +78,7 @@ impl<'a> PathCost<'a> {
         }
     }
 
-    /// What the decision vector may be. A given start fixes the first node of every free link.
+    /// The range of the decision vector. A given start fixes the first node of every free link.
     ///
     /// # Errors
     /// [`Error::InvalidPath`](crate::Error::InvalidPath) for a start that is not on the path.
@@ -91,12 +91,12 @@ impl<'a> PathCost<'a> {
             }
         }
         let middle: Vec<f64> = ranges.iter().map(|(lowest, highest)| 0.5 * (lowest + highest)).collect();
-        let longest = (LONGEST * whole_range).max(LONGER_THAN_MIDDLE * self.least_duration(&middle));
+        let longest = (LONGEST * whole_range).max(LONGEST_OVER_MIDDLE * self.least_duration(&middle));
         ranges.push((SHORTEST * whole_range, longest));
         Ok(Bounds::from_ranges(ranges.into_iter()))
     }
 
-    /// How long these free orientations take at least (s); 0 where a point has no configuration.
+    /// The shortest duration (s) with these free orientations; 0 where a point has no configuration.
     fn least_duration(&mut self, nodes: &[f64]) -> f64 {
         if self.place_knots(nodes).is_err() {
             return 0.0;
@@ -133,11 +133,11 @@ impl<'a> PathCost<'a> {
         points.filter_map(|i| self.redundancy.configuration(i, nodes, &self.node_bends, &mut q).ok()).collect()
     }
 
-    /// How far the tip strays from `course` in the motion of the last [`trajectory`](Self::trajectory), at its points and
+    /// The largest deviations of the tip from `tip_path` in the motion of the last [`trajectory`](Self::trajectory), at its points and
     /// between them.
-    pub fn stray(&self, course: &Course) -> Farthest {
+    pub fn deviation(&self, tip_path: &TipPath) -> LargestDeviation {
         // Points at equal times need not lie at equal distances.
-        let shares = course.point_shares();
+        let shares = tip_path.point_shares();
         let last = shares.len() - 1;
         let configurations = |share: f64, q: &mut [f64]| {
             let i = shares.partition_point(|start| *start <= share).clamp(1, last) - 1;
@@ -145,7 +145,7 @@ impl<'a> PathCost<'a> {
             self.place((i as f64 + part) / last as f64, q);
         };
         let knots: Vec<f64> = (0..last).step_by(STRIDE).chain([last]).map(|i| shares[i]).collect();
-        Stray { robot: self.robot, course, configurations }.farthest(&knots)
+        TipDeviation { robot: self.robot, tip_path, configurations }.largest(&knots)
     }
 
     /// Distances (m) of the tip from the points that the splines do not pass: the skipped point of each stride.

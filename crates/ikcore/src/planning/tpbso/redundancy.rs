@@ -11,7 +11,7 @@ use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Orientation, Orientations,
 use crate::task::Target;
 use crate::wording::number;
 
-/// Numbers in \[0, 1\] by which the course of each free orientation is given: the paper's x_phi.
+/// Numbers in \[0, 1\] by which the path of each free orientation is given: the paper's x_phi.
 pub const NODES: usize = 5;
 
 /// A planar arm along the points of a path.
