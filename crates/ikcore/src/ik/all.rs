@@ -5,11 +5,12 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::SolveOptions;
-use super::nearest::{bring_near, distance};
+use super::nearest::bring_near;
 use super::prepared::Prepared;
 use super::run::Run;
 use super::solution::Solution;
 use crate::error::{Error, Result, require_positive};
+use crate::math::vector::distance;
 use crate::objective::{Objective, Point};
 use crate::rng;
 use crate::robot::Robot;

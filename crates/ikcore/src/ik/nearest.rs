@@ -6,6 +6,7 @@ use super::prepared::Prepared;
 use super::run::Run;
 use super::self_motion::SelfMotion;
 use super::solution::Solution;
+use crate::math::vector::distance;
 use crate::objective::{Bounds, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
@@ -87,11 +88,6 @@ pub(crate) fn bring_near(robot: &Robot, bounds: &Bounds, reference: &[f64], q: &
             q[j] = turned;
         }
     }
-}
-
-/// |a - b|.
-pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
 /// A random point no farther from `start` than `share` of each joint's range.

@@ -88,7 +88,7 @@ impl<'a> Prepared<'a> {
     /// [`Error::WrongLength`], [`Error::NotFinite`] or [`Error::OutsideLimits`].
     pub(crate) fn check_start(&self, q: &[f64]) -> Result<()> {
         self.robot.check("start", q)?;
-        require_inside(&self.robot, "start", q, &self.bounds)
+        self.robot.require_within("start", q, self.bounds.lower(), self.bounds.upper())
     }
 
     /// Checks that there is a start where the nearest solution is asked for.
@@ -172,17 +172,4 @@ fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     limits.require_for(robot)?;
     limits.require_none(&[Field::Acceleration, Field::Jerk], "solve", remedy)?;
     limits.position_box()
-}
-
-fn require_inside(robot: &Robot, what: &str, q: &[f64], bounds: &Bounds) -> Result<()> {
-    match (0..q.len()).find(|i| q[*i] < bounds.lower()[*i] || bounds.upper()[*i] < q[*i]) {
-        None => Ok(()),
-        Some(i) => Err(Error::OutsideLimits {
-            what: what.into(),
-            joint: robot.joints()[i].name.clone(),
-            value: q[i],
-            lower: bounds.lower()[i],
-            upper: bounds.upper()[i],
-        }),
-    }
 }

@@ -141,6 +141,23 @@ impl Robot {
         require_finite(what, q, |i| format!("joint '{}'", self.joints()[i].name))
     }
 
+    /// Err unless `q` (n,) lies in the box from `lower` to `upper` (n,); `what` names it in the message.
+    ///
+    /// # Errors
+    /// [`Error::OutsideLimits`] names the joint, its value and its limits.
+    pub fn require_within(&self, what: &str, q: &[f64], lower: &[f64], upper: &[f64]) -> Result<()> {
+        match (0..q.len()).find(|j| !(lower[*j] <= q[*j] && q[*j] <= upper[*j])) {
+            None => Ok(()),
+            Some(j) => Err(Error::OutsideLimits {
+                what: what.into(),
+                joint: self.joints()[j].name.clone(),
+                value: q[j],
+                lower: lower[j],
+                upper: upper[j],
+            }),
+        }
+    }
+
     /// Pose of the tip at `q` (n,) (rad, m).
     ///
     /// # Errors

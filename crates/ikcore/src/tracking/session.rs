@@ -324,5 +324,5 @@ fn require_room_to_stop(limits: &Limits) -> Result<()> {
     let remedy = "an arm that may not stop at once can be carried out of it; leave one of the two out";
     limits.require_none(&[Field::Acceleration], method, remedy)?;
     let remedy = "limits that move can push the arm out of it; give numbers, or leave region out";
-    limits.require_still(method, remedy)
+    [Field::Lower, Field::Upper].into_iter().try_for_each(|field| limits.constants(field, method, remedy).map(|_| ()))
 }

@@ -66,7 +66,7 @@ pub(super) fn along_path(
     require_positive("accuracy", accuracy)?;
     if let Some(q) = &options.start {
         robot.check("start_q", q)?;
-        limits.require_inside("start_q", q)?;
+        robot.require_within("start_q", q, &limits.lower, &limits.upper)?;
         require_on_path(robot, q, tip_path, accuracy)?;
     }
     let robot = limits.applied_to(robot)?;

@@ -55,7 +55,7 @@ impl EndConfigurations {
     ) -> Result<Self> {
         let target = match end {
             Endpoint::Configuration(q) => {
-                limits.require_inside(what, q)?;
+                robot.require_within(what, q, &limits.lower, &limits.upper)?;
                 return Ok(Self::Fixed(q.clone()));
             }
             Endpoint::Target(target) => target,

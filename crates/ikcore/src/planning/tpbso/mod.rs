@@ -122,7 +122,7 @@ pub(super) fn along_path(
     limits.require_velocities(METHOD)?;
     if let Some(q) = &options.start {
         robot.check("start_q", q)?;
-        limits.require_inside("start_q", q)?;
+        robot.require_within("start_q", q, &limits.lower, &limits.upper)?;
     }
     let elbow = options.start.as_ref().map_or(options.elbow.unwrap_or_default(), |q| arm.elbow(q));
     let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * tip_path.extent());
