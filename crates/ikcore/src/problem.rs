@@ -1,7 +1,7 @@
 //! A robot and a target as something to minimise.
 
 use crate::math::box_step::ROWS;
-use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, Slope};
+use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore};
 use crate::rng::LazyRng;
 use crate::robot::{Robot, Seeds};
 use crate::task::{Assessment, Criterion, Target, entrywise};
@@ -113,17 +113,17 @@ impl Residual for Problem<'_> {
 impl Gradient for Problem<'_> {
     /// E of eq. (11) of Yuan et al. 2016; where components have weights, or the tip a region, half the weighted sum of squares.
     #[inline]
-    fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> Slope {
+    fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> SmoothScore {
         if self.criterion.components.is_some() || self.criterion.region.is_some() {
             let mut linearization = Linearization::default();
             let score = self.linearize(q, &mut linearization);
             linearization.gradient(gradient);
-            return Slope { error: 0.5 * score.value, score };
+            return SmoothScore { error: 0.5 * score.value, score };
         }
         let target = self.target;
         let tip = self.robot.tip_and_torques(q, &|tip| entrywise::pull(target, tip), gradient);
         gradient.iter_mut().for_each(|slope| *slope = -*slope);
-        Slope { error: entrywise::error(target, &tip), score: target.assess_tip(&tip, &self.criterion).score }
+        SmoothScore { error: entrywise::error(target, &tip), score: target.assess_tip(&tip, &self.criterion).score }
     }
 }
 
