@@ -110,7 +110,7 @@ fn search(
     let (mut solutions, mut known) = (Vec::<Solution>::new(), 0);
     let last = loop {
         let attempt = run.attempt(prepared, &mut problem, &x0, &mut rng, monitor);
-        let mut solution = prepared.told_apart(target, attempt);
+        let mut solution = prepared.marked_if_blocked(target, attempt);
         if solution.status != Status::Solved {
             break Some(solution);
         }

@@ -113,12 +113,12 @@ impl<'a> Prepared<'a> {
         monitor: &mut dyn Monitor,
     ) -> Solution {
         let solution = self.search(target, start, stream, monitor);
-        self.told_apart(target, solution)
+        self.marked_if_blocked(target, solution)
     }
 
-    /// A solution of what the region lets the tip reach of a target is none of the target.
-    pub(super) fn told_apart(&self, target: &Target, solution: Solution) -> Solution {
-        match self.criterion.held_back(target) {
+    /// The solution with status [`Status::HeldInRegion`] where it is solved, but the region keeps the tip from the target itself.
+    pub(super) fn marked_if_blocked(&self, target: &Target, solution: Solution) -> Solution {
+        match self.criterion.blocked_by_region(target) {
             Some(obstruction) if solution.status == Status::Solved => {
                 Solution { status: Status::HeldInRegion, obstruction, ..solution }
             }

@@ -129,7 +129,7 @@ impl Criterion {
 
     /// Why the region keeps the tip from `target`, in words, if it does: even the nearest point of it is beyond the
     /// tolerance.
-    pub fn held_back(&self, target: &Target) -> Option<String> {
+    pub fn blocked_by_region(&self, target: &Target) -> Option<String> {
         let (region, wanted) = (self.region.as_ref()?, target.position()?);
         let anywhere = Self { region: None, ..*self };
         let axes = target.frame().map_or(Frame::IDENTITY.axes, |frame| frame.axes);

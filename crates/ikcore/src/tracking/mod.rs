@@ -12,13 +12,15 @@ mod plant;
 mod record;
 mod rule;
 mod session;
+mod step;
 
 pub use controller::Controller;
 pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
 pub use plant::{Fault, FunctionPlant, KinematicPlant, Plant};
 pub use record::Record;
 pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
-pub use session::{Session, Step};
+pub use session::Session;
+pub use step::Step;
 
 use crate::error::{Error, Result};
 use crate::ik::{Prefer, SolveOptions, solve};

@@ -206,7 +206,7 @@ pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
     if let Ok(rule) = solver.cast::<PyWeightedPseudoInverse>() {
         return Ok(rule.get().rule());
     }
-    known_solver(solver).map(TickRule::EachTick).ok_or_else(|| {
+    known_solver(solver).map(TickRule::Solver).ok_or_else(|| {
         let (names, got) = (solver_names(), summary(solver));
         invalid(format!("solver must be {names} or WeightedPseudoInverse, got {got}"))
     })
