@@ -212,11 +212,11 @@ impl Robot {
         self.chain.jacobian(q, columns)
     }
 
-    /// Tip and joint torques (N m, N for sliding joints) in one pass and without a Jacobian: what the joints feel of the
-    /// wrench that `pull` says of the tip. `q` and `torques` have one entry per joint.
+    /// Tip and joint torques (N m, N for sliding joints) J'w in one pass, without a Jacobian; w is the `wrench` on the tip. `q`
+    /// and `torques` have one entry per joint.
     #[inline]
-    pub fn tip_and_torques(&self, q: &[f64], pull: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
-        self.chain.torques(q, pull, torques)
+    pub fn tip_and_torques(&self, q: &[f64], wrench: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
+        self.chain.torques(q, wrench, torques)
     }
 
     /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).

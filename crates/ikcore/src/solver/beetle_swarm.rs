@@ -10,7 +10,7 @@ use super::evaluator::{Evaluator, Halt};
 use super::population::{Generation, Members, Memory, Population, Schedule};
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
-use crate::math::vector::sign;
+use crate::math::ordered::sign;
 use crate::objective::Objective;
 use crate::wording::words;
 

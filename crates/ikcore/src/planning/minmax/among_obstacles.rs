@@ -53,7 +53,7 @@ pub(super) fn plan(search: &mut Search, options: &PointToPointOptions, monitor: 
         true => Found::Nothing(Status::Stalled),
         false => best_path(&mut trees, limits, &open, options.seed, margin, monitor)?,
     };
-    search.evaluations += trees.sweep.looks();
+    search.evaluations += trees.sweep.examined();
     let (trajectory, ended) = match found {
         Found::Clear(trajectory) => (trajectory, Status::Solved),
         Found::Nothing(status) => {

@@ -46,7 +46,7 @@ impl<'a> TreeSearch<'a> {
     }
 
     fn is_spent(&self) -> bool {
-        self.sweep.looks() >= self.budget
+        self.sweep.examined() >= self.budget
     }
 
     /// Squared distance, each joint's displacement as a share of its range.

@@ -9,7 +9,7 @@ use crate::task::{Criterion, Outside};
 pub fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> TickResult {
     let Tick { robot, target, criterion, tick_box, last_value, rng, monitor, .. } = tick;
     // The arm begins inside its region: nothing outside need be looked at.
-    let kept = Criterion { outside: Outside::Worthless, ..*criterion };
+    let kept = Criterion { outside: Outside::Infinite, ..*criterion };
     let mut problem = Problem::new(robot, target, kept);
     let objective: &mut dyn Differentiable = &mut problem;
     let mut evaluator = Evaluator::new(objective, tick_box, stop(solver, last_value), rng, monitor);

@@ -100,7 +100,7 @@ impl Approach {
 fn destination(target: &Target, q: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Point {
     let n = q.len();
     let mut at = Linearization { columns: *columns, ..Linearization::default() };
-    let value = target.complete(tip, n, tick.criterion, &mut at).score.value;
+    let value = target.linearize_tip(tip, n, tick.criterion, &mut at).score.value;
     let (mut lower, mut upper) = ([0.0; MAX_DOF], [0.0; MAX_DOF]);
     for j in 0..n {
         [lower[j], upper[j]] = tick.limits.position_range(j, tick.time, tick.time + tick.dt);

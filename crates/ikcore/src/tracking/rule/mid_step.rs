@@ -167,7 +167,7 @@ impl Memory {
         if model == Model::MidTick {
             towards_middle(&mut columns[..n], &self.before.columns);
         }
-        tick.target.complete(&current.tip, n, tick.criterion, &mut self.linearization);
+        tick.target.linearize_tip(&current.tip, n, tick.criterion, &mut self.linearization);
         let Linearization { columns, residual } = &*self.linearization;
         let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
         let damping = least_damping(&columns[..n]);

@@ -236,9 +236,9 @@ fn linearize(scratch: &mut Scratch, from: &[f64], share: f64, tick: &Tick<'_>) -
     let tip = tick.robot.tip_and_jacobian(from, &mut scratch.linearization.columns);
     for (neighbour, time) in scratch.neighbours.iter_mut().zip([tick.dt, -tick.dt]) {
         neighbour.columns[..n].copy_from_slice(&scratch.linearization.columns[..n]);
-        target.moved(&twist, time).complete(&tip, n, tick.criterion, neighbour);
+        target.moved(&twist, time).linearize_tip(&tip, n, tick.criterion, neighbour);
     }
-    target.complete(&tip, n, tick.criterion, &mut scratch.linearization);
+    target.linearize_tip(&tip, n, tick.criterion, &mut scratch.linearization);
     let [later, earlier] = &scratch.neighbours;
     std::array::from_fn(|i| (later.residual[i] - earlier.residual[i]) / (2.0 * tick.dt))
 }
