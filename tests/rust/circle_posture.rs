@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::common::{message, robot};
 use ikcore::posture::{CircleSwarm, Measure, Posture, Region, SearchOptions, best_posture};
 use ikcore::robot::Robot;
-use ikcore::solver::{Status, Unattended};
+use ikcore::solver::{Monitor, Status, Unattended};
 
 const E: [f64; 3] = [0.5, 0.5, 0.0];
 const FIRST_QUADRANT: Region = Region { lower: [0.0; 2], upper: [f64::INFINITY; 2] };
@@ -102,6 +102,33 @@ fn what_cannot_be_has_a_status() {
     let arm = Robot::planar(&[0.5; 3]).unwrap();
     let found = search(&arm, SearchOptions { region: Some(narrow), ..SearchOptions::default() });
     assert_eq!(found.message(), "no posture found inside the region and the joint limits: widen them");
+}
+
+/// Lets pass so many questions.
+struct Countdown(usize);
+
+impl Monitor for Countdown {
+    fn keep_going(&mut self) -> bool {
+        self.0 = self.0.saturating_sub(1);
+        self.0 > 0
+    }
+}
+
+#[test]
+fn an_interrupted_search_keeps_its_best() {
+    let arm = Robot::planar(&[0.5; 3]).unwrap();
+    let endless = CircleSwarm { population: 7, generations: 1_000_000, ..CircleSwarm::default() };
+    let mut questions = 0;
+    for (swarm, patience, generations) in [(Some(endless), 3, 0), (Some(endless), 20, 2), (None, 2, 0)] {
+        let options = SearchOptions { swarm, ..SearchOptions::default() };
+        let found = best_posture(&arm, &E, &options, &mut Countdown(patience)).unwrap();
+        assert_eq!(found.status, Status::Interrupted);
+        assert_eq!(found.message(), "interrupted: run again to finish");
+        assert_eq!(found.history.len(), generations);
+        assert!(found.index > 0.0 && found.error.position < 1e-12);
+        questions += found.evaluations;
+    }
+    assert!(questions < 10_000);
 }
 
 #[test]
