@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use super::{Curve, Orientation, PyPath};
 use crate::error::raise;
-use crate::limits::CALLS_BETWEEN_LOOKS;
+use crate::limits::CALLS_BETWEEN_SIGNAL_CHECKS;
 
 /// Positions (m), and orientations where there are any.
 type Sampled = (Vec<[f64; 3]>, Option<Vec<Matrix3<f64>>>);
@@ -48,7 +48,7 @@ impl PyPath {
     fn at(&self, py: Python<'_>, times: impl Iterator<Item = f64>) -> PyResult<Sampled> {
         let (mut positions, mut rotations) = (vec![], vec![]);
         for (i, t) in times.enumerate() {
-            if i % CALLS_BETWEEN_LOOKS == 0 {
+            if i % CALLS_BETWEEN_SIGNAL_CHECKS == 0 {
                 py.check_signals()?;
             }
             positions.push(self.position_at(py, t)?);

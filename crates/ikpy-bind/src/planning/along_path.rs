@@ -61,7 +61,7 @@ pub fn plan_along_path(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyPlan> {
     let arm = robot.get().core.clone();
-    let tip_path = read_course(py, path)?;
+    let tip_path = read_tip_path(py, path)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
     let options = AlongPathOptions {
         method: method.parse().map_err(raise)?,
@@ -83,7 +83,7 @@ pub fn plan_along_path(
 }
 
 /// A `Path`, or points (k, 3), or poses (k, 4, 4).
-fn read_course(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<TipPath> {
+fn read_tip_path(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<TipPath> {
     match path.cast::<PyPath>() {
         Ok(path) => path.get().tip_path(py),
         Err(_) => TipPath::through(&read_points(path)?).map_err(raise),

@@ -246,11 +246,11 @@ fn node_weights(knots: &[f64]) -> Vec<f64> {
     let spline = CubicSpline::natural((0..NODES).map(|node| node as f64 / (NODES - 1) as f64).collect());
     let mut weights = vec![0.0; knots.len() * NODES];
     for node in 0..NODES {
-        let (mut values, mut bends) = ([0.0; NODES], [0.0; NODES]);
+        let (mut values, mut curvatures) = ([0.0; NODES], [0.0; NODES]);
         values[node] = 1.0;
-        spline.bends(&values, &mut bends);
+        spline.curvatures(&values, &mut curvatures);
         for (point, knot) in knots.iter().enumerate() {
-            weights[point * NODES + node] = spline.at(*knot, &values, &bends);
+            weights[point * NODES + node] = spline.at(*knot, &values, &curvatures);
         }
     }
     weights

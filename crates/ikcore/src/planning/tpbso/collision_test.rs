@@ -52,7 +52,7 @@ impl<'a> CollisionTest<'a> {
     /// Err for a configuration that is too near to something; `what` names it.
     ///
     /// # Errors
-    /// [`Error::InCollision`].
+    /// [`Error::InCollision`](crate::Error::InCollision).
     pub fn refuse_collision(&self, what: &str, q: &[f64]) -> Result<()> {
         refuse_collision(what, &self.scene, q, self.margin)
     }
