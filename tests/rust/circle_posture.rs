@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use crate::common::{message, robot};
+use crate::common::{StopAt, message, robot};
 use ikcore::posture::{CircleSwarm, Measure, Posture, Region, SearchOptions, best_posture};
 use ikcore::robot::Robot;
-use ikcore::solver::{Monitor, Status, Unattended};
+use ikcore::solver::{Status, Unattended};
 
 const E: [f64; 3] = [0.5, 0.5, 0.0];
 const FIRST_QUADRANT: Region = Region { lower: [0.0; 2], upper: [f64::INFINITY; 2] };
@@ -51,13 +51,13 @@ fn our_own_search_finds_the_optima_anywhere_and_in_the_first_quadrant() {
 /// Gaps to the optimum of the published swarm for many seeds.
 fn gaps(swarm: CircleSwarm, seeds: u64, region: Option<Region>, measure: Measure, optimum: f64) -> Vec<f64> {
     let arm = Robot::planar(&[0.5; 3]).unwrap();
-    let flight = |seed| {
+    let gap = |seed| {
         let found = search(&arm, SearchOptions { measure, region, swarm: Some(swarm), seed });
         assert!(found.history.is_sorted(), "{:?}", found.history);
         assert_eq!((found.history.len(), found.history.last()), (swarm.generations, Some(&found.index)));
         1.0 - index(&found, measure) / optimum
     };
-    (0..seeds).map(flight).collect()
+    (0..seeds).map(gap).collect()
 }
 
 #[test]
@@ -82,10 +82,10 @@ fn longer_arms_are_searched_too() {
     let arm = Robot::planar(&[0.3, 0.3, 0.25, 0.2, 0.2]).unwrap();
     let own = search(&arm, SearchOptions::default());
     let swarm = CircleSwarm { population: 40, generations: 200, ..CircleSwarm::default() };
-    let flown = search(&arm, SearchOptions { swarm: Some(swarm), ..SearchOptions::default() });
-    assert!(own.error.position < 1e-12 && flown.error.position < 1e-12);
-    assert!(flown.index < own.index * (1.0 + 1e-6), "{} {}", flown.index, own.index);
-    assert!(flown.index > 0.9 * own.index, "{} {}", flown.index, own.index);
+    let published = search(&arm, SearchOptions { swarm: Some(swarm), ..SearchOptions::default() });
+    assert!(own.error.position < 1e-12 && published.error.position < 1e-12);
+    assert!(published.index < own.index * (1.0 + 1e-6), "{} {}", published.index, own.index);
+    assert!(published.index > 0.9 * own.index, "{} {}", published.index, own.index);
 }
 
 #[test]
@@ -104,31 +104,21 @@ fn what_cannot_be_has_a_status() {
     assert_eq!(found.message(), "no posture found inside the region and the joint limits: widen them");
 }
 
-/// Lets pass so many questions.
-struct Countdown(usize);
-
-impl Monitor for Countdown {
-    fn keep_going(&mut self) -> bool {
-        self.0 = self.0.saturating_sub(1);
-        self.0 > 0
-    }
-}
-
 #[test]
 fn an_interrupted_search_keeps_its_best() {
     let arm = Robot::planar(&[0.5; 3]).unwrap();
     let endless = CircleSwarm { population: 7, generations: 1_000_000, ..CircleSwarm::default() };
-    let mut questions = 0;
+    let mut evaluations = 0;
     for (swarm, patience, generations) in [(Some(endless), 3, 0), (Some(endless), 20, 2), (None, 2, 0)] {
         let options = SearchOptions { swarm, ..SearchOptions::default() };
-        let found = best_posture(&arm, &E, &options, &mut Countdown(patience)).unwrap();
+        let found = best_posture(&arm, &E, &options, &mut StopAt(patience)).unwrap();
         assert_eq!(found.status, Status::Interrupted);
         assert_eq!(found.message(), "interrupted: run again to finish");
         assert_eq!(found.history.len(), generations);
         assert!(found.index > 0.0 && found.error.position < 1e-12);
-        questions += found.evaluations;
+        evaluations += found.evaluations;
     }
-    assert!(questions < 10_000);
+    assert!(evaluations < 10_000, "{evaluations}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use ikcore::ik::{AllOptions, solve_all};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::{Obstacle, Scene};
-use ikcore::planning::{Elbow, Endpoint, Plan, PointToPointOptions, plan_point_to_point};
+use ikcore::planning::{Elbow, Endpoint, Plan, PointToPointMethod, PointToPointOptions, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Stop, Unattended};
@@ -217,6 +217,35 @@ fn plans_reported_free_are_free_at_every_sample() {
         assert!(hit.is_none(), "case {case}: {hit:?}");
     }
     assert!(free > 60 && around > 10, "{free} {around}");
+}
+
+/// A planar arm of two links whose shape is a mesh, which cannot be read.
+const MESH: &str = r#"<robot name="arm"><link name="base"/>
+  <link name="upper"><collision><geometry><mesh filename="upper.stl"/></geometry></collision></link>
+  <link name="fore"/><link name="tip"/>
+  <joint name="a" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+    <limit lower="-3" upper="3" velocity="1"/></joint>
+  <joint name="b" type="revolute"><parent link="upper"/><child link="fore"/><axis xyz="0 0 1"/><origin xyz="1 0 0"/>
+    <limit lower="-3" upper="3" velocity="1"/></joint>
+  <joint name="c" type="fixed"><parent link="fore"/><child link="tip"/><origin xyz="1 0 0"/></joint></robot>"#;
+
+#[test]
+fn an_arm_whose_shape_cannot_be_read_moves_where_nothing_is_in_the_way() {
+    let arm = Robot::from_urdf(MESH, None, None).unwrap();
+    for method in [PointToPointMethod::MinMax, PointToPointMethod::Tpbso] {
+        let options = |obstacles| PointToPointOptions {
+            method,
+            obstacles,
+            limits: Some(limits(&arm, None, 1.0)),
+            ..Default::default()
+        };
+        let (start, end) = (position(1.0, 1.0), position(-0.5, 1.2));
+        let plan = plan_point_to_point(&arm, &start, &end, &options(vec![]), &mut Unattended).unwrap();
+        assert_eq!(plan.status, Status::Solved, "{method:?}: {}", plan.message());
+        let ball = Obstacle::sphere([5.0, 0.0, 0.0], 0.1).unwrap();
+        let says = refused(&arm, &start, &end, options(vec![ball]));
+        assert!(says.starts_with("robot 'arm' has collision shapes that cannot be read (a mesh of link"), "{says}");
+    }
 }
 
 fn refused(robot: &Robot, start: &Endpoint, end: &Endpoint, options: PointToPointOptions) -> String {
