@@ -39,7 +39,7 @@ impl Default for AllOptions {
 
 /// Distinct solutions, and what became of the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct SolutionSet {
     /// The solutions, nearest to the start first; without a start in the order in which they were found.
     pub solutions: Vec<Solution>,
     /// The best miss where there is no solution.
@@ -52,7 +52,7 @@ pub struct Found {
     pub interrupted: bool,
 }
 
-impl Found {
+impl SolutionSet {
     /// [`Status::Solved`] where there is a solution, else why the last search ended.
     pub fn status(&self) -> Status {
         self.miss.as_ref().map_or(Status::Solved, |miss| miss.status)
@@ -75,7 +75,12 @@ impl Found {
 ///
 /// # Errors
 /// Any [`enum@Error`] for wrong input.
-pub fn solve_all(robot: &Robot, target: &Target, options: &AllOptions, monitor: &mut dyn Monitor) -> Result<Found> {
+pub fn solve_all(
+    robot: &Robot,
+    target: &Target,
+    options: &AllOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<SolutionSet> {
     let AllOptions { each, limit, separation } = options;
     require_positive("separation", *separation)?;
     if *limit == 0 {
@@ -94,7 +99,7 @@ fn search(
     start: Option<&[f64]>,
     options: &AllOptions,
     monitor: &mut dyn Monitor,
-) -> Found {
+) -> SolutionSet {
     let (robot, bounds) = (prepared.robot(), prepared.bounds());
     let mut rng = rng::stream(options.each.seed, 0);
     let mut problem = prepared.problem(target);
@@ -135,7 +140,7 @@ fn search(
     let interrupted = last.as_ref().is_some_and(|solution| solution.status == Status::Interrupted);
     let miss = last.filter(|_| solutions.is_empty());
     let spent = run.solution(Status::Solved, reference, &problem);
-    Found { solutions, miss, evaluations: spent.evaluations, elapsed: spent.elapsed, interrupted }
+    SolutionSet { solutions, miss, evaluations: spent.evaluations, elapsed: spent.elapsed, interrupted }
 }
 
 fn middle(robot: &Robot, prepared: &Prepared<'_>) -> Point {
