@@ -25,7 +25,7 @@ impl PyPath {
     }
 
     /// The same with the velocities at the ticks.
-    pub fn moving_reference(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
+    pub fn reference_with_velocities(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
         let reference = self.reference(py, dt)?;
         let velocities = (0..reference.len())
             .map(|i| self.velocity_at(py, reference.time(i).min(self.duration())))

@@ -182,7 +182,8 @@ pub fn track(
 ) -> PyResult<PyTrackResult> {
     let arm = robot.get().core.clone();
     let rule = tick_rule(solver)?;
-    let reference = if rule.uses_velocities() { path.moving_reference(py, dt)? } else { path.reference(py, dt)? };
+    let reference =
+        if rule.uses_velocities() { path.reference_with_velocities(py, dt)? } else { path.reference(py, dt)? };
     let sampling = Sampling::of_ticks(dt, reference.len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
