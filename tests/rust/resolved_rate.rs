@@ -210,7 +210,7 @@ fn accelerations_are_kept_under_every_rule() {
     let limits = Limits::of(&arm).replace(Field::Acceleration, vec![Profile::Constant(6.0)]).unwrap();
     let rules = [
         TickRule::MidStep,
-        TickRule::EachTick(AnySolver::default()),
+        TickRule::Solver(AnySolver::default()),
         TickRule::WeightedPseudoInverse(rule(10.0, Integrator::Euler)),
         TickRule::WeightedPseudoInverse(rule(10.0, Integrator::RungeKutta4)),
     ];

@@ -47,11 +47,11 @@ pub fn velocity_limits(robot: &Robot, profile: Profile) -> Limits {
 }
 
 pub fn beetle(variant: Variant, c1: f64, explorations: usize) -> TickRule {
-    TickRule::EachTick(AnySolver::Single(Algorithm::from(Bas { variant, c1, explorations, ..Bas::default() })))
+    TickRule::Solver(AnySolver::Single(Algorithm::from(Bas { variant, c1, explorations, ..Bas::default() })))
 }
 
 pub fn descent() -> TickRule {
-    TickRule::EachTick(AnySolver::Single(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default())))
+    TickRule::Solver(AnySolver::Single(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default())))
 }
 
 impl Task {

@@ -49,7 +49,7 @@ impl Limits {
         for j in 0..velocity.len() {
             velocity[j] = match &self.velocity[j] {
                 Profile::Constant(limit) => *limit,
-                // Most often all joints share a limit, and its extremes take longer to find than to compare.
+                // Joints mostly share one limit, and two are compared more quickly than an extreme is found.
                 varying if j > 0 && *varying == self.velocity[j - 1] => velocity[j - 1],
                 _ => self.velocity_over(j, from, to, at),
             };
@@ -61,16 +61,16 @@ impl Limits {
         [self.lower[j].largest(from, to).1, self.upper[j].smallest(from, to).1]
     }
 
-    /// Narrows `tick` to what `q` may become in the tick of `dt` from `from` to `to` (s). Late in a motion `to - from` is
-    /// `dt` only up to rounding, and the reach must not depend on that. Returns whether every joint can be
-    /// within its position limits at the end of the tick; one that cannot is sent towards them as fast as it may go.
+    /// Narrows `tick` to the positions that joints at `q` may have at the end of the tick from `from` to `to` (s), which lasts
+    /// `dt`: `to - from` is rounded, the more so the later, and the reach must not depend on that. Returns whether every joint
+    /// can be within its position limits then; one that cannot is sent towards them as fast as it may go.
     pub fn narrow(&self, q: &[f64], [from, to]: [f64; 2], dt: f64, at: LimitAt, tick: &mut TickBox) -> bool {
         let TickBox { bounds, velocity } = tick;
         let (lower, upper) = bounds.parts_mut();
         self.write_velocities_over([from, to], at, velocity);
         let mut feasible = true;
         for j in 0..q.len() {
-            // Without a known end nobody can refuse a limit that will fall below zero: there the joint stands still.
+            // A limit that varies may fall below zero at a time that could not be checked beforehand: then the joint stands still.
             let reach = larger(velocity[j] * dt, 0.0);
             let (slowest, fastest) = (reachable(q[j], -reach), reachable(q[j], reach));
             let [floor, ceiling] = self.position_range(j, from, to);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::controller::{self, Controller};
 use super::plant::{Fault, Plant, check};
 use super::record::{Accepted, Record};
-use super::session::Step;
+use super::step::Step;
 use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
 use crate::path::Reference;

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::session::Step;
+use super::step::Step;
 use crate::limits::{Field, LimitAt, Limits};
 use crate::math::ordered::larger;
 use crate::solver::Status;

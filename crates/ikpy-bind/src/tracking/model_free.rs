@@ -178,8 +178,8 @@ fn run(
     }
     let mut plant = PythonPlant::new(plant)?;
     let record = tracking::track_model_free(&mut plant, reference, start, options, watcher);
-    if let Some(wish) = plant.wish_to_stop() {
-        return Err(wish);
+    if let Some(interrupt) = plant.take_interrupt() {
+        return Err(interrupt);
     }
     match record {
         Ok(record) => Ok((record, plant.exception)),

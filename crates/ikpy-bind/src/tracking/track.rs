@@ -182,7 +182,8 @@ pub fn track(
 ) -> PyResult<PyTrackResult> {
     let arm = robot.get().core.clone();
     let rule = tick_rule(solver)?;
-    let reference = if rule.uses_velocities() { path.moving_reference(py, dt)? } else { path.reference(py, dt)? };
+    let reference =
+        if rule.uses_velocities() { path.reference_with_velocities(py, dt)? } else { path.reference(py, dt)? };
     let sampling = Sampling::of_ticks(dt, reference.len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
@@ -206,7 +207,7 @@ pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
     if let Ok(rule) = solver.cast::<PyWeightedPseudoInverse>() {
         return Ok(rule.get().rule());
     }
-    known_solver(solver).map(TickRule::EachTick).ok_or_else(|| {
+    known_solver(solver).map(TickRule::Solver).ok_or_else(|| {
         let (names, got) = (solver_names(), summary(solver));
         invalid(format!("solver must be {names} or WeightedPseudoInverse, got {got}"))
     })
