@@ -19,6 +19,7 @@ mod screws;
 mod seed_index;
 mod seeds;
 mod stored;
+mod upright;
 mod urdf;
 
 pub use builder::{ChainBuilder, Drive, Element};
@@ -28,8 +29,9 @@ pub use directions::Directions;
 pub use joint::{Joint, JointKind};
 pub use kinematics::{Columns, Wrench};
 pub use model::Robot;
-pub use reach::Reach;
+pub use reach::{Beyond, Reach};
 pub use screws::{Screw, Screws};
 pub use seeds::Seeds;
+pub use upright::Upright;
 
 use crate::math::MAX_DOF;

@@ -9,7 +9,7 @@ use crate::error::{Result, require_finite, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point, Score};
 use crate::rng::{self, LazyRng};
-use crate::robot::Robot;
+use crate::robot::{Beyond, Robot};
 use crate::solver::{Monitor, Status};
 use crate::task::{Assessment, Criterion, Goals, Target, TargetMotion, Task, TipError, Twist};
 
@@ -42,8 +42,8 @@ impl Step {
             Status::HeldInRegion => {
                 format!("as near as its region allows, {error} away{limits}: {}", self.status.advice())
             }
-            Status::Improved => format!("nearer than before, {error} away{limits}"),
-            status => format!("no nearer than before, {error} away{limits}: {}", status.advice()),
+            Status::Improved => format!("nearer than in the tick before, {error} away{limits}"),
+            status => format!("no nearer than in the tick before, {error} away{limits}: {}", status.advice()),
         }
     }
 }
@@ -160,6 +160,14 @@ impl Session {
     fn read(&self, wanted: &Target) -> Result<Target> {
         wanted.validate()?;
         self.task.map_or(Ok(*wanted), |task| task.target(wanted))
+    }
+
+    /// How far `wanted` is out of reach within `bounds`, where it is beyond doubt.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub(super) fn beyond_reach(&self, wanted: &Target, bounds: &Bounds) -> Result<Option<Beyond>> {
+        Ok(self.criterion.beyond_reach(&self.read(wanted)?, &self.robot, bounds))
     }
 
     /// What the last tick has accepted.
