@@ -157,8 +157,12 @@ impl Bounds {
 
     /// The box of these (lower, upper), which are known to be in order.
     pub(crate) fn from_ranges(ranges: impl Iterator<Item = (f64, f64)>) -> Self {
-        let (lower, upper) = ranges.unzip();
-        Self { lower, upper }
+        let mut bounds = Self { lower: Point::new(), upper: Point::new() };
+        for (lower, upper) in ranges {
+            bounds.lower.push(lower);
+            bounds.upper.push(upper);
+        }
+        bounds
     }
 
     /// Lower bounds.

@@ -18,6 +18,7 @@ mod reach;
 mod screws;
 mod seed_index;
 mod seeds;
+mod stages;
 mod stored;
 mod upright;
 mod urdf;

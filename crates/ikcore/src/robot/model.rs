@@ -24,7 +24,7 @@ pub struct Robot {
     description: ChainBuilder,
     base: Pose,
     tool: Pose,
-    chain: Chain,
+    chain: Arc<Chain>,
     collision: CollisionModel,
     /// Built when first asked for; copies that differ in base and tool share it.
     seed_index: Arc<OnceLock<SeedIndex>>,
@@ -52,7 +52,7 @@ impl Robot {
         collision: CollisionModel,
     ) -> Result<Self> {
         description.validate()?;
-        let chain = Chain::new(&description.elements, &base, &tool);
+        let chain = Arc::new(Chain::new(&description.elements, &base, &tool));
         let (seed_index, directions) = (Arc::default(), OnceLock::new());
         Ok(Self { description, base, tool, chain, collision, seed_index, directions })
     }

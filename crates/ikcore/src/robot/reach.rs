@@ -96,10 +96,11 @@ impl Robot {
 impl Reach {
     /// Of links alone, without what joints slide; `stages` and `motions` may end with some that move nothing.
     pub(super) fn of_links(stages: &[Frame], motions: &[Motion], tip: &Frame) -> Self {
-        let mut at_zero = vec![stages[0]];
-        for frame in stages[1..].iter().chain([tip]) {
-            at_zero.push(at_zero[at_zero.len() - 1].then::<Separate>(frame));
-        }
+        let along = |from: &mut Frame, link: &Frame| {
+            *from = from.then::<Separate>(link);
+            Some(*from)
+        };
+        let at_zero: Vec<Frame> = stages.iter().chain([tip]).scan(Frame::IDENTITY, along).collect();
         let upright = Upright::of_chain(&at_zero, motions);
         let slides = motions.iter().any(|motion| motion.slide_scale != 0.0 || motion.slide_offset != 0.0);
         if let Some(Upright { base: normal, .. }) = upright.filter(|_| !slides) {
@@ -107,13 +108,13 @@ impl Reach {
         }
         // A first joint that turns keeps the height at which the second one begins, so that only the distance from its axis
         // counts; of every other link all its length does.
-        let mut links = stages[1..].iter().chain([tip]).map(|frame| frame.origin);
+        let mut links = stages.iter().skip(1).chain([tip]).map(|frame| frame.origin);
         let [x, y, height] = links.next().unwrap_or_default();
         let (on_axis, first) = match motions[0].slide_scale {
             0.0 => (height, x.hypot(y)),
             _ => (0.0, norm(&[x, y, height])),
         };
-        let center = stages[0].place::<Separate>(&[0.0, 0.0, on_axis]);
+        let center = stages.first().unwrap_or(&Frame::IDENTITY).place::<Separate>(&[0.0, 0.0, on_axis]);
         Self { center, radius: first + links.map(|link| norm(&link)).sum::<f64>(), normal: None, upright }
     }
 
