@@ -3,15 +3,18 @@
 use super::{Trajectory, polynomial};
 use crate::error::{Error, Result};
 
+/// After a longer one (s) the times of what follows would lose digits that its motion needs.
+const LONGEST_PAUSE: f64 = 1e6;
+
 impl Trajectory {
     /// This motion, a rest of `pause` (s), and then `next`, which begins where this one ends.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a negative or infinite pause, [`Error::InvalidTrajectory`] for a motion of other joints,
+    /// [`Error::OutOfRange`] for a pause below zero or above a million seconds, [`Error::InvalidTrajectory`] for a motion of other joints,
     /// or one that begins elsewhere.
     pub fn then(&self, next: &Self, pause: f64) -> Result<Self> {
-        if !(pause.is_finite() && pause >= 0.0) {
-            return Err(Error::out_of_range("pause", "zero or more and finite", pause));
+        if !(0.0..=LONGEST_PAUSE).contains(&pause) {
+            return Err(Error::out_of_range("pause", &format!("from 0 to {LONGEST_PAUSE} s"), pause));
         }
         if self.joints() != next.joints() {
             let [these, those] = [self, next].map(|motion| motion.joints().join(", "));
