@@ -1,4 +1,4 @@
-"""Inverse kinematics and trajectory tracking for robot manipulators.
+"""Inverse kinematics, trajectory tracking and planning for robot manipulators.
 
 SI units, radians and numpy float64 throughout. Poses are 4x4 homogeneous matrices in the frame of the robot's base.
 Every result says whether it succeeded (`success`, `status`) and, in a sentence, what happened and what to try

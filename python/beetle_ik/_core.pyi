@@ -6,7 +6,7 @@
 import os
 from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
-from typing import Any, Literal, Never, Protocol, TypeAlias, final, type_check_only
+from typing import Any, Literal, Never, Protocol, TypeAlias, final, overload, type_check_only
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -26,6 +26,7 @@ _LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] 
 _Motion: TypeAlias = Literal["pose", "position", "rotation"]
 _Goals: TypeAlias = Goal | Iterable[Goal] | None
 _Plant: TypeAlias = KinematicPlant | Callable[[_Array], ArrayLike] | _Mover
+_Several: TypeAlias = slice | Sequence[int] | Sequence[bool] | NDArray[np.integer] | NDArray[np.bool_]  # as numpy picks
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
 @type_check_only
@@ -721,7 +722,10 @@ class SolutionSet(_Outcome):
     @property
     def miss(self) -> Solution | None: ...
     def __len__(self) -> int: ...
-    def __getitem__(self, index: int, /) -> Solution: ...
+    @overload
+    def __getitem__(self, index: int | np.integer, /) -> Solution: ...
+    @overload
+    def __getitem__(self, index: _Several, /) -> list[Solution]: ...
 
 def solve_batch(
     robot: Robot,
@@ -767,7 +771,10 @@ class BatchSolution:
     @property
     def limits(self) -> Limits: ...  # those in force
     def __len__(self) -> int: ...
-    def __getitem__(self, index: int, /) -> Solution: ...
+    @overload
+    def __getitem__(self, index: int | np.integer, /) -> Solution: ...
+    @overload
+    def __getitem__(self, index: _Several, /) -> BatchSolution: ...
 
 # --- minimisation of any function ----------------------------------------------------------------
 
@@ -1291,6 +1298,7 @@ class Trajectory:
     def max_jerk(self) -> _Array: ...  # (n,), exact inside the pieces
     def at(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...  # q, qd, qdd: (n,) each, or (k, n) for (k,)
     def sample(self, dt: float) -> tuple[_Array, _Array, _Array, _Array]: ...  # time, q, qd, qdd
+    def then(self, next: Trajectory, *, pause: float = 0.0) -> Trajectory: ...  # s
     def to_csv(self, file: str | os.PathLike[str]) -> None: ...
     def to_npz(self, file: str | os.PathLike[str]) -> None: ...
     @staticmethod

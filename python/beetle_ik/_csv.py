@@ -56,13 +56,30 @@ def _text(file: str | os.PathLike[str]) -> str:
 
 
 def _check_header(file: str | os.PathLike[str], columns: list[str], required: Sequence[str]) -> None:
-    found = ", ".join(columns) or "none"
+    found = (", ".join(columns) or "none") + _header_advice(columns)
     for name in required:
         if name not in columns:
             raise InvalidInputError(f"{os.fspath(file)}, line 1: column '{name}' is missing; columns found: {found}")
     for i, name in enumerate(columns):
         if name in columns[:i]:
             raise InvalidInputError(f"{os.fspath(file)}, line 1: column '{name}' appears twice")
+
+
+def _header_advice(columns: list[str]) -> str:
+    """What may be wrong with a header that lacks a column."""
+    if len(columns) == 1 and any(mark in columns[0] for mark in ";\t"):
+        return "; separate them by commas"
+    if columns and all(_is_number(name) for name in columns):
+        return "; write their names above the numbers"
+    return ""
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _numbers(file: str | os.PathLike[str], line_number: int, columns: list[str], line: list[str]) -> list[float]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._shapes import draw_obstacles
+from ._shapes import draw_from_above, draw_in_space
 from ._style import BLACK, BLUE, GREEN, SKY, VERMILION, line
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ _FLAT = 1e-9  # m
 _FEW = 60  # points of a path that are marked
 _FRAMES_A_SECOND = 15
 _PAUSE = 10  # frames at the end
+_TITLE_WIDTH = 120  # letters a line
 
 
 class Scene:
@@ -40,7 +42,6 @@ class Scene:
 
     def draw_way(self) -> None:
         """Obstacles, the tip's way with beginning and end, and the path that it was to follow."""
-        draw_obstacles(self.axes, self._plan.obstacles)
         if self._plan.reference is not None:
             points = np.asarray(self._plan.reference)
             few = {"marker": "x", "markersize": 4} if len(points) <= _FEW else {}
@@ -73,17 +74,13 @@ class Scene:
 
     def _scale(self) -> None:
         if self._flat:
+            draw_from_above(self.axes, self._plan.obstacles)
             # The arm may go where none of its pictures is.
             self.axes.update_datalim(self._corners.reshape(-1, 3)[:, :2])
             self.axes.autoscale_view()
             self.axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
             return
-        corners = self._corners.reshape(-1, 3)
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        middle, reach = (low + high) / 2, 0.55 * max(float((high - low).max()), 1e-9)
-        for name, center in zip("xyz", middle, strict=True):
-            self.axes.set(**{f"{name}lim": (center - reach, center + reach), f"{name}label": f"{name} [m]"})
-        self.axes.set_box_aspect((1, 1, 1), zoom=0.9)
+        draw_in_space(self.axes, self._corners.reshape(-1, 3), self._plan.obstacles)
 
 
 def draw(figure: Figure, plan: Plan) -> None:
@@ -108,7 +105,7 @@ def draw(figure: Figure, plan: Plan) -> None:
         axes.set(ylabel=label, xlim=(0.0, plan.trajectory.duration))
     panels[2].set_xlabel("time [s]")
     panels[0].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize="small")
-    figure.suptitle(f"{plan.robot.name}: {plan.message}")
+    figure.suptitle(fill(f"{plan.robot.name}: {plan.message}", _TITLE_WIDTH))
 
 
 def _draw_search(axes: Axes, plan: Plan) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,22 +17,64 @@ if TYPE_CHECKING:
 _IN_SPACE = "#E69F00"
 _FROM_ABOVE = "#F3D58C"
 _LINKS = "#56B4E9"
+_SEEN_BEYOND = 0.3  # of the arm's extent, round it
 
 
-def draw_obstacles(axes: Any, obstacles: Iterable[Obstacle]) -> NDArray[np.float64]:
-    """Shades the surfaces of `obstacles` into 3-D axes, or seen from above into flat ones; returns corners (k, 3)."""
+def draw_from_above(axes: Any, obstacles: Iterable[Obstacle]) -> None:
+    """Shades `obstacles` into flat axes, as seen from above."""
     from matplotlib.collections import PolyCollection
+
+    for obstacle in obstacles:
+        outlines = list(obstacle.triangles[:, :, :2])
+        axes.add_collection(PolyCollection(outlines, facecolor=_FROM_ABOVE, linewidth=0, zorder=0))
+
+
+def draw_in_space(axes: Any, points: NDArray[np.float64], obstacles: Sequence[Obstacle] = ()) -> None:
+    """Scales 3-D axes to `points` (k, 3), so that a circle looks like one, and shades what is near of `obstacles`."""
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped, unused-ignore]
 
-    corners = [np.empty((0, 3))]
+    low, high = _surroundings(points, obstacles)
+    middle, reach = (low + high) / 2, 0.55 * max(float((high - low).max()), 1e-9)
+    for name, center in zip("xyz", middle, strict=True):
+        axes.set(**{f"{name}lim": (center - reach, center + reach), f"{name}label": f"{name} [m]"})
+    axes.set_box_aspect((1, 1, 1), zoom=0.9)  # room for the labels, which the layout overlooks
+    axes.locator_params(nbins=5)
     for obstacle in obstacles:
-        triangles = obstacle.triangles
-        corners.append(triangles.reshape(-1, 3))
-        if axes.name == "3d":
-            axes.add_collection3d(Poly3DCollection(triangles, facecolor=_IN_SPACE, alpha=0.35, linewidth=0))
-        else:
-            axes.add_collection(PolyCollection(list(triangles[:, :, :2]), facecolor=_FROM_ABOVE, linewidth=0, zorder=0))
-    return np.vstack(corners)
+        # What is beyond the axes would be drawn over the figure.
+        surface = [inside(triangle, middle - reach, middle + reach) for triangle in obstacle.triangles]
+        seen = [polygon for polygon in surface if len(polygon)]
+        if seen:
+            axes.add_collection3d(Poly3DCollection(seen, facecolor=_IN_SPACE, alpha=0.35, linewidth=0))
+
+
+def _surroundings(points: NDArray[np.float64], obstacles: Sequence[Obstacle]) -> NDArray[np.float64]:
+    """Corners (2, 3) of a box round `points` and what of `obstacles` is near: a floor would leave the arm a speck."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    beyond = _SEEN_BEYOND * float((high - low).max())
+    everything = np.vstack((points, *(obstacle.triangles.reshape(-1, 3) for obstacle in obstacles)))
+    return np.array(
+        (np.maximum(everything.min(axis=0), low - beyond), np.minimum(everything.max(axis=0), high + beyond))
+    )
+
+
+def inside(polygon: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The part of a convex polygon (k, 3) inside a box, by Sutherland and Hodgman's algorithm; (0, 3) for none."""
+    for axis in range(3):
+        for inward, wall in ((1.0, low[axis]), (-1.0, high[axis])):
+            depth = inward * (polygon[:, axis] - wall)
+            if (depth >= 0).all():
+                continue
+            kept = []
+            for i, here in enumerate(polygon):
+                before, outside = polygon[i - 1], depth[i] < 0
+                if outside != (depth[i - 1] < 0):
+                    kept.append(before + depth[i - 1] / (depth[i - 1] - depth[i]) * (here - before))
+                if not outside:
+                    kept.append(here)
+            if len(kept) < 3:
+                return np.empty((0, 3))
+            polygon = np.array(kept)
+    return polygon
 
 
 def draw_capsules(axes: Any, robot: Robot, q: ArrayLike) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core, _plan_figure
-from ._shapes import draw_capsules, draw_obstacles
+from ._shapes import draw_capsules, draw_in_space
 from ._style import BLUE, FORBIDDEN, GREEN, VERMILION, line, style
 from ._text import counted
 
@@ -47,7 +47,7 @@ def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = 
         axes.plot(*origins.T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
         axes.plot(*origins[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
         draw_capsules(axes, robot, q)
-        _equal_axes(axes, np.vstack((origins, draw_obstacles(axes, obstacles))))
+        draw_in_space(axes, origins, obstacles)
         axes.set_title(f"{robot.name}, {counted(robot.dof, 'joint')}")
         axes.legend(loc="upper left")
     return figure
@@ -182,7 +182,7 @@ def _draw_space(axes: Any, result: TrackResult | ModelFreeResult) -> None:
     axes.plot(*result.reference.T, color=VERMILION, linewidth=4, alpha=0.45, label="target")
     axes.plot(*result.position.T, color=BLUE, linewidth=1.2, label="tip")
     axes.plot(*result.position[:1].T, color=BLUE, marker="o", linestyle="none", label="start")
-    _equal_axes(axes, np.vstack((result.reference, result.position)))
+    draw_in_space(axes, np.vstack((result.reference, result.position)))
     axes.set_title("path of the tip")
     axes.legend(loc="upper left")
 
@@ -244,17 +244,6 @@ def _draw_joints(axes: Axes, time: NDArray[np.float64], values: NDArray[np.float
 
 def _legend_columns(names: list[str]) -> int:
     return -(-len(names) // _LEGEND_ROWS)
-
-
-def _equal_axes(axes: Any, points: NDArray[np.float64]) -> None:
-    """The same scale along x, y and z, so that a circle looks like one."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    reach = 0.55 * max(float((high - low).max()), 1e-9)
-    middle = (low + high) / 2
-    for name, center in zip("xyz", middle, strict=True):
-        axes.set(**{f"{name}lim": (center - reach, center + reach), f"{name}label": f"{name} [m]"})
-    axes.set_box_aspect((1, 1, 1), zoom=0.9)  # room for the labels, which the layout overlooks
-    axes.locator_params(nbins=5)
 
 
 def _highest(values: NDArray[np.float64]) -> float:

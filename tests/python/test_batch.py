@@ -7,6 +7,7 @@ import threading
 import time
 import warnings
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -97,6 +98,32 @@ def test_items_are_solutions() -> None:
             batch[index]
 
 
+@pytest.mark.parametrize(
+    "index",
+    [slice(1, 4), slice(None, None, -2), slice(7, 9), [0, -1], np.array([2, 2]), [True, False, True, False, True], []],
+    ids=str,
+)
+def test_several_items_are_a_batch(index: Any) -> None:
+    batch = bik.solve_batch(PANDA, TARGETS[:5])
+    some = batch[index]
+    assert type(some) is bik.BatchSolution
+    for name in COLUMNS:
+        np.testing.assert_array_equal(getattr(some, name), getattr(batch, name)[index], err_msg=name)
+    assert [item.message for item in some] == [batch[int(i)].message for i in np.arange(5)[index]]
+    assert some.limits == batch.limits
+    assert some.elapsed == pytest.approx(sum(item.elapsed for item in some))
+
+
+@pytest.mark.parametrize("index", [None, ..., (0, 1), 1.0, "q", [True], [9], np.zeros((2, 2), dtype=int)], ids=repr)
+def test_what_picks_no_items_is_refused(index: Any) -> None:
+    batch = bik.solve_batch(PANDA, TARGETS[:3])
+    if index is ...:
+        assert len(batch[index]) == 3
+    else:
+        with pytest.raises(IndexError):
+            batch[index]
+
+
 def test_positions_leave_the_orientation_free() -> None:
     batch = bik.solve_batch(PANDA, [[0.4, 0.1, 0.5], [9, 9, 9]], stop=bik.Stop(max_evaluations=400))
     assert batch.success.tolist() == [True, False]
@@ -104,7 +131,7 @@ def test_positions_leave_the_orientation_free() -> None:
     assert batch.status[1] == bik.Status.OUT_OF_REACH
     assert batch.evaluations[1] <= 400
     assert batch.message == (
-        "1 of 2 solved; 1 OUT_OF_REACH: move the target nearer to the base, or the base nearer to the target"
+        "1 of 2 solved; 1 OUT_OF_REACH: move or turn the target into reach, or move the base"
     )
 
 

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner, Result
 
@@ -117,6 +118,13 @@ def test_track_writes_its_files(tmp_path: Path) -> None:
     from_csv = bik.Trajectory.from_csv(folder / "trajectory.csv")
     from_npz = bik.Trajectory.from_npz(folder / "trajectory.npz")
     assert (from_csv.q == from_npz.q).all()
+
+
+def test_track_keeps_accelerations(tmp_path: Path) -> None:
+    limits = ["--velocity-limit", "1", "--acceleration-limit", "0.5,0.5,0.5,0.5,0.5"]
+    assert run(*TRACK, *limits, "--out", str(tmp_path / "out")).exit_code == 0
+    trajectory = bik.Trajectory.from_npz(tmp_path / "out" / "trajectory.npz")
+    assert 0.0 < np.abs(np.diff(trajectory.qd[1:], axis=0)).max() <= 0.5 * 0.2 + 1e-12
 
 
 def test_track_repeats_bit_for_bit(tmp_path: Path) -> None:

@@ -50,6 +50,17 @@ def test_the_classes_of_errors() -> None:
         (lambda: solve(np.eye(3)), Invalid, "target: expected a pose (4, 4) or a position (3,), got shape (3, 3)"),
         (lambda: solve(None), Invalid, "target must be an array of numbers, got None"),
         (lambda: solve("up"), Invalid, "target must be an array of numbers, got 'up'"),
+        (lambda: solve("1.0"), Invalid, "target must be an array of numbers, got '1.0'"),
+        (
+            lambda: solve(np.ones(3) * 1j),
+            Invalid,
+            "target must be an array of numbers, got array([0.+1.j, 0.+1.j, 0.+1.j])",
+        ),
+        (
+            lambda: solve(np.ones(3, dtype="m8[s]")),
+            Invalid,
+            "target must be an array of numbers, got array([1, 1, 1], dtype='timedelta64[s]')",
+        ),
         (lambda: solve([0.3, 0.3, np.nan]), Invalid, "target must be finite, but coordinate z is NaN"),
         (lambda: solve(np.full((4, 4), np.inf)), Invalid, "target must be finite, but entry (0, 0) is inf"),
         (
@@ -69,7 +80,7 @@ def test_the_classes_of_errors() -> None:
         (
             lambda: solve(solver=bik.BAS),
             Invalid,
-            f"{SOLVERS}, got <class 'beetle_ik.BAS'>",
+            f"{SOLVERS}, got the class BAS itself: did you mean BAS()?",
         ),
         (lambda: solve(position_tolerance=0.0), Invalid, "position_tolerance must be positive, got 0"),
         (lambda: solve(rotation_tolerance=np.nan), Invalid, "rotation_tolerance must be positive, got NaN"),
@@ -126,6 +137,7 @@ def test_solvers_and_budgets(call: Callable[[], object], error: type[Exception],
         (lambda: track(dt=0.0), Invalid, "dt must be positive and finite, got 0"),
         (lambda: track(dt=-0.1), Invalid, "dt must be positive and finite, got -0.1"),
         (lambda: track(dt=np.nan), Invalid, "dt must be positive and finite, got NaN"),
+        (lambda: track(dt=3.5), Invalid, "dt must be at most 3 s, which the path takes, got 3.5"),
         (
             lambda: track(dt=1e-12),
             Invalid,
@@ -231,7 +243,7 @@ def test_limits(call: Callable[[], object], error: type[Exception], message: str
         (
             lambda: bik.paths.from_samples([1, 2], np.eye(3)[:2]),
             Invalid,
-            "path times: row 0 must be 0, where the clock starts, got 1",
+            "path times: row 0 must be 0, where the clock starts (take the first time from all), got 1",
         ),
         (
             lambda: bik.paths.from_samples([0, 1], [np.eye(4), 2 * np.eye(4)]),

@@ -138,6 +138,18 @@ def test_ros_message() -> None:
     assert json.loads(json.dumps(message)) == message
 
 
+@pytest.mark.parametrize("convert", [bik.interop.to_ros, bik.interop.to_dataframe])
+def test_a_result_is_told_from_its_trajectory(convert: object) -> None:
+    robot = bik.Robot.planar([1.0, 1.0])
+    plan = bik.plan_point_to_point(robot, start_q=[0, 0], end_q=[1, 1], limits=bik.Limits(velocity=1.0))
+    with pytest.raises(bik.InvalidInputError) as caught:
+        convert(plan)
+    assert str(caught.value).startswith("trajectory must be a Trajectory, got <Plan ")
+    assert str(caught.value).endswith(": give its .trajectory")
+    with pytest.raises(bik.InvalidInputError, match=r"^trajectory must be a Trajectory, got None$"):
+        convert(None)
+
+
 @pytest.mark.parametrize(("derivatives", "told"), [(0, 1), (1, 2), (2, 3)])
 def test_ros_message_has_what_determines_the_pieces(derivatives: int, told: int) -> None:
     others = dict(list({"qd": Q, "qdd": Q}.items())[:derivatives])

@@ -175,7 +175,7 @@ def test_orientation_of_samples_can_be_replaced() -> None:
     np.testing.assert_array_equal(path.with_orientation(np.eye(3)).pose(1.0)[:3, :3], np.eye(3))
 
 
-@pytest.mark.parametrize(("duration", "dt", "ticks"), [(3.0, 0.1, 30), (1.0, 0.3, 4), (1.0, 5.0, 1), (0.7, 0.7, 1)])
+@pytest.mark.parametrize(("duration", "dt", "ticks"), [(3.0, 0.1, 30), (1.0, 0.3, 4), (0.7, 0.7, 1)])
 def test_ticks_cover_the_duration(duration: float, dt: float, ticks: int) -> None:
     path = bik.paths.circle(CENTER, 0.5, duration)
     time, positions = path.sample(dt)

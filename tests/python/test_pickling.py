@@ -94,6 +94,19 @@ def test_values_come_back_equal(value: object, again: Callable[[object], object]
 
 
 @pytest.mark.parametrize("value", VALUES, ids=repr)
+def test_equal_values_hash_alike(value: object) -> None:
+    assert hash(copy.deepcopy(value)) == hash(value)
+    assert {value: 1}[copy.copy(value)] == 1
+
+
+def test_hashes_tell_values_apart() -> None:
+    assert len({hash(value) for value in VALUES}) == len({repr(value) for value in VALUES})
+    assert hash(bik.Stop(value_below=0.0)) == hash(bik.Stop(value_below=-0.0))
+    assert bik.tasks.Position() in {bik.tasks.Position()}
+    assert bik.goals.Centring() in {bik.goals.Centring()}
+
+
+@pytest.mark.parametrize("value", VALUES, ids=repr)
 def test_the_repr_rebuilds_the_value(value: object) -> None:
     assert eval(repr(value), vars(bik)) == value
 
@@ -120,6 +133,7 @@ def test_defaults_are_shown_in_full() -> None:
 def test_robots_come_back_with_every_bit(robot: bik.Robot, again: Callable[[bik.Robot], bik.Robot]) -> None:
     other = again(robot)
     assert other == robot
+    assert hash(other) == hash(robot)
     assert (other.name, other.joint_names, other.joint_kinds) == (robot.name, robot.joint_names, robot.joint_kinds)
     assert (other.link_names, repr(other)) == (robot.link_names, repr(robot))
     for field in ("lower", "upper", "velocity_limit"):
@@ -183,6 +197,8 @@ def test_limits_compare_as_given() -> None:
     ):
         assert limits != other
     assert limits != -1.0
+    assert hash(bik.Limits(lower=-1.0, velocity=ramp)) == hash(bik.Limits(lower=-1.0, velocity=ramp))
+    assert len({hash(bik.Limits(velocity=limit)) for limit in (None, 1.0, [1.0, 1.0], ramp, SINUSOIDS[0])}) == 5
     assert bik.Robot.named("iiwa14").limits == bik.Robot.named("iiwa14").limits
 
 
@@ -199,6 +215,7 @@ def test_trajectories_come_back(again: Callable[[bik.Trajectory], bik.Trajectory
     trajectory = bik.Trajectory.from_samples([0.0, 1.0, 3.0], q, qd=0.1 * q, joint_names=["a", "b"])
     other = again(trajectory)
     assert other == trajectory
+    assert hash(other) == hash(trajectory)
     assert other.joint_names == ["a", "b"]
     np.testing.assert_array_equal(other.coefficients, trajectory.coefficients)
     assert other != bik.Trajectory.from_samples([0.0, 1.0, 3.0], q, joint_names=["a", "b"])
@@ -209,7 +226,7 @@ def test_ellipsoids_come_back(motion: str, again: Callable[[object], object]) ->
     robot = bik.Robot.named("panda")
     one, elsewhere = (robot.velocity_ellipsoid(q, motion=motion) for q in robot.random_configurations(2, seed=1))
     other = again(one)
-    assert (other, repr(other)) == (one, repr(one))
+    assert (other, repr(other), hash(other)) == (one, repr(one), hash(one))
     assert_same(properties(one), properties(other))
     assert one != elsewhere
 
@@ -243,7 +260,7 @@ PATHS = {
 def test_paths_come_back(path: bik.Path, again: Callable[[bik.Path], bik.Path]) -> None:
     other = again(path)
     assert other == path
-    assert (other.duration, repr(other)) == (path.duration, repr(path))
+    assert (other.duration, repr(other), hash(other)) == (path.duration, repr(path), hash(path))
     t = np.linspace(-0.5, path.duration + 0.5, 23)
     np.testing.assert_array_equal(other.position(t), path.position(t))
     np.testing.assert_array_equal(other.velocity(t), path.velocity(t))

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import beetle_ik as bik
+from beetle_ik._shapes import inside
 
 
 def labels(figure: Figure) -> list[str]:
@@ -64,6 +65,36 @@ def test_a_robot() -> None:
     (axes,) = bik.plot.robot(robot, [0.0, 0.0]).get_axes()
     assert axes.get_title() == f"{robot.name}, 2 joints"
     np.testing.assert_allclose(axes.get_lines()[1].get_data_3d(), [[2.0], [0.0], [0.0]], atol=1e-12)
+
+
+def test_a_floor_leaves_the_arm_its_size() -> None:
+    floor = bik.obstacles.Box((0, 0, -0.05), (20, 20, 0.1))
+    out_of_sight = bik.obstacles.Sphere((50, 0, 0), 1.0)
+    (axes,) = bik.plot.robot(bik.Robot.named("panda"), np.zeros(7), obstacles=[floor, out_of_sight]).get_axes()
+    assert np.ptp([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()], axis=1).max() < 2.5
+    assert len(axes.collections) == 1
+
+
+def test_polygons_are_cut_to_a_box() -> None:
+    low, high = np.array([-1.0, -1.0, -1.0]), np.array([1.0, 1.0, 1.0])
+    triangle = np.array([[-9.0, -9.0, 0.5], [9.0, -9.0, 0.5], [0.0, 9.0, 0.5]])
+    corners = {tuple(corner) for corner in inside(triangle, low, high).round(12)}
+    assert corners == {(x, y, 0.5) for x in (-1.0, 1.0) for y in (-1.0, 1.0)}
+    np.testing.assert_array_equal(inside(triangle / 20, low, high), triangle / 20)
+    assert inside(triangle + np.array([0.0, 0.0, 1.0]), low, high).shape == (0, 3)
+    half = inside(np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.0]]), low, high)
+    assert sorted(map(tuple, half)) == [(0, 0, 0), (0, 0, 1), (1, 0, 0), (1, 0, 1), (1, 0, 1)]
+
+
+def test_a_long_message_is_a_title_of_several_lines() -> None:
+    arm = bik.Robot.named("panda").with_capsules(radius=0.06)
+    home = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8]
+    post = bik.obstacles.Capsule((0.45, 0, 0), (0.45, 0, 0.5), 0.04)
+    limits = bik.Limits(acceleration=5.0)
+    plan = bik.plan_point_to_point(arm, start_q=home, end=[0.45, 0, 0.3], limits=limits, obstacles=[post])
+    lines = plan.plot().get_suptitle().splitlines()
+    assert " ".join(lines) == f"{arm.name}: {plan.message}"
+    assert max(map(len, lines)) <= 120
 
 
 def test_a_tracked_pose_shows_its_rotation_error() -> None:

@@ -189,3 +189,10 @@ def test_tool_and_base_are_solved_for() -> None:
     found = bik.solve(robot, target)
     assert found.success
     np.testing.assert_allclose(robot.fk(found.q), target, rtol=0, atol=1e-5)
+
+
+def test_every_status_is_explained() -> None:
+    for status in bik.Status:
+        assert status.__doc__ in bik.Status.__doc__
+        assert f"- `{status.name}`: " in bik.Status.__doc__
+        assert status.__doc__.endswith(".")

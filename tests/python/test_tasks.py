@@ -161,6 +161,7 @@ def test_all_solutions_of_a_six_joint_arm() -> None:
     np.testing.assert_array_equal(found[-1].q, found.q[-1])
     with pytest.raises(IndexError, match="index 8 is outside a set of 8"):
         found[8]
+    np.testing.assert_array_equal([solution.q for solution in found[2::3]], found.q[2::3])
 
 
 def test_no_solution_comes_with_the_best_miss() -> None:
@@ -204,7 +205,7 @@ def solve(**options: object) -> bik.Solution:
         (
             lambda: solve(task=tasks.Pose),
             Invalid,
-            "task must be of beetle_ik.tasks, got <class 'beetle_ik.tasks.Pose'>",
+            "task must be of beetle_ik.tasks, got the class Pose itself: did you mean Pose()?",
         ),
         (
             lambda: tasks.Pose(weights=[1, 1, 1]),

@@ -56,7 +56,7 @@ def test_a_target_out_of_reach_keeps_the_best(iiwa: bik.Robot) -> None:
     assert all(after <= before for before, after in itertools.pairwise(errors))
     last = tracker.step([3.0, 0.0, 0.5])
     assert last.status == bik.Status.CAPPED
-    assert "no nearer than before" in last.message
+    assert "no nearer than in the tick before" in last.message
 
 
 def test_reset_begins_again_with_the_same_bits(iiwa: bik.Robot) -> None:

@@ -64,6 +64,36 @@ def test_extremes_are_those_of_dense_sampling() -> None:
     np.testing.assert_allclose(trajectory.max_acceleration(), np.abs(qdd).max(axis=0), rtol=1e-3)
 
 
+@pytest.mark.parametrize("pause", [0.0, 0.5])
+def test_one_motion_follows_the_other(pause: float) -> None:
+    arm = bik.Robot.named("ur5e")
+    home, pick, place = 0.3 * arm.random_configurations(3, seed=5)
+    there = bik.plan_point_to_point(arm, start_q=home, end_q=pick, limits=bik.Limits(acceleration=3.0)).trajectory
+    back = bik.time_optimal([pick, place], bik.Limits(velocity=1.0, acceleration=2.0), joint_names=arm.joint_names)
+    both = there.then(back, pause=pause)
+    assert both.joint_names == arm.joint_names
+    assert both.duration == pytest.approx(there.duration + pause + back.duration, rel=1e-15)
+    t = np.linspace(0.0, back.duration, 50)
+    for before, after in zip(back.at(t), both.at(there.duration + pause + t), strict=True):
+        np.testing.assert_allclose(after, before, atol=1e-9)
+    np.testing.assert_array_equal(both.at(0.7 * there.duration), there.at(0.7 * there.duration))
+    np.testing.assert_allclose(both.at(there.duration + 0.5 * pause)[0], pick, atol=1e-12)
+
+
+def test_what_cannot_follow_is_told() -> None:
+    one = bik.Trajectory.from_samples([0.0, 1.0], [[0.0], [1.0]], joint_names=["a"])
+    other = bik.Trajectory.from_samples([0.0, 1.0], [[1.0], [2.0]], joint_names=["b"])
+    for call, says in (
+        (lambda: one.then(one), "trajectory: joint 'a' jumps from 1 to 0 at t = 1 s"),
+        (lambda: one.then(one, pause=0.5), "trajectory: joint 'a' jumps from 1 to 0 at t = 1 s"),
+        (lambda: one.then(other), "trajectory: the motion that follows moves other joints: b instead of a"),
+        (lambda: one.then(one, pause=-1.0), "pause must be from 0 to 1000000 s, got -1"),
+    ):
+        with pytest.raises(bik.InvalidInputError) as caught:
+            call()
+        assert str(caught.value) == says
+
+
 def test_a_jump_is_no_motion() -> None:
     coefficients = random_pieces(degree=1)
     coefficients[1, 0, 0] = coefficients[0, 0] @ [1.0, 0.5] + 1.0

@@ -136,9 +136,15 @@ fn positions_leave_the_orientation_free() {
     assert!(batch.items[1].evaluations <= 500);
     assert!(batch.solution(1).unwrap().message().contains("(out of reach by at least 8.061 m"));
     assert!(batch.items[1].error.position > 7.0);
-    let says = "2 of 3 solved; 1 OUT_OF_REACH: move the target nearer to the base, or the base nearer to the target";
+    let says = "2 of 3 solved; 1 OUT_OF_REACH: move or turn the target into reach, or move the base";
     assert_eq!(batch.message(), says);
     assert_eq!(batch.solution(3), None);
+    let some = batch.select(&[2, 1]);
+    for (place, row) in [(0, 2), (1, 1)] {
+        let (one, other) = (some.solution(place).unwrap(), batch.solution(row).unwrap());
+        assert_eq!((&one.q, one.message()), (&other.q, other.message()));
+    }
+    assert_eq!(some.elapsed, batch.items[1].elapsed + batch.items[2].elapsed);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use ikcore::limits::LimitAt;
 use ikcore::manipulability::{self, Motion};
 use ikcore::math::pose;
 use ikcore::path::{Path, Reference};
-use ikcore::robot::{JointKind, Robot};
+use ikcore::robot::{Dh, DhTable, JointKind, Robot};
 use ikcore::solver::{Status, Stop, Unattended};
 use ikcore::task::{Goal, Kind, Target};
 use ikcore::tracking::{TrackOptions, track};
@@ -173,6 +173,20 @@ fn the_tip_never_leaves_the_reach() {
 }
 
 #[test]
+fn arms_with_parallel_axes_stay_in_a_plane() {
+    // The second axis points the other way: its offset of 0.2 m along it leads down.
+    let table = DhTable::new(Dh::Standard, vec![0.5, 0.4, 0.3], vec![PI, 0.0, PI], vec![0.3, 0.2, 0.1]);
+    let folded = Robot::from_dh("folded", &table).unwrap();
+    let reach = folded.reach(&[-PI; 3], &[PI; 3]);
+    assert!((reach.radius - 1.2).abs() < 1e-12, "{reach:?}");
+    for q in configurations(&folded, 100) {
+        assert!(reach.off_plane(&folded.tip_position(&q)).abs() < 1e-12, "{reach:?}");
+    }
+    assert!((reach.excess(&[0.1, 0.1, 1.0]) - 1.0).abs() < 1e-12, "{reach:?}");
+    assert_eq!(robot("ur5e").reach(&[-PI; 6], &[PI; 6]).normal, None);
+}
+
+#[test]
 fn a_target_out_of_reach_is_approached_and_told() {
     // A stretched iiwa: 0.36 m to the shoulder, 0.946 m from there to the flange of this model.
     let robot = robot("iiwa14");
@@ -185,7 +199,7 @@ fn a_target_out_of_reach_is_approached_and_told() {
     let solution = solve(&robot, &target, &SolveOptions::default(), &mut Unattended).unwrap();
     assert_eq!(solution.status, Status::OutOfReach);
     assert!((solution.error.position - 0.21).abs() < 0.01 * 0.21, "{}", solution.message());
-    let end = ": move the target nearer to the base, or the base nearer to the target";
+    let end = ": move or turn the target into reach, or move the base";
     let message = solution.message();
     assert!(message.starts_with("as near as it gets 0.21") && message.ends_with(end), "{message}");
     assert!(message.contains(" m away (out of reach by at least 0.2100 m"), "{message}");

@@ -1,11 +1,13 @@
 //! Solving: derivatives of the residuals, reachable and unreachable targets, starts, seeds and limits.
 
+use std::f64::consts::PI;
+
 use crate::common::{assert_derivative, bits, configurations, message, pose_at, position_at, robot};
 use ikcore::ik::{Solution, SolveOptions, solve};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
-use ikcore::math::pose;
-use ikcore::nalgebra::{Rotation3, Vector3};
-use ikcore::robot::Robot;
+use ikcore::math::{Frame, pose};
+use ikcore::nalgebra::{Point3, Rotation3, Vector3};
+use ikcore::robot::{Dh, DhTable, JointKind, Robot};
 use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, Status, Stop, Unattended, Variant};
 use ikcore::task::{Target, Tolerance};
 
@@ -91,9 +93,70 @@ fn a_target_out_of_reach_is_approached_and_said_to_be() {
     assert!(solution.evaluations < 5000, "{}", solution.evaluations);
     let distance = solution.error.position;
     assert!((shortfall..1.01 * shortfall).contains(&distance), "{:?}", solution.error);
-    let advice = "move the target nearer to the base, or the base nearer to the target";
+    let advice = "move or turn the target into reach, or move the base";
     let why = format!("out of reach by at least {shortfall:.4} m");
     assert_eq!(solution.message(), format!("as near as it gets {distance:.4} m away ({why}): {advice}"));
+}
+
+#[test]
+fn a_target_off_the_plane_of_a_planar_arm_is_said_to_be() {
+    let planar = robot("planar5");
+    let tilt = pose::from_parts([0.3, 0.2, 0.1], *Rotation3::from_euler_angles(0.3, -0.8, 0.1).matrix());
+    let tilted = planar.with_base(tilt).unwrap();
+    let place = |at: [f64; 3]| (tilt * Point3::from(at)).coords.into();
+    for (robot, target) in [(&planar, [2.0, 1.0, 0.25]), (&tilted, place([2.0, 1.0, 0.25]))] {
+        let solution = solved(robot, &Target::Position(target), &SolveOptions::default());
+        let why = "out of reach by at least 0.2500 m, 0.2500 m off the plane that the tip moves in";
+        let advice = "move or turn the target into reach, or move the base";
+        assert_eq!(solution.message(), format!("as near as it gets 0.2500 m away ({why}): {advice}"));
+        assert!(solution.evaluations < 1000, "{}", solution.evaluations);
+    }
+    let solution = solved(&planar, &Target::Position([0.0, 6.0, 0.75]), &SolveOptions::default());
+    let says = "(out of reach by at least 1.250 m, 0.7500 m off the plane that the tip moves in)";
+    assert!(solution.message().contains(says), "{}", solution.message());
+}
+
+#[test]
+fn an_orientation_that_parallel_axes_cannot_turn_to_is_said_to_be_one() {
+    // A SCARA arm: two links, a slide along their axes and a wrist, with its tool upside down.
+    let table = DhTable {
+        kinds: vec![JointKind::Revolute, JointKind::Revolute, JointKind::Prismatic, JointKind::Revolute],
+        lower: vec![-PI, -PI, 0.0, -PI],
+        upper: vec![PI, PI, 0.3, PI],
+        ..DhTable::new(Dh::Standard, vec![0.4, 0.3, 0.0, 0.0], vec![0.0, PI, 0.0, 0.0], vec![0.5, 0.0, 0.0, 0.0])
+    };
+    let scara = Robot::from_dh("scara", &table).unwrap();
+    let reachable = scara.fk(&[0.3, -0.8, 0.1, 0.4]).unwrap();
+    let asked = |turn: [f64; 3]| {
+        let turn = *Rotation3::new(Vector3::from(turn)).matrix();
+        let target = reachable * pose::from_parts([0.0; 3], turn);
+        solved(&scara, &Target::from(&target), &SolveOptions::default())
+    };
+    assert_eq!(asked([0.0; 3]).status, Status::Solved);
+    assert_eq!(asked([0.0, 0.0, 1.2]).status, Status::Solved);
+    let leaning = asked([0.0, 0.125, 0.0]);
+    assert_eq!(leaning.status, Status::OutOfReach, "{}", leaning.message());
+    let says = " rad away (0.1250 rad off any orientation that the tip can have): move or turn the target into reach";
+    assert!(leaning.message().contains(says), "{}", leaning.message());
+    assert!(leaning.error.rotation >= 0.125 - 1e-12);
+    assert!(leaning.evaluations < 1000, "{}", leaning.evaluations);
+    for name in Robot::names() {
+        let robot = robot(name);
+        let bounds: Vec<f64> = robot.joints().iter().map(|joint| joint.upper).collect();
+        if let Some(upright) = robot.reach(&bounds, &bounds).upright {
+            for q in configurations(&robot, 50) {
+                assert!(upright.lean(&Frame::from(&robot.fk(&q).unwrap())) < 1e-9, "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn joints_without_room_are_said_to_be() {
+    let stiff = robot("planar5").with_limits(|_, joint| (joint.lower, joint.upper) = (0.5, 0.5)).unwrap();
+    let solution = solved(&stiff, &Target::Position([2.0, 1.0, 0.0]), &SolveOptions::default());
+    let why = "(joint 'joint_1' held by limits that leave it no room, joint 'joint_2' held by";
+    assert!(solution.message().contains(why), "{}", solution.message());
 }
 
 #[test]

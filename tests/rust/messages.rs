@@ -100,6 +100,9 @@ fn names_of_no_link() {
     let says = "robot 'arm' has no link 'rist' (did you mean 'wrist'?); its links: base, wrist";
     assert_eq!(message(Robot::from_urdf(urdf, None, Some("rist"))), says);
     assert_eq!(message(Robot::from_urdf(urdf, Some("rist"), None)), says);
+    let says = "robot 'arm' has no link 'j' (did you mean 'wrist', the link that the joint of this name moves?); \
+                its links: base, wrist";
+    assert_eq!(message(Robot::from_urdf(urdf, None, Some("j"))), says);
 }
 
 /// One joint about z in the given range.

@@ -285,9 +285,21 @@ fn messages_say_how_it_went() {
     let far = Path::new(Polyline::new(&[[9.0, 0.0, 0.0], [9.0, 1.0, 0.0]], 1.0).unwrap()).sample(DT).unwrap();
     let options = TrackOptions::default();
     let record = track(&robot("planar5"), &far, Some(&[0.0; 5]), &options, &mut Unattended).unwrap();
-    let advice = "slow the path down, raise the velocity limits, start elsewhere (another start or seed), or move the path into reach";
-    let message = format!("never came within 1.000e-6 m (nearest 4.000 m): {advice}");
+    let advice = "move or turn the target into reach, or move the base";
+    let why = "the path is out of reach by at least 4.055 m at t = 1 s";
+    let message = format!("never came within 1.000e-6 m (nearest 4.000 m): {why}: {advice}");
     assert_eq!((record.message(), record.status), (message, Status::Capped));
+    let rising = Path::new(Polyline::new(&[[3.0, 0.0, 0.0], [3.0, 1.0, 0.5]], 1.0).unwrap()).sample(DT).unwrap();
+    let record = track(&robot("planar5"), &rising, None, &options, &mut Unattended).unwrap();
+    let why = "the path is out of reach by at least 0.5000 m, 0.5000 m off the plane that the tip moves in at t = 1 s";
+    assert!(record.message().ends_with(&format!("by up to 0.5000 m: {why}: {advice}")), "{}", record.message());
+    let slow = Limits::of(&robot("planar5")).replace(Field::Velocity, vec![Profile::Constant(0.01)]).unwrap();
+    let options = TrackOptions { limits: Some(slow), ..TrackOptions::default() };
+    let flat = Path::new(Polyline::new(&[[3.0, 0.0, 0.0], [3.0, 1.0, 0.0]], 1.0).unwrap()).sample(DT).unwrap();
+    let record = track(&robot("planar5"), &flat, None, &options, &mut Unattended).unwrap();
+    let advice =
+        "slow the path down, widen the limits, start elsewhere (another start or seed), or move the path into reach";
+    assert!(record.message().ends_with(advice), "{}", record.message());
 }
 
 #[test]

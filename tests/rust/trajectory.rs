@@ -75,7 +75,7 @@ fn wrong_trajectories_are_named() {
         (Trajectory::new(names(1), vec![0.0], vec![]), "trajectory times: expected at least 2, got 1"),
         (
             Trajectory::new(names(1), vec![1.0, 2.0], vec![ramp[0]]),
-            "trajectory times: row 0 must be 0, where the clock starts, got 1",
+            "trajectory times: row 0 must be 0, where the clock starts (take the first time from all), got 1",
         ),
         (
             Trajectory::new(names(1), vec![0.0, 1.0, 1.0], ramp.clone()),

@@ -222,13 +222,15 @@ fn xacro_says_how_to_expand_it() {
     assert_eq!(error(element), format!("URDF line 2: <xacro:include> is not expanded: {expand}"));
     assert_eq!(error("<robot><xacro:arm/></robot>"), format!("URDF line 1: xacro is not expanded: {expand}"));
     assert_eq!(error_after("0 3 4", "0 ${y} 4"), format!("URDF line 8: xyz=\"0 ${{y}} 4\" is not expanded: {expand}"));
-    let file = std::env::temp_dir().join(format!("ikcore-{}.xacro", std::process::id()));
-    std::fs::write(&file, ARM).unwrap();
-    let path = file.display().to_string();
-    let message = error(&path);
-    std::fs::remove_file(&file).unwrap();
-    let urdf = path.replace(".xacro", ".urdf");
-    assert_eq!(message, format!("URDF: '{path}' is a xacro file: run `xacro {path} > {urdf}` and load the result"));
+    for ending in [".xacro", ".urdf.xacro"] {
+        let file = std::env::temp_dir().join(format!("ikcore-{}.v2{ending}", std::process::id()));
+        std::fs::write(&file, ARM).unwrap();
+        let path = file.display().to_string();
+        let message = error(&path);
+        std::fs::remove_file(&file).unwrap();
+        let urdf = path.replace(ending, ".urdf");
+        assert_eq!(message, format!("URDF: '{path}' is a xacro file: run `xacro {path} > {urdf}` and load the result"));
+    }
 }
 
 #[test]

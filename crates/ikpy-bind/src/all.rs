@@ -5,10 +5,10 @@ use ikcore::solver::{AnySolver, Stop};
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
-use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
+use pyo3::types::PyList;
 
-use crate::convert::{count, position_in, table, vector};
+use crate::convert::{Picked, count, picked, table, vector};
 use crate::error::raise;
 use crate::ik::{PySolution, read_target};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
@@ -55,11 +55,12 @@ impl PySolutionSet {
         self.core.solutions.len()
     }
 
-    fn __getitem__(&self, py: Python<'_>, index: isize) -> PyResult<PySolution> {
-        let len = self.core.solutions.len();
-        match position_in(index, len) {
-            Some(i) => Ok(PySolution::new(py, self.core.solutions[i].clone(), self.limits.clone_ref(py))),
-            None => Err(PyIndexError::new_err(format!("index {index} is outside a set of {len}"))),
+    /// A `Solution`; for a slice, a mask or several indices a list of them.
+    fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let solution = |i: usize| PySolution::new(py, self.core.solutions[i].clone(), self.limits.clone_ref(py));
+        match picked("a set", index, self.core.solutions.len())? {
+            Picked::One(i) => Ok(Bound::new(py, solution(i))?.into_any()),
+            Picked::Many(rows) => Ok(PyList::new(py, rows.into_iter().map(solution))?.into_any()),
         }
     }
 

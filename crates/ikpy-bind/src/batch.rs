@@ -8,10 +8,9 @@ use ikcore::solver::{AnySolver, Status, Stop};
 use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
-use crate::convert::{Numbers, Rows, array, count, optional_count, position_in, row, rows, shape_text, table};
+use crate::convert::{Numbers, Picked, Rows, array, count, optional_count, picked, row, rows, shape_text, table};
 use crate::error::{invalid, raise};
 use crate::goal::read_goals;
 use crate::ik::PySolution;
@@ -22,7 +21,8 @@ use crate::solver::{PyStop, any_solver};
 use crate::stored::{self, Reduced};
 use crate::task::read_task;
 
-/// Solutions in the order of the targets, as columns; `b[i]` is one of them as a `Solution`.
+/// Solutions in the order of the targets, as columns; `b[i]` is one of them as a `Solution`, `b[10:20]` and
+/// `b[~b.success]` are batches of some of them.
 #[pyclass(name = "BatchSolution", module = "beetle_ik", frozen)]
 pub struct PyBatchSolution {
     items: Vec<Item>,
@@ -72,15 +72,19 @@ impl PyBatchSolution {
         self.items.len()
     }
 
-    fn __getitem__(&self, py: Python<'_>, index: isize) -> PyResult<PySolution> {
-        let len = self.items.len();
-        match position_in(index, len) {
-            Some(i) => {
+    /// A `Solution`; for a slice, a mask or several indices a `BatchSolution` of these, whose `elapsed` is the sum of
+    /// theirs.
+    fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        match picked("a batch", index, self.items.len())? {
+            Picked::One(i) => {
                 let q = self.q.bind(py).readonly();
                 let solution = self.items[i].solution(&q.as_slice()?[i * self.dof..(i + 1) * self.dof]);
-                Ok(PySolution::new(py, solution, self.limits.clone_ref(py)))
+                Ok(Bound::new(py, PySolution::new(py, solution, self.limits.clone_ref(py)))?.into_any())
             }
-            None => Err(PyIndexError::new_err(format!("index {index} is outside a batch of {len}"))),
+            Picked::Many(rows) => {
+                let batch = self.core(py)?.select(&rows);
+                Ok(Bound::new(py, Self::new(py, batch, self.limits.clone_ref(py))?)?.into_any())
+            }
         }
     }
 
@@ -89,9 +93,7 @@ impl PyBatchSolution {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let q = self.q.bind(py).readonly().as_slice()?.to_vec();
-        let core = Batch { dof: self.dof, q, items: self.items.clone(), elapsed: self.elapsed };
-        let core = stored::bytes(py, to_bytes("batch of solutions", &core))?;
+        let core = stored::bytes(py, to_bytes("batch of solutions", &self.core(py)?))?;
         stored::restored_from::<Self>(py, (core, self.limits.clone_ref(py)))
     }
 
@@ -121,6 +123,13 @@ impl PyBatchSolution {
             message,
             items,
         })
+    }
+}
+
+impl PyBatchSolution {
+    fn core(&self, py: Python<'_>) -> PyResult<Batch> {
+        let q = self.q.bind(py).readonly().as_slice()?.to_vec();
+        Ok(Batch { dof: self.dof, q, items: self.items.clone(), elapsed: self.elapsed })
     }
 }
 

@@ -8,10 +8,10 @@ use numpy::npyffi::NPY_ARRAY_WRITEABLE;
 use numpy::{
     AsSliceError, Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods,
 };
-use pyo3::exceptions::PyException;
+use pyo3::exceptions::{PyException, PyIndexError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyList, PyTuple};
+use pyo3::types::{IntoPyDict, PyBytes, PyList, PyString, PyTuple, PyType};
 
 use crate::error::{invalid, raise};
 
@@ -49,8 +49,8 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py
         return Ok(Numbers(array.clone()));
     }
     let no_numbers = || invalid(format!("{what} must be an array of numbers, got {}", summary(value)));
-    if value.is_none() {
-        return Err(no_numbers()); // numpy would read NaN
+    if is_misread(value)? {
+        return Err(no_numbers());
     }
     let converted = float64(value).or_else(|error| match matrices(value)? {
         Some(matrices) => float64(&matrices),
@@ -62,6 +62,20 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py
         Err(error) if error.is_instance_of::<PyException>(value.py()) => Err(no_numbers()),
         Err(interrupt) => Err(interrupt),
     }
+}
+
+/// What numpy would turn into other numbers than were meant: None into NaN, a text into what it spells, complex numbers
+/// into their real parts, dates into seconds.
+fn is_misread(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    if value.is_none() || value.is_instance_of::<PyString>() || value.is_instance_of::<PyBytes>() {
+        return Ok(true);
+    }
+    let py = value.py();
+    let Some(kind) = value.getattr_opt(intern!(py, "dtype"))?.map(|dtype| dtype.getattr_opt(intern!(py, "kind")))
+    else {
+        return Ok(false);
+    };
+    Ok(kind?.is_some_and(|kind| kind.extract::<char>().is_ok_and(|kind| "cmMSUV".contains(kind))))
 }
 
 /// What numpy makes of the value.
@@ -101,14 +115,49 @@ pub fn optional_count<T: TryFrom<i128>>(what: &str, value: Option<i128>) -> PyRe
     value.map(|value| count(what, value)).transpose()
 }
 
-/// An index as Python counts, from the end where negative; None outside `len` items.
-pub fn position_in(index: isize, len: usize) -> Option<usize> {
-    let from_start = if index < 0 { index.checked_add_unsigned(len) } else { Some(index) };
-    from_start.and_then(|i| usize::try_from(i).ok()).filter(|i| *i < len)
+/// What an index asks for.
+pub enum Picked {
+    /// One item.
+    One(usize),
+    /// Several, in this order.
+    Many(Vec<usize>),
 }
 
-/// The repr of a value, cut to a readable length.
+/// The items out of `len` that an index asks for: a whole number, from the end where negative, or whatever picks from a
+/// numpy array of one dimension: a slice, a mask, whole numbers. `what` holds them.
+pub fn picked(what: &str, index: &Bound<'_, PyAny>, len: usize) -> PyResult<Picked> {
+    let py = index.py();
+    if let Ok(index) = index.extract::<isize>() {
+        let from_start = if index < 0 { index.checked_add_unsigned(len) } else { Some(index) };
+        let inside = from_start.and_then(|i| usize::try_from(i).ok()).filter(|i| *i < len);
+        let outside = || PyIndexError::new_err(format!("index {index} is outside {what} of {len}"));
+        return inside.map(Picked::One).ok_or_else(outside);
+    }
+    let all = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "arange"), (len,))?;
+    match all.get_item(index)?.cast::<PyArray1<i64>>() {
+        Ok(rows) => Ok(Picked::Many(rows.readonly().as_array().iter().map(|i| *i as usize).collect())),
+        Err(_) => {
+            let got = summary(index);
+            Err(PyIndexError::new_err(format!(
+                "{what} has one dimension: a number, slice or mask picks from it, got {got}"
+            )))
+        }
+    }
+}
+
+/// So many of a thing, in words.
+pub fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
+/// The repr of a value, cut to a readable length. A class of this library stands where a value of it was meant.
 pub fn summary(value: &Bound<'_, PyAny>) -> String {
+    if let Ok(class) = value.cast::<PyType>()
+        && class.module().is_ok_and(|module| module.to_string_lossy().starts_with("beetle_ik"))
+        && let Ok(name) = class.name()
+    {
+        return format!("the class {name} itself: did you mean {name}()?");
+    }
     let repr = value.repr().map_or_else(|_| "an object without a repr".into(), |text| text.to_string());
     if repr.chars().count() > 60 { repr.chars().take(57).chain("...".chars()).collect() } else { repr }
 }

@@ -9,6 +9,7 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::convert::{row, summary, vector};
 use crate::error::{invalid, raise};
+use crate::hash::content_hash;
 use crate::options::NewArguments;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -22,7 +23,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 /// What the joints should do where the task leaves them free: one of `Posture`, `Centring`, `Manipulability` and
 /// `LinkManipulability`.
 #[pyclass(name = "Goal", module = "beetle_ik.goals", frozen, subclass, eq)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyGoal {
     core: Goal,
 }
@@ -47,6 +48,10 @@ impl PyGoal {
                 format!("goals.LinkManipulability(motion='{motion}', weight={weight:?})")
             }
         }
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {

@@ -5,6 +5,7 @@ mod batch;
 mod convert;
 mod error;
 mod goal;
+mod hash;
 mod ik;
 mod limits;
 mod minimize;

@@ -125,6 +125,10 @@ macro_rules! options {
                 format!("{}({})", $name, options.join(", "))
             }
 
+            fn __hash__(&self) -> u64 {
+                $crate::hash::content_hash(self)
+            }
+
             fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<$crate::options::NewArguments<'py>> {
                 $crate::options::keywords(slf, &[$(stringify!($option)),*])
             }

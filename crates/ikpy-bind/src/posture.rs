@@ -24,7 +24,7 @@ use crate::stored::{self, Reduced};
 ///     velocity_limit: largest velocity of a coordinate (m a generation); not published.
 ///     signed: random factors from [-1, 1], as printed, instead of [0, 1].
 #[pyclass(name = "CircleSwarm", module = "beetle_ik", frozen, eq)]
-#[derive(PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct PyCircleSwarm(CircleSwarm);
 
 #[pymethods]

@@ -9,6 +9,7 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::convert::{Array, copied, corners, point, pose_array, rigid, row, scalar_or_vector, summary, table};
 use crate::error::{invalid, raise};
+use crate::hash::content_hash;
 use crate::options::{NewArguments, list_text};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -26,7 +27,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 /// outside; a track never leaves the box at the end of a tick, whatever its solver. Between two ticks the joints move in straight
 /// lines, the tip does not quite.
 #[pyclass(name = "Task", module = "beetle_ik.tasks", frozen, subclass, eq)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyTask {
     core: Task,
 }
@@ -74,6 +75,10 @@ impl PyTask {
         ];
         let given: Vec<_> = options.into_iter().flatten().collect();
         format!("tasks.{}({})", self.core.kind.name(), given.join(", "))
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {

@@ -5,8 +5,9 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
 
-use crate::convert::{Array, array, copied, row, shape_text, table, times, vector};
+use crate::convert::{Array, array, copied, counted, row, shape_text, table, times, vector};
 use crate::error::{invalid, raise};
+use crate::hash::content_hash;
 use crate::options::NewArguments;
 use crate::upward;
 
@@ -17,7 +18,7 @@ use crate::upward;
 ///     coefficients: (k - 1, n, degree + 1), degree at most 6, in ascending powers.
 ///     joint_names: n names; None: "q1", "q2", ...
 #[pyclass(name = "Trajectory", module = "beetle_ik", frozen, eq)]
-#[derive(PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct PyTrajectory(Trajectory);
 
 impl From<Trajectory> for PyTrajectory {
@@ -175,6 +176,12 @@ impl PyTrajectory {
         Ok((row(py, times), q, qd, qdd))
     }
 
+    /// This motion, a rest of `pause` (s), and then `next`, a motion of the same joints that begins where this one ends.
+    #[pyo3(signature = (next, *, pause=0.0))]
+    fn then(&self, next: &Self, pause: f64) -> PyResult<Self> {
+        self.0.then(&next.0, pause).map(Self).map_err(raise)
+    }
+
     /// Writes the samples at the knots as CSV, whole or not at all.
     fn to_csv(slf: Bound<'_, Self>, file: Bound<'_, PyAny>) -> PyResult<()> {
         upward::write(slf.into_any(), "to_csv", file)
@@ -204,11 +211,15 @@ impl PyTrajectory {
 
     fn __repr__(&self) -> String {
         format!(
-            "<Trajectory of {} joints, {} s, {} knots>",
-            self.0.joints().len(),
+            "<Trajectory of {}, {} s, {} knots>",
+            counted(self.0.joints().len(), "joint"),
             self.0.duration(),
             self.0.knots().len()
         )
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {

@@ -16,8 +16,12 @@ from .track import track
 _WRONG_INPUT = 2
 
 
-class _TellMistakes(TyperGroup):
+class _Commands(TyperGroup):
     """Users get the sentence of an error, not its traceback."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """As given, but for `plan`: Typer puts groups last."""
+        return sorted(super().list_commands(ctx), key=lambda name: name == "reproduce")
 
     def invoke(self, ctx: Any) -> Any:
         try:
@@ -34,11 +38,11 @@ class _TellMistakes(TyperGroup):
 
 
 app = typer.Typer(
-    cls=_TellMistakes,
+    cls=_Commands,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    help="Inverse kinematics and path tracking for robot manipulators. SI units and radians.",
+    help="Inverse kinematics, path tracking and planning for robot manipulators. SI units and radians.",
     epilog="Exit status: 0 reached, 1 computed but not reached, 2 wrong input.",
 )
 

@@ -74,6 +74,9 @@ def track(
             help="Or a limit that varies, the same for all joints: mean + amplitude sin(omega t), in rad/s.",
         ),
     ] = None,
+    acceleration: Annotated[
+        str | None, typer.Option("--acceleration-limit", help="The same in rad/s^2; else there is none.")
+    ] = None,
     solver: Annotated[
         SolverName | None,
         typer.Option(help="Without it the library's model-based rule; bas, chain and greedy are beetles."),
@@ -90,7 +93,7 @@ def track(
     base: BaseLink = None,
     as_json: AsJson = False,
 ) -> None:
-    """Follow a path with the tip, within joint position and velocity limits."""
+    """Follow a path with the tip, within the joints' limits."""
     arm = load_robot(robot, urdf, base, tip)
     triples = {"center": center, "a": a, "b": b}
     others = {
@@ -106,7 +109,7 @@ def track(
     given: dict[str, Any] = {name: numbers(f"--{name}", text, 3) for name, text in triples.items() if text is not None}
     given |= {name: value for name, value in others.items() if value is not None}
     path = _reference(arm, curve, points, duration, given)
-    limits, limits_from = _limits(velocity, velocity_sinusoid)
+    limits, limits_from = _limits(velocity, velocity_sinusoid, acceleration)
     with nullcontext() if out is None else whole_folder(out, option="--out") as folder:
         result = track_path(
             arm,
@@ -129,17 +132,23 @@ def track(
     raise typer.Exit(0 if result.success else 1)
 
 
-def _limits(velocity: str | None, velocity_sinusoid: str | None) -> tuple[Limits | None, str | None]:
-    """The limits that were asked for, and the option that said so."""
+def _limits(
+    velocity: str | None, velocity_sinusoid: str | None, acceleration: str | None
+) -> tuple[Limits | None, str | None]:
+    """The limits that were asked for, and the option that the velocity limit comes from."""
     if velocity is not None and velocity_sinusoid is not None:
         raise InvalidInputError("--velocity-limit and --velocity-sinusoid are two ways to say the same: leave one out")
+    given: dict[str, Any] = {}
+    limits_from = None
     if velocity_sinusoid is not None:
-        option = "--velocity-sinusoid"
-        return Limits(velocity=sinusoid(option, velocity_sinusoid)), option
+        limits_from = "--velocity-sinusoid"
+        given["velocity"] = sinusoid(limits_from, velocity_sinusoid)
     if velocity is not None:
-        option = "--velocity-limit"
-        return Limits(velocity=limit(option, velocity)), option
-    return None, None
+        limits_from = "--velocity-limit"
+        given["velocity"] = limit(limits_from, velocity)
+    if acceleration is not None:
+        given["acceleration"] = limit("--acceleration-limit", acceleration)
+    return Limits(**given) if given else None, limits_from
 
 
 def _reference(

@@ -6,6 +6,7 @@ from typing import Any
 
 from .._core import InvalidInputError, Trajectory
 from .._files import whole_file
+from .samples import samples
 
 _NANO = 1_000_000_000
 
@@ -25,9 +26,7 @@ def to_ros(trajectory: Trajectory, *, dt: float | None = None, frame_id: str = "
     Raises:
         InvalidInputError: `dt` not positive, or two points in the same nanosecond.
     """
-    time, *samples = (
-        (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd) if dt is None else trajectory.sample(dt)
-    )
+    time, *values_of = samples(trajectory, dt)
     degree = trajectory.coefficients.shape[2] - 1
     fields = ("positions", "velocities", "accelerations")[: 1 + (degree > 1) + (degree > 3)]
     nanoseconds = [round(float(t) * _NANO) for t in time]
@@ -37,7 +36,7 @@ def to_ros(trajectory: Trajectory, *, dt: float | None = None, frame_id: str = "
     points = []
     for i, nanosecond in enumerate(nanoseconds):
         point: dict[str, Any] = {name: [] for name in ("positions", "velocities", "accelerations", "effort")}
-        point |= {name: values[i].tolist() for name, values in zip(fields, samples, strict=False)}
+        point |= {name: values[i].tolist() for name, values in zip(fields, values_of, strict=False)}
         points.append(point | {"time_from_start": _duration(nanosecond)})
     header = {"stamp": _duration(0), "frame_id": frame_id}
     return {"header": header, "joint_names": list(trajectory.joint_names), "points": points}

@@ -6,6 +6,7 @@ import numpy as np
 
 from .._core import Trajectory
 from .._needs import library
+from .samples import samples
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,8 +23,6 @@ def to_dataframe(trajectory: Trajectory, *, dt: float | None = None) -> "pd.Data
         BeetleIkError: pandas is not installed.
     """
     pandas = library("pandas", "pandas", "a table")
-    time, q, qd, qdd = (
-        (trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd) if dt is None else trajectory.sample(dt)
-    )
+    time, q, qd, qdd = samples(trajectory, dt)
     columns = [f"{derivative}:{joint}" for derivative in ("q", "qd", "qdd") for joint in trajectory.joint_names]
     return pandas.DataFrame(np.hstack((q, qd, qdd)), index=pandas.Index(time, name="time"), columns=columns)

@@ -67,6 +67,17 @@ impl Batch {
         self.items.get(i).map(|item| item.solution(&self.q[i * self.dof..(i + 1) * self.dof]))
     }
 
+    /// Some of the items, in this order; the time is the sum of theirs.
+    ///
+    /// # Panics
+    /// If a row is past the end.
+    pub fn select(&self, rows: &[usize]) -> Self {
+        let items: Vec<Item> = rows.iter().map(|i| self.items[*i].clone()).collect();
+        let q = rows.iter().flat_map(|i| &self.q[i * self.dof..(i + 1) * self.dof]).copied().collect();
+        let elapsed = items.iter().map(|item| item.elapsed).sum();
+        Self { dof: self.dof, q, items, elapsed }
+    }
+
     /// How many were solved, and what to try for the others.
     pub fn message(&self) -> String {
         let count = |status| self.items.iter().filter(|item| item.status == status).count();

@@ -10,7 +10,7 @@ use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Objective};
 use crate::problem::Problem;
 use crate::rng;
-use crate::robot::Robot;
+use crate::robot::{Beyond, Robot};
 use crate::solver::{Monitor, Status};
 use crate::task::{Criterion, Goals, Target, Task};
 
@@ -153,12 +153,9 @@ impl<'a> Prepared<'a> {
         solution
     }
 
-    /// How far the target is beyond the reach (m), where it is.
-    pub(super) fn excess(&self, target: &Target) -> Option<f64> {
-        let aim = self.criterion.aim(target);
-        let position = aim.position().filter(|_| self.criterion.components.is_none())?;
-        let excess = self.robot().reach(self.bounds.lower(), self.bounds.upper()).excess(&position);
-        (excess > self.criterion.tolerance.position).then_some(excess)
+    /// How far the target is out of reach, where it is beyond doubt.
+    pub(super) fn beyond_reach(&self, target: &Target) -> Option<Beyond> {
+        self.criterion.beyond_reach(target, self.robot(), &self.bounds)
     }
 }
 

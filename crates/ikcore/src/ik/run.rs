@@ -62,7 +62,7 @@ impl Run {
             return self.explained(status, q, prepared, problem);
         };
         let reserve = if self.left() > 10 * RESERVE { RESERVE } else { 0 };
-        if prepared.excess(problem.target()).is_some() {
+        if prepared.beyond_reach(problem.target()).is_some() {
             let q = self.approach(prepared, problem, descent, x0, rng, monitor);
             return self.explained(Status::OutOfReach, q, prepared, problem);
         }
@@ -154,9 +154,9 @@ impl Run {
     fn explained(&self, status: Status, q: Point, prepared: &Prepared<'_>, problem: &Problem<'_>) -> Solution {
         let mut solution = self.solution(status, q, problem);
         if status != Status::Solved {
-            let excess = prepared.excess(problem.target());
+            let beyond = prepared.beyond_reach(problem.target());
             let passed = problem.outside_region(&solution.q);
-            solution.obstruction = obstruction(prepared.robot(), prepared.bounds(), &solution.q, excess, passed);
+            solution.obstruction = obstruction(prepared.robot(), prepared.bounds(), &solution.q, beyond, passed);
         }
         solution
     }

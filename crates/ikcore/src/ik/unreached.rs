@@ -1,36 +1,36 @@
 //! Why a target was not reached, in words.
 
 use crate::objective::Bounds;
-use crate::robot::Robot;
-use crate::wording::number;
+use crate::robot::{Beyond, Robot};
 
 /// Joints named at most; the others are counted.
 const MOST_NAMED: usize = 3;
 
-/// What is in the way at `q`: how far the target is out of reach (m), at least, if it provably is, where the
-/// tip has `passed` its region, and the joints at their limits.
+/// What is in the way at `q`: how far the target is out of reach, if it provably is, where the tip has `passed` its
+/// region, and the joints at their limits.
 pub(super) fn obstruction(
     robot: &Robot,
     bounds: &Bounds,
     q: &[f64],
-    excess: Option<f64>,
+    beyond: Option<Beyond>,
     passed: Option<String>,
 ) -> String {
-    let reach = excess.map(|excess| format!("out of reach by at least {} m", number(excess)));
+    let reach = beyond.map(|beyond| beyond.to_string());
     reach.into_iter().chain(passed).chain(joints_at_limits(robot, bounds, q)).collect::<Vec<_>>().join("; ")
 }
 
 fn joints_at_limits(robot: &Robot, bounds: &Bounds, q: &[f64]) -> Option<String> {
-    let side = |j: usize| match q[j] {
-        at if at == bounds.lower()[j] => Some("lower"),
-        at if at == bounds.upper()[j] => Some("upper"),
-        _ => None,
+    let side = |j: usize| match (q[j] == bounds.lower()[j], q[j] == bounds.upper()[j]) {
+        (true, true) => Some("held by limits that leave it no room"),
+        (true, false) => Some("at its lower limit"),
+        (false, true) => Some("at its upper limit"),
+        (false, false) => None,
     };
     let stuck: Vec<_> = (0..q.len()).filter_map(|j| Some((&robot.joints()[j].name, side(j)?))).collect();
     let named: Vec<_> = stuck
         .iter()
         .take(MOST_NAMED)
-        .map(|(name, side)| format!("joint '{name}' at its {side} limit"))
+        .map(|(name, side)| format!("joint '{name}' {side}"))
         .chain((stuck.len() > MOST_NAMED).then(|| format!("{} more joints at theirs", stuck.len() - MOST_NAMED)))
         .collect();
     (!named.is_empty()).then(|| named.join(", "))

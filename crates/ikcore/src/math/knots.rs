@@ -20,7 +20,11 @@ impl Knots {
         }
         require_finite(what, &times, |row| format!("row {row}"))?;
         if times[0] != 0.0 {
-            return Err(Error::out_of_range(format!("{what}: row 0"), "0, where the clock starts", times[0]));
+            return Err(Error::out_of_range(
+                format!("{what}: row 0"),
+                "0, where the clock starts (take the first time from all)",
+                times[0],
+            ));
         }
         match (1..times.len()).find(|&row| times[row] <= times[row - 1]) {
             None => Ok(Self(times)),

@@ -19,3 +19,16 @@ pub fn ticks(duration: f64, dt: f64) -> Result<usize> {
     }
     Ok(count as usize)
 }
+
+/// [`ticks`] of a path that is to be followed, of which one tick that is longer would leave nothing but its ends.
+///
+/// # Errors
+/// [`Error::OutOfRange`] as [`ticks`], and where `dt` is longer than `duration`.
+pub fn ticks_of_path(duration: f64, dt: f64) -> Result<usize> {
+    let count = ticks(duration, dt)?;
+    if dt > duration * (1.0 + 1e-9) {
+        let requirement = format!("at most {duration} s, which the path takes");
+        return Err(Error::out_of_range("dt", &requirement, dt));
+    }
+    Ok(count)
+}

@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 use super::orientation::check_rotation;
 use super::{Curve, Reference};
 use crate::error::Result;
-use crate::math::ticks::ticks;
+use crate::math::ticks::ticks_of_path;
 use crate::math::{Pose, pose};
 
 /// A reference in space and time for the tip: a [`Curve`], and where wanted an orientation. Cheap to clone.
@@ -68,10 +68,10 @@ impl Path {
     /// The path at the ticks i `dt` (s), from 0 to the first tick at or after its end.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for `dt` not positive, or so small that there would be over 10
-    /// million ticks.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for `dt` not positive, longer than the path, or so small that there
+    /// would be over 10 million ticks.
     pub fn sample(&self, dt: f64) -> Result<Reference> {
-        let times = (0..=ticks(self.duration(), dt)?).map(|i| i as f64 * dt);
+        let times = (0..=ticks_of_path(self.duration(), dt)?).map(|i| i as f64 * dt);
         let positions = times.clone().map(|t| self.position(t)).collect();
         let rotations = times.map(|t| self.rotation(t)).collect();
         Reference::new(dt, positions, rotations)

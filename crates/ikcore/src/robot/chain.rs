@@ -62,7 +62,7 @@ impl Chain {
             motions: vec![],
             tip: Frame::IDENTITY,
             links: vec![],
-            stretched: Reach { center: [0.0; 3], radius: 0.0 },
+            stretched: Reach { center: [0.0; 3], radius: 0.0, normal: None, upright: None },
             kernels: Kernels::for_stages(padded_size(elements)),
         };
         // Constant transform since the last moving element, already in that element's z-aligned frame.

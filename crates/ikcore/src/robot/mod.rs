@@ -20,6 +20,7 @@ mod seed_index;
 mod seeds;
 mod stages;
 mod stored;
+mod upright;
 mod urdf;
 
 pub use builder::{ChainBuilder, Drive, Element};
@@ -29,8 +30,9 @@ pub use directions::Directions;
 pub use joint::{Joint, JointKind};
 pub use kinematics::{Columns, Wrench};
 pub use model::Robot;
-pub use reach::Reach;
+pub use reach::{Beyond, Reach};
 pub use screws::{Screw, Screws};
 pub use seeds::Seeds;
+pub use upright::Upright;
 
 use crate::math::MAX_DOF;

@@ -52,92 +52,74 @@ impl Stop {
     }
 }
 
-/// How a solve, one item of a batch or one step of a track ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[repr(u8)]
-pub enum Status {
-    /// Within the tolerances.
-    Solved = 0,
-    /// A step of a track: not yet within the tolerance, but nearer than the step before.
-    Improved = 1,
-    /// A step of a track: neither within the tolerance nor nearer than the step before; the best found is kept.
-    Capped = 2,
-    /// The solver's own rule gave up: nothing more to gain from here.
-    Stalled = 3,
-    /// The evaluation or iteration budget is spent.
-    BudgetSpent = 4,
-    /// The time limit is over.
-    TimeUp = 5,
-    /// The caller's monitor asked to stop.
-    Interrupted = 6,
-    /// A track that did not stay within its tolerance.
-    Lost = 7,
-    /// An item of a batch whose target or start is wrong: nothing was solved.
-    Invalid = 8,
-    /// The target is farther from the base than the arm is long.
-    OutOfReach = 9,
-    /// A plant that raised an error, or returned what is no position: the run ended with what was recorded.
-    PlantFailed = 10,
-    /// The solver's own threshold was met before the tolerances were.
-    BelowThreshold = 11,
-    /// The search arrived outside the limits, and whole turns do not bring it inside; the best inside is kept.
-    OutsideLimits = 12,
-    /// The region of the task keeps the tip from the target; the tip is in it, as near as it may come.
-    HeldInRegion = 13,
+/// The list of statuses: variant and number, the name that Python shows, and what it means.
+macro_rules! statuses {
+    ($($variant:ident = $number:literal, $name:literal: $meaning:literal;)+) => {
+        /// How a solve, one item of a batch or one step of a track ended.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[repr(u8)]
+        pub enum Status {
+            $(#[doc = $meaning] $variant = $number,)+
+        }
+
+        impl Status {
+            /// All of them, in the order of their numbers.
+            pub const ALL: &[Self] = &[$(Self::$variant),+];
+
+            /// The name as Python shows it.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)+
+                }
+            }
+
+            /// What it says, in words.
+            pub fn meaning(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $meaning,)+
+                }
+            }
+        }
+    };
+}
+
+statuses! {
+    Solved = 0, "SOLVED": "Within the tolerances.";
+    Improved = 1, "IMPROVED":
+        "A step of a track: nearer than the step before, not yet within the tolerance. Or a search ended by `value_below`.";
+    Capped = 2, "CAPPED":
+        "A step of a track: neither within the tolerance nor nearer than the step before; the best found is kept.";
+    Stalled = 3, "STALLED": "The solver's own rule gave up: nothing more to gain from here.";
+    BudgetSpent = 4, "BUDGET_SPENT": "The evaluation or iteration budget is spent.";
+    TimeUp = 5, "TIME_UP": "The time limit is over.";
+    Interrupted = 6, "INTERRUPTED": "It was asked to stop before its end.";
+    Lost = 7, "LOST": "A track that did not stay within its tolerance.";
+    Invalid = 8, "INVALID": "An item of a batch whose target or start is wrong: nothing was solved.";
+    OutOfReach = 9, "OUT_OF_REACH":
+        "Beyond doubt, no configuration reaches so far: the target is farther than the arm is long, or off its plane.";
+    PlantFailed = 10, "PLANT_FAILED":
+        "A plant that raised an error, or returned what is no position: the run ended with what was recorded.";
+    BelowThreshold = 11, "BELOW_THRESHOLD": "The solver's own threshold was met before the tolerances were.";
+    OutsideLimits = 12, "OUTSIDE_LIMITS":
+        "The search arrived outside the limits, and whole turns do not bring it inside; the best inside is kept.";
+    HeldInRegion = 13, "HELD_IN_REGION":
+        "The region of the task keeps the tip from the target; the tip is in it, as near as it may come.";
 }
 
 impl Status {
-    /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 14] = [
-        Self::Solved,
-        Self::Improved,
-        Self::Capped,
-        Self::Stalled,
-        Self::BudgetSpent,
-        Self::TimeUp,
-        Self::Interrupted,
-        Self::Lost,
-        Self::Invalid,
-        Self::OutOfReach,
-        Self::PlantFailed,
-        Self::BelowThreshold,
-        Self::OutsideLimits,
-        Self::HeldInRegion,
-    ];
-
-    /// The name as Python shows it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Solved => "SOLVED",
-            Self::Improved => "IMPROVED",
-            Self::Capped => "CAPPED",
-            Self::Stalled => "STALLED",
-            Self::BudgetSpent => "BUDGET_SPENT",
-            Self::TimeUp => "TIME_UP",
-            Self::Interrupted => "INTERRUPTED",
-            Self::Lost => "LOST",
-            Self::Invalid => "INVALID",
-            Self::OutOfReach => "OUT_OF_REACH",
-            Self::PlantFailed => "PLANT_FAILED",
-            Self::BelowThreshold => "BELOW_THRESHOLD",
-            Self::OutsideLimits => "OUTSIDE_LIMITS",
-            Self::HeldInRegion => "HELD_IN_REGION",
-        }
-    }
-
     /// What to try, as the end of a sentence; empty for success.
     pub fn advice(self) -> &'static str {
         match self {
             Self::Solved | Self::Improved => "",
-            Self::Capped => "allow more passes, a wider tolerance or a higher velocity limit",
+            Self::Capped => "give it more ticks, wider limits or a wider tolerance, or its solver more passes",
             Self::Stalled => "try another start or seed, or MultiStart; the target may be out of reach",
             Self::BudgetSpent => "raise the budget in stop=Stop(...); the target may be out of reach",
             Self::TimeUp => "raise max_time",
             Self::Interrupted => "run again to finish",
             Self::Lost => {
-                "slow the path down, raise the velocity limits, start elsewhere (another start or seed), or move the path into reach"
+                "slow the path down, widen the limits, start elsewhere (another start or seed), or move the path into reach"
             }
-            Self::OutOfReach => "move the target nearer to the base, or the base nearer to the target",
+            Self::OutOfReach => "move or turn the target into reach, or move the base",
             Self::Invalid => "on_invalid=\"raise\" says what is wrong",
             Self::PlantFailed => "mend the plant and run again",
             Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",

@@ -10,6 +10,7 @@ mod orientation;
 mod pointing;
 mod pose;
 mod position;
+mod reach;
 mod region;
 
 pub use criterion::{Assessment, Components, Criterion};

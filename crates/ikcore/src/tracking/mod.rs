@@ -29,7 +29,7 @@ use crate::ik::{Prefer, SolveOptions, solve};
 use crate::limits::{Field, LimitAt, Limits, Profile};
 use crate::manipulability::Motion;
 use crate::path::Reference;
-use crate::robot::Robot;
+use crate::robot::{Beyond, Robot};
 use crate::solver::stop::Stopwatch;
 use crate::solver::{Monitor, Status, Stop};
 use crate::task::{Criterion, Goal, Target, Task, Tolerance};
@@ -104,7 +104,24 @@ pub fn track(
     record.push(&session.accepted(), reference.position(0), &beginning);
     let finished = follow(reference, &mut session, &mut record, monitor)?;
     record.finish(!finished, stopwatch.elapsed());
+    if finished && !matches!(record.status, Status::Solved | Status::HeldInRegion) {
+        record.out_of_reach = farthest_out_of_reach(reference, record.joined().unwrap_or(0), &session)?;
+    }
     Ok(record)
+}
+
+/// How far the path leads out of reach from row `first` on, and when (s), where it does beyond doubt.
+fn farthest_out_of_reach(reference: &Reference, first: usize, session: &Session) -> Result<Option<(Beyond, f64)>> {
+    let mut farthest: Option<(Beyond, f64)> = None;
+    let Ok(bounds) = session.limits().position_box() else { return Ok(None) }; // they vary in time
+    for i in first..reference.len() {
+        if let Some(beyond) = session.beyond_reach(&target(reference, i), &bounds)?
+            && farthest.is_none_or(|(most, _)| (beyond.distance, beyond.lean) > (most.distance, most.lean))
+        {
+            farthest = Some((beyond, reference.time(i)));
+        }
+    }
+    Ok(farthest)
 }
 
 /// Ticks to the end of `reference`; false where the monitor asked to stop before.

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::step::Step;
 use crate::limits::{Field, LimitAt, Limits};
 use crate::math::ordered::larger;
+use crate::robot::Beyond;
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::wording::{number, time};
@@ -47,6 +48,8 @@ pub struct Record {
     pub limits: Limits,
     /// The error band.
     pub criterion: Criterion,
+    /// How far the path leads out of reach, and when (s), where that kept the tip from it beyond doubt.
+    pub out_of_reach: Option<(Beyond, f64)>,
     /// How the track as a whole ended.
     pub status: Status,
     /// Time taken.
@@ -88,6 +91,7 @@ impl Record {
             limit_margin: f64::INFINITY,
             limits,
             criterion,
+            out_of_reach: None,
             status: Status::Lost,
             elapsed: Duration::ZERO,
             limit_at,
@@ -237,7 +241,12 @@ impl Record {
             Some(_) => "its tolerance in each component".into(),
             None => self.in_words(tolerance.position, tolerance.rotation),
         };
-        let advice = Status::Lost.advice();
+        let advice = match &self.out_of_reach {
+            None => Status::Lost.advice().into(),
+            Some((beyond, when)) => {
+                format!("the path is {beyond} at t = {} s: {}", time(*when), Status::OutOfReach.advice())
+            }
+        };
         let Some(joined) = self.joined() else {
             let (position, rotation) = (smallest(&self.position_error), smallest(&self.rotation_error));
             return format!("never came within {band} (nearest {}): {advice}", self.in_words(position, rotation));

@@ -8,7 +8,7 @@ use crate::error::{Result, require_finite, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point, Score};
 use crate::rng::{self, LazyRng};
-use crate::robot::Robot;
+use crate::robot::{Beyond, Robot};
 use crate::solver::{Monitor, Status};
 use crate::task::{Assessment, Criterion, Goals, Target, TargetMotion, Task, Twist};
 
@@ -124,6 +124,14 @@ impl Session {
     fn read(&self, wanted: &Target) -> Result<Target> {
         wanted.validate()?;
         self.task.map_or(Ok(*wanted), |task| task.target(wanted))
+    }
+
+    /// How far `wanted` is out of reach within `bounds`, where it is beyond doubt.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub(super) fn beyond_reach(&self, wanted: &Target, bounds: &Bounds) -> Result<Option<Beyond>> {
+        Ok(self.criterion.beyond_reach(&self.read(wanted)?, &self.robot, bounds))
     }
 
     /// What the last tick has accepted.

@@ -34,8 +34,8 @@ impl Step {
             Status::HeldInRegion => {
                 format!("as near as its region allows, {error} away{limits}: {}", self.status.advice())
             }
-            Status::Improved => format!("nearer than before, {error} away{limits}"),
-            status => format!("no nearer than before, {error} away{limits}: {}", status.advice()),
+            Status::Improved => format!("nearer than in the tick before, {error} away{limits}"),
+            status => format!("no nearer than in the tick before, {error} away{limits}: {}", status.advice()),
         }
     }
 }

@@ -2,5 +2,6 @@
 
 mod hermite;
 mod piecewise;
+mod sequence;
 
 pub use piecewise::{Coefficients, POWERS, Trajectory, polynomial};

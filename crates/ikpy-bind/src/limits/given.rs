@@ -7,6 +7,7 @@ use super::per_joint::PerJoint;
 use super::sampling::{Sampling, sampled};
 use super::sinusoid::PySinusoid;
 use crate::convert::summary;
+use crate::hash::content_hash;
 
 /// Numbers, a sinusoid, or a function of time.
 pub enum Given {
@@ -41,6 +42,15 @@ impl Given {
             (Self::Sinusoid(one), Self::Sinusoid(other)) => Ok(one == other),
             (Self::Function(one), Self::Function(other)) => one.bind(py).eq(other),
             _ => Ok(false),
+        }
+    }
+
+    /// Equal ones hash alike.
+    pub fn hash(&self, py: Python<'_>) -> PyResult<isize> {
+        match self {
+            Self::Numbers(numbers) => Ok(content_hash(numbers) as isize),
+            Self::Sinusoid(sinusoid) => Ok(content_hash(sinusoid) as isize),
+            Self::Function(function) => function.bind(py).hash(),
         }
     }
 

@@ -112,6 +112,11 @@ impl PyLimits {
         Ok(true)
     }
 
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        let fields = self.given.iter().map(|given| given.as_ref().map(|given| given.hash(py)).transpose());
+        PyTuple::new(py, fields.collect::<PyResult<Vec<_>>>()?)?.hash()
+    }
+
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let options = PyDict::new(py);
         for (given, field) in self.given.iter().zip(FIELDS) {

@@ -7,7 +7,7 @@ use crate::error::invalid;
 use crate::options::{Shown, list_text};
 
 /// A number, or one per joint.
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PerJoint {
     pub values: Vec<f64>,
     pub single: bool,

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 
 use super::per_joint::PerJoint;
 use crate::error::invalid;
+use crate::hash::content_hash;
 use crate::options::{NewArguments, keywords};
 
 /// A limit that oscillates: mean + amplitude sin(angular_frequency t + phase), eq. (7) of Cheng et al. (2020) with its
@@ -15,7 +16,7 @@ use crate::options::{NewArguments, keywords};
 ///     angular_frequency: rad/s; a number or (n,).
 ///     phase: rad at t = 0; a number or (n,).
 #[pyclass(name = "Sinusoid", module = "beetle_ik", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PySinusoid {
     mean: PerJoint,
     amplitude: PerJoint,
@@ -77,6 +78,10 @@ impl PySinusoid {
             angular_frequency.repr(),
             phase.repr()
         )
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {

@@ -149,7 +149,10 @@ pub fn minimize_function(
 /// The error with what was found before it.
 fn with_best(py: Python<'_>, error: PyErr, found: PyMinimum) -> PyResult<PyErr> {
     let value = error.value(py);
-    let note = format!("minimize: {}; kept as `best` of this exception", found.core.message());
+    let note = match found.core.value.is_finite() {
+        true => format!("minimize: {}; kept as `best` of this exception", found.core.message()),
+        false => "minimize: no finite value was found before".into(),
+    };
     // A class may refuse attributes; its exception comes out all the same.
     let kept = value.setattr("best", Bound::new(py, found)?);
     if kept.is_ok() {

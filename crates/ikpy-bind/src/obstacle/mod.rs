@@ -13,6 +13,7 @@ use shapes::{PyBox, PyCapsule, PyConvexMesh, PyEllipse, PyEllipsoid, PySphere};
 
 use crate::convert::{Array, summary, table};
 use crate::error::invalid;
+use crate::hash::content_hash;
 use crate::options::NewArguments;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -28,7 +29,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 
 /// A convex body that stands still in the frame of the robot's base: what all obstacles have in common.
 #[pyclass(name = "Obstacle", module = "beetle_ik.obstacles", frozen, eq, subclass)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyObstacle {
     core: Obstacle,
 }
@@ -58,6 +59,10 @@ impl PyObstacle {
             Shape::ConvexMesh(hull) => format!("{:?}", hull.points()),
         };
         format!("obstacles.{}({arguments})", self.core.name())
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {

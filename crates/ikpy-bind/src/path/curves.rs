@@ -8,31 +8,42 @@ use super::PyPath;
 use crate::convert::{array, count, point, rigid_matrices, shape_text, summary, vector};
 use crate::error::{invalid, raise};
 
-fn plane(center: &Bound<'_, PyAny>, a: [f64; 3], b: [f64; 3]) -> PyResult<Plane> {
-    Plane::new(point("center", center)?, a, b).map_err(raise)
+/// A direction of the plane that a curve lies in.
+pub struct Direction([f64; 3]);
+
+impl<'py> FromPyObject<'_, 'py> for Direction {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        point("direction", &value).map(Self)
+    }
+}
+
+fn plane(center: &Bound<'_, PyAny>, a: Direction, b: Direction) -> PyResult<Plane> {
+    Plane::new(point("center", center)?, a.0, b.0).map_err(raise)
 }
 
 /// A circle about `center` (3,) (m) of this diameter (m), once around in `duration` (s), from the side of `a` towards
 /// `b`: eq. (14) of Cheng et al. (2020). `a` and `b` (3,) are orthonormal.
 #[pyfunction]
-#[pyo3(signature = (center, diameter, duration, *, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+#[pyo3(signature = (center, diameter, duration, *, a=Direction([1.0, 0.0, 0.0]), b=Direction([0.0, 1.0, 0.0])),
        text_signature = "(center, diameter, duration, *, a=(1, 0, 0), b=(0, 1, 0))")]
-pub fn circle(center: &Bound<'_, PyAny>, diameter: f64, duration: f64, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
+pub fn circle(center: &Bound<'_, PyAny>, diameter: f64, duration: f64, a: Direction, b: Direction) -> PyResult<PyPath> {
     Ok(Path::new(Circle::new(plane(center, a, b)?, diameter, duration).map_err(raise)?).into())
 }
 
 /// The letter M about `center` (3,), `width` along `a` and `height` along `b` (m), its four segments equally long in
 /// time (Khan et al. 2022).
 #[pyfunction]
-#[pyo3(signature = (center, duration, *, width, height, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]),
+#[pyo3(signature = (center, duration, *, width, height, a=Direction([0.0, 1.0, 0.0]), b=Direction([0.0, 0.0, 1.0])),
        text_signature = "(center, duration, *, width, height, a=(0, 1, 0), b=(0, 0, 1))")]
 pub fn letter_m(
     center: &Bound<'_, PyAny>,
     duration: f64,
     width: f64,
     height: f64,
-    a: [f64; 3],
-    b: [f64; 3],
+    a: Direction,
+    b: Direction,
 ) -> PyResult<PyPath> {
     Ok(Path::new(Polyline::letter_m(&plane(center, a, b)?, width, height, duration).map_err(raise)?).into())
 }
@@ -40,7 +51,7 @@ pub fn letter_m(
 /// A hypotrochoid about `center` (3,): the path of a point at `distance` from the centre of a circle that rolls inside
 /// another (m). Eq. (20) of Khan et al. (2022) as it was meant; the ratio of the radii is one of small whole numbers.
 #[pyfunction]
-#[pyo3(signature = (center, duration, *, outer_radius, inner_radius, distance, a=[0.0, 1.0, 0.0], b=[0.0, 0.0, 1.0]),
+#[pyo3(signature = (center, duration, *, outer_radius, inner_radius, distance, a=Direction([0.0, 1.0, 0.0]), b=Direction([0.0, 0.0, 1.0])),
        text_signature = "(center, duration, *, outer_radius, inner_radius, distance, a=(0, 1, 0), b=(0, 0, 1))")]
 pub fn hypotrochoid(
     center: &Bound<'_, PyAny>,
@@ -48,8 +59,8 @@ pub fn hypotrochoid(
     outer_radius: f64,
     inner_radius: f64,
     distance: f64,
-    a: [f64; 3],
-    b: [f64; 3],
+    a: Direction,
+    b: Direction,
 ) -> PyResult<PyPath> {
     let curve = Hypotrochoid::new(plane(center, a, b)?, outer_radius, inner_radius, distance, duration);
     Ok(Path::new(curve.map_err(raise)?).into())
@@ -58,23 +69,29 @@ pub fn hypotrochoid(
 /// A five-pointed star about `center` (3,), its points `radius` (m) away, drawn in five segments at constant speed from
 /// the point on the side of `b`.
 #[pyfunction]
-#[pyo3(signature = (center, duration, *, radius, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+#[pyo3(signature = (center, duration, *, radius, a=Direction([1.0, 0.0, 0.0]), b=Direction([0.0, 1.0, 0.0])),
        text_signature = "(center, duration, *, radius, a=(1, 0, 0), b=(0, 1, 0))")]
-pub fn pentagram(center: &Bound<'_, PyAny>, duration: f64, radius: f64, a: [f64; 3], b: [f64; 3]) -> PyResult<PyPath> {
+pub fn pentagram(
+    center: &Bound<'_, PyAny>,
+    duration: f64,
+    radius: f64,
+    a: Direction,
+    b: Direction,
+) -> PyResult<PyPath> {
     Ok(Path::new(Polyline::pentagram(&plane(center, a, b)?, radius, duration).map_err(raise)?).into())
 }
 
 /// A rose about `center` (3,): at angle u the distance is radius cos(k u) (m). Odd k gives k petals, even k 2 k.
 #[pyfunction]
-#[pyo3(signature = (center, duration, *, radius, k, a=[1.0, 0.0, 0.0], b=[0.0, 1.0, 0.0]),
+#[pyo3(signature = (center, duration, *, radius, k, a=Direction([1.0, 0.0, 0.0]), b=Direction([0.0, 1.0, 0.0])),
        text_signature = "(center, duration, *, radius, k, a=(1, 0, 0), b=(0, 1, 0))")]
 pub fn rose(
     center: &Bound<'_, PyAny>,
     duration: f64,
     radius: f64,
     k: i128,
-    a: [f64; 3],
-    b: [f64; 3],
+    a: Direction,
+    b: Direction,
 ) -> PyResult<PyPath> {
     Ok(Path::new(Rose::new(plane(center, a, b)?, radius, count("k", k)?, duration).map_err(raise)?).into())
 }

@@ -113,6 +113,10 @@ impl PyPath {
         self.state(py)?.eq(other.state(py)?)
     }
 
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        self.state(py)?.hash()
+    }
+
     /// Functions go along as far as they pickle themselves: those that a module names do, lambdas do not.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         stored::restored_from::<Self>(py, self.state(py)?)

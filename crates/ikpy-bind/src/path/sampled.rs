@@ -1,6 +1,6 @@
 //! Paths as the core runs along them: Python functions are called here, before it does.
 
-use ikcore::math::ticks::ticks;
+use ikcore::math::ticks::ticks_of_path;
 use ikcore::nalgebra::Matrix3;
 use ikcore::path::Reference;
 use ikcore::planning::TipPath;
@@ -19,7 +19,7 @@ impl PyPath {
         if let (Curve::Core(path), Orientation::OfCurve) = (&self.curve, &self.orientation) {
             return path.sample(dt).map_err(raise);
         }
-        let count = ticks(self.duration(), dt).map_err(raise)? + 1;
+        let count = ticks_of_path(self.duration(), dt).map_err(raise)? + 1;
         let (positions, rotations) = self.at(py, (0..count).map(|i| (i as f64 * dt).min(self.duration())))?;
         Reference::new(dt, positions, rotations).map_err(raise)
     }

@@ -5,11 +5,12 @@ use ikcore::stored::{from_bytes, to_bytes};
 use pyo3::prelude::*;
 
 use crate::error::raise;
+use crate::hash::content_hash;
 use crate::stored::{self, Reduced};
 
 /// A bound that a planned trajectory breaks; `str` says it in words.
 #[pyclass(name = "Violation", module = "beetle_ik", frozen, eq)]
-#[derive(PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct PyViolation(pub Violation);
 
 #[pymethods]
@@ -44,6 +45,10 @@ impl PyViolation {
 
     fn __repr__(&self) -> String {
         format!("<Violation: {}>", self.0)
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

@@ -9,12 +9,13 @@ use super::PyRobot;
 use super::kinematics::in_pieces;
 use crate::convert::{Rows, row, rows, table, vector};
 use crate::error::raise;
+use crate::hash::content_hash;
 use crate::stored::{self, Reduced};
 
 /// The tip velocities that unit joint speeds give, |q'| = 1: an ellipsoid with one semi-axis per direction in which the
 /// tip can move, the longest first.
 #[pyclass(name = "VelocityEllipsoid", module = "beetle_ik", frozen, eq)]
-#[derive(PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct PyVelocityEllipsoid(Ellipsoid);
 
 #[pymethods]
@@ -53,6 +54,10 @@ impl PyVelocityEllipsoid {
     fn __repr__(&self) -> String {
         let lengths: Vec<String> = self.0.lengths.iter().map(|length| format!("{length:.4}")).collect();
         format!("<VelocityEllipsoid: lengths {}>", lengths.join(", "))
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

@@ -17,8 +17,9 @@ use pyo3::types::{PyDict, PyTuple};
 
 pub use manipulability::PyVelocityEllipsoid;
 
-use crate::convert::{copied, row};
+use crate::convert::{copied, counted, row};
 use crate::error::raise;
+use crate::hash::content_hash;
 use crate::limits::PyLimits;
 use crate::stored::{self, Reduced};
 
@@ -121,10 +122,16 @@ impl PyRobot {
         capsules.map(|c| (c.link.clone(), copied(py, &c.a), copied(py, &c.b), c.radius)).collect()
     }
 
+    /// Of what tells most robots apart: the name, the joints with their limits, the links.
+    fn __hash__(&self) -> u64 {
+        content_hash(&(self.core.name(), self.core.joints(), self.core.link_names().collect::<Vec<_>>()))
+    }
+
     fn __repr__(&self) -> String {
-        let (name, n, mut links) = (self.core.name(), self.core.dof(), self.core.link_names());
+        let (name, joints) = (self.core.name(), counted(self.core.dof(), "joint"));
+        let mut links = self.core.link_names();
         let base = links.next().unwrap_or_default();
-        format!("<Robot '{name}': {n} joints, {base} to {}>", links.last().unwrap_or(base))
+        format!("<Robot '{name}': {joints}, {base} to {}>", links.last().unwrap_or(base))
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

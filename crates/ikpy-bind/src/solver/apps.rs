@@ -20,7 +20,7 @@ use crate::options::options;
 ///     error_threshold: E_0; the search ends after the first update from an E of at most this much, whether the
 ///         tolerances of the call are met or not. None: it ends when they are met.
 #[pyclass(name = "APPS", module = "beetle_ik", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyApps(pub Apps);
 
 #[pymethods]

@@ -20,7 +20,7 @@ use crate::options::options;
 ///
 /// The error band of the paper is the tolerance of the call.
 #[pyclass(name = "BAS", module = "beetle_ik", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyBas(pub Bas);
 
 #[pymethods]

@@ -25,7 +25,7 @@ use crate::options::options;
 ///     sensor_delay: measurements by which the plant's sensor is late: every command is sent so many times more, and the
 ///         last answer counts.
 #[pyclass(name = "BroydenBAS", module = "beetle_ik", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyBroydenBas(pub BroydenBas);
 
 #[pymethods]

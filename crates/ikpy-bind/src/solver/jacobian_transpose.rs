@@ -14,7 +14,7 @@ use crate::options::options;
 ///     step_size: how far a step goes along the transposed Jacobian times the error; "auto": where the linearised error
 ///         is smallest (Buss 2004).
 #[pyclass(name = "JacobianTranspose", module = "beetle_ik", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyJacobianTranspose(pub JacobianTranspose);
 
 #[pymethods]

@@ -14,7 +14,7 @@ use crate::options::options;
 /// Args:
 ///     initial_damping: damping over squared error at the start; larger is more careful far from the target.
 #[pyclass(name = "LevenbergMarquardt", module = "beetle_ik", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyLevenbergMarquardt(pub LevenbergMarquardt);
 
 #[pymethods]

@@ -7,6 +7,7 @@ use pyo3::types::{IntoPyDict, PyTuple};
 use super::{any_solver, to_python};
 use crate::convert::count;
 use crate::error::{invalid, raise};
+use crate::hash::content_hash;
 use crate::options::NewArguments;
 
 /// A solver begun again from random starts when it stalls, or when its attempt is hopeless: a few steps that bring
@@ -16,7 +17,7 @@ use crate::options::NewArguments;
 ///     solver: any other, such as `BAS` or `LevenbergMarquardt`.
 ///     max_starts: starts in all; None: as many as the evaluation budget allows.
 #[pyclass(name = "MultiStart", module = "beetle_ik", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyMultiStart(pub MultiStart<Algorithm>);
 
 #[pymethods]
@@ -50,6 +51,10 @@ impl PyMultiStart {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let starts = self.max_starts().map_or_else(String::new, |count| format!(", max_starts={count}"));
         Ok(format!("MultiStart({}{starts})", self.solver(py)?.repr()?))
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {

@@ -14,7 +14,7 @@ use crate::options::options;
 /// Args:
 ///     step_fraction: share of the full step that is taken, above 0 and at most 1.
 #[pyclass(name = "NewtonRaphson", module = "beetle_ik", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyNewtonRaphson(pub NewtonRaphson);
 
 #[pymethods]

@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 
 use super::schedule::{limited, schedule, scheduled, show_schedule};
 use crate::error::raise;
+use crate::hash::content_hash;
 use crate::options::{NewArguments, Shown, keywords};
 
 /// Particle swarm optimisation: uses values alone.
@@ -28,7 +29,7 @@ use crate::options::{NewArguments, Shown, keywords};
 ///     max_generations: after so many it gives up; None: as many as the budget allows.
 ///     stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None: never.
 #[pyclass(name = "PSO", module = "beetle_ik", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyPso(pub Pso);
 
 scheduled!(PyPso);
@@ -121,6 +122,10 @@ impl PyPso {
             schedule.population,
             show_schedule(schedule)
         )
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {

@@ -9,6 +9,7 @@ use pyo3::types::IntoPyDict;
 
 use crate::convert::optional_count;
 use crate::error::{invalid, raise};
+use crate::hash::content_hash;
 use crate::options::{NewArguments, Shown, keywords};
 
 static STATUS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
@@ -24,13 +25,19 @@ pub fn status_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
         let plain = enums.getattr("Enum")?;
         class.setattr("__str__", plain.getattr("__str__")?)?;
         class.setattr("__format__", plain.getattr("__format__")?)?;
-        class.setattr(
-            "__doc__",
-            "How a solve, one item of a batch or one step of a track ended. `SOLVED` alone is success.",
-        )?;
+        class.setattr("__doc__", documentation())?;
+        for status in Status::ALL {
+            class.getattr(status.name())?.setattr("__doc__", status.meaning())?;
+        }
         Ok::<_, PyErr>(class.unbind())
     })?;
     Ok(class.bind(py))
+}
+
+fn documentation() -> String {
+    let members = Status::ALL.iter().map(|status| format!("- `{}`: {}\n", status.name(), status.meaning()));
+    let summary = "How a solve, one item of a batch or one step of a track ended. `SOLVED` alone is success.";
+    format!("{summary}\n\n{}", members.collect::<String>())
 }
 
 /// The member of `Status`.
@@ -48,7 +55,7 @@ pub fn status(py: Python<'_>, status: Status) -> PyResult<Bound<'_, PyAny>> {
 ///     value_below: a value that is good enough: of the function in `minimize`, where reaching it is success; elsewhere of
 ///         the weighted sum of squared errors (m, rad), where a search that stops there ends as IMPROVED.
 #[pyclass(name = "Stop", module = "beetle_ik", frozen, eq)]
-#[derive(PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct PyStop {
     /// See the class.
     #[pyo3(get)]
@@ -98,6 +105,10 @@ impl PyStop {
             max_time.text(),
             value_below.text(),
         )
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 use super::schedule::{limited, schedule, scheduled, show_schedule};
 use crate::error::raise;
+use crate::hash::content_hash;
 use crate::options::{NewArguments, Shown, Taken, keywords};
 
 /// The class of a solver whose options are a schedule and these.
@@ -17,7 +18,7 @@ macro_rules! swarm {
         ///     stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
         ///         never.
         #[pyclass(name = $name, module = "beetle_ik", frozen, eq, from_py_object)]
-        #[derive(Clone, PartialEq)]
+        #[derive(Debug, Clone, PartialEq)]
         pub struct $class(pub $core);
 
         scheduled!($class);
@@ -54,6 +55,10 @@ macro_rules! swarm {
                 let options = [$(format!("{}={}, ", stringify!($option), self.0.$option.text())),*].concat();
                 let schedule = &self.0.schedule;
                 format!("{}(population={}, {options}{})", $name, schedule.population, show_schedule(schedule))
+            }
+
+            fn __hash__(&self) -> u64 {
+                content_hash(self)
             }
 
             fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use super::session::in_progress;
 use super::step::PyStep;
 use super::znnbas::PyZnnbas;
-use crate::convert::{copied, count, point, summary, vector};
+use crate::convert::{copied, count, counted, point, summary, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::solver::PyBroydenBas;
@@ -59,7 +59,8 @@ impl PyControlSession {
 
     fn __repr__(&self) -> String {
         let session = self.session();
-        format!("<ControlSession of {} joints at t = {} s, dt = {} s>", session.q().len(), session.time(), session.dt())
+        let joints = counted(session.q().len(), "joint");
+        format!("<ControlSession of {joints} at t = {} s, dt = {} s>", session.time(), session.dt())
     }
 }
 

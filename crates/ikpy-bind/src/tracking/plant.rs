@@ -11,6 +11,7 @@ use pyo3::types::{PyDict, PyList, PyListMethods, PyTuple};
 
 use crate::convert::{array, count, shape_text, summary, vector};
 use crate::error::{invalid, raise};
+use crate::hash::content_hash;
 use crate::options::NewArguments;
 use crate::robot::PyRobot;
 
@@ -69,6 +70,10 @@ impl PyKinematicPlant {
             let other = other.get();
             (self.core.robot(), self.noise(), self.seed) == (other.core.robot(), other.noise(), other.seed)
         })
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(&(self.core.robot().name(), self.noise(), self.seed))
     }
 
     fn __repr__(&self) -> String {

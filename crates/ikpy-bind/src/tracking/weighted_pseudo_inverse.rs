@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 use crate::convert::{row, vector};
 use crate::error::raise;
+use crate::hash::content_hash;
 use crate::options::{NewArguments, Shown, keywords};
 use crate::trajectory::PyTrajectory;
 
@@ -30,7 +31,7 @@ use crate::trajectory::PyTrajectory;
 ///     damping: over the squared size of the weighted Jacobian; 0 is the pseudo-inverse itself, which near a singular
 ///         posture asks for all the speed that there is.
 #[pyclass(name = "WeightedPseudoInverse", module = "beetle_ik", frozen, eq)]
-#[derive(PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct PyWeightedPseudoInverse(WeightedPseudoInverse);
 
 #[pymethods]
@@ -105,6 +106,10 @@ impl PyWeightedPseudoInverse {
              posture_gain={posture_gain:?}, damping={damping:?})",
             integrator.name()
         )
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {

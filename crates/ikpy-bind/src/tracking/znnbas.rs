@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 
 use crate::convert::count;
 use crate::error::{invalid, raise};
+use crate::hash::content_hash;
 use crate::limits::PerJoint;
 use crate::options::{NewArguments, keywords};
 
@@ -30,7 +31,7 @@ use crate::options::{NewArguments, keywords};
 ///
 /// The constants of the paper: `ZNNBAS(gain=10, antenna_length=0.1, delay_steps=10)`.
 #[pyclass(name = "ZNNBAS", module = "beetle_ik", frozen, eq, from_py_object)]
-#[derive(Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PyZnnbas {
     core: Znnbas,
     /// The constant antenna, as given.
@@ -128,6 +129,10 @@ impl PyZnnbas {
             "ZNNBAS(gain={gain:?}, {antenna}, delay_steps={delay_steps}, delay='{delay}', accept='{accept}', \
              sensor_delay={sensor_delay})"
         )
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
     }
 
     fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {

@@ -9,8 +9,6 @@ mod mimic;
 mod tree;
 mod xml;
 
-use std::path::Path;
-
 use self::document::Document;
 use self::tree::Tree;
 use super::model::Robot;
@@ -59,9 +57,9 @@ impl Robot {
 fn read(path: &str) -> Result<String> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| Error::Unreadable { path: path.into(), problem: error.to_string() })?;
-    if Path::new(path).extension().is_some_and(|extension| extension == "xacro") {
-        let urdf = Path::new(path).with_extension("urdf");
-        let problem = format!("'{path}' is a xacro file: run `xacro {path} > {}` and load the result", urdf.display());
+    if let Some(stem) = path.strip_suffix(".xacro") {
+        let stem = stem.strip_suffix(".urdf").unwrap_or(stem);
+        let problem = format!("'{path}' is a xacro file: run `xacro {path} > {stem}.urdf` and load the result");
         return Err(Error::Urdf { line: None, problem });
     }
     Ok(text)

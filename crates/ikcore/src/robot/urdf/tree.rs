@@ -47,11 +47,16 @@ impl<'a> Tree<'a> {
 
     /// The link of this name.
     pub(super) fn link(&self, name: &str) -> Result<&'a str> {
-        let links = || self.document.model.links.iter().map(|link| link.name.as_str());
+        let model = &self.document.model;
+        let links = || model.links.iter().map(|link| link.name.as_str());
+        let moved_by = model.joints.iter().find(|joint| joint.name == name).map(|joint| &joint.child.link);
         links().find(|link| *link == name).ok_or_else(|| Error::UnknownLink {
-            robot: self.document.model.name.clone(),
+            robot: model.name.clone(),
             name: name.into(),
-            suggestion: suggestion(name, links()),
+            suggestion: match moved_by {
+                Some(link) => format!(" (did you mean '{link}', the link that the joint of this name moves?)"),
+                None => suggestion(name, links()),
+            },
             known: links().collect::<Vec<_>>().join(", "),
         })
     }

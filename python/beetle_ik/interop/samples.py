@@ -1,0 +1,24 @@
+"""The samples of a trajectory that go to other libraries."""
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import InvalidInputError, Trajectory
+
+Samples: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+
+
+def samples(trajectory: Trajectory, dt: float | None) -> Samples:
+    """Times (k,) (s), and positions, velocities and accelerations (k, n) there: every `dt` (s), or at the knots.
+
+    Raises:
+        InvalidInputError: no trajectory, such as a result that has one, or `dt` not positive.
+    """
+    if not isinstance(trajectory, Trajectory):
+        hint = ": give its .trajectory" if hasattr(trajectory, "trajectory") else ""
+        raise InvalidInputError(f"trajectory must be a Trajectory, got {trajectory!r:.60}{hint}")
+    if dt is None:
+        return trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd
+    return trajectory.sample(dt)
