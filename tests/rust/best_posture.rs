@@ -91,7 +91,7 @@ fn back_to(robot: &Robot, target: &Target, q: &DVector<f64>) -> DVector<f64> {
 
 #[test]
 fn seven_joint_arms_find_the_best_of_the_scan() {
-    for name in ["iiwa14", "panda", "gen3"] {
+    for name in ["iiwa14", "panda"] {
         let arm = robot(name);
         let measure = Manipulability::of(&arm, Motion::Pose);
         for q in arm.random_configurations(3, &mut rng::stream(5, 0)).unwrap().chunks(7) {
