@@ -1,10 +1,11 @@
 //! Of several solutions, the one that serves the goals best: the self-motion of a target may have several branches, and
 //! on each of them several places where nothing near is better.
 
+use super::arcs::Promise;
 use super::flip::flips;
 use super::nearest::bring_near;
 use super::prepared::Prepared;
-use super::round::{Promise, Round, Visit};
+use super::round::{Round, Visit};
 use super::run::Run;
 use super::solution::Solution;
 use crate::objective::{Bounds, Objective, Point};

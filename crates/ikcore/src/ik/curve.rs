@@ -33,10 +33,11 @@ pub(super) struct Place {
     pub along: Point,
 }
 
-/// What a step along a curve comes to.
+/// What a step led along.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Step {
-    /// From the place before to here, with no corner between.
-    Smooth(Place),
+    /// A stretch of the curve, from the place before to here.
+    Smooth,
     /// Past a corner: another curve may have been caught, what lies between is not known.
     Corner,
 }
@@ -101,7 +102,7 @@ impl<'w, 'p> Walk<'w, 'p> {
         self.length = LONGEST;
     }
 
-    /// The next step: the place it leaves, and what it comes to. None where no evaluations are left for it.
+    /// The next step: the place it leaves, and what it leads along. None where no evaluations are left for it.
     pub fn step(&mut self) -> Option<(Place, Step)> {
         while self.evaluations + MOST_CORRECTIONS <= self.max_evaluations {
             let (there, aside) = self.try_step();
@@ -111,17 +112,17 @@ impl<'w, 'p> Walk<'w, 'p> {
                 self.length *= 0.5;
                 continue;
             }
-            let from = std::mem::replace(&mut self.here, there.clone());
+            let from = std::mem::replace(&mut self.here, there);
             if !is_smooth {
                 self.bend.fill(0.0);
                 return Some((from, Step::Corner));
             }
-            let turn = difference(&there.along, &from.along);
+            let turn = difference(&self.here.along, &from.along);
             self.bend = turn.into_iter().map(|turn| turn / self.length).collect();
             if cosine > STRAIGHT {
                 self.length = (2.0 * self.length).min(LONGEST);
             }
-            return Some((from, Step::Smooth(there)));
+            return Some((from, Step::Smooth));
         }
         None
     }

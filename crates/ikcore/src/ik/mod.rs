@@ -1,6 +1,7 @@
 //! Inverse kinematics: one target, one answer, or all of them.
 
 mod all;
+mod arcs;
 mod best;
 mod curve;
 mod flip;
