@@ -1,9 +1,13 @@
 //! Inverse kinematics: one target, one answer, or all of them.
 
 mod all;
+mod arcs;
 mod best;
+mod curve;
+mod flip;
 mod nearest;
 mod prepared;
+mod room;
 mod round;
 mod run;
 mod self_motion;
@@ -67,7 +71,9 @@ pub struct SolveOptions {
 /// [`Prefer::Nearest`] further solutions are sought from starts spread ever wider about the given one, each moved along the
 /// self-motion and by whole turns towards it, until twelve in a row are no nearer or the budget is spent. Near is what has the
 /// smallest |q - start|, joints counted in rad and m. With [`Prefer::Best`] solutions are sought from all over until 40 in
-/// a row, each moved along the self-motion, serve the goals no better.
+/// a row, each moved along the self-motion, serve the goals no better. An arm with one joint more than its task needs is led
+/// once along every curve of solutions, past the limits that cut it, until 40 solutions or 1200 evaluations in a row meet
+/// no new curve.
 ///
 /// # Errors
 /// Any [`Error`](crate::Error) for wrong input. A target that is not reached is a status, not an error.

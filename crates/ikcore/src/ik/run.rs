@@ -3,7 +3,7 @@
 use super::prepared::Prepared;
 use super::solution::Solution;
 use super::unreached::obstruction;
-use crate::objective::{Differentiable, Objective, Point};
+use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::solver::stop::Stopwatch;
@@ -57,8 +57,9 @@ impl Run {
         rng: &mut LazyRng,
         monitor: &mut dyn Monitor,
     ) -> Solution {
+        let bounds = prepared.bounds();
         let Some(descent) = prepared.options().solver.restarted_descent() else {
-            let (status, q) = self.search(prepared, problem, x0, 0, rng, monitor);
+            let (status, q) = self.search(prepared, problem, bounds, x0, 0, rng, monitor);
             return self.explained(status, q, prepared, problem);
         };
         let reserve = if self.left() > 10 * RESERVE { RESERVE } else { 0 };
@@ -66,7 +67,7 @@ impl Run {
             let q = self.approach(prepared, problem, descent, x0, rng, monitor);
             return self.explained(Status::OutOfReach, q, prepared, problem);
         }
-        let (status, q) = self.search(prepared, problem, x0, reserve, rng, monitor);
+        let (status, q) = self.search(prepared, problem, bounds, x0, reserve, rng, monitor);
         if !matches!(status, Status::BudgetSpent | Status::Stalled) {
             return self.explained(status, q, prepared, problem);
         }
@@ -74,11 +75,13 @@ impl Run {
         self.explained(if solved { Status::Solved } else { status }, q, prepared, problem)
     }
 
-    /// The solver's own run, leaving `reserve` evaluations.
-    fn search(
+    /// The solver's own run within `bounds`, leaving `reserve` evaluations.
+    #[allow(clippy::too_many_arguments)]
+    pub fn search(
         &mut self,
         prepared: &Prepared<'_>,
         problem: &mut Problem<'_>,
+        bounds: &Bounds,
         x0: &[f64],
         reserve: usize,
         rng: &mut LazyRng,
@@ -86,7 +89,7 @@ impl Run {
     ) -> (Status, Point) {
         let stop = self.rest(reserve);
         let objective: &mut dyn Differentiable = problem;
-        let mut evaluator = Evaluator::new(objective, prepared.bounds(), stop, rng, monitor);
+        let mut evaluator = Evaluator::new(objective, bounds, stop, rng, monitor);
         let outcome = prepared.options().solver.run(&mut evaluator, x0);
         self.evaluations += evaluator.evaluations();
         self.restarts += evaluator.attempts() - 1;

@@ -47,7 +47,7 @@ impl SelfMotion<'_, '_> {
     pub fn descend(&mut self, q: &mut Point) -> bool {
         let begin = self.place(q.clone());
         let was_solved = self.problem.assess(q).score.solved;
-        if !self.correct(q) {
+        if self.max_evaluations < MOST_CORRECTIONS || !self.correct(q) {
             *q = begin.q;
             return was_solved;
         }

@@ -1,10 +1,11 @@
-//! Rotations, rigid transforms, fast sines, singular values, polynomials, splines, knots in time and the one bounded step.
+//! Rotations, rigid transforms, fast sines, singular values, polynomials, cubics between two ends, splines, knots in time and the one bounded step.
 //! Plain arrays where it is hot, nalgebra elsewhere.
 
 pub mod arithmetic;
 pub mod box_step;
 pub mod cubic_spline;
 pub mod frame;
+pub mod hermite;
 pub mod interval;
 pub mod knots;
 pub mod logarithm;

@@ -2,6 +2,7 @@
 
 use super::Target;
 use crate::math::Frame;
+use crate::math::hermite::Cubic;
 use crate::math::so3::{rotated, rotation_between};
 
 /// A target on its way: from where it is at the beginning of a tick to where it is at the end. Positions follow the cubic
@@ -33,7 +34,9 @@ impl TargetMotion {
         let (from, to) = (self.begin.position().unwrap_or_default(), self.end.position().unwrap_or_default());
         let straight: [f64; 3] = std::array::from_fn(|k| (to[k] - from[k]) / self.dt);
         let [v0, v1] = self.velocities.unwrap_or([straight; 2]);
-        let (position, linear) = hermite(share, self.dt, [from, to], [v0, v1]);
+        let entry = |k: usize| Cubic::new([from[k], to[k]], [self.dt * v0[k], self.dt * v1[k]]);
+        let position = std::array::from_fn(|k| entry(k).at(share));
+        let linear = std::array::from_fn(|k| entry(k).slope(share) / self.dt);
         let turn = match (self.begin.frame(), self.end.frame()) {
             (Some(begin), Some(end)) => rotation_between(begin, end),
             _ => [0.0; 3],
@@ -68,19 +71,6 @@ impl Target {
             Self::Pointing { frame, axis } => Self::Pointing { frame: placed(frame), axis: *axis },
         }
     }
-}
-
-/// Value and velocity, after a share s of `dt`, of the cubic between two points with these velocities.
-fn hermite(s: f64, dt: f64, [from, to]: [[f64; 3]; 2], [v0, v1]: [[f64; 3]; 2]) -> ([f64; 3], [f64; 3]) {
-    let value = |k: usize| {
-        let (chord, left, right) = (to[k] - from[k], dt * v0[k], dt * v1[k]);
-        from[k] + s * (left + s * (3.0 * chord - 2.0 * left - right + s * (left + right - 2.0 * chord)))
-    };
-    let slope = |k: usize| {
-        let (chord, left, right) = (to[k] - from[k], dt * v0[k], dt * v1[k]);
-        (left + s * (6.0 * chord - 4.0 * left - 2.0 * right + 3.0 * s * (left + right - 2.0 * chord))) / dt
-    };
-    (std::array::from_fn(value), std::array::from_fn(slope))
 }
 
 #[cfg(test)]
