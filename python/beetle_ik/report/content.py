@@ -12,8 +12,9 @@ from enum import Enum, StrEnum
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
-    from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure as Drawing
+
+    from .._frames import Frames
 
 _FILE_STEM = re.compile(r"[a-z0-9_]+")
 
@@ -160,7 +161,7 @@ class Figure:
     """Made by `report.drawing`."""
     caption: str = ""
     """What to look at, and what it means."""
-    frames: FuncAnimation | None = None
+    frames: Frames | None = None
     """What moves in the drawing."""
 
     def __post_init__(self) -> None:

@@ -31,7 +31,12 @@ def draw_arm(axes: Axes, plan: bik.Plan, snapshots: int = 5) -> None:
     tip = plan.robot.fk(q)[:, :2, 3]
     axes.plot(*tip.T, color=BLUE, label="tip")
     axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize="small", columnspacing=1.0)
+    legend_above(axes, columns=3)
+
+
+def legend_above(axes: Axes, *, columns: int) -> None:
+    """Where it covers nothing."""
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, fontsize="small", columnspacing=1.0)
 
 
 def draw_search(axes: Axes, plans: Sequence[bik.Plan], *, name: str, color: str, evaluations: int) -> None:
@@ -44,9 +49,6 @@ def draw_search(axes: Axes, plans: Sequence[bik.Plan], *, name: str, color: str,
     axes.fill_between(counts[found], mean - spread, mean + spread, color=color, alpha=0.2, linewidth=0)
     axes.plot(counts[found], mean, color=color, label=name)
     axes.set(xscale="log", yscale="log", xlabel="evaluations")
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_minor_formatter("{x:g}")
-    axes.tick_params(axis="y", which="minor", labelsize="x-small")
 
 
 def draw_bound(axes: Axes, value: float, name: str) -> None:

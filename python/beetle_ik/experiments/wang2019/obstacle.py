@@ -23,7 +23,7 @@ from ...report import (
     number,
 )
 from ..experiment import Context
-from .drawing import draw_arm, draw_bound, draw_joints, draw_search
+from .drawing import draw_arm, draw_bound, draw_joints, draw_search, legend_above
 from .settings import EVALUATIONS, SAME_EVALUATIONS, TPBSO, Search, each
 
 if TYPE_CHECKING:
@@ -81,13 +81,13 @@ def _draw(found: dict[str, list[bik.Plan]]) -> Drawing:
     best = min(sound, key=lambda plan: plan.cost)
     with drawing(2.9) as figure:
         search, space, joints = figure.subplots(1, 3, width_ratios=[1.0, 0.8, 1.0])
-        for (name, plans), color in zip(found.items(), (BLUE, GREEN), strict=True):
+        for plans, name, color in zip(found.values(), ("TPBSO", "DE"), (BLUE, GREEN), strict=True):
             clear = [plan for plan in plans if plan.success]
             if clear:
                 draw_search(search, clear, name=name, color=color, evaluations=EVALUATIONS)
         draw_bound(search, _TANGENT, "shortest way round")
         search.set(ylabel="way of the tip [m]", ylim=(1.5, None))
-        search.legend()
+        legend_above(search, columns=3)
         width, height = (2 * semi_axis for semi_axis in _SEMI_AXES)
         space.add_patch(Ellipse(_CENTER, width, height, color=FORBIDDEN, label="obstacle"))
         draw_arm(space, best)

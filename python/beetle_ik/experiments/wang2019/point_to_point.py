@@ -26,7 +26,7 @@ from ...report import (
     number,
 )
 from ..experiment import Context
-from .drawing import draw_arm, draw_bound, draw_joints, draw_search
+from .drawing import draw_arm, draw_bound, draw_joints, draw_search, legend_above
 from .settings import (
     EVALUATIONS,
     LINKS,
@@ -138,7 +138,7 @@ def _draw(case: Case) -> Drawing:
         draw_search(search, evolution, name="DE", color=GREEN, evaluations=EVALUATIONS)
         draw_bound(search, bound, name)
         search.set(ylabel=f"{case.objective.replace('_', ' ')} [{_UNITS[case.objective]}]", ylim=(0.8 * bound, None))
-        search.legend()
+        legend_above(search, columns=3)
         draw_arm(space, best)
         draw_joints(joints, best)
     return figure
