@@ -27,7 +27,7 @@ from ...report import (
 )
 from ..experiment import Context
 from .drawing import draw_arm, draw_bound, draw_search
-from .settings import ALONG_PATH, EVOLUTION, Criterion, each, pentagram, trefoil
+from .settings import ALONG_PATH, EVOLUTION, SCATTER, Criterion, each, pentagram, trefoil
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 TITLE = "Along a path"
 _SEEDS = 20
-_SEEDS_SHORT = 4
+_SEEDS_SHORT = 2
 _EVALUATIONS = 50 * (3 * 100 + 1)
 _UNITS: dict[Criterion, str] = {"time": "s", "joint_travel": "rad"}
 _WORDS: dict[Criterion, str] = {"time": "least time", "joint_travel": "least rotation"}
@@ -94,7 +94,9 @@ def along_path(context: Context) -> tuple[Section, list[Claim]]:
                 caption="Best cost so far; the best plan; how its last link stands; how far the tip is off.",
             )
         )
-    return Section(TITLE, [*blocks, _moving(cases[0]), _table(cases)]), _claims(cases)
+    scatter = context.pick(full=1.0, short=SCATTER)
+    claims = [_claim(case, scatter) for case in cases if case.objective == "time"]
+    return Section(TITLE, [*blocks, _moving(cases[0]), _table(cases)]), claims
 
 
 def _case(name: str, objective: Criterion, path: Any, accuracy: float, seeds: range) -> Case:
@@ -214,20 +216,13 @@ def _table(cases: list[Case]) -> Table:
     )
 
 
-def _claims(cases: list[Case]) -> list[Claim]:
-    claims = []
-    for case in (case for case in cases if case.objective == "time"):
-        mean, bound = sum(plan.cost for plan in case.plans) / len(case.plans), _ACCEPTED[case.name]
-        claims.append(
-            Claim.checked(
-                f"The manipulator follows the {case.name} in little time.",
-                source="Section IV-C, Figure 13" if case.name == "pentagram" else "Section IV-C, Figure 15",
-                measured=(
-                    f"{number(mean)} s on average (at most {number(bound)} s), within {number(1e3 * case.accuracy)} mm"
-                ),
-                holds=mean <= bound and all(plan.success for plan in case.plans),
-                reading="Path, links and limits are ours; eq. (25) needs weights, which it lacks.",
-                section=TITLE,
-            )
-        )
-    return claims
+def _claim(case: Case, scatter: float) -> Claim:
+    mean, bound = sum(plan.cost for plan in case.plans) / len(case.plans), scatter * _ACCEPTED[case.name]
+    return Claim.checked(
+        f"The manipulator follows the {case.name} in little time.",
+        source="Section IV-C, Figure 13" if case.name == "pentagram" else "Section IV-C, Figure 15",
+        measured=f"{number(mean)} s on average (at most {number(bound)} s), within {number(1e3 * case.accuracy)} mm",
+        holds=mean <= bound and all(plan.success for plan in case.plans),
+        reading="Path, links and limits are ours; eq. (25) needs weights, which it lacks.",
+        section=TITLE,
+    )

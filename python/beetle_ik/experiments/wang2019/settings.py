@@ -29,6 +29,8 @@ def limits(acceleration: float) -> bik.Limits:
     return bik.Limits(lower=-np.inf, upper=np.inf, velocity=np.pi, acceleration=acceleration)
 
 
+SCATTER = 1.4  # times a bound for means of 20 seeds: what the mean of a quick pass's few may come to
+
 FROM_END_TO_END = limits(2 * np.pi)
 ALONG_PATH = limits(4 * np.pi)
 
