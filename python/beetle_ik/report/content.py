@@ -184,6 +184,10 @@ class Section:
     blocks: Sequence[Block]
 
 
+Part: TypeAlias = tuple[Section, list[Claim]]
+"""A section with the claims that it decides."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Report:
     """What an experiment found."""
@@ -203,6 +207,15 @@ class Report:
         for name in names:
             if names.count(name) > 1:
                 raise ValueError(f"two tables or figures are named '{name}'")
+
+    @classmethod
+    def of(cls, summary: str, parts: Sequence[Part]) -> Report:
+        """A report of several parts, in this order."""
+        return cls(
+            summary=summary,
+            sections=[section for section, _ in parts],
+            claims=[claim for _, claims in parts for claim in claims],
+        )
 
     @property
     def blocks(self) -> list[Block]:

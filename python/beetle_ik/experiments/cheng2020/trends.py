@@ -14,6 +14,7 @@ from ...report import (
     Claim,
     Column,
     Figure,
+    Part,
     Section,
     Spread,
     Table,
@@ -111,7 +112,7 @@ Measurements: TypeAlias = dict[tuple[str, str], list[Measured]]
 """By arm and walk, in the order of the option's values."""
 
 
-def trends(context: Context) -> tuple[Section, list[Claim]]:
+def trends(context: Context) -> Part:
     """All three sweeps on both arms, for both readings of the walk."""
     found = {sweep.figure: _measure(context, sweep) for sweep in _SWEEPS}
     blocks: list[Block] = [_TEXT]

@@ -17,6 +17,7 @@ from ...report import (
     Claim,
     Column,
     Figure,
+    Part,
     Section,
     Spread,
     Table,
@@ -68,7 +69,7 @@ within them.
 """
 
 
-def figures(context: Context) -> tuple[Section, list[Claim]]:
+def figures(context: Context) -> Part:
     """Both paths, with the published antenna and with that of eq. (16), with limits and without."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     cases = {

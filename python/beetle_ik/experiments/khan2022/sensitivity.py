@@ -8,7 +8,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import BLUE, GREEN, ORANGE, PURPLE, VERMILION, Claim, Figure, Section, drawing, number
+from ...report import BLUE, GREEN, ORANGE, PURPLE, VERMILION, Claim, Figure, Part, Section, drawing, number
 from ..experiment import Context
 from .settings import PUBLISHED, M, follow
 
@@ -39,7 +39,7 @@ proportional to v/(k c1), over all settings that are stable (k times the time st
 """
 
 
-def sensitivity(context: Context) -> tuple[Section, list[Claim]]:
+def sensitivity(context: Context) -> Part:
     """Runs on the M over delays, gains and speeds."""
     delays = context.pick(full=_DELAYS, short=_DELAYS_SHORT)
     gains = context.pick(full=_GAINS, short=_GAINS_SHORT)

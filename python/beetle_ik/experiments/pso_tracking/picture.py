@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import Robot, vision
-from ...report import Block, Cell, Claim, Column, Figure, Section, Table, drawing, line, number
+from ...report import Block, Cell, Claim, Column, Figure, Part, Section, Table, drawing, line, number
 from ..experiment import Context
 
 ARM = Robot.planar([0.5, 0.45, 0.4])
@@ -13,7 +13,7 @@ POSE = np.array([0.9, -0.7, -0.6])
 NOISE = 0.08
 
 
-def picture(context: Context) -> tuple[Section, list[Claim]]:
+def picture(context: Context) -> Part:
     """All of it."""
     image = vision.render(ARM, POSE, noise=NOISE, seed=context.seed)
     guess = POSE + np.array([0.1, -0.1, 0.1])

@@ -8,7 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import CircleSwarm, PlanarPosture, Robot, planar_posture
-from ...report import BLUE, GREEN, VERMILION, Block, Cell, Claim, Column, Figure, Section, Table, drawing, line, number
+from ...report import (
+    BLUE,
+    GREEN,
+    VERMILION,
+    Block,
+    Cell,
+    Claim,
+    Column,
+    Figure,
+    Part,
+    Section,
+    Table,
+    drawing,
+    line,
+    number,
+)
 from ..experiment import Context
 
 if TYPE_CHECKING:
@@ -38,7 +53,7 @@ def index(posture: PlanarPosture, measure: _Measure) -> float:
     return float(np.pi * posture.index if measure == "tip" else posture.index)
 
 
-def postures(context: Context) -> tuple[Section, list[Claim]]:
+def postures(context: Context) -> Part:
     """All of it."""
     blocks: list[Block] = [_TEXT]
     claims = []

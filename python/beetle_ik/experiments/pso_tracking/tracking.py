@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import Limits, Robot, TrackResult, Trajectory, WeightedPseudoInverse, paths, track
-from ...report import Block, Cell, Claim, Column, Figure, Printed, Section, Table, drawing, line, number
+from ...report import Block, Cell, Claim, Column, Figure, Part, Printed, Section, Table, drawing, line, number
 from ..experiment import Context
 from .servo import CONTROLLERS, paper_motion, settled
 
@@ -39,7 +39,7 @@ def _joint_error(result: TrackResult) -> NDArray[np.float64]:
     return np.asarray(result.q - np.array([wanted(t) for t in result.time]))
 
 
-def tracking(context: Context) -> tuple[Section, list[Claim]]:
+def tracking(context: Context) -> Part:
     """All of it."""
     time = np.linspace(0.0, DURATION, 401)
     posture = Trajectory.from_samples(

@@ -19,6 +19,7 @@ from ...report import (
     Claim,
     Column,
     Figure,
+    Part,
     Section,
     Spread,
     Table,
@@ -26,8 +27,8 @@ from ...report import (
     number,
 )
 from ..experiment import Context
-from .drawing import draw_arm, draw_bound, draw_search
-from .settings import ALONG_PATH, EVOLUTION, SCATTER, Criterion, each, pentagram, trefoil
+from .drawing import draw_arm, draw_bound, draw_search, label
+from .settings import ALONG_PATH, EVOLUTION, SCATTER, UNITS, WORDS, Criterion, each, pentagram, trefoil
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,8 +38,6 @@ TITLE = "Along a path"
 _SEEDS = 20
 _SEEDS_SHORT = 2
 _EVALUATIONS = 50 * (3 * 100 + 1)
-_UNITS: dict[Criterion, str] = {"time": "s", "joint_travel": "rad"}
-_WORDS: dict[Criterion, str] = {"time": "least time", "joint_travel": "least rotation"}
 _ACCEPTED = {"pentagram": 6.14, "closed curve": 3.72}  # s, mean of TPBSO
 
 _TEXT = """
@@ -75,11 +74,11 @@ class Case:
         return float(bik.time_optimal(self.best.trajectory.q, ALONG_PATH).duration)
 
 
-def along_path(context: Context) -> tuple[Section, list[Claim]]:
+def along_path(context: Context) -> Part:
     """Plan along both paths for both objectives."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     paths = {"pentagram": (pentagram(), 0.04), "closed curve": (trefoil(), 0.02)}
-    which = [(name, objective) for name in paths for objective in _UNITS]
+    which = [(name, objective) for name in paths for objective in UNITS]
     cases = [
         _case(name, objective, *paths[name], seeds)
         for name, objective in context.each("wang2019: Figures 13-16", which)
@@ -89,7 +88,7 @@ def along_path(context: Context) -> tuple[Section, list[Claim]]:
         blocks.append(
             Figure(
                 name=f"figure_{13 + i}",
-                title=f"Figure {13 + i}: {_WORDS[case.objective]} along the {case.name}",
+                title=f"Figure {13 + i}: {WORDS[case.objective]} along the {case.name}",
                 drawing=_draw(case),
                 caption="Best cost so far; the best plan; how its last link stands; how far the tip is off.",
             )
@@ -153,7 +152,7 @@ def _draw(case: Case) -> Drawing:
                 search.axhline(case.timed.cost, color="black", linestyle=":", label="redundancy and timing together")
         else:
             draw_bound(search, best.cost, "best known")
-        search.set(ylabel=f"{case.objective.replace('_', ' ')} [{_UNITS[case.objective]}]")
+        search.set(ylabel=label(case.objective))
         search.legend(fontsize="small", loc="upper right")
         reference = np.asarray(best.reference)
         space.plot(*reference[:, :2].T, color=VERMILION, marker="x", markersize=4, linestyle="none", label="points")
@@ -203,7 +202,7 @@ def _table(cases: list[Case]) -> Table:
         rows=[
             [
                 case.name,
-                _WORDS[case.objective],
+                WORDS[case.objective],
                 Spread.of([plan.cost for plan in case.plans]),
                 Spread.of([plan.cost for plan in case.evolved]),
                 case.retimed if case.objective == "time" else None,

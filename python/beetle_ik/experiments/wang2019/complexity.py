@@ -9,7 +9,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import Claim, Column, Section, Table, number
+from ...report import Claim, Column, Part, Section, Table, number
 from ..experiment import Context
 from .settings import ALONG_PATH, END, FROM_END_TO_END, START, arm
 
@@ -34,7 +34,7 @@ point. It was counted, not measured: all of it is less than a megabyte.
 """
 
 
-def complexity(context: Context) -> tuple[Section, list[Claim]]:
+def complexity(context: Context) -> Part:
     """Measure by doubling."""
     repeats = context.pick(full=_REPEATS, short=_REPEATS_SHORT)
     swarm = bik.BeetleSwarm(stall_generations=None)

@@ -10,7 +10,7 @@ import numpy as np
 import beetle_ik as bik
 
 from ...report import BLACK, BLUE, SKY, line
-from .settings import best_so_far
+from .settings import UNITS, Criterion, best_so_far
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,6 +54,11 @@ def draw_search(axes: Axes, plans: Sequence[bik.Plan], *, name: str, color: str,
 def draw_bound(axes: Axes, value: float, name: str) -> None:
     """A value that no plan, or none known, goes below."""
     axes.axhline(value, color=BLACK, linestyle="--", linewidth=1.0, label=name)
+
+
+def label(objective: Criterion) -> str:
+    """What an axis of costs is called."""
+    return f"{objective.replace('_', ' ')} [{UNITS[objective]}]"
 
 
 def draw_joints(axes: Axes, plan: bik.Plan) -> None:

@@ -15,6 +15,7 @@ from ...report import (
     Claim,
     Column,
     Figure,
+    Part,
     Section,
     Spread,
     Table,
@@ -52,7 +53,7 @@ The dashed line is the shortest way round for the tip alone, {_TANGENT} m.
 """
 
 
-def obstacle(context: Context) -> tuple[Section, list[Claim]]:
+def obstacle(context: Context) -> Part:
     """Plan past the ellipse with three to five links."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     blocks: list[Block] = [_TEXT]

@@ -16,6 +16,9 @@ import beetle_ik as bik
 
 Criterion: TypeAlias = Literal["time", "joint_travel"]
 
+UNITS: dict[Criterion, str] = {"time": "s", "joint_travel": "rad"}
+WORDS: dict[Criterion, str] = {"time": "least time", "joint_travel": "least rotation"}
+
 START, END = (1.0, 0.0, 0.0), (0.5, 1.5, 0.0)  # section IV-A.1
 REACH = 2.0  # m; the paper does not state it
 LINKS = (2, 3, 4, 5)

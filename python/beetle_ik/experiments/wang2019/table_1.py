@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import beetle_ik as bik
 
-from ...report import Claim, Column, Section, Spread, Table
+from ...report import Claim, Column, Part, Section, Spread, Table
 from ..experiment import Context
 from .settings import POPULATION, Criterion, each
 
@@ -47,7 +47,7 @@ class _Row:
     rotation: list[bik.Plan]
 
 
-def table_1(context: Context) -> tuple[Section, list[Claim]]:
+def table_1(context: Context) -> Part:
     """Run the three algorithms at equal iterations on the fitted paths."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     rows = [_row(path, algorithm, seeds) for path, algorithm in context.each("wang2019: Table 1", list(_PRINTED))]
