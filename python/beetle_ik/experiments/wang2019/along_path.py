@@ -28,7 +28,19 @@ from ...report import (
 )
 from ..experiment import Context
 from .drawing import draw_arm, draw_bound, draw_search, label
-from .settings import ALONG_PATH, EVOLUTION, SCATTER, UNITS, WORDS, Criterion, each, pentagram, trefoil
+from .settings import (
+    ALONG_PATH,
+    EVOLUTION,
+    SCATTER,
+    THREE_LINKS,
+    UNITS,
+    WORDS,
+    Criterion,
+    Search,
+    each,
+    pentagram,
+    trefoil,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,6 +50,7 @@ TITLE = "Along a path"
 _SEEDS = 20
 _SEEDS_SHORT = 2
 _EVALUATIONS = 50 * (3 * 100 + 1)
+_TPBSO, _DE = Search("TPBSO", None, _EVALUATIONS), Search("DE", EVOLUTION, _EVALUATIONS)
 _ACCEPTED = {"pentagram": 6.14, "closed curve": 3.72}  # s, mean of TPBSO
 
 _TEXT = """
@@ -99,31 +112,17 @@ def along_path(context: Context) -> Part:
 
 
 def _case(name: str, objective: Criterion, path: Any, accuracy: float, seeds: range) -> Case:
-    arm = bik.Robot.planar([1.0, 1.0, 1.0])
-
-    def plan(seed: int, solver: bik.DifferentialEvolution | None) -> bik.Plan:
-        return bik.plan_along_path(
-            arm,
-            path,
-            method="tpbso",
-            objective=objective,
-            limits=ALONG_PATH,
-            accuracy=accuracy,
-            solver=solver,
-            stop=bik.Stop(max_evaluations=_EVALUATIONS),
-            seed=seed,
+    def plans(search: Search, seeds: range) -> list[bik.Plan]:
+        return each(
+            lambda seed: search.follow(path, objective, seed, limits=ALONG_PATH, accuracy=accuracy),
+            seeds,
         )
 
-    timed = bik.plan_along_path(arm, path, limits=ALONG_PATH, accuracy=accuracy) if objective == "time" else None
+    timed = None
+    if objective == "time":
+        timed = bik.plan_along_path(THREE_LINKS, path, limits=ALONG_PATH, accuracy=accuracy)
     few = seeds[: max(1, len(seeds) // 4)]
-    return Case(
-        name,
-        objective,
-        accuracy,
-        each(lambda seed: plan(seed, None), seeds),
-        each(lambda seed: plan(seed, EVOLUTION), few),
-        timed,
-    )
+    return Case(name, objective, accuracy, plans(_TPBSO, seeds), plans(_DE, few), timed)
 
 
 def _moving(case: Case) -> Figure:

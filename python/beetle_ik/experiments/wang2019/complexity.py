@@ -11,7 +11,7 @@ import beetle_ik as bik
 
 from ...report import Claim, Column, Part, Section, Table, number
 from ..experiment import Context
-from .settings import ALONG_PATH, END, FROM_END_TO_END, START, arm
+from .settings import ALONG_PATH, END, FROM_END_TO_END, START, THREE_LINKS, arm
 
 TITLE = "Tables 2 and 3"
 _REPEATS = 5
@@ -118,6 +118,4 @@ def _follow(points: int) -> bik.Plan:
     angle = np.linspace(0.0, 2 * np.pi, points)
     circle = np.column_stack((1.0 + 0.4 * np.cos(angle), 1.0 + 0.4 * np.sin(angle), 0.0 * angle))
     stop = bik.Stop(max_evaluations=3000)
-    return bik.plan_along_path(
-        bik.Robot.planar([1.0, 1.0, 1.0]), circle, method="tpbso", limits=ALONG_PATH, accuracy=0.02, stop=stop
-    )
+    return bik.plan_along_path(THREE_LINKS, circle, method="tpbso", limits=ALONG_PATH, accuracy=0.02, stop=stop)
