@@ -14,7 +14,7 @@ from ..experiment import Context
 from .settings import GENETIC, POPULATION, PSO, Criterion, Search, each
 
 TITLE = "Table 1"
-_SEEDS = 10
+_SEEDS = 6
 _SEEDS_SHORT = 1
 _GENERATIONS = 100
 _SEARCHES = (
