@@ -27,7 +27,7 @@ from ...report import (
     number,
 )
 from ..experiment import Context
-from .drawing import draw_arm, draw_bound, draw_search, label
+from .drawing import draw_arm, draw_bound, draw_search, label, legend_above
 from .settings import (
     ALONG_PATH,
     EVOLUTION,
@@ -155,7 +155,7 @@ def _draw(case: Case) -> Drawing:
         else:
             draw_bound(search, best.cost, "best known")
         search.set(ylabel=label(case.objective))
-        search.legend(fontsize="small", loc="upper right")
+        legend_above(search, columns=2)
         reference = np.asarray(best.reference)
         space.plot(*reference[:, :2].T, color=VERMILION, marker="x", markersize=4, linestyle="none", label="points")
         draw_arm(space, best)
@@ -172,7 +172,7 @@ def _draw_redundancy(axes: Axes, plan: bik.Plan) -> None:
     axes.fill_between(time, lowest + turns, (lowest + turns).min() - 0.5, color=FORBIDDEN, linewidth=0)
     axes.plot(time, value + turns, color=BLUE, marker=".", label="chosen; shaded: impossible")
     axes.set(xlabel="time [s]", ylabel="orientation of the last link [rad]")
-    axes.legend(fontsize="small")
+    legend_above(axes, columns=1)
 
 
 def _draw_distance(axes: Axes, plan: bik.Plan, accuracy: float) -> None:
@@ -184,7 +184,7 @@ def _draw_distance(axes: Axes, plan: bik.Plan, accuracy: float) -> None:
     )
     axes.axhline(1e3 * accuracy, color=VERMILION, linestyle="--", label="accuracy asked for")
     axes.set(xlabel="time [s]", ylabel="distance [mm]")
-    axes.legend(fontsize="small")
+    legend_above(axes, columns=2)
 
 
 def _table(cases: list[Case]) -> Table:
