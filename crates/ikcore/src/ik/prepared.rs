@@ -1,7 +1,5 @@
 //! A robot and options that were found in order, and how one target is solved with them.
 
-use std::borrow::Cow;
-
 use super::nearest::bring_near;
 use super::run::Run;
 use super::solution::Solution;
@@ -19,7 +17,9 @@ use crate::task::{Criterion, Goals, Target, Task};
 /// A robot and options that were found in order, ready for any number of targets.
 #[derive(Debug)]
 pub(crate) struct Prepared<'a> {
-    robot: Cow<'a, Robot>,
+    robot: &'a Robot,
+    /// The robot with the tool of the task, where it has one; boxed, since what is prepared is moved about.
+    with_tool: Option<Box<Robot>>,
     options: &'a SolveOptions,
     criterion: Criterion,
     goals: Goals,
@@ -47,14 +47,13 @@ impl<'a> Prepared<'a> {
             return Err(Error::Contradiction { problem: "prefer=\"best\" needs goals: best for what?".into() });
         }
         let bounds = position_box(robot, options.limits.as_ref())?;
-        let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;
-        let robot = with_tool.map_or(Cow::Borrowed(robot), Cow::Owned);
-        let goals = Goals::new(&options.goals, &robot, &bounds);
-        Ok(Self { robot, options, criterion, goals, bounds })
+        let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?.map(Box::new);
+        let goals = Goals::new(&options.goals, with_tool.as_deref().unwrap_or(robot), &bounds);
+        Ok(Self { robot, with_tool, options, criterion, goals, bounds })
     }
 
     pub(super) fn robot(&self) -> &Robot {
-        &self.robot
+        self.with_tool.as_deref().unwrap_or(self.robot)
     }
 
     pub(super) fn bounds(&self) -> &Bounds {
@@ -70,7 +69,7 @@ impl<'a> Prepared<'a> {
     }
 
     pub(super) fn problem<'p>(&'p self, target: &'p Target) -> Problem<'p> {
-        Problem::new(&self.robot, target, self.criterion).disregarding_turns()
+        Problem::new(self.robot(), target, self.criterion).disregarding_turns()
     }
 
     /// What of `wanted` the task asks for, checked.
@@ -87,8 +86,8 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// [`Error::WrongLength`], [`Error::NotFinite`] or [`Error::OutsideLimits`].
     pub(crate) fn check_start(&self, q: &[f64]) -> Result<()> {
-        self.robot.check("start", q)?;
-        require_inside(&self.robot, "start", q, &self.bounds)
+        self.robot().check("start", q)?;
+        self.robot().require_within("start", q, self.bounds.lower(), self.bounds.upper())
     }
 
     /// Checks that there is a start where the nearest solution is asked for.
@@ -113,12 +112,12 @@ impl<'a> Prepared<'a> {
         monitor: &mut dyn Monitor,
     ) -> Solution {
         let solution = self.search(target, start, stream, monitor);
-        self.told_apart(target, solution)
+        self.marked_if_blocked(target, solution)
     }
 
-    /// A solution of what the region lets the tip reach of a target is none of the target.
-    pub(super) fn told_apart(&self, target: &Target, solution: Solution) -> Solution {
-        match self.criterion.held_back(target) {
+    /// The solution with status [`Status::HeldInRegion`] where it is solved, but the region keeps the tip from the target itself.
+    pub(super) fn marked_if_blocked(&self, target: &Target, solution: Solution) -> Solution {
+        match self.criterion.blocked_by_region(target) {
             Some(obstruction) if solution.status == Status::Solved => {
                 Solution { status: Status::HeldInRegion, obstruction, ..solution }
             }
@@ -136,7 +135,7 @@ impl<'a> Prepared<'a> {
         }
         let mut problem = self.problem(target);
         let mut buffer = [0.0; MAX_DOF];
-        let x0 = &mut buffer[..self.robot.dof()];
+        let x0 = &mut buffer[..self.robot().dof()];
         match start {
             Some(q) => x0.copy_from_slice(q),
             None => problem.propose_start(0, &self.bounds, &mut rng, x0),
@@ -146,7 +145,7 @@ impl<'a> Prepared<'a> {
         if solution.status == Status::Solved && !self.goals.is_empty() {
             let q = &mut solution.q;
             if let Some(start) = start {
-                bring_near(&self.robot, &self.bounds, start, q);
+                bring_near(self.robot(), &self.bounds, start, q);
             }
             self.descend_to(&mut problem, &mut self.goals.clone(), &mut run, q);
             return run.solution(Status::Solved, solution.q, &problem);
@@ -158,7 +157,7 @@ impl<'a> Prepared<'a> {
     pub(super) fn excess(&self, target: &Target) -> Option<f64> {
         let aim = self.criterion.aim(target);
         let position = aim.position().filter(|_| self.criterion.components.is_none())?;
-        let excess = self.robot.reach(self.bounds.lower(), self.bounds.upper()).excess(&position);
+        let excess = self.robot().reach(self.bounds.lower(), self.bounds.upper()).excess(&position);
         (excess > self.criterion.tolerance.position).then_some(excess)
     }
 }
@@ -172,17 +171,4 @@ fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     limits.require_for(robot)?;
     limits.require_none(&[Field::Acceleration, Field::Jerk], "solve", remedy)?;
     limits.position_box()
-}
-
-fn require_inside(robot: &Robot, what: &str, q: &[f64], bounds: &Bounds) -> Result<()> {
-    match (0..q.len()).find(|i| q[*i] < bounds.lower()[*i] || bounds.upper()[*i] < q[*i]) {
-        None => Ok(()),
-        Some(i) => Err(Error::OutsideLimits {
-            what: what.into(),
-            joint: robot.joints()[i].name.clone(),
-            value: q[i],
-            lower: bounds.lower()[i],
-            upper: bounds.upper()[i],
-        }),
-    }
 }

@@ -3,6 +3,7 @@
 use super::arithmetic::{Arithmetic, Baseline};
 #[cfg(target_arch = "x86_64")]
 use super::arithmetic::{Fused, has_fused};
+use super::quad::Quad;
 
 /// Task rows of every least-squares problem here; unused rows are zero.
 pub const ROWS: usize = 6;
@@ -140,18 +141,18 @@ fn step<A: Arithmetic, const R: usize>(
 /// J J' + lambda I over the joints that are not fixed.
 #[inline(always)]
 fn gram<A: Arithmetic, const R: usize>(columns: &[[f64; ROWS]], lambda: f64, n: usize, fixed: u64) -> [[f64; R]; R] {
-    let mut sum = [[0.0; R]; R];
-    for (i, row) in sum.iter_mut().enumerate() {
-        row[i] = lambda;
-    }
+    // Four entries of a row, and then the rest: with three rows nothing asks for the rest, and it is not computed.
+    let mut sum = [[Quad::ZERO; 2]; R];
     for column in (0..n).filter(|j| fixed & (1 << j) == 0).map(|j| &columns[j]) {
+        let [c0, c1, c2, c3, c4, c5] = *column;
+        let halves = [Quad([c0, c1, c2, c3]), Quad([c4, c5, 0.0, 0.0])];
         for i in 0..R {
-            for k in 0..R {
-                sum[i][k] = A::mul_add(column[i], column[k], sum[i][k]);
+            for (sum, half) in sum[i].iter_mut().zip(halves) {
+                *sum = A::mul_add_quad(Quad::splat(column[i]), half, *sum);
             }
         }
     }
-    sum
+    std::array::from_fn(|i| std::array::from_fn(|k| sum[i][k / 4].0[k % 4] + if i == k { lambda } else { 0.0 }))
 }
 
 /// Solves A z = b by LDL', A symmetric positive semi-definite in its lower triangle.

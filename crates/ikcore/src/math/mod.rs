@@ -11,12 +11,14 @@ pub mod logarithm;
 pub mod ordered;
 pub mod polynomial;
 pub mod pose;
+pub mod quad;
 pub mod secant;
 pub mod sincos;
 pub mod singular;
 pub mod so3;
 pub mod ticks;
 pub mod vector;
+pub mod wide_frame;
 
 pub use frame::Frame;
 pub use knots::Knots;

@@ -9,22 +9,55 @@ const SMALL: f64 = 1e-4;
 /// from the target to the frame, in base coordinates. Its length is the geodesic angle, at most pi.
 #[inline]
 pub fn rotation_between(target: &Frame, frame: &Frame) -> [f64; 3] {
-    // With R R_d' = sum of r_k d_k' over the columns: its trace is sum r_k . d_k, and the vector of its
-    // antisymmetric part, sin(theta) axis, is half the sum of d_k x r_k.
-    let (mut trace, mut sine_axis) = (0.0, [0.0; 3]);
-    for (d, r) in target.axes.iter().zip(&frame.axes) {
-        trace += d[0] * r[0] + d[1] * r[1] + d[2] * r[2];
-        sine_axis[0] += 0.5 * (d[1] * r[2] - d[2] * r[1]);
-        sine_axis[1] += 0.5 * (d[2] * r[0] - d[0] * r[2]);
-        sine_axis[2] += 0.5 * (d[0] * r[1] - d[1] * r[0]);
+    Turn::between(target, frame).vector(target, frame)
+}
+
+/// [`rotation_between`], and how it changes when a small turn is put before.
+#[inline]
+pub fn rotation_and_jacobian(target: &Frame, frame: &Frame) -> ([f64; 3], InverseLeftJacobian) {
+    let turn = Turn::between(target, frame);
+    let phi = turn.vector(target, frame);
+    (phi, InverseLeftJacobian::at(&phi, turn.half_cotangent()))
+}
+
+/// R R_d' by sine and cosine of its angle theta.
+struct Turn {
+    /// sin(theta), times the axis.
+    sine_axis: [f64; 3],
+    sine: f64,
+    cosine: f64,
+}
+
+impl Turn {
+    #[inline(always)]
+    fn between(target: &Frame, frame: &Frame) -> Self {
+        // With R R_d' = sum of r_k d_k' over the columns: its trace is sum r_k . d_k, and the vector of its
+        // antisymmetric part, sin(theta) axis, is half the sum of d_k x r_k.
+        let (mut trace, mut sine_axis) = (0.0, [0.0; 3]);
+        for (d, r) in target.axes.iter().zip(&frame.axes) {
+            trace += d[0] * r[0] + d[1] * r[1] + d[2] * r[2];
+            sine_axis[0] += 0.5 * (d[1] * r[2] - d[2] * r[1]);
+            sine_axis[1] += 0.5 * (d[2] * r[0] - d[0] * r[2]);
+            sine_axis[2] += 0.5 * (d[0] * r[1] - d[1] * r[0]);
+        }
+        Self { sine_axis, sine: norm(&sine_axis), cosine: 0.5 * (trace - 1.0) }
     }
-    let cosine = 0.5 * (trace - 1.0);
-    let sine = norm(&sine_axis);
-    if cosine < -0.9 {
-        return near_half_turn(target, frame, sine.atan2(cosine), &sine_axis);
+
+    #[inline(always)]
+    fn vector(&self, target: &Frame, frame: &Frame) -> [f64; 3] {
+        let Self { sine_axis, sine, cosine } = *self;
+        if cosine < -0.9 {
+            return near_half_turn(target, frame, sine.atan2(cosine), &sine_axis);
+        }
+        let factor = if sine < SMALL { 1.0 + sine * sine / 6.0 } else { sine.atan2(cosine) / sine };
+        sine_axis.map(|v| factor * v)
     }
-    let factor = if sine < SMALL { 1.0 + sine * sine / 6.0 } else { sine.atan2(cosine) / sine };
-    sine_axis.map(|v| factor * v)
+
+    /// cot(theta/2), by the quotient that keeps its digits; infinite without a turn.
+    #[inline(always)]
+    fn half_cotangent(&self) -> f64 {
+        if self.cosine > 0.0 { (1.0 + self.cosine) / self.sine } else { self.sine / (1.0 - self.cosine) }
+    }
 }
 
 /// Near half a turn the antisymmetric part vanishes: the axis comes from the symmetric part,
@@ -45,33 +78,42 @@ fn near_half_turn(target: &Frame, frame: &Frame, angle: f64, sine_axis: &[f64; 3
     axis
 }
 
-/// The inverse left Jacobian of SO(3) at rotation vector `phi`: how log changes when a small turn is put before.
+/// The inverse left Jacobian of SO(3) at a rotation vector: how the logarithm changes when a small turn is put before.
 #[derive(Debug, Clone, Copy)]
 pub struct InverseLeftJacobian {
-    phi: [f64; 3],
-    quadratic: f64,
+    columns: [[f64; 3]; 3],
 }
 
 impl InverseLeftJacobian {
-    /// At the rotation vector `phi` (rad), shorter than 2 pi.
-    #[inline]
-    pub fn at(phi: [f64; 3]) -> Self {
-        let squared = phi.iter().map(|v| v * v).sum::<f64>();
+    /// I - [phi]/2 + quadratic * [phi]^2 at the rotation vector `phi` (rad), given the cotangent of half its length.
+    #[inline(always)]
+    fn at(phi: &[f64; 3], half_cotangent: f64) -> Self {
+        let [x, y, z] = *phi;
+        let squared = x * x + y * y + z * z;
         let quadratic = if squared < SMALL {
             1.0 / 12.0 + squared * (1.0 / 720.0 + squared / 30240.0)
         } else {
-            let half = 0.5 * squared.sqrt();
-            (1.0 - half / half.tan()) / squared
+            (1.0 - 0.5 * squared.sqrt() * half_cotangent) / squared
         };
-        Self { phi, quadratic }
+        // [phi]^2 = phi phi' - |phi|^2 I
+        let diagonal = 1.0 - quadratic * squared;
+        let [qx, qy, qz] = [quadratic * x, quadratic * y, quadratic * z];
+        let [xy, yz, zx] = [qx * y, qy * z, qz * x];
+        let [hx, hy, hz] = [0.5 * x, 0.5 * y, 0.5 * z];
+        Self {
+            columns: [
+                [diagonal + qx * x, xy - hz, zx + hy],
+                [xy + hz, diagonal + qy * y, yz - hx],
+                [zx - hy, yz + hx, diagonal + qz * z],
+            ],
+        }
     }
 
-    /// w - phi x w / 2 + quadratic * phi x (phi x w).
+    /// Its product with `w`.
     #[inline(always)]
     pub fn apply(&self, w: [f64; 3]) -> [f64; 3] {
-        let once = cross(&self.phi, &w);
-        let twice = cross(&self.phi, &once);
-        std::array::from_fn(|k| w[k] - 0.5 * once[k] + self.quadratic * twice[k])
+        let [a, b, c] = &self.columns;
+        std::array::from_fn(|k| a[k] * w[0] + b[k] * w[1] + c[k] * w[2])
     }
 }
 
@@ -163,7 +205,7 @@ mod tests {
         for axis in directions() {
             for angle in [1e-6, 5e-3, 0.0101, 0.7, 2.5, 2.9] {
                 let phi = axis * angle;
-                let jacobian = InverseLeftJacobian::at(phi.into());
+                let (_, jacobian) = rotation_and_jacobian(&Frame::IDENTITY, &frame(Rotation3::new(phi)));
                 for w in directions() {
                     let after = |s: f64| {
                         let turned = Rotation3::new(w * s) * Rotation3::new(phi);

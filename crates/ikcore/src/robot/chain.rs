@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::builder::Element;
 use super::dispatch::Kernels;
 use super::reach::Reach;
+use super::stages::Stages;
 use crate::math::{Frame, Pose, pose};
 
 /// What drives a stage: turn = turn_scale * q\[joint\] + turn_offset, and likewise the slide. One of the scales is zero.
@@ -35,8 +36,9 @@ pub(super) struct LinkFrame {
 pub(super) struct Chain {
     /// How many elements move; the rest of the stages is padding.
     pub moving: usize,
+    /// One per moving element.
+    pub stages: Stages,
     /// One per moving element, then padding that moves nothing.
-    pub stages: Vec<Frame>,
     pub motions: Vec<Motion>,
     pub tip: Frame,
     pub links: Vec<LinkFrame>,
@@ -56,7 +58,7 @@ impl Chain {
     pub fn new(elements: &[Element], base: &Pose, tool: &Pose) -> Self {
         let mut chain = Self {
             moving: 0,
-            stages: vec![],
+            stages: Stages::new(&[]),
             motions: vec![],
             tip: Frame::IDENTITY,
             links: vec![],
@@ -65,16 +67,17 @@ impl Chain {
         };
         // Constant transform since the last moving element, already in that element's z-aligned frame.
         let mut constant = *base;
+        let mut stages = vec![];
         for element in elements {
             match element {
                 Element::Fixed(transform) => constant *= transform,
                 Element::Link(name) => {
                     let offset = Frame::from(&constant);
-                    chain.links.push(LinkFrame { name: name.clone(), stages: chain.stages.len(), offset });
+                    chain.links.push(LinkFrame { name: name.clone(), stages: stages.len(), offset });
                 }
                 Element::Moving { axis, turns, joint, scale, offset } => {
                     let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
-                    chain.stages.push(Frame::from(&(constant * aligned)));
+                    stages.push(Frame::from(&(constant * aligned)));
                     chain.motions.push(if *turns {
                         Motion { joint: *joint, turn_scale: *scale, turn_offset: *offset, ..Motion::NONE }
                     } else {
@@ -85,11 +88,10 @@ impl Chain {
             }
         }
         chain.tip = Frame::from(&(constant * tool));
-        chain.moving = chain.stages.len();
-        let padded = padded_size(elements);
-        chain.stages.resize(padded, Frame::IDENTITY);
-        chain.motions.resize(padded.next_multiple_of(LANES), Motion::NONE);
-        chain.stretched = Reach::of_links(&chain.stages, &chain.motions, &chain.tip);
+        chain.moving = stages.len();
+        chain.stages = Stages::new(&stages);
+        chain.motions.resize(padded_size(elements).next_multiple_of(LANES), Motion::NONE);
+        chain.stretched = Reach::of_links(&stages, &chain.motions, &chain.tip);
         chain
     }
 }

@@ -84,7 +84,7 @@ impl Robot {
             // Everything that moves with this body, from its own joint's frame.
             let frames: Vec<&LinkFrame> = chain.links.iter().filter(|link| link.stages == body).collect();
             let joint = (body > 0).then_some([0.0; 3]);
-            let end = if body < moving { chain.stages[body].origin } else { chain.tip.origin };
+            let end = if body < moving { chain.stages.frame(body).origin } else { chain.tip.origin };
             let places = joint.into_iter().chain(frames.iter().map(|link| link.offset.origin)).chain([end]);
             let places: Vec<[f64; 3]> = places.collect();
             for ends in places.windows(2).filter(|ends| distance(&ends[0], &ends[1]) > SHORTEST) {

@@ -7,7 +7,9 @@ use super::MAX_DOF;
 use super::chain::Chain;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, Separate};
+use crate::math::quad::Quad;
 use crate::math::sincos::sincos;
+use crate::math::wide_frame::WideFrame;
 
 /// Columns of a 6 x n matrix, one per joint: linear rows (m per rad or m), then angular rows; the first n are in use.
 pub type Columns = [[f64; 6]; MAX_DOF];
@@ -90,31 +92,28 @@ fn motions<A: Arithmetic, const L: usize>(chain: &Chain, q: &[f64]) -> ([f64; L]
     (sines, cosines, slides)
 }
 
-/// Walks the chain from the base; `visit(i, frame)` sees the frame in which stage i moves, slid but not yet turned
-/// (its origin lies on the axis, its z axis is the axis). Returns the tip's frame.
+/// Walks the chain from the base; `visit(i, frame)` sees the frame that stage i moves: its origin lies on the stage's axis, its z axis is
+/// the axis. Returns the tip's frame.
 #[inline(always)]
 fn pass<A: Arithmetic, const N: usize, const L: usize>(
     chain: &Chain,
     q: &[f64],
-    mut visit: impl FnMut(usize, &Frame),
-) -> Frame {
+    mut visit: impl FnMut(usize, &WideFrame),
+) -> WideFrame {
     let (sines, cosines, slides) = motions::<A, L>(chain, q);
-    let mut frame = chain.stages[0];
-    for i in 0..N {
-        if i > 0 {
-            frame = frame.then::<A>(&chain.stages[i]);
-        }
-        let axis = frame.axes[2];
-        frame.origin = std::array::from_fn(|k| A::mul_add(axis[k], slides[i], frame.origin[k]));
+    let stages = chain.stages.moved::<A, L>(&sines, &cosines, &slides);
+    let mut frame = WideFrame::from(&stages.frame(0));
+    visit(0, &frame);
+    for i in 1..N {
+        frame = frame.then::<A>(&stages.frame(i));
         visit(i, &frame);
-        frame = frame.turned::<A>(sines[i], cosines[i]);
     }
     frame.then::<A>(&chain.tip)
 }
 
 #[inline(always)]
 pub(super) fn tip<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
-    pass::<A, N, L>(chain, q, |_, _| ())
+    pass::<A, N, L>(chain, q, |_, _| ()).into()
 }
 
 #[inline(always)]
@@ -123,7 +122,7 @@ pub(super) fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain:
     let mut point = chain.tip.origin;
     for i in (0..N).rev() {
         // Turning the frame instead of the point keeps the turn off the critical path from point to point.
-        let stage = chain.stages[i].turned::<A>(sines[i], cosines[i]);
+        let stage = chain.stages.frame(i).turned::<A>(sines[i], cosines[i]);
         point = stage.place::<A>(&[point[0], point[1], point[2] + slides[i]]);
     }
     point
@@ -149,7 +148,7 @@ pub(super) fn side_by_side<A: Arithmetic, const N: usize, const L: usize, const 
     sincos::<A>(angles.as_flattened(), sines.as_flattened_mut(), cosines.as_flattened_mut());
     let mut point = chain.tip.origin.map(|coordinate| [coordinate; W]);
     for i in (0..N).rev() {
-        let (sine, cosine, stage) = (&sines[i], &cosines[i], &chain.stages[i]);
+        let (sine, cosine, stage) = (&sines[i], &cosines[i], chain.stages.frame(i));
         let [x, y, z] = &stage.axes;
         let [px, py, pz] = point;
         let slid: [f64; W] = std::array::from_fn(|w| pz[w] + slides[i][w]);
@@ -170,29 +169,26 @@ pub(super) fn jacobian<A: Arithmetic, const N: usize, const L: usize>(
     q: &[f64],
     columns: &mut Columns,
 ) -> Frame {
-    let (mut axes, mut origins) = ([[0.0; 3]; N], [[0.0; 3]; N]);
+    let (mut axes, mut origins) = ([Quad::ZERO; N], [Quad::ZERO; N]);
     let tip = pass::<A, N, L>(chain, q, |i, frame| {
         axes[i] = frame.axes[2];
         origins[i] = frame.origin;
     });
-    columns[..q.len()].fill([0.0; 6]);
+    columns[..N].fill([0.0; 6]);
     for (i, motion) in chain.motions[..N].iter().enumerate() {
-        let lever: [f64; 3] = std::array::from_fn(|k| tip.origin[k] - origins[i][k]);
-        let [ax, ay, az] = axes[i];
-        let moment = [
-            A::mul_add(ay, lever[2], -az * lever[1]),
-            A::mul_add(az, lever[0], -ax * lever[2]),
-            A::mul_add(ax, lever[1], -ay * lever[0]),
-        ];
+        let (axis, lever) = (axes[i], A::sub_quad(tip.origin, origins[i]));
+        let moment = axis.cross::<A>(lever);
+        let [turn, slide] = [motion.turn_scale, motion.slide_scale].map(Quad::splat);
+        let linear = A::mul_add_quad(turn, moment, A::mul_quad(slide, axis)).vector();
+        let angular = A::mul_quad(turn, axis).vector();
         // Several stages may share a joint (mimics), so columns are summed.
         let column = &mut columns[motion.joint];
         for k in 0..3 {
-            let linear = A::mul_add(motion.turn_scale, moment[k], motion.slide_scale * axes[i][k]);
-            column[k] += linear;
-            column[3 + k] = A::mul_add(motion.turn_scale, axes[i][k], column[3 + k]);
+            column[k] += linear[k];
+            column[3 + k] += angular[k];
         }
     }
-    tip
+    tip.into()
 }
 
 /// J'w without J: of the wrench w at the tip, each axis feels the moment about itself and the force along itself.
@@ -204,10 +200,10 @@ pub(super) fn torques<A: Arithmetic, const N: usize, const L: usize>(
     torques: &mut [f64],
 ) -> Frame {
     let (mut axes, mut origins) = ([[0.0; 3]; N], [[0.0; 3]; N]);
-    let tip = pass::<A, N, L>(chain, q, |i, frame| {
-        axes[i] = frame.axes[2];
-        origins[i] = frame.origin;
-    });
+    let tip = Frame::from(pass::<A, N, L>(chain, q, |i, frame| {
+        axes[i] = frame.axes[2].vector();
+        origins[i] = frame.origin.vector();
+    }));
     let [fx, fy, fz, mx, my, mz] = pull(&tip);
     torques.fill(0.0);
     for (i, motion) in chain.motions[..N].iter().enumerate() {
@@ -232,6 +228,5 @@ pub(super) fn stage_frames<A: Arithmetic, const N: usize, const L: usize>(
     q: &[f64],
     reached: &mut StageFrames,
 ) {
-    let (sines, cosines, _) = motions::<A, L>(chain, q);
-    pass::<A, N, L>(chain, q, |i, frame| reached[i + 1] = frame.turned::<A>(sines[i], cosines[i]));
+    pass::<A, N, L>(chain, q, |i, frame| reached[i + 1] = Frame::from(*frame));
 }

@@ -28,9 +28,15 @@ pub(super) fn nearest_by_lane(
     distance: &impl Distance,
 ) -> [usize; LANES] {
     let (distances, blocks) = scan(rows, width, blocks, distance);
-    let mut lanes: [usize; LANES] = std::array::from_fn(|lane| lane);
-    lanes.sort_by(|a, b| distances[*a].total_cmp(&distances[*b]));
-    lanes.map(|lane| blocks[lane] as usize * LANES + lane)
+    let mut sorted = [0; LANES];
+    for lane in 0..LANES {
+        // Sorted by counting, without a branch: of equals the first comes first.
+        let nearer = |other: &usize| distances[*other] < distances[lane];
+        let first = (0..lane).filter(|other| nearer(other) || distances[*other] == distances[lane]).count();
+        let place = first + (lane + 1..LANES).filter(nearer).count();
+        sorted[place] = blocks[lane] as usize * LANES + lane;
+    }
+    sorted
 }
 
 /// For each lane the smallest distance, and the first block that has it.

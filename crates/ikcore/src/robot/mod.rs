@@ -1,5 +1,6 @@
 //! Robots: the serial chain from a base link to a tip link, its joints, limits and kinematics.
 
+mod arrays;
 mod as_built;
 mod builder;
 mod catalog;
@@ -11,13 +12,13 @@ mod dispatch;
 mod joint;
 mod kinematics;
 mod lane_search;
-mod many;
 mod model;
 mod planar;
 mod reach;
 mod screws;
 mod seed_index;
 mod seeds;
+mod stages;
 mod stored;
 mod urdf;
 

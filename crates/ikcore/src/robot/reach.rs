@@ -37,13 +37,13 @@ impl Reach {
     /// A first joint that turns keeps the height at which the second one begins, so that only the distance from its axis
     /// counts; of every other link all its length does.
     pub(super) fn of_links(stages: &[Frame], motions: &[Motion], tip: &Frame) -> Self {
-        let mut links = stages[1..].iter().chain([tip]).map(|frame| frame.origin);
+        let mut links = stages.iter().skip(1).chain([tip]).map(|frame| frame.origin);
         let [x, y, height] = links.next().unwrap_or_default();
         let (on_axis, first) = match motions[0].slide_scale {
             0.0 => (height, x.hypot(y)),
             _ => (0.0, norm(&[x, y, height])),
         };
-        let center = stages[0].place::<Separate>(&[0.0, 0.0, on_axis]);
+        let center = stages.first().unwrap_or(&Frame::IDENTITY).place::<Separate>(&[0.0, 0.0, on_axis]);
         Self { center, radius: first + links.map(|link| norm(&link)).sum::<f64>() }
     }
 }

@@ -59,7 +59,7 @@ impl Robot {
         let mut screws = Screws { all: [Screw::NONE; MAX_DOF], count };
         for (i, screw) in screws.all[..count].iter_mut().enumerate() {
             let (motion, Frame { axes: [_, _, axis], origin }) = (&chain.motions[i], reached[i + 1]);
-            let end = if i + 1 < count { chain.stages[i + 1].origin } else { chain.tip.origin };
+            let end = if i + 1 < count { chain.stages.frame(i + 1).origin } else { chain.tip.origin };
             *screw = Screw {
                 joint: motion.joint,
                 turn: axis.map(|entry| motion.turn_scale * entry),

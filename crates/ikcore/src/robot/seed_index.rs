@@ -115,7 +115,7 @@ impl SeedIndex {
 
     fn features(&self, frame: &Frame) -> [f32; FEATURES] {
         let [x, y, _] = frame.origin;
-        let radius = x.hypot(y);
+        let radius = (x * x + y * y).sqrt();
         let frame = if self.first.is_some() && radius > 0.0 {
             turned_about_base_z(frame, -y / radius, x / radius)
         } else {
@@ -244,7 +244,7 @@ impl Turn {
 
 /// The frame of the last joint, seen from the first, when the tip of `chain` is at `tip`.
 pub(super) fn between_joints(chain: &Chain, tip: &Frame) -> Frame {
-    chain.stages[0].inverse().then::<Separate>(tip).then::<Separate>(&chain.tip.inverse())
+    chain.stages.frame(0).inverse().then::<Separate>(tip).then::<Separate>(&chain.tip.inverse())
 }
 
 /// `frame` carried round the base's z axis, given sine and cosine of the angle.

@@ -35,7 +35,7 @@ impl Robot {
 
     /// The same when only the tip's `position` (m) matters.
     pub fn seeds_near_position(&self, position: &[f64; 3]) -> Seeds<'_> {
-        let place = self.chain().stages[0].inverse().place::<Separate>(position);
+        let place = self.chain().stages.frame(0).inverse().place::<Separate>(position);
         let tip = self.chain().tip.origin;
         // What the tip is off the last axis would need the x axis, which the index does not keep for every robot.
         self.seeds(Wanted::Point { place, tip }, self.seed_index().near_point(place, tip[2]))

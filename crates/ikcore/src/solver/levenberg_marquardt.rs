@@ -100,7 +100,9 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
         }
         let gain = 1.0 - trial_value / *value;
         *damping = (*damping * self.decrease).max(SMALLEST_DAMPING);
-        (*x, *value, *here) = (trial, trial_value, 1 - *here);
+        // Entries in use only: a point has room for many more.
+        x.copy_from_slice(&trial);
+        (*value, *here) = (trial_value, 1 - *here);
         if gain < self.min_gain { Err(Halt::Stalled) } else { Ok(()) }
     }
 }

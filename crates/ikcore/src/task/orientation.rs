@@ -4,7 +4,7 @@
 //! exact at any distance from the target, not only near it.
 
 use crate::math::Frame;
-use crate::math::so3::{InverseLeftJacobian, rotation_between};
+use crate::math::so3::{rotation_and_jacobian, rotation_between};
 use crate::objective::Linearization;
 
 /// The squared geodesic angle.
@@ -16,8 +16,7 @@ pub fn error(target: &Frame, tip: &Frame) -> f64 {
 /// Angular rows of residual and derivative from the tip's geometric Jacobian, which stands in `out`; the squared angle.
 #[inline(always)]
 pub fn linearize(target: &Frame, tip: &Frame, dof: usize, out: &mut Linearization) -> f64 {
-    let phi = rotation_between(target, tip);
-    let inverse = InverseLeftJacobian::at(phi);
+    let (phi, inverse) = rotation_and_jacobian(target, tip);
     for column in &mut out.columns[..dof] {
         let turned = inverse.apply([column[3], column[4], column[5]]);
         column[3..].copy_from_slice(&turned);
