@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # Upper over lower end of an axis.
-_NARROW = 50.0  # up to here powers of ten alone would be too few labels
+_NARROW = 60.0  # up to here powers of ten alone would be too few labels
 _WIDE = 1000.0  # from here they are enough by themselves
 
 
