@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,7 +32,6 @@ def draw_all() -> None:
     package = Path(beetle_ik.__file__).parent
     changed = max(file.stat().st_mtime for file in package.rglob("*") if file.suffix in (".py", ".so", ".pyd"))
     FOLDER.mkdir(exist_ok=True)
-    warnings.filterwarnings("ignore", message="Animation was deleted")  # what moves in a report stands still on a page
     for experiment, names in FIGURES.items():
         files = {name: FOLDER / f"{experiment}_{name}.png" for name in names}
         if all(file.is_file() and file.stat().st_mtime > changed for file in files.values()):

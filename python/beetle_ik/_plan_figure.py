@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._frames import Frames
 from ._shapes import draw_from_above, draw_in_space
 from ._style import BLACK, BLUE, GREEN, SKY, VERMILION, line
 
 if TYPE_CHECKING:
-    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
@@ -115,10 +115,8 @@ def _draw_search(axes: Axes, plan: Plan) -> None:
     axes.set(xlabel="evaluations", ylabel="best cost so far", yscale="log" if (cost > 0).all() else "linear")
 
 
-def animate(figure: Figure, plan: Plan) -> FuncAnimation:
+def animate(figure: Figure, plan: Plan) -> Frames:
     """The arm on its way, in its own time."""
-    from matplotlib.animation import FuncAnimation
-
     scene = Scene(figure, figure.add_gridspec(1, 1)[0], plan)
     scene.draw_arm(0.0, color=SKY, alpha=0.4, label="arm at the start")
     scene.draw_arm(1.0, color=SKY, alpha=0.4)
@@ -127,8 +125,7 @@ def animate(figure: Figure, plan: Plan) -> FuncAnimation:
     scene.axes.legend(loc="upper left", fontsize="small")
     moving = max(2, round(plan.trajectory.duration * _FRAMES_A_SECOND))
 
-    def show(frame: int) -> tuple[Any]:
+    def show(frame: int) -> None:
         scene.move_arm(arm, min(frame / (moving - 1), 1.0))
-        return (arm,)
 
-    return FuncAnimation(figure, show, frames=moving + _PAUSE, interval=1e3 / _FRAMES_A_SECOND)
+    return Frames(moving=arm, show=show, count=moving + _PAUSE, rate=_FRAMES_A_SECOND)

@@ -36,6 +36,7 @@ def style() -> Iterator[None]:
         "axes.spines.right": False,
         "axes.spines.top": False,
         "axes.titlesize": "medium",
+        "axes.titley": 1.0,  # just above; to see whether it must be higher, matplotlib measures all labels again
         "figure.labelsize": "medium",
         "font.size": 9.5,
         "grid.alpha": 0.3,

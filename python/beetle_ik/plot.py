@@ -114,7 +114,8 @@ def animation(plan: Plan) -> FuncAnimation:
     """The arm on its planned way, in its own time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
     _require("plan", plan, _core.Plan)
     with style():
-        return _plan_figure.animate(_new_figure(5.0, 5.0), plan)
+        figure = _new_figure(5.0, 5.0)
+        return _plan_figure.animate(figure, plan).animation(figure)
 
 
 def trajectory(trajectory: Trajectory) -> Figure:

@@ -102,7 +102,7 @@ def test_other_motions_agree_to_the_last_iteration(robot: bik.Robot) -> None:
         q = start + 0.15 * (there - start)
         goal = tip(q)
         jacobian = robot.jacobian(q) * np.repeat([1.0, np.sqrt(2.0)], 3)[:, None]
-        if np.linalg.norm(jacobian, 2) ** 2 > 1.9 / RATE or converged == 8:
+        if np.linalg.norm(jacobian, 2) ** 2 > 1.9 / RATE or converged == 5:
             continue  # at this rate no descent comes to rest there
         expected, count = apps(start, goal)
         solution = solve(robot, goal, start)
@@ -111,7 +111,7 @@ def test_other_motions_agree_to_the_last_iteration(robot: bik.Robot) -> None:
             np.testing.assert_allclose(solution.q, expected, rtol=0, atol=1e-10)
             assert solution.success
             converged += 1
-    assert converged == 8
+    assert converged == 5
 
 
 def test_a_prismatic_joint_works_and_is_never_wrapped() -> None:

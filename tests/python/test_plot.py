@@ -112,7 +112,7 @@ def test_many_joints_keep_the_layout() -> None:
     robot = bik.Robot.planar([0.2] * 24)
     result = bik.track(robot, bik.paths.circle((2.0, 1.0, 0.0), diameter=0.4, duration=0.4), dt=0.2)
     for figure in (result.plot(), result.trajectory.plot()):
-        figure.draw_without_rendering()
+        figure.get_layout_engine().execute(figure)
         for axes in figure.get_axes():
             box = axes.get_window_extent()
             assert min(box.width, box.height) > 60 * figure.dpi / 72

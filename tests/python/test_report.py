@@ -4,10 +4,13 @@ import csv
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image, ImageSequence
 
 import beetle_ik as bik
 from beetle_ik import experiments
+from beetle_ik._frames import Frames
 from beetle_ik.experiments import Context, Experiment
 from beetle_ik.report import (
     Claim,
@@ -188,14 +191,40 @@ def test_a_report_and_its_files(tmp_path: Path, registered: list[Context]) -> No
 
 
 def test_a_figure_may_move(tmp_path: Path) -> None:
-    from matplotlib.animation import FuncAnimation
-
     with drawing(2.0, 2.0) as figure:
         (dot,) = figure.subplots().plot([0.0], [0.0], marker="o")
-    frames = FuncAnimation(figure, lambda i: (dot.set_data([i], [0.0]), (dot,))[1], frames=2)
+    frames = Frames(moving=dot, show=lambda i: dot.set_data([i], [0.0]), count=2, rate=10)
     address = _picture(Figure(name="moving", title="A dot", drawing=figure, frames=frames), tmp_path, 50)
     assert address.startswith("data:image/gif;base64,")
-    assert (tmp_path / "moving.gif").read_bytes().startswith(b"GIF89a")
+    with Image.open(tmp_path / "moving.gif") as gif:
+        assert (gif.format, gif.n_frames, gif.info["duration"], gif.info["loop"]) == ("GIF", 2, 100, 0)  # type: ignore[attr-defined]
+        first, second = (np.asarray(frame.convert("RGB")) for frame in ImageSequence.Iterator(gif))
+    changed = np.argwhere((first != second).any(axis=2))
+    assert len(changed) > 0
+    assert np.ptp(changed[:, 0]) < 12  # pixels: the dot, here and there, and nothing else
+
+
+def test_logarithmic_axes_are_labelled_in_plain_text() -> None:
+    ranges = {"wide": (2e-7, 3.0), "between": (20.0, 3000.0), "narrow": (4.0, 150.0), "by hand": (1.0, 1e6)}
+    with drawing(3.0) as figure:
+        panels = dict(zip(ranges, figure.subplots(1, len(ranges)), strict=True))
+        for name, axes in panels.items():
+            axes.set(yscale="log", ylim=ranges[name])
+        panels["by hand"].yaxis.set_major_formatter("{x:g}")
+    figure.draw_without_rendering()
+
+    def labels(name: str) -> list[str]:
+        low, high = ranges[name]
+        ticks = panels[name].yaxis.get_major_ticks()
+        return [tick.label1.get_text() for tick in ticks if low <= tick.get_loc() <= high]
+
+    assert labels("wide")[-1] == "10⁰"
+    assert labels("wide")[0] in ("10⁻⁶", "10⁻⁵")  # as there is room
+    assert labels("between") == ["10²", "10³"]
+    assert labels("narrow") == ["5", "10", "20", "50", "100"]
+    assert "10000" in labels("by hand")
+    marked = {name: len(axes.yaxis.get_minorticklocs()) > 0 for name, axes in panels.items()}
+    assert marked == {"wide": False, "between": True, "narrow": False, "by hand": True}
 
 
 def test_all_reports_have_a_page_over_them(tmp_path: Path, registered: list[Context]) -> None:

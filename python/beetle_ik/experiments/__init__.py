@@ -53,6 +53,8 @@ where `run` takes a `Context` and returns a `Report`:
 
 What the library expects of it:
 
+- An experiment of several parts is a folder with a module a part, whose function returns a `Part`: a section and the
+  claims that it decides. `Report.of(summary, parts)` puts them together.
 - A compared cell is `(printed, measured)`. What the paper prints but our copy lacks is `Printed.NOT_IN_COPY`; what it
   does not give is `Printed.NOT_STATED`. Nothing is invented.
 - A claim that no run can decide is `Claim.not_reproducible(..., reason=...)`. One that is `checked` and does not hold

@@ -13,7 +13,7 @@
 """
 
 from .._style import BLACK, BLUE, FORBIDDEN, GREEN, ORANGE, PALETTE, PURPLE, SKY, VERMILION, line
-from .content import Block, Cell, Claim, Column, Figure, Printed, Report, Section, Spread, Table, Value, Verdict
+from .content import Block, Cell, Claim, Column, Figure, Part, Printed, Report, Section, Spread, Table, Value, Verdict
 from .drawing import draw_error, draw_velocities, drawing
 from .folder import report_folder
 from .needs import check_installed
@@ -35,6 +35,7 @@ __all__ = [
     "Claim",
     "Column",
     "Figure",
+    "Part",
     "Printed",
     "Provenance",
     "Report",

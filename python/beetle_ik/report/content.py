@@ -12,8 +12,9 @@ from enum import Enum, StrEnum
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
-    from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure as Drawing
+
+    from .._frames import Frames
 
 _FILE_STEM = re.compile(r"[a-z0-9_]+")
 
@@ -160,7 +161,7 @@ class Figure:
     """Made by `report.drawing`."""
     caption: str = ""
     """What to look at, and what it means."""
-    frames: FuncAnimation | None = None
+    frames: Frames | None = None
     """What moves in the drawing."""
 
     def __post_init__(self) -> None:
@@ -183,6 +184,10 @@ class Section:
     blocks: Sequence[Block]
 
 
+Part: TypeAlias = tuple[Section, list[Claim]]
+"""A section with the claims that it decides."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Report:
     """What an experiment found."""
@@ -202,6 +207,15 @@ class Report:
         for name in names:
             if names.count(name) > 1:
                 raise ValueError(f"two tables or figures are named '{name}'")
+
+    @classmethod
+    def of(cls, summary: str, parts: Sequence[Part]) -> Report:
+        """A report of several parts, in this order."""
+        return cls(
+            summary=summary,
+            sections=[section for section, _ in parts],
+            claims=[claim for _, claims in parts for claim in claims],
+        )
 
     @property
     def blocks(self) -> list[Block]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._style import FORBIDDEN, VERMILION, line, style
+from .log_axes import label_log_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +29,9 @@ def drawing(height: float, width: float = WIDTH) -> Iterator[Figure]:
     from matplotlib.figure import Figure
 
     with style():
-        yield Figure(figsize=(width, height), layout="constrained")
+        figure = Figure(figsize=(width, height), layout="constrained")
+        yield figure
+        label_log_axes(figure)
 
 
 def draw_error(axes: Axes, time: ArrayLike, error: ArrayLike, *, band: float | None = None, **line: Any) -> None:

@@ -28,6 +28,17 @@ def spread(mean: float, std: float, digits: int = 3) -> str:
     return _signed(f"({both}){_power(exponent)}" if exponent else both)
 
 
+def brief(value: float) -> str:
+    """`value` in as few digits as tell it: a round number, such as a tick."""
+    digits = f"{value:.9e}".partition("e")[0].replace(".", "").strip("-0")
+    return number(value, len(digits) or 1)
+
+
+def superscript(exponent: int) -> str:
+    """As in 10⁻³."""
+    return str(exponent).translate(_SUPERSCRIPT)
+
+
 def _magnitude(value: float, digits: int) -> int:
     """The power of ten of the first digit, after rounding: 0.9996 in three digits is 1.00."""
     return int(f"{value:.{digits - 1}e}".partition("e")[2]) if value else 0
@@ -44,7 +55,7 @@ def _scaled(value: float, exponent: int, decimals: int) -> str:
 
 
 def _power(exponent: int) -> str:
-    return f"{_SPACE}×{_SPACE}10{str(exponent).translate(_SUPERSCRIPT)}" if exponent else ""
+    return f"{_SPACE}×{_SPACE}10{superscript(exponent)}" if exponent else ""
 
 
 def _signed(text: str) -> str:

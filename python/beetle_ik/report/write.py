@@ -12,6 +12,7 @@ from typing import Any
 from .content import Claim, Figure, Report
 from .folder import MANIFEST, files_in
 from .page import index_page, report_page
+from .picture import gif, png
 from .tables import to_csv
 
 _DPI = 150
@@ -73,35 +74,12 @@ def _write_manifest(folder: Path, content: dict[str, Any]) -> None:
 
 def _picture(figure: Figure, folder: Path, dpi: int) -> str:
     """Write a figure into `folder`; the same as an address that a page can hold."""
-    kind = "png" if figure.frames is None else "gif"
-    file = folder / f"{figure.name}.{kind}"
     if figure.frames is None:
-        file.write_bytes(_png(figure, dpi))
+        kind, content = "png", png(figure.drawing, dpi)
     else:
-        _lay_out(figure, _DPI_MOVING)
-        figure.frames.save(file, writer="pillow", dpi=_DPI_MOVING)
-    return f"data:image/{kind};base64,{base64.b64encode(file.read_bytes()).decode()}"
-
-
-def _png(figure: Figure, dpi: int) -> bytes:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    picture = io.BytesIO()
-    _lay_out(figure, dpi)
-    # Savefig would draw everything twice: once to lay it out, which is done. Without metadata: same figure, same bytes.
-    canvas: Any = FigureCanvasAgg(figure.drawing)
-    canvas.print_png(picture, metadata={"Software": None})
-    return picture.getvalue()
-
-
-def _lay_out(figure: Figure, dpi: int) -> None:
-    """Once and for all: saving would do so for every frame."""
-    drawing = figure.drawing
-    drawing.set_dpi(dpi)
-    layout = drawing.get_layout_engine()
-    if layout is not None:
-        layout.execute(drawing)
-        drawing.set_layout_engine("none")
+        kind, content = "gif", gif(figure.drawing, figure.frames, _DPI_MOVING)
+    (folder / f"{figure.name}.{kind}").write_bytes(content)
+    return f"data:image/{kind};base64,{base64.b64encode(content).decode()}"
 
 
 def _claims_csv(claims: Sequence[Claim]) -> str:

@@ -30,11 +30,7 @@ def run(context: Context) -> Report:
         rivals(comparison),
         search_box(context, comparison.precise),
     )
-    return Report(
-        summary=_SUMMARY,
-        sections=[section for section, _ in parts],
-        claims=[claim for _, claims in parts for claim in claims],
-    )
+    return Report.of(_SUMMARY, parts)
 
 
 EXPERIMENT = Experiment(

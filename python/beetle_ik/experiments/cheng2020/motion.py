@@ -6,12 +6,13 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import Claim, Column, Figure, Section, Spread, Table, number
+from ...report import Claim, Column, Figure, Part, Section, Spread, Table, number
 from ..experiment import Context
 from .motion_figure import draw_motion
 from .settings import (
     FIVE_LINK,
     IIWA,
+    ROUNDING,
     STEADY,
     WALKS,
     Setting,
@@ -26,7 +27,6 @@ from .settings import (
 TITLE = "Two arms follow their circles"
 _SEEDS = 25
 _SEEDS_SHORT = 3
-_ROUNDING = 1e-12  # rad/s
 
 # Mean error over the second half (m): what the paper's "around" has to mean.
 _PUBLISHED = {FIVE_LINK.name: 2e-5, IIWA.name: 1e-5}
@@ -103,7 +103,7 @@ class Case:
         )
 
 
-def motion(context: Context) -> tuple[Section, list[Claim]]:
+def motion(context: Context) -> Part:
     """Both arms under their limits over many seeds, and the planar one without."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     cases = []
@@ -204,13 +204,13 @@ def _error_claims(cases: list[Case]) -> list[Claim]:
 
 
 def _limit_claim(cases: list[Case]) -> Claim:
-    excess, allowed = max(0.0, *(case.excess for case in cases)), number(_ROUNDING, 1)
+    excess, allowed = max(0.0, *(case.excess for case in cases)), number(ROUNDING, 1)
     runs = sum(len(case.results) for case in cases)
     return Claim.checked(
         "The resolved joint velocities always stay within the variable limits.",
         source="Sections IV-A.1 and IV-A.2, Figures 2(d) and 3",
         measured=f"largest excess over the limit in {runs} runs: {number(excess, 2)} rad/s (at most {allowed})",
-        holds=excess <= _ROUNDING,
+        holds=excess <= ROUNDING,
         reading=(
             "Eq. (10) must clip to the position limits and to what the velocity limit lets the *accepted* "
             "configuration reach; the paper states only the former."

@@ -4,9 +4,8 @@ from ..._text import counted
 from ...report import Claim, number
 from .comparison import Compared
 from .methods import BUDGET
-from .settings import STEPS
+from .settings import ROUNDING, STEPS
 
-_ROUNDING = 1e-12  # rad/s
 _FEWER = 3.0  # times, the evaluations that BAS needs
 _OUTSIDE = 1e-3  # share of steps that may miss the band, over all tests
 _ROUGHER = 3.0  # times the roughness of BAS
@@ -86,8 +85,8 @@ def _limits(section: str, compared: list[Compared]) -> Claim:
     return Claim.checked(
         "All five methods work under the same variable joint velocity limit.",
         source="Section IV-A.4",
-        measured=f"largest excess in {runs} runs: {number(excess, 2)} rad/s (at most {number(_ROUNDING, 1)})",
-        holds=excess <= _ROUNDING,
+        measured=f"largest excess in {runs} runs: {number(excess, 2)} rad/s (at most {number(ROUNDING, 1)})",
+        holds=excess <= ROUNDING,
         section=section,
     )
 

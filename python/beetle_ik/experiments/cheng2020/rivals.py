@@ -9,9 +9,9 @@ from ...report import (
     BLUE,
     VERMILION,
     Block,
-    Claim,
     Column,
     Figure,
+    Part,
     Printed,
     Section,
     Table,
@@ -84,7 +84,7 @@ def compare(context: Context) -> Comparison:
     return Comparison(tuned, precise, budgeted)
 
 
-def rivals(comparison: Comparison) -> tuple[Section, list[Claim]]:
+def rivals(comparison: Comparison) -> Part:
     """The comparison as the paper makes it."""
     precise, budgeted = comparison.precise, comparison.budgeted
     blocks: list[Block] = [

@@ -14,6 +14,7 @@ from ...report import (
     Claim,
     Column,
     Figure,
+    Part,
     Section,
     Spread,
     Table,
@@ -80,7 +81,7 @@ With a model at hand, or a sensor that tells a direction, there is no reason to 
 """
 
 
-def search_box(context: Context, whole: list[Compared]) -> tuple[Section, list[Claim]]:
+def search_box(context: Context, whole: list[Compared]) -> Part:
     """The methods, known in the whole box, in small ones; and trackers that use more than the size of the error."""
     costs = {(WHOLE.name, one.name): Cost(one.evaluations, one.missed) for one in whole}
     cases = [(set_up, method) for set_up in (TRUST, PLANAR) for method in METHODS]

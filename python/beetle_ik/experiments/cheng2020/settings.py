@@ -19,6 +19,7 @@ DURATION = 30.0  # s, section IV-A
 DT = 0.2  # s, section IV-A
 STEPS = round(DURATION / DT)
 STEADY = slice(STEPS // 2 + 1, None)  # rows of the second half, when the approach is over
+ROUNDING = 1e-12  # rad/s, by which a velocity may exceed its limit
 _RIPPLE = 0.004  # rad/s, W of eq. (7); omega is 1 rad/s
 
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 import beetle_ik as bik
 
-from ...report import BLUE, FORBIDDEN, VERMILION, Claim, Figure, Section, drawing, number
+from ...report import BLUE, FORBIDDEN, VERMILION, Claim, Figure, Part, Section, drawing, number
 from ..experiment import Context
-from .settings import FIVE_LINK, IIWA, STAR, Task, excess_velocity
+from .settings import FIVE_LINK, IIWA, ROUNDING, STAR, Task, excess_velocity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 TITLE = "The tip kept in a box"
 _SEEDS = 10
 _SEEDS_SHORT = 1
-_ROUNDING = 1e-12  # rad/s
 
 # Lower and upper corner (m). Each cuts three sides off its circle, by 0.2 m or 0.03 m; the arms start on the fourth.
 _BOXES = {
@@ -67,10 +66,10 @@ class Boxed:
         """Whether no step broke box or limits, and all were as near to their targets as the band and the box allow."""
         excess = max(excess_velocity(result) for result in self.results)
         # The tip is led along the inside of a face, up to half a band from it, and the beetle rests within its band.
-        return self.outside < 0.0 and excess <= _ROUNDING and self.away <= 2.0 * STAR[self.task.name].band
+        return self.outside < 0.0 and excess <= ROUNDING and self.away <= 2.0 * STAR[self.task.name].band
 
 
-def tip_box(context: Context) -> tuple[Section, list[Claim]]:
+def tip_box(context: Context) -> Part:
     """Both arms on circles that leave their boxes."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
     boxed = [

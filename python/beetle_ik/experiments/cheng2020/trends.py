@@ -14,6 +14,7 @@ from ...report import (
     Claim,
     Column,
     Figure,
+    Part,
     Section,
     Spread,
     Table,
@@ -60,8 +61,10 @@ class Sweep:
     figure: str
     symbol: str
     vary: Callable[[Setting, float], Setting]
-    full: tuple[float, ...]
+    measured: tuple[float, ...]
+    drawn: tuple[float, ...]
     short: tuple[float, ...]
+    """Both measured and drawn in a quick pass: what the claims are about."""
     text: str
 
 
@@ -69,24 +72,27 @@ _EXPLORATIONS = Sweep(
     figure="figure_4",
     symbol="n",
     vary=lambda setting, n: replace(setting, explorations=int(n)),
-    full=(5, 10, 20, 50, 100, 200),
-    short=(5, 50, 200),
+    measured=(5, 10, 20, 50, 100, 200),
+    drawn=(5, 50, 200),
+    short=(5, 200),
     text=_TEXT_N,
 )
 _ANTENNA = Sweep(
     figure="figure_5",
     symbol="c₁",
     vary=lambda setting, c1: replace(setting, c1=c1),
-    full=(0.3, 0.5, 1, 2, 3, 5),
-    short=(0.3, 1, 3),
+    measured=(0.3, 0.5, 1, 2, 3, 5),
+    drawn=(0.3, 1, 3),
+    short=(0.3, 1),
     text=_TEXT_C1,
 )
 _STEP = Sweep(
     figure="figure_6",
     symbol="c₂",
     vary=lambda setting, c2: replace(setting, c2=c2),
-    full=(0.3, 0.5, 1, 2, 3, 5),
-    short=(0.3, 1, 3),
+    measured=(0.3, 0.5, 1, 2, 3, 5),
+    drawn=(0.3, 1, 3),
+    short=(0.3, 1),
     text=_TEXT_C2,
 )
 _SWEEPS = (_EXPLORATIONS, _ANTENNA, _STEP)
@@ -106,22 +112,16 @@ Measurements: TypeAlias = dict[tuple[str, str], list[Measured]]
 """By arm and walk, in the order of the option's values."""
 
 
-def trends(context: Context) -> tuple[Section, list[Claim]]:
+def trends(context: Context) -> Part:
     """All three sweeps on both arms, for both readings of the walk."""
     found = {sweep.figure: _measure(context, sweep) for sweep in _SWEEPS}
     blocks: list[Block] = [_TEXT]
     for sweep in _SWEEPS:
-        blocks += [sweep.text, _runs(sweep), _table(sweep, found[sweep.figure])]
-    overview = Figure(
-        name="trends",
-        title="The same for both walks",
-        drawing=_draw_trends(found),
-        caption=(
-            f"Means over {counted(len(_seeds(context)), 'seed')}. "
-            "Roughness: rms change of joint velocity from step to step."
-        ),
-    )
-    return Section(TITLE, [*blocks, overview]), _claims(found)
+        runs = _runs(sweep, context.pick(full=sweep.drawn, short=sweep.short))
+        blocks += [sweep.text, runs, _table(sweep, found[sweep.figure])]
+    if not context.short:  # two points a line, of one seed, show no trend
+        blocks.append(_overview(found, len(_seeds(context))))
+    return Section(TITLE, blocks), _claims(found)
 
 
 def _seeds(context: Context) -> range:
@@ -131,7 +131,7 @@ def _seeds(context: Context) -> range:
 def _measure(context: Context, sweep: Sweep) -> Measurements:
     tasks = context.pick(full=(FIVE_LINK, IIWA), short=(FIVE_LINK,))
     found: Measurements = {(task.name, walk): [] for task in tasks for walk in WALKS}
-    values = context.pick(full=sweep.full, short=sweep.short)
+    values = context.pick(full=sweep.measured, short=sweep.short)
     cases = [(task, walk, value) for task in tasks for walk in WALKS for value in values]
     for task, walk, value in context.each(f"cheng2020: {_number_of(sweep)}", cases):
         found[task.name, walk].append(_run(task, sweep.vary(WALKS[walk][task.name], value), value, _seeds(context)))
@@ -211,12 +211,12 @@ def _table(sweep: Sweep, found: Measurements) -> Table:
     )
 
 
-def _runs(sweep: Sweep) -> Figure:
-    """One run each of the five-link arm for three values, as the paper draws them."""
+def _runs(sweep: Sweep, values: tuple[float, ...]) -> Figure:
+    """One run each of the five-link arm, as the paper draws them."""
     setting = STAR[FIVE_LINK.name]
     with drawing(4.2) as figure:
-        panels = figure.subplots(2, len(sweep.short), sharex=True, sharey="row")
-        for (error, velocity), value in zip(panels.T, sweep.short, strict=True):
+        panels = figure.subplots(2, len(values), sharex=True, sharey="row")
+        for (error, velocity), value in zip(panels.T, values, strict=True):
             result = FIVE_LINK.track(sweep.vary(setting, value).solver, band=setting.band)
             draw_error(error, result.time, result.position_error, band=setting.band, color=BLUE)
             draw_velocities(velocity, result.time[1:], result.qd[1:], result.velocity_limit[1:, 0], linewidth=0.7)
@@ -226,6 +226,15 @@ def _runs(sweep: Sweep) -> Figure:
             axes.set_ylabel("")
     caption = "Five-link arm, star walk. Above: error, with its band dashed. Below: the velocities of the five joints."
     return Figure(name=sweep.figure, title=f"{_number_of(sweep)}: {sweep.symbol}", drawing=figure, caption=caption)
+
+
+def _overview(found: dict[str, Measurements], seeds: int) -> Figure:
+    return Figure(
+        name="trends",
+        title="The same for both walks",
+        drawing=_draw_trends(found),
+        caption=(f"Means over {counted(seeds, 'seed')}. Roughness: rms change of joint velocity from step to step."),
+    )
 
 
 def _draw_trends(found: dict[str, Measurements]) -> Drawing:

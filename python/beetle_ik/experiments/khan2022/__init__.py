@@ -21,11 +21,7 @@ the antennae shake the tool by centimetres, because the measured error is that o
 def run(context: Context) -> Report:
     """Run all of it."""
     parts = [part(context) for part in (figures, sensitivity, theorem, replay)]
-    return Report(
-        summary=_SUMMARY,
-        sections=[section for section, _ in parts],
-        claims=[claim for _, claims in parts for claim in claims],
-    )
+    return Report.of(_SUMMARY, parts)
 
 
 EXPERIMENT = Experiment(

@@ -9,7 +9,7 @@ import numpy as np
 import beetle_ik as bik
 
 from ... import sim
-from ...report import BLUE, GREEN, VERMILION, Claim, Figure, Section, drawing, number
+from ...report import BLUE, GREEN, VERMILION, Claim, Figure, Part, Section, drawing, number
 from ..experiment import Context
 from .settings import IIWA, Array
 
@@ -36,7 +36,7 @@ it is below a millimetre.
 """
 
 
-def replay(context: Context) -> tuple[Section, list[Claim]]:
+def replay(context: Context) -> Part:
     """Angles resolved by BAS on the simulated arm; then an arm whose model is wrong, with a model and without."""
     resolved = bik.track(
         IIWA, _CIRCLE, _ON_CIRCLE, dt=_DT, solver=bik.BAS(), position_tolerance=1.7e-5, seed=context.seed

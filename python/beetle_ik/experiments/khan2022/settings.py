@@ -83,6 +83,11 @@ class Run:
         return float(self.h[LATE].mean())
 
     @property
+    def late_sent_h(self) -> float:
+        """The same at theta' (m^2)."""
+        return float(self.sent_h[LATE].mean())
+
+    @property
     def arrival(self) -> float:
         """When h first falls below 1e-3 m^2 (s); infinite if never."""
         below = np.flatnonzero(self.h < ARRIVED)

@@ -9,7 +9,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import BLUE, VERMILION, Claim, Column, Figure, Section, Table, drawing, number
+from ...report import BLUE, VERMILION, Claim, Column, Figure, Part, Section, Table, drawing, number
 from ..experiment import Context
 from .settings import HOME, M, Run, follow
 
@@ -46,7 +46,7 @@ class Pair:
         return _rises(self.point)
 
 
-def theorem(context: Context) -> tuple[Section, list[Claim]]:
+def theorem(context: Context) -> Part:
     """Both algorithms, on a point and on the M."""
     variants = {
         "always: eq. (14), (15)": bik.ZNNBAS(gain=10.0, antenna_length=0.1, delay_steps=10),

@@ -20,11 +20,7 @@ printed tracking error lies between those of 1 ms and 10 ms steps, once a closed
 def run(context: Context) -> Report:
     """Run all of it."""
     parts = (postures(context), tracking(context), picture(context))
-    return Report(
-        summary=_SUMMARY,
-        sections=[section for section, _ in parts],
-        claims=[claim for _, claims in parts for claim in claims],
-    )
+    return Report.of(_SUMMARY, parts)
 
 
 EXPERIMENT = Experiment(

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import BeeColony, Genetic, Stop, minimize
+from ..experiment import Context
 
 _Array = NDArray[np.float64]
 
@@ -81,23 +82,23 @@ def simulate(
     return errors
 
 
-def pid(motion: Motion, _short: bool, _seed: int) -> _Array:
+def pid(motion: Motion, _context: Context) -> _Array:
     """A PID by hand."""
     return simulate(motion, Gains())
 
 
-def bee_pid(motion: Motion, short: bool, seed: int) -> _Array:
+def bee_pid(motion: Motion, context: Context) -> _Array:
     """A PID whose gains an artificial bee colony has tuned, on the first two seconds."""
     trial = _beginning(motion)
 
     def cost(gains: _Array) -> float:
         return float(np.sqrt(np.mean(simulate(trial, Gains(*gains)) ** 2)))
 
-    found = _least(cost, [0.0] * 3, [60.0, 120.0, 2.0], BeeColony(), 60 if short else 400, seed)
+    found = _least(cost, [0.0] * 3, [60.0, 120.0, 2.0], BeeColony(), context.pick(full=400, short=60), context.seed)
     return simulate(motion, Gains(*found))
 
 
-def genetic_network(motion: Motion, short: bool, seed: int) -> _Array:
+def genetic_network(motion: Motion, context: Context) -> _Array:
     """A PID and a radial-basis network: weights by a genetic algorithm, then adapted while it runs."""
     trial, gains = _beginning(motion), Gains()
     basis = features(trial)
@@ -106,11 +107,11 @@ def genetic_network(motion: Motion, short: bool, seed: int) -> _Array:
         return float(np.sqrt(np.mean(simulate(trial, gains, weights=weights, basis=basis, adaptation=ADAPTATION) ** 2)))
 
     size = len(CENTRES)
-    found = _least(cost, [-1.0] * size, [1.0] * size, Genetic(), 60 if short else 300, seed)
+    found = _least(cost, [-1.0] * size, [1.0] * size, Genetic(), context.pick(full=300, short=60), context.seed)
     return simulate(motion, gains, weights=found, basis=features(motion), adaptation=ADAPTATION)
 
 
-CONTROLLERS: dict[str, Callable[[Motion, bool, int], _Array]] = {
+CONTROLLERS: dict[str, Callable[[Motion, Context], _Array]] = {
     "PID": pid,
     "artificial bee colony": bee_pid,
     "GA-RBF": genetic_network,

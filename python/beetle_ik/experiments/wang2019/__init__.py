@@ -20,11 +20,7 @@ other, joined by one polynomial, are quicker than what any swarm finds, within m
 def run(context: Context) -> Report:
     """Run all of it."""
     parts = [part(context) for part in (point_to_point, obstacle, along_path, table_1, complexity)]
-    return Report(
-        summary=_SUMMARY.strip(),
-        sections=[section for section, _ in parts],
-        claims=[claim for _, claims in parts for claim in claims],
-    )
+    return Report.of(_SUMMARY, parts)
 
 
 EXPERIMENT = Experiment(

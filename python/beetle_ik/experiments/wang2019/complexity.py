@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from typing import Any
+from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 import beetle_ik as bik
 
-from ...report import Claim, Column, Section, Table, number
+from ...report import Claim, Column, Part, Section, Table, number
 from ..experiment import Context
-from .settings import ALONG_PATH, END, FROM_END_TO_END, START, arm
+from .settings import ALONG_PATH, END, FROM_END_TO_END, PSO, START, THREE_LINKS, arm
 
 TITLE = "Tables 2 and 3"
 _REPEATS = 5
@@ -34,40 +36,54 @@ point. It was counted, not measured: all of it is less than a megabyte.
 """
 
 
-def complexity(context: Context) -> tuple[Section, list[Claim]]:
+@dataclass(frozen=True)
+class Growth:
+    """A search before and after something has grown."""
+
+    what: str
+    low: int
+    high: int
+    before: bik.Plan
+    after: bik.Plan
+
+    @property
+    def of_evaluations(self) -> float:
+        """How much they grow for what makes them grow."""
+        return self.after.evaluations / self.before.evaluations / (self.high / self.low)
+
+    @property
+    def exponent(self) -> float:
+        """Of time: 1 where it grows in proportion."""
+        return math.log(self.after.elapsed / self.before.elapsed) / math.log(self.high / self.low)
+
+
+def complexity(context: Context) -> Part:
     """Measure by doubling."""
     repeats = context.pick(full=_REPEATS, short=_REPEATS_SHORT)
-    swarm = bik.BeetleSwarm(stall_generations=None)
-    particles = bik.PSO(population=50, stall_generations=None)
-    population: dict[str, Any] = {"TPBSO": bik.BeetleSwarm, "PSO": bik.PSO, "GA": bik.Genetic}
-    rows: list[list[str | int | float]] = []
+    proportional = [
+        _grow(*one, repeats) for one in context.each("wang2019: Table 2, population and iterations", _PROPORTIONAL)
+    ]
+    others = [_grow(*one, repeats) for one in context.each("wang2019: Tables 2 and 3", _OTHERS)]
+    return Section(TITLE, [_TEXT, _table([*proportional, *others])]), [_claim(proportional, others)]
 
-    def add(what: str, low: int, high: int, run: Callable[[int], bik.Plan]) -> None:
-        first, second = _shortest(lambda: run(low), repeats), _shortest(lambda: run(high), repeats)
-        exponent = np.log(second.elapsed / first.elapsed) / np.log(high / low)
-        rows.append(
-            [
-                what,
-                low,
-                high,
-                first.evaluations,
-                second.evaluations,
-                1e3 * first.elapsed,
-                1e3 * second.elapsed,
-                float(exponent),
-            ]
-        )
 
-    def with_members(name: str) -> Callable[[int], bik.Plan]:
-        return lambda members: _plan(4, population[name](population=members, stall_generations=None), 100)
+def _claim(proportional: list[Growth], others: list[Growth]) -> Claim:
+    ratios = [growth.of_evaluations for growth in proportional]
+    exponents = [growth.exponent for growth in (*proportional, *others)]
+    return Claim.checked(
+        "Cost grows in proportion to population and iterations.",
+        source="Section IV-D.3, Table 2",
+        measured=(
+            f"evaluations grow {number(min(ratios))} to {number(max(ratios))} times as much as their cause; no part of "
+            f"the verdict: exponents of time between {number(min(exponents), 2)} and {number(max(exponents), 2)}"
+        ),
+        holds=all(abs(ratio - 1.0) < _LEFT_OVER for ratio in ratios),
+        section=TITLE,
+    )
 
-    for name in context.each("wang2019: Tables 2 and 3", list(population)):
-        add(f"{name}: members, n_p", 25, 100, with_members(name))
-    add("TPBSO: iterations, n_i", 50, 200, lambda generations: _plan(4, swarm, generations))
-    add("TPBSO: links (dimension 4 k - 2)", 3, 6, lambda links: _plan(links, swarm, 100))
-    add("PSO: links", 3, 6, lambda links: _plan(links, particles, 300))
-    add("TPBSO along a path: points, n_in", 51, 201, _follow)
-    table = Table(
+
+def _table(rows: list[Growth]) -> Table:
+    return Table(
         name="tables_2_and_3",
         title="Growth of evaluations and time",
         columns=[
@@ -80,27 +96,24 @@ def complexity(context: Context) -> tuple[Section, list[Claim]]:
             Column(name="time then", unit="ms"),
             Column(name="exponent", digits=2),
         ],
-        rows=rows,
+        rows=[
+            [
+                row.what,
+                row.low,
+                row.high,
+                row.before.evaluations,
+                row.after.evaluations,
+                1e3 * row.before.elapsed,
+                1e3 * row.after.elapsed,
+                row.exponent,
+            ]
+            for row in rows
+        ],
     )
-    exponents = [float(row[-1]) for row in rows]
-    ratios = [_growth(row) for row in rows if "members" in str(row[0]) or "iterations" in str(row[0])]
-    claim = Claim.checked(
-        "Cost grows in proportion to population and iterations.",
-        source="Section IV-D.3, Table 2",
-        measured=(
-            f"evaluations grow {number(min(ratios))} to {number(max(ratios))} times as much as their cause; no part of "
-            f"the verdict: exponents of time between {number(min(exponents), 2)} and {number(max(exponents), 2)}"
-        ),
-        holds=all(abs(ratio - 1.0) < _LEFT_OVER for ratio in ratios),
-        section=TITLE,
-    )
-    return Section(TITLE, [_TEXT, table]), [claim]
 
 
-def _growth(row: list[str | int | float]) -> float:
-    """How much evaluations grow for what makes them grow."""
-    _, low, high, first, second, *_ = row
-    return float(second) / float(first) / (float(high) / float(low))
+def _grow(what: str, low: int, high: int, run: Callable[[int], bik.Plan], repeats: int) -> Growth:
+    return Growth(what, low, high, _shortest(lambda: run(low), repeats), _shortest(lambda: run(high), repeats))
 
 
 def _shortest(run: Callable[[], bik.Plan], repeats: int) -> bik.Plan:
@@ -118,6 +131,24 @@ def _follow(points: int) -> bik.Plan:
     angle = np.linspace(0.0, 2 * np.pi, points)
     circle = np.column_stack((1.0 + 0.4 * np.cos(angle), 1.0 + 0.4 * np.sin(angle), 0.0 * angle))
     stop = bik.Stop(max_evaluations=3000)
-    return bik.plan_along_path(
-        bik.Robot.planar([1.0, 1.0, 1.0]), circle, method="tpbso", limits=ALONG_PATH, accuracy=0.02, stop=stop
-    )
+    return bik.plan_along_path(THREE_LINKS, circle, method="tpbso", limits=ALONG_PATH, accuracy=0.02, stop=stop)
+
+
+def _with_members(search: type[bik.BeetleSwarm | bik.PSO | bik.Genetic]) -> Callable[[int], bik.Plan]:
+    return lambda members: _plan(4, search(population=members, stall_generations=None), 100)
+
+
+_Doubling: TypeAlias = tuple[str, int, int, Callable[[int], bik.Plan]]
+"""What grows, from where, to where, and the search that it makes longer."""
+_SWARM = bik.BeetleSwarm(stall_generations=None)
+_PROPORTIONAL: tuple[_Doubling, ...] = (
+    ("TPBSO: members, n_p", 25, 100, _with_members(bik.BeetleSwarm)),
+    ("PSO: members, n_p", 25, 100, _with_members(bik.PSO)),
+    ("GA: members, n_p", 25, 100, _with_members(bik.Genetic)),
+    ("TPBSO: iterations, n_i", 50, 200, lambda generations: _plan(4, _SWARM, generations)),
+)
+_OTHERS: tuple[_Doubling, ...] = (
+    ("TPBSO: links (dimension 4 k - 2)", 3, 6, lambda links: _plan(links, _SWARM, 100)),
+    ("PSO: links", 3, 6, lambda links: _plan(links, PSO, 300)),
+    ("TPBSO along a path: points, n_in", 51, 201, _follow),
+)

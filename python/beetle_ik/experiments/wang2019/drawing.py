@@ -10,7 +10,7 @@ import numpy as np
 import beetle_ik as bik
 
 from ...report import BLACK, BLUE, SKY, line
-from .settings import best_so_far
+from .settings import UNITS, Criterion, best_so_far
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +31,12 @@ def draw_arm(axes: Axes, plan: bik.Plan, snapshots: int = 5) -> None:
     tip = plan.robot.fk(q)[:, :2, 3]
     axes.plot(*tip.T, color=BLUE, label="tip")
     axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize="small", columnspacing=1.0)
+    legend_above(axes, columns=3)
+
+
+def legend_above(axes: Axes, *, columns: int) -> None:
+    """Where it covers nothing."""
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, fontsize="small", columnspacing=1.0)
 
 
 def draw_search(axes: Axes, plans: Sequence[bik.Plan], *, name: str, color: str, evaluations: int) -> None:
@@ -44,14 +49,16 @@ def draw_search(axes: Axes, plans: Sequence[bik.Plan], *, name: str, color: str,
     axes.fill_between(counts[found], mean - spread, mean + spread, color=color, alpha=0.2, linewidth=0)
     axes.plot(counts[found], mean, color=color, label=name)
     axes.set(xscale="log", yscale="log", xlabel="evaluations")
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_minor_formatter("{x:g}")
-    axes.tick_params(axis="y", which="minor", labelsize="x-small")
 
 
 def draw_bound(axes: Axes, value: float, name: str) -> None:
     """A value that no plan, or none known, goes below."""
     axes.axhline(value, color=BLACK, linestyle="--", linewidth=1.0, label=name)
+
+
+def label(objective: Criterion) -> str:
+    """What an axis of costs is called."""
+    return f"{objective.replace('_', ' ')} [{UNITS[objective]}]"
 
 
 def draw_joints(axes: Axes, plan: bik.Plan) -> None:

@@ -9,14 +9,19 @@ from numpy.typing import NDArray
 
 import beetle_ik as bik
 
-from ...report import Claim, Column, Section, Spread, Table
+from ...report import Claim, Column, Part, Section, Spread, Table
 from ..experiment import Context
-from .settings import POPULATION, Criterion, each
+from .settings import GENETIC, POPULATION, PSO, Criterion, Search, each
 
 TITLE = "Table 1"
-_SEEDS = 10
+_SEEDS = 6
 _SEEDS_SHORT = 1
 _GENERATIONS = 100
+_SEARCHES = (
+    Search("GA", GENETIC, POPULATION * (_GENERATIONS + 1)),
+    Search("PSO", PSO, POPULATION * (_GENERATIONS + 1)),
+    Search("TPBSO", None, POPULATION * (3 * _GENERATIONS + 1)),
+)
 _ACCURACY = 0.12  # m
 _LIMITS = bik.Limits(lower=-np.inf, upper=np.inf, velocity=38.53)
 _PRINTED = {
@@ -47,10 +52,11 @@ class _Row:
     rotation: list[bik.Plan]
 
 
-def table_1(context: Context) -> tuple[Section, list[Claim]]:
+def table_1(context: Context) -> Part:
     """Run the three algorithms at equal iterations on the fitted paths."""
     seeds = context.seeds(context.pick(full=_SEEDS, short=_SEEDS_SHORT))
-    rows = [_row(path, algorithm, seeds) for path, algorithm in context.each("wang2019: Table 1", list(_PRINTED))]
+    cases = [(path, search) for path in ("pentagram", "closed curve") for search in _SEARCHES]
+    rows = [_row(path, search, seeds) for path, search in context.each("wang2019: Table 1", cases)]
     table = Table(
         name="table_1",
         title=f"Table 1: mean and standard deviation over {len(seeds)} runs",
@@ -80,31 +86,16 @@ def table_1(context: Context) -> tuple[Section, list[Claim]]:
     return Section(TITLE, [_TEXT, table]), [claim]
 
 
-def _row(path: str, algorithm: str, seeds: range) -> _Row:
-    solvers = {
-        "TPBSO": (None, POPULATION * (3 * _GENERATIONS + 1)),
-        "PSO": (bik.PSO(population=POPULATION, stall_generations=None), POPULATION * (_GENERATIONS + 1)),
-        "GA": (bik.Genetic(population=POPULATION, stall_generations=None), POPULATION * (_GENERATIONS + 1)),
-    }
-    solver, evaluations = solvers[algorithm]
+def _row(path: str, search: Search, seeds: range) -> _Row:
+    points = _points(path)
 
     def plans(objective: Criterion) -> list[bik.Plan]:
-        return each(lambda seed: plan(objective, seed), seeds)
-
-    def plan(objective: Criterion, seed: int) -> bik.Plan:
-        return bik.plan_along_path(
-            bik.Robot.planar([1.0, 1.0, 1.0]),
-            _points(path),
-            method="tpbso",
-            objective=objective,
-            limits=_LIMITS,
-            accuracy=_ACCURACY,
-            solver=solver,
-            stop=bik.Stop(max_evaluations=evaluations),
-            seed=seed,
+        return each(
+            lambda seed: search.follow(points, objective, seed, limits=_LIMITS, accuracy=_ACCURACY),
+            seeds,
         )
 
-    return _Row(path, algorithm, plans("time"), plans("joint_travel"))
+    return _Row(path, search.name, plans("time"), plans("joint_travel"))
 
 
 def _points(path: str) -> NDArray[np.float64]:

@@ -21,11 +21,7 @@ def run(context: Context) -> Report:
     """Run all of it."""
     runs = replay()
     parts = [motions(runs), comparison(context, runs), rates(runs), reach(context), typos(runs)]
-    return Report(
-        summary=_SUMMARY.strip(),
-        sections=[section for section, _ in parts],
-        claims=[claim for _, claims in parts for claim in claims],
-    )
+    return Report.of(_SUMMARY, parts)
 
 
 EXPERIMENT = Experiment(

@@ -8,7 +8,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import Claim, Column, Figure, Section, Table, Value, drawing, line, number
+from ...report import Claim, Column, Figure, Part, Section, Table, Value, drawing, line, number
 from ..experiment import Context
 from .published import BUDGET, ITERATIONS, MOTIONS, NEWTON_ERRORS, NEWTON_ITERATIONS, TIMES
 from .task import ROBOT, Motion, error, reach
@@ -54,7 +54,7 @@ last motion is out of reach of the three others from this start:** its fourth jo
 """
 
 
-def comparison(context: Context, runs: list[Motion]) -> tuple[Section, list[Claim]]:
+def comparison(context: Context, runs: list[Motion]) -> Part:
     """Iterations, times and errors of all methods on the seven motions."""
     newton = [_solve(run, bik.NewtonRaphson(), _TOLERANCE, BUDGET) for run in runs]
     transpose = [_solve(run, _SLOW_TRANSPOSE, _TOLERANCE, NEWTON_ITERATIONS) for run in runs]

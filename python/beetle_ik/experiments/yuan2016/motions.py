@@ -15,6 +15,7 @@ from ...report import (
     Claim,
     Column,
     Figure,
+    Part,
     Section,
     Table,
     drawing,
@@ -56,7 +57,7 @@ def replay() -> list[Motion]:
     return run_all(bik.APPS.paper())
 
 
-def motions(runs: list[Motion]) -> tuple[Section, list[Claim]]:
+def motions(runs: list[Motion]) -> Part:
     """Angles, positions and errors of the seven motions."""
     angles = np.array([np.degrees(run.solution.q) for run in runs])
     first, second = (

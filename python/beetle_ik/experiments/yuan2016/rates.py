@@ -8,7 +8,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import BLACK, BLUE, VERMILION, Claim, Column, Figure, Section, Table, drawing, line, number
+from ...report import BLACK, BLUE, VERMILION, Claim, Column, Figure, Part, Section, Table, drawing, line, number
 from ..experiment import Context
 from .published import BUDGET, HIDDEN_FACTOR, LEARNING_RATE, MOTIONS, R2, START, THRESHOLD, Array
 from .task import ROBOT, TOLERANCE, Motion, target
@@ -42,7 +42,7 @@ library. For a single answer the library's default, Levenberg-Marquardt from man
 """
 
 
-def rates(runs: list[Motion]) -> tuple[Section, list[Claim]]:
+def rates(runs: list[Motion]) -> Part:
     """The paper's rates on its own motions, in both scales of E."""
     scales = {"20 times eq. (11)": HIDDEN_FACTOR, "eq. (11)": 1.0}
     counts = {(scale, rate): _counts(rate, factor) for scale, factor in scales.items() for rate in _RATES}
@@ -140,7 +140,7 @@ def _solvers() -> dict[str, Solver]:
     }
 
 
-def reach(context: Context) -> tuple[Section, list[Claim]]:
+def reach(context: Context) -> Part:
     """How often each method gets from a random start to a random target."""
     count, patient = context.pick(full=(2000, 500), short=(200, 0))
     starts = ROBOT.random_configurations(count, seed=context.seed)

@@ -4,7 +4,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import Claim, Column, Section, Table, number
+from ...report import Claim, Column, Part, Section, Table, number
 from .published import DH_A, DH_ALPHA, DH_D, MISPRINTED_X, POSITION_2, R1, R1_CORRECTED, R2, START, TARGETS
 from .task import ROBOT, Motion, home, reach, target
 
@@ -12,7 +12,7 @@ TITLE = "Misprints, and what shows them"
 _HALF_DIGIT = 5e-6  # m, of Table 4
 
 
-def typos(runs: list[Motion]) -> tuple[Section, list[Claim]]:
+def typos(runs: list[Motion]) -> Part:
     """A table of them; the numbers in it are of this run."""
     section = Section(
         TITLE,
