@@ -3,7 +3,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::{Obstacle, Scene};
-use ikcore::planning::{End, PointToPointOptions, plan_point_to_point};
+use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
 use ikcore::task::Target;
@@ -16,7 +16,7 @@ fn limits(robot: &Robot, velocity: Option<f64>, acceleration: f64) -> Option<Lim
 }
 
 fn plane(c: &mut Criterion) {
-    let position = |x, y| End::Target(Target::Position([x, y, 0.0]));
+    let position = |x, y| Endpoint::Target(Target::Position([x, y, 0.0]));
     let mut group = c.benchmark_group("point_to_point");
     for links in 2..=5 {
         let arm = Robot::planar(&vec![2.0 / links as f64; links]).expect("an arm");
@@ -34,10 +34,10 @@ fn panda(c: &mut Criterion) {
     let wall = Obstacle::cuboid([0.55, 0.0, 0.3], [0.5, 0.05, 0.6], None).expect("a wall");
     let behind = arm.fk(&[0.124, 0.768, -0.323, -0.972, 0.047, 1.456, 2.818]).expect("a pose");
     let centre = arm.joints().iter().map(|joint| 0.5 * (joint.lower + joint.upper)).collect();
-    let side = |turn: f64| End::Configuration(vec![turn, 0.8, 0.0, -1.6, 0.0, 2.4, 0.8]);
+    let side = |turn: f64| Endpoint::Configuration(vec![turn, 0.8, 0.0, -1.6, 0.0, 2.4, 0.8]);
     let mut group = c.benchmark_group("point_to_point");
     for (name, obstacle, start, end) in [
-        ("panda behind a box", &crate_, End::Configuration(centre), End::Target(Target::from(&behind))),
+        ("panda behind a box", &crate_, Endpoint::Configuration(centre), Endpoint::Target(Target::from(&behind))),
         ("panda around a wall", &wall, side(-0.7), side(0.7)),
     ] {
         let options = PointToPointOptions {

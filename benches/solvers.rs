@@ -6,7 +6,7 @@ use std::time::Duration;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
 use ikcore::math::box_step::ROWS;
 use ikcore::objective::{
-    Bounds, Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, Score, Slope,
+    Bounds, Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore,
 };
 use ikcore::problem::Problem;
 use ikcore::rng;
@@ -76,17 +76,17 @@ impl LeastSquares for Unsolved<'_> {
 }
 
 impl Gradient for Sphere {
-    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> Slope {
+    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> SmoothScore {
         gradient.iter_mut().zip(x).for_each(|(slope, x)| *slope = x - 0.7);
         let score = self.evaluate(x);
-        Slope { error: 0.5 * score.value, score }
+        SmoothScore { error: 0.5 * score.value, score }
     }
 }
 
 impl Gradient for Unsolved<'_> {
-    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> Slope {
-        let Slope { error, score } = self.0.differentiate(x, gradient);
-        Slope { error, score: Score { solved: false, ..score } }
+    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> SmoothScore {
+        let SmoothScore { error, score } = self.0.differentiate(x, gradient);
+        SmoothScore { error, score: Score { solved: false, ..score } }
     }
 }
 

@@ -56,7 +56,7 @@ impl Scene {
 }
 
 fn each_tick(algorithm: Algorithm) -> TickRule {
-    TickRule::EachTick(AnySolver::Single(algorithm))
+    TickRule::Solver(AnySolver::Single(algorithm))
 }
 
 fn weighted_pseudo_inverse(integrator: Integrator) -> TickRule {

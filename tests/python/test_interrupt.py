@@ -34,7 +34,12 @@ def solve_one_endless_iteration() -> object:
     return bik.solve(IIWA, [5.0, 5.0, 5.0], solver=solver, stop=bik.Stop(max_evaluations=10**13))
 
 
-LONG_CALLS = [track_for_minutes, solve_for_minutes, solve_one_endless_iteration]
+def swarm_for_hours() -> object:
+    swarm = bik.CircleSwarm(population=1000, generations=10**6)
+    return bik.planar_posture(bik.Robot.planar([0.5] * 3), [0.5, 0.5, 0.0], swarm=swarm)
+
+
+LONG_CALLS = [track_for_minutes, solve_for_minutes, solve_one_endless_iteration, swarm_for_hours]
 
 
 @contextmanager

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::so3::{norm, rotation_between};
 use ikcore::path::{Circle, Path, Plane, Polyline, Reference};
-use ikcore::planning::{AlongPathOptions, Course, Elbow, Plan, plan_along_path};
+use ikcore::planning::{AlongPathOptions, Elbow, Plan, TipPath, plan_along_path};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Stop, Unattended};
@@ -33,12 +33,12 @@ fn trefoil(u: f64) -> [f64; 3] {
     [1.0 + r * t.cos(), 1.0 + r * t.sin(), 0.0]
 }
 
-fn course(curve: fn(f64) -> [f64; 3]) -> Course {
+fn tip_path(curve: fn(f64) -> [f64; 3]) -> TipPath {
     let points = (0..=INTERVALS).map(|i| curve(i as f64 / INTERVALS as f64)).collect();
-    Course::through(&Reference::new(1.0, points, None).unwrap()).unwrap()
+    TipPath::through(&Reference::new(1.0, points, None).unwrap()).unwrap()
 }
 
-fn plan(course: &Course, options: AlongPathOptions) -> Plan {
+fn plan(tip_path: &TipPath, options: AlongPathOptions) -> Plan {
     let robot = Robot::planar(&[1.0; 3]).unwrap();
     let constant = |value: f64| vec![Profile::Constant(value)];
     let limits = Limits::of(&robot)
@@ -47,7 +47,7 @@ fn plan(course: &Course, options: AlongPathOptions) -> Plan {
         .and_then(|limits| limits.replace(Field::Velocity, constant(PI)))
         .and_then(|limits| limits.replace(Field::Acceleration, constant(4.0 * PI)))
         .unwrap();
-    plan_along_path(&robot, course, &AlongPathOptions { limits: Some(limits), ..options }, &mut Unattended).unwrap()
+    plan_along_path(&robot, tip_path, &AlongPathOptions { limits: Some(limits), ..options }, &mut Unattended).unwrap()
 }
 
 /// The configurations of a plan at so many instants.
@@ -60,9 +60,9 @@ fn instants(plan: &Plan, count: usize) -> impl Iterator<Item = Vec<f64>> {
     })
 }
 
-/// How far the tip is from the course at the most (m), at many instants.
-fn farthest(robot: &Robot, course: &Course, plan: &Plan) -> f64 {
-    instants(plan, 4000).map(|q| course.distance(robot.tip_position(&q), 0.0, 1.0)).fold(0.0, f64::max)
+/// How far the tip is from the path at the most (m), at many instants.
+fn farthest(robot: &Robot, tip_path: &TipPath, plan: &Plan) -> f64 {
+    instants(plan, 4000).map(|q| tip_path.distance(robot.tip_position(&q), 0.0, 1.0)).fold(0.0, f64::max)
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn faster_than_the_optimum_in_uniform_time_by_what_was_measured() {
     // Durations of the optimum in uniform time, found by long searches, and the factor that must be beaten.
     for (curve, uniform, factor) in [(pentagram as fn(f64) -> [f64; 3], 5.501, 1.9), (trefoil, 3.234, 1.35)] {
         for seed in 0..3 {
-            let plan = plan(&course(curve), AlongPathOptions { seed, ..AlongPathOptions::default() });
+            let plan = plan(&tip_path(curve), AlongPathOptions { seed, ..AlongPathOptions::default() });
             assert_eq!(plan.status, Status::Solved, "{}", plan.message());
             assert!(plan.violations.is_empty());
             assert!(uniform / plan.cost >= factor, "seed {seed}: {} s", plan.cost);
@@ -86,11 +86,11 @@ fn accuracy_is_that_of_the_whole_motion_and_kept() {
     let star = Polyline::pentagram(&Plane::xy([1.0, 1.0, 0.0]).unwrap(), 0.5, 5.0).unwrap();
     let circle = Circle::new(Plane::xy([1.2, 1.0, 0.0]).unwrap(), 0.8, 3.0).unwrap();
     for (path, accuracies) in [(Path::new(star), [0.03, 1e-3, 1e-5]), (Path::new(circle), [0.01, 1e-4, 1e-5])] {
-        let course = Course::along(&path).unwrap();
+        let tip_path = TipPath::along(&path).unwrap();
         for asked in accuracies {
-            let plan = plan(&course, AlongPathOptions { accuracy: Some(asked), stop: few(), ..Default::default() });
+            let plan = plan(&tip_path, AlongPathOptions { accuracy: Some(asked), stop: few(), ..Default::default() });
             assert_eq!(plan.status, Status::Solved, "{}", plan.message());
-            let (told, found) = (plan.accuracy.unwrap(), farthest(&robot, &course, &plan));
+            let (told, found) = (plan.accuracy.unwrap(), farthest(&robot, &tip_path, &plan));
             assert!(told <= asked, "{told} of {asked} m");
             assert!(0.98 * told <= found + 1e-9 && found <= 1.01 * told + 1e-9, "{found} m, told {told} m");
         }
@@ -106,8 +106,8 @@ fn few() -> Option<Stop> {
 fn corners_of_a_path_are_reached() {
     let robot = Robot::planar(&[1.0; 3]).unwrap();
     let points = vec![[1.0, 1.0, 0.0], [1.31, 1.0, 0.0], [1.31, 1.27, 0.0], [1.05, 1.3, 0.0]];
-    let course = Course::through(&Reference::new(1.0, points.clone(), None).unwrap()).unwrap();
-    let plan = plan(&course, AlongPathOptions { stop: few(), ..Default::default() });
+    let tip_path = TipPath::through(&Reference::new(1.0, points.clone(), None).unwrap()).unwrap();
+    let plan = plan(&tip_path, AlongPathOptions { stop: few(), ..Default::default() });
     assert_eq!(plan.status, Status::Solved, "{}", plan.message());
     let tips: Vec<[f64; 3]> = instants(&plan, 20_000).map(|q| robot.tip_position(&q)).collect();
     for point in points {
@@ -122,12 +122,12 @@ fn rotations_are_kept_between_points_too() {
     let down = Matrix3::new(0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0);
     let plane = Plane::new([0.6, 0.0, 0.5], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]).unwrap();
     let circle = Path::new(Circle::new(plane, 0.4, 5.0).unwrap()).with_orientation(down).unwrap();
-    let course = Course::along(&circle).unwrap();
+    let tip_path = TipPath::along(&circle).unwrap();
     let limits = Limits::of(&robot).replace(Field::Acceleration, vec![Profile::Constant(5.0)]).unwrap();
     let options = AlongPathOptions { limits: Some(limits), accuracy: Some(1e-4), stop: few(), ..Default::default() };
-    let plan = plan_along_path(&robot, &course, &options, &mut Unattended).unwrap();
+    let plan = plan_along_path(&robot, &tip_path, &options, &mut Unattended).unwrap();
     assert_eq!(plan.status, Status::Solved, "{}", plan.message());
-    let Target::Pose(wanted) = course.target(0.3) else { panic!("a path of poses") };
+    let Target::Pose(wanted) = tip_path.target(0.3) else { panic!("a path of poses") };
     for q in instants(&plan, 2000) {
         assert!(norm(&rotation_between(&wanted, &robot.tip(&q))) <= 1e-4);
     }
@@ -140,11 +140,11 @@ fn what_cannot_be_kept_is_told() {
     let points = Reference::new(1.0, vec![[0.0, 0.99, 0.0], [0.99, 0.99, 0.0], [0.99, 0.0, 0.0]], None).unwrap();
     let limits = Limits::of(&robot).replace(Field::Acceleration, vec![Profile::Constant(5.0)]).unwrap();
     let options = AlongPathOptions { limits: Some(limits), ..Default::default() };
-    let course = Course::through(&points).unwrap();
-    let error = plan_along_path(&robot, &course, &options, &mut Unattended).unwrap_err().to_string();
+    let tip_path = TipPath::through(&points).unwrap();
+    let error = plan_along_path(&robot, &tip_path, &options, &mut Unattended).unwrap_err().to_string();
     assert!(error.starts_with("the path between points 0 and 1 cannot be reached: the nearest"), "{error}");
     let bent = AlongPathOptions { elbow: Some(Elbow::Negative), ..options };
-    let error = plan_along_path(&robot, &course, &bent, &mut Unattended).unwrap_err().to_string();
+    let error = plan_along_path(&robot, &tip_path, &bent, &mut Unattended).unwrap_err().to_string();
     assert_eq!(
         error,
         "method=\"timed\" chooses how the arm bends: give start_q instead of elbow, or use method=\"tpbso\""
@@ -154,15 +154,15 @@ fn what_cannot_be_kept_is_told() {
 #[test]
 fn courses_know_their_corners_and_places() {
     let square = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-    let course = Course::through(&Reference::new(1.0, square.clone(), None).unwrap()).unwrap();
-    let corners: Vec<f64> = course.corners().collect();
+    let tip_path = TipPath::through(&Reference::new(1.0, square.clone(), None).unwrap()).unwrap();
+    let corners: Vec<f64> = tip_path.corners().collect();
     assert!(corners.len() == 2 && (corners[0] - 1.0 / 3.0).abs() < 1e-15 && (corners[1] - 2.0 / 3.0).abs() < 1e-15);
-    assert_eq!(course.place(corners[0]), "point 1 of the path");
-    assert_eq!(course.place(0.5), "the path between points 1 and 2");
-    assert_eq!(course.place(1.0), "point 3 of the path");
-    assert_eq!(course.coarseness(), 0.0);
-    assert!((course.distance([0.5, 0.2, 0.0], 0.0, 0.3) - 0.2).abs() < 1e-15);
-    let timed = Course::along(&Path::new(Polyline::new(&square, 6.0).unwrap())).unwrap();
+    assert_eq!(tip_path.place(corners[0]), "point 1 of the path");
+    assert_eq!(tip_path.place(0.5), "the path between points 1 and 2");
+    assert_eq!(tip_path.place(1.0), "point 3 of the path");
+    assert_eq!(tip_path.coarseness(), 0.0);
+    assert!((tip_path.distance([0.5, 0.2, 0.0], 0.0, 0.3) - 0.2).abs() < 1e-15);
+    let timed = TipPath::along(&Path::new(Polyline::new(&square, 6.0).unwrap())).unwrap();
     assert_eq!(timed.corners().count(), 2);
     assert_eq!(timed.place(0.5), "the path at t = 3.000 s");
     assert_eq!(timed.points().len(), 51);
@@ -181,26 +181,26 @@ fn noise_of_measured_points_is_no_corner_and_a_sampled_corner_is_one() {
         [radius * angle.cos(), radius * angle.sin(), 0.0]
     };
     let points = Reference::new(1.0, (0..=4000).map(noisy).collect(), None).unwrap();
-    assert_eq!(Course::through(&points).unwrap().corners().count(), 0);
+    assert_eq!(TipPath::through(&points).unwrap().corners().count(), 0);
     // A corner between two looks.
-    let times = Course::times(1.0, &[]);
+    let times = TipPath::times(1.0, &[]);
     let bent = times.iter().map(|t| [t.min(0.50042), (t - 0.50042).max(0.0), 0.0]).collect();
-    let corners: Vec<f64> = Course::sampled(times, bent, None).unwrap().corners().collect();
+    let corners: Vec<f64> = TipPath::sampled(times, bent, None).unwrap().corners().collect();
     assert!(corners.len() == 1 && (corners[0] - 0.5).abs() < 1e-3, "{corners:?}");
 }
 
-fn course_of_circle(points: usize) -> Course {
+fn course_of_circle(points: usize) -> TipPath {
     let angle = |i: usize| TAU * i as f64 / (points - 1) as f64;
     let points = (0..points).map(|i| [angle(i).cos(), angle(i).sin(), 0.0]).collect();
-    Course::through(&Reference::new(1.0, points, None).unwrap()).unwrap()
+    TipPath::through(&Reference::new(1.0, points, None).unwrap()).unwrap()
 }
 
 #[test]
 fn a_pause_of_a_path_does_not_matter_and_a_path_of_one_place_is_none() {
-    let times = Course::times(1.0, &[]);
+    let times = TipPath::times(1.0, &[]);
     let paused: Vec<[f64; 3]> = times.iter().map(|t| [t.clamp(0.3, 0.6), 0.0, 0.0]).collect();
-    let course = Course::sampled(times.clone(), paused, None).unwrap();
-    assert!((course.positions().len() as f64 - 301.0).abs() <= 1.0);
-    let error = Course::sampled(times.clone(), vec![[1.0; 3]; times.len()], None).unwrap_err();
+    let tip_path = TipPath::sampled(times.clone(), paused, None).unwrap();
+    assert!((tip_path.positions().len() as f64 - 301.0).abs() <= 1.0);
+    let error = TipPath::sampled(times.clone(), vec![[1.0; 3]; times.len()], None).unwrap_err();
     assert_eq!(error.to_string(), "path: it must lead somewhere, but it is 0 m long");
 }

@@ -217,11 +217,11 @@ fn a_joint_that_stands_in_the_way_is_named() {
     let solution =
         solve(&robot, &Target::Position([0.5, 0.2, 0.0]), &SolveOptions::default(), &mut Unattended).unwrap();
     assert_eq!(solution.status, Status::BudgetSpent);
-    let (least, _) = (0..=60_000).map(|i| f64::from(i) * 1e-4 - 3.0).fold((f64::INFINITY, 0.0), |best, first| {
+    let miss = |first: f64| {
         let tip = robot.tip_position(&[first, 0.5]);
-        let miss = (tip[0] - 0.5).hypot(tip[1] - 0.2);
-        if miss < best.0 { (miss, first) } else { best }
-    });
+        (tip[0] - 0.5).hypot(tip[1] - 0.2)
+    };
+    let least = (0..=60_000).map(|i| miss(f64::from(i) * 1e-4 - 3.0)).fold(f64::INFINITY, f64::min);
     assert!(solution.error.position <= 1.01 * least, "{} {least}", solution.error.position);
     let name = &robot.joints()[1].name;
     assert!(solution.message().contains(&format!("(joint '{name}' at its ")), "{}", solution.message());

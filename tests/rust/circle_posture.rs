@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::common::{message, robot};
+use crate::common::{StopAt, message, robot};
 use ikcore::posture::{CircleSwarm, Measure, Posture, Region, SearchOptions, best_posture};
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
@@ -51,13 +51,13 @@ fn our_own_search_finds_the_optima_anywhere_and_in_the_first_quadrant() {
 /// Gaps to the optimum of the published swarm for many seeds.
 fn gaps(swarm: CircleSwarm, seeds: u64, region: Option<Region>, measure: Measure, optimum: f64) -> Vec<f64> {
     let arm = Robot::planar(&[0.5; 3]).unwrap();
-    let flight = |seed| {
+    let gap = |seed| {
         let found = search(&arm, SearchOptions { measure, region, swarm: Some(swarm), seed });
         assert!(found.history.is_sorted(), "{:?}", found.history);
         assert_eq!((found.history.len(), found.history.last()), (swarm.generations, Some(&found.index)));
         1.0 - index(&found, measure) / optimum
     };
-    (0..seeds).map(flight).collect()
+    (0..seeds).map(gap).collect()
 }
 
 #[test]
@@ -82,10 +82,10 @@ fn longer_arms_are_searched_too() {
     let arm = Robot::planar(&[0.3, 0.3, 0.25, 0.2, 0.2]).unwrap();
     let own = search(&arm, SearchOptions::default());
     let swarm = CircleSwarm { population: 40, generations: 200, ..CircleSwarm::default() };
-    let flown = search(&arm, SearchOptions { swarm: Some(swarm), ..SearchOptions::default() });
-    assert!(own.error.position < 1e-12 && flown.error.position < 1e-12);
-    assert!(flown.index < own.index * (1.0 + 1e-6), "{} {}", flown.index, own.index);
-    assert!(flown.index > 0.9 * own.index, "{} {}", flown.index, own.index);
+    let published = search(&arm, SearchOptions { swarm: Some(swarm), ..SearchOptions::default() });
+    assert!(own.error.position < 1e-12 && published.error.position < 1e-12);
+    assert!(published.index < own.index * (1.0 + 1e-6), "{} {}", published.index, own.index);
+    assert!(published.index > 0.9 * own.index, "{} {}", published.index, own.index);
 }
 
 #[test]
@@ -102,6 +102,23 @@ fn what_cannot_be_has_a_status() {
     let arm = Robot::planar(&[0.5; 3]).unwrap();
     let found = search(&arm, SearchOptions { region: Some(narrow), ..SearchOptions::default() });
     assert_eq!(found.message(), "no posture found inside the region and the joint limits: widen them");
+}
+
+#[test]
+fn an_interrupted_search_keeps_its_best() {
+    let arm = Robot::planar(&[0.5; 3]).unwrap();
+    let endless = CircleSwarm { population: 7, generations: 1_000_000, ..CircleSwarm::default() };
+    let mut evaluations = 0;
+    for (swarm, patience, generations) in [(Some(endless), 3, 0), (Some(endless), 20, 2), (None, 2, 0)] {
+        let options = SearchOptions { swarm, ..SearchOptions::default() };
+        let found = best_posture(&arm, &E, &options, &mut StopAt(patience)).unwrap();
+        assert_eq!(found.status, Status::Interrupted);
+        assert_eq!(found.message(), "interrupted: run again to finish");
+        assert_eq!(found.history.len(), generations);
+        assert!(found.index > 0.0 && found.error.position < 1e-12);
+        evaluations += found.evaluations;
+    }
+    assert!(evaluations < 10_000, "{evaluations}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::common::{bits, pose_at, robot};
 use ikcore::math::box_step::ROWS;
 use ikcore::objective::{
-    Bounds, Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, Score, Slope,
+    Bounds, Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore,
 };
 use ikcore::problem::Problem;
 use ikcore::rng::{self, LazyRng};
@@ -62,11 +62,11 @@ impl LeastSquares for Valley {
 }
 
 impl Gradient for Valley {
-    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> Slope {
+    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> SmoothScore {
         let mut linearization = Linearization::default();
         let score = self.linearize(x, &mut linearization);
         linearization.gradient(gradient);
-        Slope { error: 0.5 * score.value, score }
+        SmoothScore { error: 0.5 * score.value, score }
     }
 }
 
@@ -120,9 +120,9 @@ impl Objective for Probe {
 }
 
 impl Gradient for Probe {
-    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> Slope {
+    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> SmoothScore {
         let slope = self.inner.differentiate(x, gradient);
-        Slope { score: self.note(x, slope.score), ..slope }
+        SmoothScore { score: self.note(x, slope.score), ..slope }
     }
 }
 

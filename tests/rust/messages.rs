@@ -211,7 +211,7 @@ fn options_of_solvers_out_of_range() {
     ] {
         assert_eq!(solve_says(SolveOptions { solver: solver.clone(), ..SolveOptions::default() }), says);
         assert_eq!(
-            track_says(&[0.0; 5], TrackOptions { rule: TickRule::EachTick(solver), ..TrackOptions::default() }),
+            track_says(&[0.0; 5], TrackOptions { rule: TickRule::Solver(solver), ..TrackOptions::default() }),
             says
         );
     }

@@ -1,9 +1,9 @@
 //! Any function in a box: found, recorded, and refused.
 
-use crate::common::{bits, message};
+use crate::common::{StopAt, bits, message};
 use ikcore::minimize::{MinimizeOptions, Minimum, minimize};
 use ikcore::objective::{Objective, Score};
-use ikcore::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Monitor, Status, Stop, Unattended};
+use ikcore::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Status, Stop, Unattended};
 
 /// Least, and zero, at 0.3 in every coordinate; NaN where the first is negative.
 struct Bowl;
@@ -70,14 +70,8 @@ fn a_function_without_a_finite_value_is_said_to_have_none() {
 
 #[test]
 fn an_interrupted_search_keeps_its_best() {
-    struct AtOnce;
-    impl Monitor for AtOnce {
-        fn keep_going(&mut self) -> bool {
-            false
-        }
-    }
     let stop = Stop { max_evaluations: 1_000_000, ..Stop::default() };
-    let found = minimize(&mut Bowl, &[0.0; 2], &[1.0; 2], &options(None, stop), &mut AtOnce).unwrap();
+    let found = minimize(&mut Bowl, &[0.0; 2], &[1.0; 2], &options(None, stop), &mut StopAt(1)).unwrap();
     assert_eq!(found.status, Status::Interrupted);
     assert!(found.value.is_finite() && found.evaluations < 10_000);
     assert!(found.message().ends_with("when it was stopped: run again to finish"));

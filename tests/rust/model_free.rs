@@ -2,12 +2,12 @@
 
 use std::collections::VecDeque;
 
-use crate::common::{bits, message, robot};
+use crate::common::{StopAt, bits, message, robot};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::rng;
 use ikcore::robot::Robot;
-use ikcore::solver::{BroydenBas, Monitor, Status, Unattended};
+use ikcore::solver::{BroydenBas, Status, Unattended};
 use ikcore::tracking::controller::{Antenna, Session, Znnbas};
 use ikcore::tracking::{
     Controller, Fault, FunctionPlant, KinematicPlant, ModelFreeOptions, ModelFreeRecord, Plant, track_model_free,
@@ -92,9 +92,7 @@ fn noise_of_the_sensor_is_not_much_more_than_passed_on() {
     for seed in 0..SEEDS {
         let wrong = wrong_arm(seed);
         let record = on_circle(&mut KinematicPlant::new(wrong.clone(), 1e-4, seed).unwrap(), &options(seed));
-        let true_error =
-            |i: usize| distance(wrong.tip_position(&record.track.q[7 * i..][..7]), record.track.reference[i]);
-        let rms = rms(true_error);
+        let rms = rms(|i| true_error(&wrong, &record, i));
         assert!(rms <= 3.0 * 1e-4 * 3_f64.sqrt(), "seed {seed}: {rms:.2e}");
         assert_eq!(record.track.max_violation, 0.0, "seed {seed}");
     }
@@ -257,7 +255,7 @@ fn a_plant_that_fails_ends_the_run_with_what_was_recorded() {
         track_model_free(&mut plant, &circle(), &ON_CIRCLE, &every_tick, &mut Unattended)
     };
     let record = run(41, || Err(Fault("raised ValueError: no".into()))).unwrap();
-    assert_eq!((record.track.status, record.track.time.len()), (Status::PlantFailed, 41));
+    assert_eq!((record.track.status, record.track.rows()), (Status::PlantFailed, 41));
     assert_eq!(record.message(), "the plant raised ValueError: no at t = 8.2 s; the 41 rows before are recorded");
     let record = run(3, || Ok([0.0, f64::NAN, 0.0])).unwrap();
     let expected = "the plant returned a position that is not finite: [0.0, NaN, 0.0] at t = 0.6 s; the 3 rows before are recorded";
@@ -266,20 +264,15 @@ fn a_plant_that_fails_ends_the_run_with_what_was_recorded() {
     assert_eq!(at_once, "the plant raised ValueError: no");
 }
 
-/// Says stop after so many looks.
-struct Countdown(usize);
-
-impl Monitor for Countdown {
-    fn keep_going(&mut self) -> bool {
-        self.0 = self.0.saturating_sub(1);
-        self.0 > 0
-    }
-}
-
 #[test]
 fn a_monitor_that_says_stop_leaves_the_steps_that_were_finished() {
-    let record = track_model_free(&mut exact_plant(), &circle(), &ON_CIRCLE, &options(0), &mut Countdown(8)).unwrap();
-    assert_eq!((record.track.status, record.track.time.len()), (Status::Interrupted, 7));
+    let arm = robot("iiwa14");
+    let mut plant = FunctionPlant(|q: &[f64]| arm.tip_position(q));
+    let record = track_model_free(&mut plant, &circle(), &ON_CIRCLE, &options(0), &mut StopAt(8)).unwrap();
+    assert_eq!((record.track.status, record.track.rows()), (Status::Interrupted, 7));
+    // A plant that answers at once is looked after every 64 steps.
+    let record = track_model_free(&mut exact_plant(), &circle(), &ON_CIRCLE, &options(0), &mut StopAt(2)).unwrap();
+    assert_eq!((record.track.status, record.track.rows()), (Status::Interrupted, 64));
 }
 
 #[test]
@@ -298,7 +291,7 @@ fn a_session_gives_the_same_commands_as_the_run() {
                 }
             };
             assert_eq!(bits(session.q()), bits(&record.track.q[7 * i..][..7]), "{controller:?}, row {i}");
-            assert_eq!((step.status, session.time()), (record.track.step_status[i], record.track.time[i]));
+            assert_eq!((step.status, session.time()), (record.track.step_status[i], i as f64 * session.dt()));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Distances, capsules and sweeps against brute force.
 
 use ikcore::nalgebra::{Point3, Rotation3, Vector3};
-use ikcore::obstacle::{Edge, Obstacle, Party, Scene, Shape, Sweep};
+use ikcore::obstacle::{Body, Edge, Obstacle, Scene, Shape, Sweep};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::{LinkCapsule, Robot};
 
@@ -206,7 +206,7 @@ fn pairs_that_belong_to_the_model_are_left_out() {
     // Folded back the hand meets the base.
     let folded = [0.0, -1.7, 0.0, -3.0, 0.0, 0.5, 0.0];
     let contact = scene.nearest(&folded).unwrap().unwrap();
-    assert!(matches!(contact.other, Party::Link(_)), "{contact:?}");
+    assert!(matches!(contact.other, Body::Link(_)), "{contact:?}");
 }
 
 /// Volume of a convex body of this surface (m^3): pyramids from a point inside.

@@ -2,9 +2,7 @@
 
 use ikcore::math::pose;
 use ikcore::nalgebra::{Matrix3, Rotation3, Vector3};
-use ikcore::path::{
-    Circle, Curve, Hypotrochoid, KHAN_2022_M_CENTER, KHAN_2022_M_SIZE, Path, Plane, Polyline, Reference, Rose, Samples,
-};
+use ikcore::path::{Circle, Curve, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples};
 
 const CENTER: [f64; 3] = [0.4, -0.2, 0.7];
 
@@ -14,9 +12,11 @@ fn slanted() -> Plane {
     Plane::new(CENTER, (turn * Vector3::x()).into(), (turn * Vector3::y()).into()).unwrap()
 }
 
+/// Centre (m) of the letter M of Khan et al. 2022, eq. (19), which stands in the plane of y and z.
+const M_CENTER: [f64; 3] = [0.1, 0.4, 0.3];
+
 fn published_m() -> Polyline {
-    let [width, height] = KHAN_2022_M_SIZE;
-    Polyline::letter_m(&Plane::yz(KHAN_2022_M_CENTER).unwrap(), width, height, 50.0).unwrap()
+    Polyline::letter_m(&Plane::yz(M_CENTER).unwrap(), 0.4, 0.4, 50.0).unwrap()
 }
 
 /// Every curve once, with the times of its corners.
@@ -101,8 +101,8 @@ fn circle_is_that_of_cheng_2020() {
 fn letter_m_is_that_of_khan_2022() {
     let m = published_m();
     let vertices = [[0.1, 0.2, 0.1], [0.1, 0.2, 0.5], [0.1, 0.4, 0.3], [0.1, 0.6, 0.5], [0.1, 0.6, 0.1]];
-    for (stroke, vertex) in vertices.into_iter().enumerate() {
-        assert_near(m.position(12.5 * stroke as f64), vertex, 1e-15);
+    for (segment, vertex) in vertices.into_iter().enumerate() {
+        assert_near(m.position(12.5 * segment as f64), vertex, 1e-15);
     }
 }
 
@@ -124,10 +124,10 @@ fn hypotrochoid_is_the_star_with_three_turns() {
 fn pentagram_has_five_equal_strokes_and_points_up() {
     let star = Polyline::pentagram(&Plane::yz(CENTER).unwrap(), 0.5, 5.0).unwrap();
     assert_near(star.position(0.0), [CENTER[0], CENTER[1], CENTER[2] + 0.5], 1e-15);
-    let stroke = 2.0 * 0.5 * (72.0_f64).to_radians().sin();
+    let segment = 2.0 * 0.5 * (72.0_f64).to_radians().sin();
     for i in 0..5 {
         let (from, to) = (star.position(f64::from(i)), star.position(f64::from(i + 1)));
-        assert!((distance(from, to) - stroke).abs() < 1e-15);
+        assert!((distance(from, to) - segment).abs() < 1e-15);
         assert!((distance(from, CENTER) - 0.5).abs() < 1e-15);
     }
 }

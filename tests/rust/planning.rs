@@ -8,7 +8,7 @@ use ikcore::obstacle::Obstacle;
 use ikcore::path::{Path, Plane, Polyline, Reference};
 use ikcore::planning::planar_arm::PlanarArm;
 use ikcore::planning::{
-    AlongPathMethod, AlongPathOptions, Cost, Course, Elbow, End, Plan, PointToPointMethod, PointToPointOptions,
+    AlongPathMethod, AlongPathOptions, Cost, Elbow, Endpoint, Plan, PointToPointMethod, PointToPointOptions, TipPath,
     plan_along_path, plan_point_to_point,
 };
 use ikcore::rng;
@@ -31,8 +31,8 @@ fn limits(robot: &Robot, acceleration: f64) -> Limits {
     limits.replace(Field::Upper, constant(f64::INFINITY)).expect("valid input")
 }
 
-fn at(x: f64, y: f64) -> End {
-    End::Target(Target::Position([x, y, 0.0]))
+fn at(x: f64, y: f64) -> Endpoint {
+    Endpoint::Target(Target::Position([x, y, 0.0]))
 }
 
 /// The paper's motion, from (1, 0) to (0.5, 1.5).
@@ -166,7 +166,7 @@ fn robots_in_space_reach_both_poses() {
         let limits = Some(Limits::of(&robot).replace(Field::Acceleration, acceleration).unwrap());
         let qs = robot.random_configurations(2, &mut rng::stream(5, 0)).unwrap();
         let poses: Vec<Frame> = qs.chunks(robot.dof()).map(|q| robot.tip(q)).collect();
-        let ends = poses.iter().map(|pose| End::Target(Target::Pose(*pose))).collect::<Vec<_>>();
+        let ends = poses.iter().map(|pose| Endpoint::Target(Target::Pose(*pose))).collect::<Vec<_>>();
         let options = PointToPointOptions {
             method: PointToPointMethod::Tpbso,
             limits,
@@ -186,7 +186,7 @@ fn robots_in_space_reach_both_poses() {
 }
 
 /// The paper's star about (1, 1), and a closed curve of three lobes there, at 51 points.
-fn paths() -> [Course; 2] {
+fn paths() -> [TipPath; 2] {
     let star = Polyline::pentagram(&Plane::xy([1.0, 1.0, 0.0]).expect("valid input"), 0.5, 1.0).expect("valid input");
     let lobes = (0..=50).map(|i| {
         let angle = 2.0 * PI * f64::from(i) / 50.0;
@@ -194,10 +194,10 @@ fn paths() -> [Course; 2] {
         [1.0 + radius * angle.cos(), 1.0 + radius * angle.sin(), 0.0]
     });
     let lobes = Reference::new(0.02, lobes.collect(), None).expect("valid input");
-    [Course::along(&Path::new(star)).expect("valid input"), Course::through(&lobes).expect("valid input")]
+    [TipPath::along(&Path::new(star)).expect("valid input"), TipPath::through(&lobes).expect("valid input")]
 }
 
-fn follow(path: &Course, options: AlongPathOptions) -> Plan {
+fn follow(path: &TipPath, options: AlongPathOptions) -> Plan {
     let robot = Robot::planar(&[1.0, 1.0, 1.0]).expect("valid input");
     let limits = Some(limits(&robot, 4.0 * PI));
     let stop = Some(Stop { max_evaluations: 50 * 301, ..Stop::default() });
@@ -219,18 +219,18 @@ fn paths_are_followed_as_quickly_as_measured_before() {
 #[test]
 fn every_second_point_of_a_path_is_passed_and_all_between_is_within_the_accuracy() {
     let robot = Robot::planar(&[1.0, 1.0, 1.0]).unwrap();
-    let course = &paths()[0];
-    let plan = follow(course, AlongPathOptions { accuracy: Some(0.04), ..Default::default() });
+    let tip_path = &paths()[0];
+    let plan = follow(tip_path, AlongPathOptions { accuracy: Some(0.04), ..Default::default() });
     let tip = |share: f64| {
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; 3]);
         plan.trajectory.at(plan.trajectory.duration() * share, &mut q, &mut qd, &mut qdd).unwrap();
         robot.tip_position(&q)
     };
     for i in (0..=50).step_by(2) {
-        let (tip, point) = (tip(f64::from(i) / 50.0), course.points().position(i as usize));
+        let (tip, point) = (tip(f64::from(i) / 50.0), tip_path.points().position(i as usize));
         assert!((tip[0] - point[0]).hypot(tip[1] - point[1]) <= 1e-9, "point {i}");
     }
-    let farthest = (0..=5000).map(|i| course.distance(tip(f64::from(i) / 5000.0), 0.0, 1.0)).fold(0.0, f64::max);
+    let farthest = (0..=5000).map(|i| tip_path.distance(tip(f64::from(i) / 5000.0), 0.0, 1.0)).fold(0.0, f64::max);
     let accuracy = plan.accuracy.unwrap();
     assert!(0.99 * accuracy <= farthest && farthest <= accuracy && accuracy <= 0.04, "{farthest} m, {accuracy} m");
     assert_eq!(plan.redundancy.len(), 51);

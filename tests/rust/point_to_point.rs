@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use ikcore::ik::{AllOptions, solve_all};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::{Obstacle, Scene};
-use ikcore::planning::{Elbow, End, Plan, PointToPointOptions, plan_point_to_point};
+use ikcore::planning::{Elbow, Endpoint, Plan, PointToPointMethod, PointToPointOptions, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Stop, Unattended};
@@ -19,8 +19,8 @@ fn limits(robot: &Robot, velocity: Option<f64>, acceleration: f64) -> Limits {
     }
 }
 
-fn position(x: f64, y: f64) -> End {
-    End::Target(Target::Position([x, y, 0.0]))
+fn position(x: f64, y: f64) -> Endpoint {
+    Endpoint::Target(Target::Position([x, y, 0.0]))
 }
 
 fn states(plan: &Plan, count: usize) -> impl Iterator<Item = Vec<f64>> {
@@ -73,7 +73,7 @@ fn the_nearest_of_all_branches_and_turns_are_taken() {
         let quintic = |a: &[f64], b: &[f64]| (0..6).map(|j| rest_to_rest(j, way(j, b[j] - a[j]))).fold(0.0, f64::max);
         let all = starts.iter().flat_map(|start| ends.iter().map(move |end| quintic(start, end)));
         let least = all.fold(f64::INFINITY, f64::min);
-        let [start, end] = [0, 1].map(|i| End::Target(pair[i]));
+        let [start, end] = [0, 1].map(|i| Endpoint::Target(pair[i]));
         let plan = plan_point_to_point(&robot, &start, &end, &options, &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{}", plan.message());
         assert!(plan.cost <= least * (1.0 + 1e-3), "{} s, {least} s", plan.cost);
@@ -81,7 +81,7 @@ fn the_nearest_of_all_branches_and_turns_are_taken() {
 }
 
 /// A pose behind the box that the arm reaches without touching anything.
-fn poses_behind(robot: &Robot, obstacles: &[Obstacle], count: usize) -> Vec<End> {
+fn poses_behind(robot: &Robot, obstacles: &[Obstacle], count: usize) -> Vec<Endpoint> {
     let scene = Scene::new(robot, obstacles).unwrap();
     let mut rng = rng::stream(11, 0);
     let mut found = vec![];
@@ -90,7 +90,7 @@ fn poses_behind(robot: &Robot, obstacles: &[Obstacle], count: usize) -> Vec<End>
         let tip = robot.fk(&q).unwrap();
         let [x, y, z] = tip.translation.vector.into();
         if x > 0.62 && y.abs() < 0.3 && (0.0..0.4).contains(&z) && scene.is_clear(&q, 0.002) {
-            found.push(End::Target(Target::from(&tip)));
+            found.push(Endpoint::Target(Target::from(&tip)));
         }
     }
     found
@@ -110,7 +110,8 @@ fn arms_find_their_way_around_a_box() {
                 obstacles: obstacles.clone(),
                 ..Default::default()
             };
-            let plan = plan_point_to_point(&robot, &End::Configuration(start.clone()), end, &options, &mut Unattended);
+            let plan =
+                plan_point_to_point(&robot, &Endpoint::Configuration(start.clone()), end, &options, &mut Unattended);
             let plan = plan.unwrap();
             if plan.status == Status::Solved {
                 solved += 1;
@@ -119,7 +120,7 @@ fn arms_find_their_way_around_a_box() {
                 let clearance = plan.clearance.unwrap();
                 assert!(0.001 <= clearance && clearance <= sampled + 1e-9, "{clearance} {sampled}");
                 let reached = states(&plan, 1).last().unwrap();
-                if let End::Target(target) = end {
+                if let Endpoint::Target(target) = end {
                     let error = ikcore::task::TipError::from(
                         target.assess(&robot, &reached, &Tolerance::default().into()).error,
                     );
@@ -138,7 +139,7 @@ fn a_way_around_a_wall_is_found_and_smooth() {
     // Between the two ends stands a wall that no straight motion passes.
     let obstacles = vec![Obstacle::cuboid([0.55, 0.0, 0.3], [0.5, 0.05, 0.6], None).unwrap()];
     let robot = Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap();
-    let side = |turn: f64| End::Configuration(vec![turn, 0.8, 0.0, -1.6, 0.0, 2.4, 0.8]);
+    let side = |turn: f64| Endpoint::Configuration(vec![turn, 0.8, 0.0, -1.6, 0.0, 2.4, 0.8]);
     for seed in 0..5 {
         let options = PointToPointOptions {
             limits: Some(limits(&robot, None, 10.0)),
@@ -197,7 +198,7 @@ fn plans_reported_free_are_free_at_every_sample() {
             .collect();
         let n = robot.dof();
         let ends = robot.random_configurations(2, &mut rng).unwrap();
-        let [start, end] = [&ends[..n], &ends[n..]].map(|q| End::Configuration(q.to_vec()));
+        let [start, end] = [&ends[..n], &ends[n..]].map(|q| Endpoint::Configuration(q.to_vec()));
         let options = PointToPointOptions {
             limits: Some(limits(robot, Some(1.0), 5.0)),
             obstacles: obstacles.clone(),
@@ -218,7 +219,36 @@ fn plans_reported_free_are_free_at_every_sample() {
     assert!(free > 60 && around > 10, "{free} {around}");
 }
 
-fn refused(robot: &Robot, start: &End, end: &End, options: PointToPointOptions) -> String {
+/// A planar arm of two links whose shape is a mesh, which cannot be read.
+const MESH: &str = r#"<robot name="arm"><link name="base"/>
+  <link name="upper"><collision><geometry><mesh filename="upper.stl"/></geometry></collision></link>
+  <link name="fore"/><link name="tip"/>
+  <joint name="a" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+    <limit lower="-3" upper="3" velocity="1"/></joint>
+  <joint name="b" type="revolute"><parent link="upper"/><child link="fore"/><axis xyz="0 0 1"/><origin xyz="1 0 0"/>
+    <limit lower="-3" upper="3" velocity="1"/></joint>
+  <joint name="c" type="fixed"><parent link="fore"/><child link="tip"/><origin xyz="1 0 0"/></joint></robot>"#;
+
+#[test]
+fn an_arm_whose_shape_cannot_be_read_moves_where_nothing_is_in_the_way() {
+    let arm = Robot::from_urdf(MESH, None, None).unwrap();
+    for method in [PointToPointMethod::MinMax, PointToPointMethod::Tpbso] {
+        let options = |obstacles| PointToPointOptions {
+            method,
+            obstacles,
+            limits: Some(limits(&arm, None, 1.0)),
+            ..Default::default()
+        };
+        let (start, end) = (position(1.0, 1.0), position(-0.5, 1.2));
+        let plan = plan_point_to_point(&arm, &start, &end, &options(vec![]), &mut Unattended).unwrap();
+        assert_eq!(plan.status, Status::Solved, "{method:?}: {}", plan.message());
+        let ball = Obstacle::sphere([5.0, 0.0, 0.0], 0.1).unwrap();
+        let says = refused(&arm, &start, &end, options(vec![ball]));
+        assert!(says.starts_with("robot 'arm' has collision shapes that cannot be read (a mesh of link"), "{says}");
+    }
+}
+
+fn refused(robot: &Robot, start: &Endpoint, end: &Endpoint, options: PointToPointOptions) -> String {
     plan_point_to_point(robot, start, end, &options, &mut Unattended).unwrap_err().to_string()
 }
 
@@ -226,7 +256,7 @@ fn refused(robot: &Robot, start: &End, end: &End, options: PointToPointOptions) 
 fn mistakes_are_named() {
     let arm = Robot::planar(&[1.0, 1.0]).unwrap();
     let thin = arm.with_capsules_along_links(0.01).unwrap();
-    let (here, there) = (End::Configuration(vec![0.0, 0.0]), End::Configuration(vec![1.0, 0.0]));
+    let (here, there) = (Endpoint::Configuration(vec![0.0, 0.0]), Endpoint::Configuration(vec![1.0, 0.0]));
     let with = |obstacles: Vec<Obstacle>, arm: &Robot| PointToPointOptions {
         obstacles,
         limits: Some(limits(arm, Some(1.0), 1.0)),
@@ -236,7 +266,7 @@ fn mistakes_are_named() {
     let advice = "give it capsules with with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), \
                   ...]), or load a URDF whose links have <collision> shapes of spheres, cylinders, capsules and boxes";
     let bare = Robot::named("panda").unwrap();
-    let rest = End::Configuration(vec![0.0, 0.0, 0.0, -1.5, 0.0, 1.5, 0.0]);
+    let rest = Endpoint::Configuration(vec![0.0, 0.0, 0.0, -1.5, 0.0, 1.5, 0.0]);
     assert_eq!(
         refused(&bare, &rest, &rest, with(vec![ball.clone()], &bare)),
         format!("robot 'panda' has no capsules, so that nothing is known of the room it takes up: {advice}")

@@ -152,7 +152,7 @@ fn leaving(iiwa: &Robot, rule: TickRule, tolerance: f64) -> (TrackOptions, Refer
 #[test]
 fn no_tick_of_any_rule_ends_outside() {
     let iiwa = robot("iiwa14");
-    let rules = solvers().into_iter().map(TickRule::EachTick);
+    let rules = solvers().into_iter().map(TickRule::Solver);
     let own = [TickRule::MidStep, TickRule::WeightedPseudoInverse(WeightedPseudoInverse::default())];
     for rule in rules.chain(own) {
         let (options, reference) = leaving(&iiwa, rule.clone(), 1e-3);
@@ -170,7 +170,7 @@ fn beetles_follow_the_faces() {
     let iiwa = robot("iiwa14");
     for variant in [Variant::Star, Variant::Chain] {
         let bas = Bas { variant, c1: 1.0, ..Bas::default() };
-        let (options, reference) = leaving(&iiwa, TickRule::EachTick(AnySolver::Single(bas.into())), 1e-4);
+        let (options, reference) = leaving(&iiwa, TickRule::Solver(AnySolver::Single(bas.into())), 1e-4);
         let record = track(&iiwa, &reference, None, &options, &mut Unattended).unwrap();
         for (tip, wanted) in record.position.iter().zip(&record.reference) {
             let nearest = below(CEILING).nearest(wanted, 0.0);

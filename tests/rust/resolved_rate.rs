@@ -87,8 +87,8 @@ fn posture(arm: &Robot) -> Arc<Trajectory> {
 fn in_posture_mode_the_joints_follow_too() {
     let arm = robot("hydraulic3");
     let off = |record: &Record| {
-        let rows = record.q.chunks(3).zip(&record.time);
-        rows.flat_map(|(q, t)| (0..3).map(|j| (q[j] - wanted(*t).0[j]).abs()).collect::<Vec<_>>()).fold(0.0, f64::max)
+        let rows = record.q.chunks(3).zip(record.time());
+        rows.flat_map(|(q, t)| (0..3).map(|j| (q[j] - wanted(t).0[j]).abs()).collect::<Vec<_>>()).fold(0.0, f64::max)
     };
     for (dt, most) in [(0.01, 4e-4), (0.001, 4e-5)] {
         let rule = WeightedPseudoInverse { posture: Some(posture(&arm)), ..rule(50.0, Integrator::Euler) };
@@ -210,7 +210,7 @@ fn accelerations_are_kept_under_every_rule() {
     let limits = Limits::of(&arm).replace(Field::Acceleration, vec![Profile::Constant(6.0)]).unwrap();
     let rules = [
         TickRule::MidStep,
-        TickRule::EachTick(AnySolver::default()),
+        TickRule::Solver(AnySolver::default()),
         TickRule::WeightedPseudoInverse(rule(10.0, Integrator::Euler)),
         TickRule::WeightedPseudoInverse(rule(10.0, Integrator::RungeKutta4)),
     ];

@@ -112,19 +112,19 @@ fn a_record_holds_a_row_for_the_start_and_one_a_tick() {
     let task = iiwa();
     let record = task.track(beetle(Variant::Chain, 1.0, 30), 2.2e-5, 3);
     let (rows, n, qd) = (151, 7, record.qd());
-    assert_eq!((record.dof, record.time.len(), record.q.len(), qd.len()), (n, rows, rows * n, rows * n));
-    assert_eq!((record.position.len(), record.reference.len(), record.velocity_limit.len()), (rows, rows, rows * n));
+    assert_eq!((record.dof, record.rows(), record.q.len(), qd.len()), (n, rows, rows * n, rows * n));
+    assert_eq!((record.position.len(), record.reference.len(), record.velocity_limit().len()), (rows, rows, rows * n));
     assert_eq!(
         (record.step_status.len(), record.step_evaluations.len(), record.step_iterations.len()),
         (rows, rows, rows)
     );
     assert_eq!(record.evaluations(), record.step_evaluations.iter().sum::<usize>());
-    assert_eq!((&record.q[..n], &qd[..n], record.time[0]), (&OFF7[..], &[0.0; 7][..], 0.0));
-    assert!(record.velocity_limit[..n].iter().all(|limit| limit.is_nan()));
+    assert_eq!((&record.q[..n], &qd[..n], record.time()[0]), (&OFF7[..], &[0.0; 7][..], 0.0));
+    assert!(record.velocity_limit()[..n].iter().all(|limit| limit.is_nan()));
     assert!((record.position_error[0] - 0.1).abs() < 0.02, "{}", record.position_error[0]);
     assert!(record.rotation_error.iter().all(|error| error.is_nan()));
     for i in 0..rows {
-        assert_eq!(record.time[i], i as f64 * DT);
+        assert_eq!(record.time()[i], i as f64 * DT);
         assert_eq!(record.reference[i], task.reference().position(i));
         assert_eq!(record.position[i], task.robot.tip_position(&record.q[i * n..(i + 1) * n]));
         let distance = (0..3).map(|k| (record.position[i][k] - record.reference[i][k]).powi(2)).sum::<f64>().sqrt();
@@ -142,7 +142,7 @@ fn limits_left_out_are_those_of_the_robot() {
     let record = task.track_with(&TrackOptions { limits: None, ..task.options(descent(), 1e-6, 0) });
     assert_eq!((record.limits.clone(), record.max_violation), (Limits::of(&task.robot), 0.0));
     let own: Vec<f64> = task.robot.joints().iter().map(|joint| joint.velocity).collect();
-    assert_eq!(record.velocity_limit[7..14], own);
+    assert_eq!(record.velocity_limit()[7..14], own);
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn a_limit_is_taken_over_the_tick_or_at_its_start() {
         let falling = Profile::Sampled { step: 0.2, values: vec![0.2, 0.196] };
         let limits = Some(velocity_limits(&task.robot, falling));
         let record = task.track_with(&TrackOptions { limits, limit_at, ..task.options(descent(), 1e-6, 0) });
-        assert_eq!(record.velocity_limit[5..10], [expected; 5]);
+        assert_eq!(record.velocity_limit()[5..10], [expected; 5]);
         let fastest = record.qd()[5..10].iter().fold(0.0_f64, |fastest, qd| fastest.max(qd.abs()));
         assert!((fastest - expected).abs() < 1e-12, "{limit_at:?}: the arm is in a hurry, {fastest}");
         assert_eq!(record.max_violation, 0.0);
@@ -187,7 +187,7 @@ fn position_limits_may_close_in_over_time() {
     let record = task.track_with(&TrackOptions { limits: Some(limits), ..task.options(descent(), 1e-6, 0) });
     assert_eq!((record.status, record.max_violation), (Status::Solved, 0.0), "{}", record.message());
     for (row, q) in record.q.chunks_exact(7).enumerate() {
-        assert!(q[1] <= closing.at(record.time[row]), "row {row}: {}", q[1]);
+        assert!(q[1] <= closing.at(record.time()[row]), "row {row}: {}", q[1]);
     }
     assert!(record.q.chunks_exact(7).any(|q| q[1] == 0.08), "the limit is never felt");
 }
@@ -260,7 +260,7 @@ fn an_interrupted_track_keeps_the_ticks_that_were_finished() {
         let full = task.track_with(&options);
         let start = Some(task.start.as_slice());
         let record = track(&task.robot, &task.reference(), start, &options, &mut StopAfterRows(40)).unwrap();
-        assert_eq!((record.status, record.time.len()), (Status::Interrupted, 41));
+        assert_eq!((record.status, record.rows()), (Status::Interrupted, 41));
         assert_eq!(bits(&record.q), bits(&full.q[..41 * 7]));
         assert_eq!(record.message(), "interrupted at t = 8 s: run again to finish");
     }
@@ -278,7 +278,7 @@ fn an_interruption_before_the_band_is_told_as_one() {
 #[test]
 fn messages_say_how_it_went() {
     let record = iiwa().track(descent(), 1e-6, 0);
-    let since = record.time[record.joined().unwrap()];
+    let since = record.time()[record.joined().unwrap()];
     assert!(
         record.message().starts_with(&format!("in the band of 1.000e-6 m from t = {since} s on; worst error there "))
     );

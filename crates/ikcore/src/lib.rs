@@ -41,11 +41,11 @@
 //!
 //! # Layers
 //!
-//! A file imports its own folder and lower layers only; a test holds it to that.
+//! A file imports its own folder and lower layers only; a test checks it.
 //!
 //! | layer | modules |
 //! |---|---|
-//! | 0 | [`error`], [`rng`], [`math`], `wording` |
+//! | 0 | [`error`], [`rng`], [`math`], [`stored`], `wording` |
 //! | 1 | [`robot`], [`path`], [`trajectory`], [`objective`] |
 //! | 2 | [`limits`], [`obstacle`], [`manipulability`] |
 //! | 3 | [`task`], [`solver`] |

@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require_finite};
-use crate::objective::{Bounds, Objective, Pace, Point, Score};
+use crate::objective::{Bounds, CallPattern, Objective, Point, Score};
 use crate::rng::{self, LazyRng};
 use crate::solver::stop::Stopwatch;
 use crate::solver::{AnySolver, DerivativeFree, Evaluator, Monitor, Status, Stop};
@@ -171,8 +171,8 @@ impl Objective for Recorded<'_> {
         self.objective.dimension()
     }
 
-    fn pace(&self) -> Pace {
-        self.objective.pace()
+    fn call_pattern(&self) -> CallPattern {
+        self.objective.call_pattern()
     }
 
     fn evaluate(&mut self, x: &[f64]) -> Score {

@@ -12,7 +12,7 @@ use crate::rng::LazyRng;
 /// `from_slice`, which copies all at once.
 pub type Point = SmallVec<[f64; MAX_DOF]>;
 
-/// What an objective says of a point.
+/// The value of an objective at a point, and whether that is good enough.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Score {
     /// The weighted sum of squares r'r.
@@ -21,19 +21,19 @@ pub struct Score {
     pub solved: bool,
 }
 
-/// How an objective likes to be asked.
+/// How an objective is best evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pace {
-    /// Points handed over at once, where a solver has that many.
-    pub at_once: usize,
-    /// Evaluations between two looks at the monitor and the clock.
-    pub between_looks: usize,
+pub struct CallPattern {
+    /// Points to evaluate together, where a solver has that many.
+    pub batch_size: usize,
+    /// Evaluations after which the monitor and the clock are asked again.
+    pub poll_interval: usize,
 }
 
-impl Default for Pace {
-    /// For what takes tens of nanoseconds: a look every ten microseconds.
+impl Default for CallPattern {
+    /// For evaluations of tens of nanoseconds: a poll every ten microseconds.
     fn default() -> Self {
-        Self { at_once: 8, between_looks: 256 }
+        Self { batch_size: 8, poll_interval: 256 }
     }
 }
 
@@ -52,9 +52,9 @@ pub trait Objective {
         }
     }
 
-    /// Asked once a run.
-    fn pace(&self) -> Pace {
-        Pace::default()
+    /// How it is best evaluated; asked once a run.
+    fn call_pattern(&self) -> CallPattern {
+        CallPattern::default()
     }
 
     /// The start of attempt number `attempt` (from 1; attempt 0 is the caller's start). By default uniform in the box.
@@ -63,8 +63,7 @@ pub trait Objective {
         bounds.sample(rng, x);
     }
 
-    /// After how much entry number `entry` of a point repeats itself, if it does: 2 pi for an angle whose turns do not
-    /// count.
+    /// The period of entry number `entry` of a point, if it has one: 2 pi for an angle whose turns do not count.
     fn period(&self, entry: usize) -> Option<f64> {
         let _ = entry;
         None
@@ -112,15 +111,15 @@ impl Linearization {
 /// E need not be half of the score's value: it shares its zeros. That of a pose is eq. (11) of Yuan et al. 2016.
 pub trait Gradient: Objective {
     /// E and the score at `x` in one pass; dE/dx into `gradient`, which has one entry per entry of x.
-    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> Slope;
+    fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> SmoothScore;
 }
 
-/// What [`Gradient`] says of a point beside the gradient.
+/// The smooth error and the score of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slope {
+pub struct SmoothScore {
     /// The smooth error E.
     pub error: f64,
-    /// What the objective says of the point otherwise.
+    /// The score, which may measure the error otherwise.
     pub score: Score,
 }
 

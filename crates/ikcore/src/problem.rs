@@ -1,7 +1,7 @@
 //! A robot and a target as something to minimise.
 
 use crate::math::box_step::ROWS;
-use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, Slope};
+use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore};
 use crate::rng::LazyRng;
 use crate::robot::{Robot, Seeds};
 use crate::task::{Assessment, Criterion, Target, entrywise};
@@ -17,24 +17,24 @@ pub struct Problem<'a> {
     turns: Turns,
 }
 
-/// Whether it matters how often a joint has turned round.
+/// Whether configurations that differ by whole turns differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Turns {
-    /// On the way from one tick to the next it does.
-    Count,
-    /// For a configuration that stands alone it does not.
-    Repeat,
+    /// They do: the arm would have to make the turns, as in tracking.
+    Distinct,
+    /// They do not, as for a configuration by itself.
+    Equivalent,
 }
 
 impl<'a> Problem<'a> {
     /// The problem of bringing the tip of `robot` to `target`.
     pub fn new(robot: &'a Robot, target: &'a Target, criterion: impl Into<Criterion>) -> Self {
-        Self { robot, target, criterion: criterion.into(), seeds: None, turns: Turns::Count }
+        Self { robot, target, criterion: criterion.into(), seeds: None, turns: Turns::Distinct }
     }
 
-    /// The same problem where a joint may be brought back by whole turns: the robot is free to get there in any way.
+    /// The same problem where a joint may be brought back by whole turns.
     pub fn disregarding_turns(self) -> Self {
-        Self { turns: Turns::Repeat, ..self }
+        Self { turns: Turns::Equivalent, ..self }
     }
 
     /// Where the tip is to be.
@@ -46,10 +46,10 @@ impl<'a> Problem<'a> {
     pub(crate) fn outside_region(&self, q: &[f64]) -> Option<String> {
         let (region, tip) = (self.criterion.region.as_ref()?, self.robot.tip_position(q));
         (!region.contains(&tip))
-            .then(|| format!("the tip is outside its region, which asks for {}", region.passed(&tip)))
+            .then(|| format!("the tip is outside its region, which asks for {}", region.violated_faces(&tip)))
     }
 
-    /// The errors at `q` and what they come to, by forward kinematics.
+    /// The assessment of `q`, by forward kinematics.
     pub fn assess(&self, q: &[f64]) -> Assessment {
         self.target.assess(self.robot, q, &self.criterion)
     }
@@ -75,12 +75,12 @@ impl Objective for Problem<'_> {
     }
 
     fn period(&self, joint: usize) -> Option<f64> {
-        let repeats = self.turns == Turns::Repeat && self.robot.repeats_every_turn(joint);
+        let repeats = self.turns == Turns::Equivalent && self.robot.repeats_every_turn(joint);
         repeats.then_some(std::f64::consts::TAU)
     }
 
-    /// The nearest of the robot's indexed configurations, then uniform in the box, where a side without a limit is drawn
-    /// from the joint's sampling range. Whoever brings a start of their own gets the nearest as their second.
+    /// The robot's indexed configurations, the nearest first, then uniform draws in the box, where a side without a limit ends as
+    /// the joint's sampling range does. The indexed ones also follow a start that the caller gives.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
         if self.seeds.is_none() {
             let aim = self.criterion.aim(self.target);
@@ -102,10 +102,10 @@ impl Objective for Problem<'_> {
 
 impl Residual for Problem<'_> {
     fn residual(&mut self, q: &[f64], out: &mut [f64; ROWS]) -> Score {
-        // No columns are completed: the residual needs the tip alone.
-        let mut completed = Linearization::default();
-        let assessment = self.target.complete(&self.robot.tip(q), 0, &self.criterion, &mut completed);
-        *out = completed.residual;
+        // Without columns: the residual needs the tip alone.
+        let mut linearization = Linearization::default();
+        let assessment = self.target.linearize_tip(&self.robot.tip(q), 0, &self.criterion, &mut linearization);
+        *out = linearization.residual;
         assessment.score
     }
 }
@@ -113,17 +113,17 @@ impl Residual for Problem<'_> {
 impl Gradient for Problem<'_> {
     /// E of eq. (11) of Yuan et al. 2016; where components have weights, or the tip a region, half the weighted sum of squares.
     #[inline]
-    fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> Slope {
+    fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> SmoothScore {
         if self.criterion.components.is_some() || self.criterion.region.is_some() {
             let mut linearization = Linearization::default();
             let score = self.linearize(q, &mut linearization);
             linearization.gradient(gradient);
-            return Slope { error: 0.5 * score.value, score };
+            return SmoothScore { error: 0.5 * score.value, score };
         }
         let target = self.target;
-        let tip = self.robot.tip_and_torques(q, &|tip| entrywise::pull(target, tip), gradient);
+        let tip = self.robot.tip_and_torques(q, &|tip| entrywise::wrench(target, tip), gradient);
         gradient.iter_mut().for_each(|slope| *slope = -*slope);
-        Slope { error: entrywise::error(target, &tip), score: target.assess_tip(&tip, &self.criterion).score }
+        SmoothScore { error: entrywise::error(target, &tip), score: target.assess_tip(&tip, &self.criterion).score }
     }
 }
 

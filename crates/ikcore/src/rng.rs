@@ -92,7 +92,7 @@ impl LazyRng {
         (count as f64 * self.uniform()) as i64 as usize
     }
 
-    /// Two of them from one draw.
+    /// Two whole numbers below `count` from one draw.
     #[inline]
     pub fn pair_below(&mut self, count: usize) -> [usize; 2] {
         self.uniform_pair().map(|u| (count as f64 * u) as i64 as usize)

@@ -22,7 +22,7 @@ use crate::task::read_task;
 /// Distinct solutions of one target: a sequence of `Solution`.
 #[pyclass(name = "SolutionSet", module = "beetle_ik", frozen, sequence)]
 pub struct PySolutionSet {
-    core: ik::Found,
+    core: ik::SolutionSet,
     /// The configurations (k, n) (rad, m), inside the limits.
     #[pyo3(get)]
     q: Py<PyArrayDyn<f64>>,
@@ -82,7 +82,7 @@ impl PySolutionSet {
 }
 
 impl PySolutionSet {
-    fn new(py: Python<'_>, core: ik::Found, dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
+    fn new(py: Python<'_>, core: ik::SolutionSet, dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
         let rows: Vec<f64> = core.solutions.iter().flat_map(|solution| solution.q.iter().copied()).collect();
         let q = table(py, rows, &[core.solutions.len(), dof])?.unbind();
         Ok(Self { core, q, limits })

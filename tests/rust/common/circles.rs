@@ -47,11 +47,11 @@ pub fn velocity_limits(robot: &Robot, profile: Profile) -> Limits {
 }
 
 pub fn beetle(variant: Variant, c1: f64, explorations: usize) -> TickRule {
-    TickRule::EachTick(AnySolver::Single(Algorithm::from(Bas { variant, c1, explorations, ..Bas::default() })))
+    TickRule::Solver(AnySolver::Single(Algorithm::from(Bas { variant, c1, explorations, ..Bas::default() })))
 }
 
 pub fn descent() -> TickRule {
-    TickRule::EachTick(AnySolver::Single(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default())))
+    TickRule::Solver(AnySolver::Single(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default())))
 }
 
 impl Task {
@@ -81,11 +81,12 @@ impl Task {
     }
 
     fn check(&self, record: &Record, band: f64) {
-        assert_eq!(record.time.len(), 151, "time always advances");
+        assert_eq!(record.rows(), 151, "time always advances");
         assert_eq!(record.max_violation, 0.0);
         let n = record.dof;
-        for i in 1..record.time.len() {
-            let (from, to) = (record.time[i - 1], record.time[i]);
+        let time = record.time();
+        for i in 1..record.rows() {
+            let (from, to) = (time[i - 1], time[i]);
             // The limit's smallest value over the tick, counted out.
             let limit = (0..=100).map(|k| sinusoid(self.limit).at(from + (to - from) * f64::from(k) / 100.0));
             let limit = limit.fold(f64::INFINITY, f64::min);

@@ -7,11 +7,22 @@ use ikcore::objective::{LeastSquares, Linearization};
 use ikcore::problem::Problem;
 use ikcore::rng;
 use ikcore::robot::Robot;
+use ikcore::solver::Monitor;
 use ikcore::task::{Criterion, Target};
 
 /// A built-in robot.
 pub fn robot(name: &str) -> Robot {
     Robot::named(name).unwrap()
+}
+
+/// A monitor that says stop when asked for the n-th time, and from then on.
+pub struct StopAt(pub usize);
+
+impl Monitor for StopAt {
+    fn keep_going(&mut self) -> bool {
+        self.0 = self.0.saturating_sub(1);
+        self.0 > 0
+    }
 }
 
 /// The text of the error that must have come.

@@ -5,11 +5,12 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::SolveOptions;
-use super::nearest::{bring_near, distance};
+use super::nearest::bring_near;
 use super::prepared::Prepared;
 use super::run::Run;
 use super::solution::Solution;
 use crate::error::{Error, Result, require_positive};
+use crate::math::vector::distance;
 use crate::objective::{Objective, Point};
 use crate::rng;
 use crate::robot::Robot;
@@ -38,7 +39,7 @@ impl Default for AllOptions {
 
 /// Distinct solutions, and what became of the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct SolutionSet {
     /// The solutions, nearest to the start first; without a start in the order in which they were found.
     pub solutions: Vec<Solution>,
     /// The best miss where there is no solution.
@@ -51,7 +52,7 @@ pub struct Found {
     pub interrupted: bool,
 }
 
-impl Found {
+impl SolutionSet {
     /// [`Status::Solved`] where there is a solution, else why the last search ended.
     pub fn status(&self) -> Status {
         self.miss.as_ref().map_or(Status::Solved, |miss| miss.status)
@@ -74,7 +75,12 @@ impl Found {
 ///
 /// # Errors
 /// Any [`enum@Error`] for wrong input.
-pub fn solve_all(robot: &Robot, target: &Target, options: &AllOptions, monitor: &mut dyn Monitor) -> Result<Found> {
+pub fn solve_all(
+    robot: &Robot,
+    target: &Target,
+    options: &AllOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<SolutionSet> {
     let AllOptions { each, limit, separation } = options;
     require_positive("separation", *separation)?;
     if *limit == 0 {
@@ -93,7 +99,7 @@ fn search(
     start: Option<&[f64]>,
     options: &AllOptions,
     monitor: &mut dyn Monitor,
-) -> Found {
+) -> SolutionSet {
     let (robot, bounds) = (prepared.robot(), prepared.bounds());
     let mut rng = rng::stream(options.each.seed, 0);
     let mut problem = prepared.problem(target);
@@ -109,7 +115,7 @@ fn search(
     let (mut solutions, mut known) = (Vec::<Solution>::new(), 0);
     let last = loop {
         let attempt = run.attempt(prepared, &mut problem, &x0, &mut rng, monitor);
-        let mut solution = prepared.told_apart(target, attempt);
+        let mut solution = prepared.marked_if_blocked(target, attempt);
         if solution.status != Status::Solved {
             break Some(solution);
         }
@@ -134,7 +140,7 @@ fn search(
     let interrupted = last.as_ref().is_some_and(|solution| solution.status == Status::Interrupted);
     let miss = last.filter(|_| solutions.is_empty());
     let spent = run.solution(Status::Solved, reference, &problem);
-    Found { solutions, miss, evaluations: spent.evaluations, elapsed: spent.elapsed, interrupted }
+    SolutionSet { solutions, miss, evaluations: spent.evaluations, elapsed: spent.elapsed, interrupted }
 }
 
 fn middle(robot: &Robot, prepared: &Prepared<'_>) -> Point {

@@ -10,7 +10,7 @@ mod self_motion;
 mod solution;
 mod unreached;
 
-pub use all::{AllOptions, Found, solve_all};
+pub use all::{AllOptions, SolutionSet, solve_all};
 pub(crate) use nearest::bring_near;
 pub use solution::Solution;
 

@@ -6,6 +6,7 @@ use super::prepared::Prepared;
 use super::run::Run;
 use super::self_motion::SelfMotion;
 use super::solution::Solution;
+use crate::math::vector::distance;
 use crate::objective::{Bounds, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
@@ -79,19 +80,14 @@ impl Prepared<'_> {
 pub(crate) fn bring_near(robot: &Robot, bounds: &Bounds, reference: &[f64], q: &mut [f64]) {
     for j in (0..q.len()).filter(|j| robot.repeats_every_turn(*j)) {
         let (lower, upper) = (bounds.lower()[j], bounds.upper()[j]);
-        let wished = ((reference[j] - q[j]) / TAU).round();
+        let turns = ((reference[j] - q[j]) / TAU).round();
         let (fewest, most) = (((lower - q[j]) / TAU).ceil(), ((upper - q[j]) / TAU).floor());
-        let turned = q[j] + wished.max(fewest).min(most) * TAU;
+        let turned = q[j] + turns.max(fewest).min(most) * TAU;
         // Rounding may pass a limit.
         if lower <= turned && turned <= upper {
             q[j] = turned;
         }
     }
-}
-
-/// |a - b|.
-pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
 /// A random point no farther from `start` than `share` of each joint's range.

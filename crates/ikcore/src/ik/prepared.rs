@@ -87,7 +87,7 @@ impl<'a> Prepared<'a> {
     /// [`Error::WrongLength`], [`Error::NotFinite`] or [`Error::OutsideLimits`].
     pub(crate) fn check_start(&self, q: &[f64]) -> Result<()> {
         self.robot().check("start", q)?;
-        require_inside(self.robot(), "start", q, &self.bounds)
+        self.robot().require_within("start", q, self.bounds.lower(), self.bounds.upper())
     }
 
     /// Checks that there is a start where the nearest solution is asked for.
@@ -112,12 +112,12 @@ impl<'a> Prepared<'a> {
         monitor: &mut dyn Monitor,
     ) -> Solution {
         let solution = self.search(target, start, stream, monitor);
-        self.told_apart(target, solution)
+        self.marked_if_blocked(target, solution)
     }
 
-    /// A solution of what the region lets the tip reach of a target is none of the target.
-    pub(super) fn told_apart(&self, target: &Target, solution: Solution) -> Solution {
-        match self.criterion.held_back(target) {
+    /// The solution with status [`Status::HeldInRegion`] where it is solved, but the region keeps the tip from the target itself.
+    pub(super) fn marked_if_blocked(&self, target: &Target, solution: Solution) -> Solution {
+        match self.criterion.blocked_by_region(target) {
             Some(obstruction) if solution.status == Status::Solved => {
                 Solution { status: Status::HeldInRegion, obstruction, ..solution }
             }
@@ -168,17 +168,4 @@ fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     limits.require_for(robot)?;
     limits.require_none(&[Field::Acceleration, Field::Jerk], "solve", remedy)?;
     limits.position_box()
-}
-
-fn require_inside(robot: &Robot, what: &str, q: &[f64], bounds: &Bounds) -> Result<()> {
-    match (0..q.len()).find(|i| q[*i] < bounds.lower()[*i] || bounds.upper()[*i] < q[*i]) {
-        None => Ok(()),
-        Some(i) => Err(Error::OutsideLimits {
-            what: what.into(),
-            joint: robot.joints()[i].name.clone(),
-            value: q[i],
-            lower: bounds.lower()[i],
-            upper: bounds.upper()[i],
-        }),
-    }
 }

@@ -1,4 +1,4 @@
-//! Limits on joint motion. Each only narrows the box of the next tick; the tick's box is what a tracker may use.
+//! Limits on joint motion: functions of time, and the box of joint positions that they leave for the next tick.
 
 mod braking;
 mod profile;
@@ -161,21 +161,21 @@ impl Limits {
         }
     }
 
-    /// Err unless the position limits stay as they are.
+    /// The values of a field, one per joint; empty where there is no such limit. Err where they vary in time, which `method`
+    /// cannot keep.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`].
-    pub fn require_still(&self, method: &str, remedy: &str) -> Result<()> {
-        for (field, profiles) in [(Field::Lower, &self.lower), (Field::Upper, &self.upper)] {
-            if !profiles.iter().all(|profile| matches!(profile, Profile::Constant(_))) {
-                return Err(Error::UnsupportedLimit {
-                    field: format!("time-varying {field}"),
-                    method: method.into(),
-                    remedy: remedy.into(),
-                });
-            }
-        }
-        Ok(())
+    pub fn constants(&self, field: Field, method: &str, remedy: &str) -> Result<Vec<f64>> {
+        let constant = |profile: &Profile| match profile {
+            Profile::Constant(value) => Ok(*value),
+            _ => Err(Error::UnsupportedLimit {
+                field: format!("time-varying {field}"),
+                method: method.into(),
+                remedy: remedy.into(),
+            }),
+        };
+        self.field(field).unwrap_or_default().iter().map(constant).collect()
     }
 
     fn is_finite(&self, field: Field) -> bool {
@@ -188,17 +188,8 @@ impl Limits {
     /// [`Error::UnsupportedLimit`] where they vary in time; [`Error::EmptyRange`].
     pub fn position_box(&self) -> Result<Bounds> {
         self.validate(0.0, 0)?;
-        let constant = |field: Field, profile: &Profile| match profile {
-            Profile::Constant(value) => Ok(*value),
-            _ => Err(Error::UnsupportedLimit {
-                field: format!("time-varying {field}"),
-                method: "solve".into(),
-                remedy: "one configuration has no time; give numbers".into(),
-            }),
-        };
-        let lower = self.lower.iter().map(|p| constant(Field::Lower, p)).collect::<Result<Vec<_>>>()?;
-        let upper = self.upper.iter().map(|p| constant(Field::Upper, p)).collect::<Result<Vec<_>>>()?;
-        Bounds::new(&lower, &upper)
+        let constants = |field: Field| self.constants(field, "solve", "one configuration has no time; give numbers");
+        Bounds::new(&constants(Field::Lower)?, &constants(Field::Upper)?)
     }
 
     /// Name of a joint.

@@ -1,12 +1,14 @@
 //! The box of one tick: position limits intersected with what the velocity limit lets the ACCEPTED configuration reach.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Limits, Profile};
 use crate::math::ordered::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::wording::words;
 
 /// Where in a tick its limit is taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum LimitAt {
     /// The smallest limit over the tick: never broken, at no instant.
     #[default]
@@ -42,26 +44,33 @@ impl Limits {
         }
     }
 
+    /// Writes the velocity limits that hold for the tick from `from` to `to` (s).
+    pub fn write_velocities_over(&self, [from, to]: [f64; 2], at: LimitAt, velocity: &mut [f64]) {
+        for j in 0..velocity.len() {
+            velocity[j] = match &self.velocity[j] {
+                Profile::Constant(limit) => *limit,
+                // Joints mostly share one limit, and two are compared more quickly than an extreme is found.
+                varying if j > 0 && *varying == self.velocity[j - 1] => velocity[j - 1],
+                _ => self.velocity_over(j, from, to, at),
+            };
+        }
+    }
+
     /// The position range of joint `j` that holds at every instant from `from` to `to` (s).
     pub fn position_range(&self, j: usize, from: f64, to: f64) -> [f64; 2] {
         [self.lower[j].largest(from, to).1, self.upper[j].smallest(from, to).1]
     }
 
-    /// Narrows `tick` to what `q` may become in the tick of `dt` from `from` to `to` (s). Late in a motion `to - from` is
-    /// `dt` only up to rounding, and the reach must not depend on that. Returns whether every joint can be
-    /// within its position limits at the end of the tick; one that cannot is sent towards them as fast as it may go.
+    /// Narrows `tick` to the positions that joints at `q` may have at the end of the tick from `from` to `to` (s), which lasts
+    /// `dt`: `to - from` is rounded, the more so the later, and the reach must not depend on that. Returns whether every joint
+    /// can be within its position limits then; one that cannot is sent towards them as fast as it may go.
     pub fn narrow(&self, q: &[f64], [from, to]: [f64; 2], dt: f64, at: LimitAt, tick: &mut TickBox) -> bool {
         let TickBox { bounds, velocity } = tick;
         let (lower, upper) = bounds.parts_mut();
+        self.write_velocities_over([from, to], at, velocity);
         let mut feasible = true;
         for j in 0..q.len() {
-            velocity[j] = match &self.velocity[j] {
-                Profile::Constant(limit) => *limit,
-                // Most often all joints share a limit, and its extremes take longer to find than to compare.
-                varying if j > 0 && *varying == self.velocity[j - 1] => velocity[j - 1],
-                _ => self.velocity_over(j, from, to, at),
-            };
-            // Without a known end nobody can refuse a limit that will fall below zero: there the joint stands still.
+            // A limit that varies may fall below zero at a time that could not be checked beforehand: then the joint stands still.
             let reach = larger(velocity[j] * dt, 0.0);
             let (slowest, fastest) = (reachable(q[j], -reach), reachable(q[j], reach));
             let [floor, ceiling] = self.position_range(j, from, to);

@@ -40,9 +40,9 @@ pub(super) fn add(measure: &Manipulability, screws: &[Screw], tip: &[f64; 3], ou
 /// w and dw/dJ, column by column.
 fn sensitivity(measure: &Manipulability, columns: &mut [[f64; 6]]) -> (f64, Columns) {
     let mut sensitivity: Columns = [[0.0; 6]; MAX_DOF];
-    if let Some(regular) = measure.regular(columns) {
-        regular.sensitivity(columns, &mut sensitivity);
-        return (regular.index(), sensitivity);
+    if let Some(gram) = measure.gram_factor(columns) {
+        gram.sensitivity(columns, &mut sensitivity);
+        return (gram.index(), sensitivity);
     }
     measure.motion().select(columns);
     let values = SingularValues::of(columns);

@@ -6,15 +6,15 @@
 
 mod ellipsoid;
 mod gradient;
+mod gram;
 mod links;
-mod regular;
 
 pub use ellipsoid::Ellipsoid;
 pub use links::{LinkIndices, MAX_LINKS};
 
 use std::ops::Range;
 
-use regular::Regular;
+use gram::GramFactor;
 
 use crate::error::Result;
 use crate::math::MAX_DOF;
@@ -98,8 +98,8 @@ impl Manipulability {
 
     /// The index of the matrix with these columns, of which the rows that do not count are emptied.
     fn index_of(&self, columns: &mut [[f64; 6]]) -> f64 {
-        match self.regular(columns) {
-            Some(regular) => regular.index(),
+        match self.gram_factor(columns) {
+            Some(gram) => gram.index(),
             None => {
                 self.motion.select(columns);
                 self.product(&SingularValues::of(columns))
@@ -107,10 +107,10 @@ impl Manipulability {
         }
     }
 
-    /// The quick way, where there is one.
-    fn regular(&self, columns: &[[f64; 6]]) -> Option<Regular> {
+    /// The factorisation of J J' away from singularities, where the robot has all directions of the motion.
+    fn gram_factor(&self, columns: &[[f64; 6]]) -> Option<GramFactor> {
         let rows = self.motion.rows();
-        if rows.len() == self.directions { Regular::of(columns, rows) } else { None }
+        if rows.len() == self.directions { GramFactor::of(columns, rows) } else { None }
     }
 
     /// The index at `q`, and its gradient (n,) in `out`; nothing is allocated. `q` and `out` have one entry per joint.

@@ -37,7 +37,8 @@ impl SplineEnds {
     }
 }
 
-/// The knots' part of the equations, solved beforehand: a spline through new values costs a pass there and one back.
+/// The tridiagonal system of the knots, factored beforehand: a spline through new values costs one forward and one backward
+/// pass.
 ///
 /// Slopes agree on both sides of each inner knot: h_(i-1) q''_(i-1) + 2 (h_(i-1) + h_i) q''_i + h_i q''_(i+1) =
 /// 6 (chord_i - chord_(i-1)), with the rules of the ends put in for q'' there.
@@ -45,13 +46,13 @@ impl SplineEnds {
 pub struct CubicSpline {
     knots: Vec<f64>,
     rules: [EndRule; 2],
-    /// Knot by knot: the factors below and above the diagonal, and the inverse of that on it, as elimination leaves them.
+    /// Knot by knot: the entries below and above the diagonal, and the inverse of the one on it, as elimination leaves them.
     below: Vec<f64>,
     above: Vec<f64>,
     inverse: Vec<f64>,
 }
 
-/// A cubic piece: value + slope s + bend/2 s^2 + rate/6 s^3 in the time s since its knot.
+/// A cubic piece: value + slope s + curvature/2 s^2 + third/6 s^3 in the time s since its knot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// Length in the parameter.
@@ -61,9 +62,9 @@ pub struct Piece {
     /// First derivative there.
     pub slope: f64,
     /// Second derivative there.
-    pub bend: f64,
+    pub curvature: f64,
     /// Third derivative.
-    pub rate: f64,
+    pub third: f64,
 }
 
 impl CubicSpline {
@@ -103,13 +104,14 @@ impl CubicSpline {
         &self.knots
     }
 
-    /// Writes the second derivatives at the knots of the spline through `values`; `bends` is as long.
-    pub fn bends(&self, values: &[f64], bends: &mut [f64]) {
+    /// Writes the second derivatives, here called curvatures, at the knots of the spline through `values`; `curvatures` is
+    /// as long.
+    pub fn curvatures(&self, values: &[f64], curvatures: &mut [f64]) {
         let last = self.knots.len() - 1;
         let h = |i: usize| self.knots[i + 1] - self.knots[i];
         let chord = |i: usize| (values[i + 1] - values[i]) / h(i);
         let [first_rule, last_rule] = &self.rules;
-        bends[0] = 0.0;
+        curvatures[0] = 0.0;
         for i in 1..last {
             let (before, after) = (chord(i - 1), chord(i));
             let mut right = 6.0 * (after - before);
@@ -119,67 +121,67 @@ impl CubicSpline {
             if i == last - 1 {
                 right -= h(i) * last_rule.chord_share * after;
             }
-            bends[i] = (right - self.below[i] * bends[i - 1]) * self.inverse[i];
+            curvatures[i] = (right - self.below[i] * curvatures[i - 1]) * self.inverse[i];
         }
         for i in (1..last - 1).rev() {
-            bends[i] -= self.above[i] * bends[i + 1];
+            curvatures[i] -= self.above[i] * curvatures[i + 1];
         }
-        // Where a rule looks farther than there are inner knots, its share of what it finds is zero.
-        let inner = |i: usize| if 0 < i && i < last { bends[i] } else { 0.0 };
+        // With so few knots that a neighbour is missing, its factor in the rule is zero.
+        let inner = |i: usize| if 0 < i && i < last { curvatures[i] } else { 0.0 };
         let ends = [
-            first_rule.bend(chord(0), inner(1), inner(2)),
-            last_rule.bend(chord(last - 1), inner(last - 1), inner(last.wrapping_sub(2))),
+            first_rule.curvature(chord(0), inner(1), inner(2)),
+            last_rule.curvature(chord(last - 1), inner(last - 1), inner(last.wrapping_sub(2))),
         ];
-        [bends[0], bends[last]] = ends;
+        [curvatures[0], curvatures[last]] = ends;
     }
 
     /// The piece that begins at knot `i`, of the spline with these values and second derivatives.
-    pub fn piece(&self, i: usize, values: &[f64], bends: &[f64]) -> Piece {
+    pub fn piece(&self, i: usize, values: &[f64], curvatures: &[f64]) -> Piece {
         let span = self.knots[i + 1] - self.knots[i];
         Piece {
             span,
             value: values[i],
-            slope: (values[i + 1] - values[i]) / span - span * (2.0 * bends[i] + bends[i + 1]) / 6.0,
-            bend: bends[i],
-            rate: (bends[i + 1] - bends[i]) / span,
+            slope: (values[i + 1] - values[i]) / span - span * (2.0 * curvatures[i] + curvatures[i + 1]) / 6.0,
+            curvature: curvatures[i],
+            third: (curvatures[i + 1] - curvatures[i]) / span,
         }
     }
 
     /// Its value at `u`, inside the knots.
-    pub fn at(&self, u: f64, values: &[f64], bends: &[f64]) -> f64 {
+    pub fn at(&self, u: f64, values: &[f64], curvatures: &[f64]) -> f64 {
         let i = self.knots.partition_point(|knot| *knot <= u).clamp(1, self.knots.len() - 1) - 1;
-        self.piece(i, values, bends).at(u - self.knots[i])
+        self.piece(i, values, curvatures).at(u - self.knots[i])
     }
 }
 
 impl EndRule {
-    fn bend(&self, chord: f64, near: f64, far: f64) -> f64 {
+    fn curvature(&self, chord: f64, near: f64, far: f64) -> f64 {
         self.chord_share * chord + self.near * near + self.far * far
     }
 }
 
 impl Piece {
-    /// What it multiplies the powers of s by, from the zeroth on.
+    /// The coefficients of 1, s, s^2 and s^3.
     pub fn coefficients(&self) -> [f64; 4] {
-        [self.value, self.slope, 0.5 * self.bend, self.rate / 6.0]
+        [self.value, self.slope, 0.5 * self.curvature, self.third / 6.0]
     }
 
     /// Its value `s` after its knot.
     pub fn at(&self, s: f64) -> f64 {
-        self.value + s * (self.slope + s * (self.bend / 2.0 + s * self.rate / 6.0))
+        self.value + s * (self.slope + s * (self.curvature / 2.0 + s * self.third / 6.0))
     }
 
-    /// The largest slope, in magnitude: at an end or where the bend vanishes.
+    /// The largest slope, in magnitude: at an end or where the curvature vanishes.
     pub fn steepest(&self) -> f64 {
-        let slope_at = |s: f64| (self.slope + s * (self.bend + 0.5 * s * self.rate)).abs();
-        let level = -self.bend / self.rate;
+        let slope_at = |s: f64| (self.slope + s * (self.curvature + 0.5 * s * self.third)).abs();
+        let level = -self.curvature / self.third;
         let inside = if 0.0 < level && level < self.span { slope_at(level) } else { 0.0 };
         inside.max(slope_at(0.0)).max(slope_at(self.span))
     }
 
-    /// Where it turns round, at most twice; ascending.
+    /// Where its slope is zero, at most twice; ascending.
     pub fn turning_points(&self) -> smallvec::SmallVec<[f64; 2]> {
-        super::polynomial::quadratic_roots(self.slope, self.bend, 0.5 * self.rate, 0.0, self.span)
+        super::polynomial::quadratic_roots(self.slope, self.curvature, 0.5 * self.third, 0.0, self.span)
     }
 }
 
@@ -191,15 +193,15 @@ mod tests {
     fn meets_its_values_with_one_slope_and_no_bend_at_the_ends() {
         let spline = CubicSpline::natural(vec![0.0, 0.3, 0.5, 1.1, 1.2]);
         let values = [0.4, -0.2, 1.5, 0.7, 0.9];
-        let mut bends = [f64::NAN; 5];
-        spline.bends(&values, &mut bends);
-        assert_eq!([bends[0], bends[4]], [0.0, 0.0]);
+        let mut curvatures = [f64::NAN; 5];
+        spline.curvatures(&values, &mut curvatures);
+        assert_eq!([curvatures[0], curvatures[4]], [0.0, 0.0]);
         for i in 0..4 {
-            let piece = spline.piece(i, &values, &bends);
+            let piece = spline.piece(i, &values, &curvatures);
             assert!((piece.at(piece.span) - values[i + 1]).abs() < 1e-15);
             if i < 3 {
-                let next = spline.piece(i + 1, &values, &bends);
-                let slope = piece.slope + piece.span * (piece.bend + 0.5 * piece.span * piece.rate);
+                let next = spline.piece(i + 1, &values, &curvatures);
+                let slope = piece.slope + piece.span * (piece.curvature + 0.5 * piece.span * piece.third);
                 assert!((slope - next.slope).abs() < 1e-13, "{i}: {slope} and {}", next.slope);
             }
         }
@@ -214,11 +216,11 @@ mod tests {
         for (count, polynomial) in [(5, cubic as fn(f64) -> f64), (4, cubic), (3, parabola), (2, line)] {
             let knots = &all[..count];
             let values: Vec<f64> = knots.iter().map(|u| polynomial(*u)).collect();
-            let mut bends = vec![f64::NAN; count];
+            let mut curvatures = vec![f64::NAN; count];
             let spline = CubicSpline::over(knots.to_vec(), SplineEnds::NotAKnot);
-            spline.bends(&values, &mut bends);
+            spline.curvatures(&values, &mut curvatures);
             for u in [0.05, 0.2, 0.29] {
-                assert!((spline.at(u, &values, &bends) - polynomial(u)).abs() < 1e-14, "{count} knots, u = {u}");
+                assert!((spline.at(u, &values, &curvatures) - polynomial(u)).abs() < 1e-14, "{count} knots, u = {u}");
             }
         }
     }
@@ -228,19 +230,19 @@ mod tests {
         let (all, values) = ([0.0, 0.3, 0.5, 1.1, 1.2], [0.4, -0.2, 1.5, 0.7, 0.9]);
         for count in 2..=5 {
             let (knots, values) = (&all[..count], &values[..count]);
-            let mut bends = vec![f64::NAN; count];
+            let mut curvatures = vec![f64::NAN; count];
             let spline = CubicSpline::over(knots.to_vec(), SplineEnds::Clamped);
-            spline.bends(values, &mut bends);
-            let last = spline.piece(count - 2, values, &bends);
-            let at_end = last.slope + last.span * (last.bend + 0.5 * last.span * last.rate);
-            assert!(spline.piece(0, values, &bends).slope.abs() < 1e-13, "{count} knots");
+            spline.curvatures(values, &mut curvatures);
+            let last = spline.piece(count - 2, values, &curvatures);
+            let at_end = last.slope + last.span * (last.curvature + 0.5 * last.span * last.third);
+            assert!(spline.piece(0, values, &curvatures).slope.abs() < 1e-13, "{count} knots");
             assert!(at_end.abs() < 1e-12, "{count} knots: {at_end}");
         }
     }
 
     #[test]
     fn extremes_are_those_of_samples() {
-        let piece = Piece { span: 2.0, value: 0.3, slope: 1.0, bend: -2.5, rate: 2.0 };
+        let piece = Piece { span: 2.0, value: 0.3, slope: 1.0, curvature: -2.5, third: 2.0 };
         let samples = (0..=20_000).map(|i| 2.0 * f64::from(i) / 20_000.0);
         let slope = |s: f64| 1.0 - 2.5 * s + s * s;
         let steepest = samples.map(|s| slope(s).abs()).fold(0.0, f64::max);

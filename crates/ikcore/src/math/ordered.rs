@@ -1,14 +1,19 @@
-//! The larger and the smaller of two numbers in one instruction each, where `max` and `min` would sort out NaN. Where one of
-//! them is NaN, the second is returned.
+//! Comparisons of numbers in fewer instructions than the standard library's, which treats NaN and signed zeros with care.
 
-/// The larger.
+/// The larger of the two; the second where one is NaN.
 #[inline(always)]
 pub fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The smaller.
+/// The smaller of the two; the second where one is NaN.
 #[inline(always)]
 pub fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
+}
+
+/// 1, -1, or 0 at zero and for NaN.
+#[inline]
+pub fn sign(z: f64) -> f64 {
+    f64::from(i8::from(z > 0.0) - i8::from(z < 0.0))
 }

@@ -23,9 +23,3 @@ pub fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     squared_distance(a, b).sqrt()
 }
-
-/// The plain sign: zero at zero, and for NaN.
-#[inline]
-pub fn sign(z: f64) -> f64 {
-    f64::from(i8::from(z > 0.0) - i8::from(z < 0.0))
-}

@@ -9,12 +9,12 @@ use crate::robot::Robot;
 /// Frames reached after 0, 1, 2, ... moving elements.
 pub(super) type Frames = [Frame; MAX_DOF + 1];
 
-/// The farthest (m) that any point of `segment`, fixed behind the moving elements `stages` of `robot`, can move against
-/// what lies before them while each joint changes by up to `reach` (rad, m) from where `frames` and `segment` are.
+/// A bound (m) on how far any point of `segment`, carried by the moving elements `stages` of `robot`, can move relative to what
+/// lies before them, while each joint changes by up to `reach` (rad, m) from the configuration of `frames` and `segment`.
 ///
-/// Change the elements one after the other, the outermost first. Each swings the segment about an axis that has not
-/// moved yet, by no more than its turn times the distance from that axis: the one seen now, plus what the elements
-/// behind it have added. A chord is never longer than twice that distance, nor than its arc.
+/// Let the elements move one after the other, the outermost first. Each then rotates the segment about an axis that has not
+/// moved yet. A point moves along an arc no longer than the angle times its distance from that axis, which is its distance now
+/// plus what the elements behind have added; and its chord is no longer than twice that distance.
 pub(super) fn displacement(
     robot: &Robot,
     frames: &Frames,

@@ -1,4 +1,4 @@
-//! A robot among obstacles: what can touch what, and how near it is.
+//! A robot among obstacles: which pairs of bodies can touch, and how near they are to each other.
 
 use std::fmt;
 
@@ -30,9 +30,9 @@ pub(super) enum Pair {
     Capsules { near: usize, far: usize },
 }
 
-/// What a link is near to.
+/// A body that a link is near to.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Party {
+pub enum Body {
     /// The obstacle of this index, and its kind.
     Obstacle(usize, &'static str),
     /// Another link.
@@ -44,13 +44,13 @@ pub enum Party {
 pub struct Contact {
     /// The link.
     pub link: String,
-    /// What it is near to.
-    pub other: Party,
+    /// The body that it is near to.
+    pub other: Body,
     /// Distance between their surfaces (m); negative by how deep they reach into each other.
     pub distance: f64,
 }
 
-impl fmt::Display for Party {
+impl fmt::Display for Body {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Obstacle(index, name) => write!(f, "obstacle {index} ({name})"),
@@ -61,9 +61,9 @@ impl fmt::Display for Party {
 
 /// The capsules of a robot and what they may not touch: obstacles, and each other.
 ///
-/// Capsules that no joint moves are not held against obstacles: no plan could move them away. Capsules of one body, or of
-/// two bodies with no capsule between them, are not held against each other, and neither are pairs that touch with all
-/// joints in the middle of their ranges: such overlaps belong to how the robot is modelled, not to how it moves.
+/// Capsules that no joint moves are not tested against obstacles: no plan could move them away. Capsules of one link, or of two
+/// links with no capsule between them, are not tested against each other, and neither are pairs that touch with all joints in
+/// the middle of their ranges: such overlaps come from the model, not from the motion.
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
     robot: &'a Robot,
@@ -157,15 +157,15 @@ impl<'a> Scene<'a> {
         self.pairs.iter().all(|pair| self.distance(*pair, &placement, margin) >= margin)
     }
 
-    /// Names for what is `distance` apart.
+    /// The contact of a pair that is `distance` apart (m).
     pub(super) fn contact(&self, pair: Pair, distance: f64) -> Contact {
         let link = |capsule: usize| self.carried[capsule].link.clone();
         match pair {
             Pair::Obstacle { capsule, obstacle } => {
-                let other = Party::Obstacle(obstacle, self.obstacles[obstacle].name());
+                let other = Body::Obstacle(obstacle, self.obstacles[obstacle].name());
                 Contact { link: link(capsule), other, distance }
             }
-            Pair::Capsules { near, far } => Contact { link: link(far), other: Party::Link(link(near)), distance },
+            Pair::Capsules { near, far } => Contact { link: link(far), other: Body::Link(link(near)), distance },
         }
     }
 
@@ -186,7 +186,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Distance between the surfaces of a pair (m), from below; exact to 1e-9 unless it is `enough` anyway.
+    /// A lower bound of the distance between the surfaces of a pair (m), exact to 1e-9 where it is below `enough`.
     pub(super) fn distance(&self, pair: Pair, placement: &Placement, enough: f64) -> f64 {
         match pair {
             Pair::Obstacle { capsule, obstacle } => {
@@ -200,7 +200,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// By how much (m) the distance of a pair can change while each joint changes by up to `reach`.
+    /// A bound on the change (m) of a pair's distance while each joint moves by up to `reach` (rad, m).
     pub(super) fn change(&self, pair: Pair, placement: &Placement, reach: &[f64]) -> f64 {
         let (first, capsule) = match pair {
             Pair::Obstacle { capsule, .. } => (0, capsule),
@@ -239,7 +239,7 @@ fn moves_in_plane(robot: &Robot) -> bool {
     tip.origin[2].abs() < 1e-9 && columns[..robot.dof()].iter().all(flat)
 }
 
-/// Why the room that a robot takes up is not known.
+/// Why the shape of a robot is not known.
 fn missing(robot: &Robot) -> String {
     match robot.unread_collision_shapes() {
         [] => "has no capsules, so that nothing is known of the room it takes up".into(),

@@ -4,13 +4,14 @@
 use nalgebra::Vector3;
 
 use super::shape::Obstacle;
+use super::tangent::nearest_on_segment;
 
 /// A segment between two points (m).
 pub(super) type Segment = [Vector3<f64>; 2];
 
 /// How far below the true distance an answer may lie (m).
 const ACCURACY: f64 = 1e-9;
-/// Tangents meet at the minimum long before; a bound for degenerate numbers.
+/// Far more steps than the search for the minimum takes, but for degenerate numbers.
 const MOST_STEPS: usize = 60;
 
 /// One tangent of the signed distance along the segment: value and slope at `share` of its length.
@@ -25,10 +26,10 @@ struct Touch {
 /// truth, and at most [`ACCURACY`] less unless it is at least `enough`.
 pub(super) fn distance_to_obstacle(segment: &Segment, obstacle: &Obstacle, enough: f64) -> f64 {
     let [a, b] = segment;
-    let middle = Vector3::from(obstacle.middle);
-    let from_ball = (super::tangent::nearest_on_segment(a, b, &middle) - middle).norm() - obstacle.reach;
-    if from_ball >= enough {
-        return from_ball;
+    let center = Vector3::from(obstacle.bounding_center);
+    let from_sphere = (nearest_on_segment(a, b, &center) - center).norm() - obstacle.bounding_radius;
+    if from_sphere >= enough {
+        return from_sphere;
     }
     let along = b - a;
     let touch = |share: f64| {
@@ -81,10 +82,10 @@ pub(super) fn distance_between(one: &Segment, other: &Segment) -> f64 {
     let crossing = (w + s * u - t * v).norm();
     // Nearly parallel segments are nearest at an end, where the division above says little.
     let ends = [
-        (super::tangent::nearest_on_segment(q, q_end, p) - p).norm(),
-        (super::tangent::nearest_on_segment(q, q_end, p_end) - p_end).norm(),
-        (super::tangent::nearest_on_segment(p, p_end, q) - q).norm(),
-        (super::tangent::nearest_on_segment(p, p_end, q_end) - q_end).norm(),
+        (nearest_on_segment(q, q_end, p) - p).norm(),
+        (nearest_on_segment(q, q_end, p_end) - p_end).norm(),
+        (nearest_on_segment(p, p_end, q) - q).norm(),
+        (nearest_on_segment(p, p_end, q_end) - q_end).norm(),
     ];
     ends.into_iter().fold(crossing, f64::min)
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 #[cfg(feature = "convex-mesh")]
-use super::convert::Hull;
+use super::hull::Hull;
 #[cfg(feature = "convex-mesh")]
 use crate::error::Error;
 use crate::error::{Result, require_finite, require_positive};
@@ -56,13 +56,14 @@ pub enum Shape {
     ConvexMesh(Hull),
 }
 
-/// A shape whose numbers were found in order.
+/// A shape that was validated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstacle {
     shape: Shape,
-    pub(super) middle: [f64; 3],
-    /// Of a ball about `middle` that holds the shape (m).
-    pub(super) reach: f64,
+    /// Centre of a sphere that holds the shape (m).
+    pub(super) bounding_center: [f64; 3],
+    /// Its radius (m).
+    pub(super) bounding_radius: f64,
 }
 
 impl Obstacle {
@@ -73,7 +74,7 @@ impl Obstacle {
     pub fn sphere(center: [f64; 3], radius: f64) -> Result<Self> {
         require_point("center", &center)?;
         require_positive("radius of the sphere", radius)?;
-        Ok(Self { shape: Shape::Sphere { center, radius }, middle: center, reach: radius })
+        Ok(Self { shape: Shape::Sphere { center, radius }, bounding_center: center, bounding_radius: radius })
     }
 
     /// A box about `center` with these edges (m), turned by `rotation`.
@@ -83,7 +84,11 @@ impl Obstacle {
     pub fn cuboid(center: [f64; 3], size: [f64; 3], rotation: Option<Matrix3<f64>>) -> Result<Self> {
         let pose = placed(center, rotation)?;
         require_sizes("size of the box", &size)?;
-        Ok(Self { shape: Shape::Box { pose, size }, middle: center, reach: 0.5 * Vector3::from(size).norm() })
+        Ok(Self {
+            shape: Shape::Box { pose, size },
+            bounding_center: center,
+            bounding_radius: 0.5 * Vector3::from(size).norm(),
+        })
     }
 
     /// All points within `radius` of the segment from `a` to `b` (m).
@@ -94,9 +99,9 @@ impl Obstacle {
         require_point("a", &a)?;
         require_point("b", &b)?;
         require_positive("radius of the capsule", radius)?;
-        let middle = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
-        let reach = 0.5 * (Vector3::from(a) - Vector3::from(b)).norm() + radius;
-        Ok(Self { shape: Shape::Capsule { a, b, radius }, middle, reach })
+        let bounding_center = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
+        let bounding_radius = 0.5 * (Vector3::from(a) - Vector3::from(b)).norm() + radius;
+        Ok(Self { shape: Shape::Capsule { a, b, radius }, bounding_center, bounding_radius })
     }
 
     /// An ellipsoid about `center` with these semi-axes (m), turned by `rotation`.
@@ -106,8 +111,8 @@ impl Obstacle {
     pub fn ellipsoid(center: [f64; 3], semi_axes: [f64; 3], rotation: Option<Matrix3<f64>>) -> Result<Self> {
         let pose = placed(center, rotation)?;
         require_sizes("semi-axes of the ellipsoid", &semi_axes)?;
-        let reach = semi_axes.into_iter().fold(0.0, f64::max);
-        Ok(Self { shape: Shape::Ellipsoid { pose, semi_axes }, middle: center, reach })
+        let bounding_radius = semi_axes.into_iter().fold(0.0, f64::max);
+        Ok(Self { shape: Shape::Ellipsoid { pose, semi_axes }, bounding_center: center, bounding_radius })
     }
 
     /// An ellipse in the plane z = 0 about `center` with these semi-axes (m), its first axis at `angle` (rad).
@@ -118,8 +123,12 @@ impl Obstacle {
         require_point("center", &center)?;
         require_sizes("semi-axes of the ellipse", &semi_axes)?;
         require_finite("angle of the ellipse", &[angle], |_| "it".into())?;
-        let reach = semi_axes[0].max(semi_axes[1]);
-        Ok(Self { shape: Shape::Ellipse { center, semi_axes, angle }, middle: [center[0], center[1], 0.0], reach })
+        let bounding_radius = semi_axes[0].max(semi_axes[1]);
+        Ok(Self {
+            shape: Shape::Ellipse { center, semi_axes, angle },
+            bounding_center: [center[0], center[1], 0.0],
+            bounding_radius,
+        })
     }
 
     /// The smallest convex body that holds `points` (m), at least four that do not lie in a plane.
@@ -132,8 +141,8 @@ impl Obstacle {
             format!("coordinate {} of point {}", ["x", "y", "z"][i % 3], i / 3)
         })?;
         let hull = Hull::new(points).map_err(|problem| Error::InvalidObstacle { problem })?;
-        let (middle, reach) = hull.ball();
-        Ok(Self { shape: Shape::ConvexMesh(hull), middle, reach })
+        let (bounding_center, bounding_radius) = hull.bounding_sphere();
+        Ok(Self { shape: Shape::ConvexMesh(hull), bounding_center, bounding_radius })
     }
 
     /// What it looks like.

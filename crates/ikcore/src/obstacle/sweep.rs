@@ -1,8 +1,8 @@
-//! Whole motions: certified to keep clear at every instant, and the smallest clearance on the way.
+//! Continuous collision checking: motions certified to be free of collisions at every instant, and their smallest clearance.
 //!
-//! A motion is looked at in the middle of an interval. A pair that is farther apart there than it can move meanwhile is
-//! clear in all of it; only the pairs that are left are looked at again in its two halves. No step width is chosen, and
-//! no grazing hit can fall between two samples.
+//! The distances are computed in the middle of an interval of the motion. A pair that is farther apart there than it can
+//! approach within the interval is clear in all of it; the other pairs are examined again in its two halves. No step width is
+//! chosen, and no collision can fall between two samples.
 
 use super::scene::{Contact, Pair, Placement, Scene};
 use crate::math::MAX_DOF;
@@ -44,32 +44,32 @@ pub struct TooNear {
     pub contact: Contact,
 }
 
-/// A pair that keeps its margin by less than this counts as one that does not (m): finer would take long to tell.
+/// A pair that exceeds its margin by less than this (m) counts as too near, since telling would take many bisections.
 const RESOLUTION: f64 = 1e-5;
 
-/// Looks at motions in a scene; owns its scratch.
+/// The check of motions in a scene; owns its scratch.
 #[derive(Debug)]
 pub struct Sweep<'a> {
     scene: &'a Scene<'a>,
     pending: Vec<Pair>,
     placement: Placement,
-    looks: usize,
+    examined: usize,
 }
 
 impl<'a> Sweep<'a> {
     /// For any number of motions in `scene`.
     pub fn new(scene: &'a Scene<'a>) -> Self {
         let rest = vec![0.0; scene.robot().dof()];
-        Self { scene, pending: scene.pairs.clone(), placement: scene.place(&rest), looks: 0 }
+        Self { scene, pending: scene.pairs.clone(), placement: scene.place(&rest), examined: 0 }
     }
 
-    /// How many configurations were looked at.
-    pub fn looks(&self) -> usize {
-        self.looks
+    /// How many configurations were examined.
+    pub fn examined(&self) -> usize {
+        self.examined
     }
 
-    /// Ok if everything stays at least `margin` (m) apart on all of the motion over \[`from`, `to`\]; proven between
-    /// samples too. Err where it does not, or keeps the margin by less than a hundredth of a millimetre.
+    /// Ok if all pairs stay at least `margin` (m) apart on the motion over \[`from`, `to`\], proven between samples too. Err where
+    /// one does not, or exceeds the margin by less than a hundredth of a millimetre.
     pub fn check(&mut self, motion: &impl Motion, [from, to]: [f64; 2], margin: f64) -> Result<(), Box<TooNear>> {
         self.check_pending(motion, [from, to], margin, self.pending.len())
     }
@@ -81,7 +81,7 @@ impl<'a> Sweep<'a> {
         margin: f64,
         count: usize,
     ) -> Result<(), Box<TooNear>> {
-        let reach = self.look(motion, from, to);
+        let reach = self.place(motion, from, to);
         let mut left = 0;
         for i in 0..count {
             let pair = self.pending[i];
@@ -104,15 +104,15 @@ impl<'a> Sweep<'a> {
         self.check_pending(motion, [middle, to], margin, left)
     }
 
-    /// The smallest distance (m) on the motion over \[`from`, `to`\]: proven from below, and at most 0.1 mm or 1 % less
-    /// than the truth; with where it was seen. None where nothing can touch.
+    /// The smallest distance (m) on the motion over \[`from`, `to`\], and where it occurs: a proven lower bound, at most 0.1 mm or
+    /// 1 % below the true value. None where nothing can touch.
     pub fn smallest(&mut self, motion: &impl Motion, [from, to]: [f64; 2]) -> Option<TooNear> {
         let first = self.pending.first().copied()?;
         let mut best = Best { seen: f64::INFINITY, proven: f64::INFINITY, at: from, pair: first };
         // A good first guess makes most of the motion quick to rule out.
-        for i in 0..=FIRST_LOOKS {
-            let t = from + (to - from) * i as f64 / FIRST_LOOKS as f64;
-            self.look(motion, t, t);
+        for i in 0..=FIRST_SAMPLES {
+            let t = from + (to - from) * i as f64 / FIRST_SAMPLES as f64;
+            self.place(motion, t, t);
             for i in 0..self.pending.len() {
                 let pair = self.pending[i];
                 best.offer(self.scene.distance(pair, &self.placement, best.seen), t, pair);
@@ -124,7 +124,7 @@ impl<'a> Sweep<'a> {
     }
 
     fn narrow(&mut self, motion: &impl Motion, [from, to]: [f64; 2], best: &mut Best, count: usize) {
-        let reach = self.look(motion, from, to);
+        let reach = self.place(motion, from, to);
         let middle = 0.5 * (from + to);
         let mut left = 0;
         for i in 0..count {
@@ -147,18 +147,18 @@ impl<'a> Sweep<'a> {
     }
 
     /// Places everything in the middle of an interval; returns how far each joint is from there at most.
-    fn look(&mut self, motion: &impl Motion, from: f64, to: f64) -> Point {
+    fn place(&mut self, motion: &impl Motion, from: f64, to: f64) -> Point {
         let n = self.scene.robot().dof();
         let (mut middle, mut reach) = ([0.0; MAX_DOF], Point::from_elem(0.0, n));
         motion.around(from, to, &mut middle[..n], &mut reach);
         self.scene.place_into(&middle[..n], &mut self.placement);
-        self.looks += 1;
+        self.examined += 1;
         reach
     }
 }
 
-/// Configurations that are looked at before a search for the smallest distance.
-const FIRST_LOOKS: usize = 64;
+/// Samples before a search for the smallest distance.
+const FIRST_SAMPLES: usize = 64;
 
 /// The smallest distance so far.
 struct Best {

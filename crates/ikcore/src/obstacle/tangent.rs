@@ -3,7 +3,7 @@
 //! The signed distance to a convex set (negative inside) is a convex function of the point: any of its tangents is a
 //! lower bound everywhere. All certificates rest on that.
 
-use nalgebra::{Matrix2, Rotation2, Rotation3, Vector3};
+use nalgebra::{Rotation3, Vector3};
 
 use super::ellipsoid;
 use super::shape::{Obstacle, Shape};
@@ -36,7 +36,7 @@ impl Obstacle {
             }
             Shape::Ellipse { center, semi_axes: [a, b], angle } => {
                 // In its plane z = 0 it is the section of an ellipsoid, and there their distances agree.
-                let turn = upright(Rotation2::new(*angle).matrix());
+                let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), *angle);
                 let local = turn.inverse() * (point - Vector3::new(center[0], center[1], 0.0));
                 let tangent = ellipsoid::tangent(&local, &[*a, *b, a.max(*b)]);
                 Tangent { normal: turn * tangent.normal, ..tangent }
@@ -45,10 +45,6 @@ impl Obstacle {
             Shape::ConvexMesh(hull) => hull.tangent(point),
         }
     }
-}
-
-fn upright(turn: &Matrix2<f64>) -> Rotation3<f64> {
-    Rotation3::from_axis_angle(&Vector3::z_axis(), turn.m21.atan2(turn.m11))
 }
 
 /// Of a ball: `offset` is the point seen from its centre.

@@ -16,7 +16,7 @@ pub trait Curve: Debug + Send + Sync {
     /// Position (m) in the frame of the robot's base.
     fn position(&self, t: f64) -> [f64; 3];
 
-    /// Velocity (m/s): the derivative of [`position`](Self::position); at a corner, that of the stroke that begins.
+    /// Velocity (m/s): the derivative of [`position`](Self::position); at a corner, that of the segment that begins.
     fn velocity(&self, t: f64) -> [f64; 3];
 
     /// Orientation, for a curve that has its own.

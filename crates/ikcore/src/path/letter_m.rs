@@ -3,18 +3,12 @@
 use super::{Plane, Polyline};
 use crate::error::{Result, require_positive};
 
-/// Centre (m) of the published letter, which stands in the plane of y and z.
-pub const KHAN_2022_M_CENTER: [f64; 3] = [0.1, 0.4, 0.3];
-
-/// Width and height (m) of the published letter.
-pub const KHAN_2022_M_SIZE: [f64; 2] = [0.4, 0.4];
-
 impl Polyline {
     /// The letter M as one writes it, from its lower left corner, with its middle at the plane's centre: `width` (m)
     /// along a, `height` (m) along b, in `duration` (s).
     ///
-    /// The strokes are those of Khan et al. 2022, eq. (19). It leaves their times open: here they take equal time, so
-    /// that the two short strokes are the slower ones.
+    /// The segments are those of Khan et al. 2022, eq. (19). It leaves their times open: here they take equal time, so
+    /// that the two short segments are the slower ones.
     ///
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a width, height or duration that is not positive.
@@ -23,6 +17,6 @@ impl Polyline {
         require_positive("height", height)?;
         let corners = [[-0.5, -0.5], [-0.5, 0.5], [0.0, 0.0], [0.5, 0.5], [0.5, -0.5]];
         let vertices = corners.map(|[a, b]| plane.point([a * width, b * height]));
-        Self::equal_strokes(vertices, duration)
+        Self::equal_times(vertices, duration)
     }
 }

@@ -5,7 +5,7 @@
 //! | [`Circle`] | Cheng et al. 2020, eq. (14) |
 //! | [`Hypotrochoid`] | Khan et al. 2022, eq. (20), corrected |
 //! | [`Rose`] | r = a cos(k u) |
-//! | [`Polyline`] | straight strokes through given points; [`Polyline::letter_m`], [`Polyline::pentagram`] |
+//! | [`Polyline`] | straight segments through given points; [`Polyline::letter_m`], [`Polyline::pentagram`] |
 //! | [`Samples`] | measured or computed positions or poses |
 //!
 //! ```
@@ -35,7 +35,6 @@ mod timed_path;
 pub use circle::Circle;
 pub use curve::Curve;
 pub use hypotrochoid::Hypotrochoid;
-pub use letter_m::{KHAN_2022_M_CENTER, KHAN_2022_M_SIZE};
 pub use plane::Plane;
 pub use polyline::Polyline;
 pub use reference::Reference;

@@ -6,7 +6,7 @@ use super::{Plane, Polyline};
 use crate::error::{Result, require_positive};
 
 impl Polyline {
-    /// The pentagram with its points at `radius` (m) from the plane's centre, in `duration` (s): five strokes of one
+    /// The pentagram with its points at `radius` (m) from the plane's centre, in `duration` (s): five segments of one
     /// length and speed, from the point that lies along b and back to it.
     ///
     /// # Errors
@@ -17,6 +17,6 @@ impl Polyline {
             let (sine, cosine) = (FRAC_PI_2 + TAU * f64::from(point) / 5.0).sin_cos();
             plane.point([radius * cosine, radius * sine])
         });
-        Self::equal_strokes(vertices, duration)
+        Self::equal_times(vertices, duration)
     }
 }

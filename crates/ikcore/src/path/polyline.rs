@@ -1,4 +1,4 @@
-//! Straight strokes.
+//! Straight segments.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use super::stored::StoredCurve;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Knots;
 
-/// Straight strokes from vertex to vertex, each at its own constant speed.
+/// Straight segments from vertex to vertex, each at its own constant speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Polyline {
     knots: Knots,
@@ -15,7 +15,7 @@ pub struct Polyline {
 }
 
 impl Polyline {
-    /// The strokes through `points` (m) in `duration` (s), at one speed from end to end. A point that repeats the one
+    /// The segments through `points` (m) in `duration` (s), at one speed from end to end. A point that repeats the one
     /// before it adds nothing.
     ///
     /// # Errors
@@ -41,7 +41,7 @@ impl Polyline {
         Self::through(times, vertices)
     }
 
-    /// The strokes that pass each vertex (m) at its time (s).
+    /// The segments that pass each vertex (m) at its time (s).
     pub(super) fn through(times: Vec<f64>, vertices: Vec<[f64; 3]>) -> Result<Self> {
         check_points(&vertices)?;
         if times.len() != vertices.len() {
@@ -51,8 +51,8 @@ impl Polyline {
         Ok(Self { knots: Knots::new("path times", times)?, vertices })
     }
 
-    /// The strokes between `vertices` (m), each in the same share of `duration` (s).
-    pub(super) fn equal_strokes<const N: usize>(vertices: [[f64; 3]; N], duration: f64) -> Result<Self> {
+    /// The segments between `vertices` (m), each in the same share of `duration` (s).
+    pub(super) fn equal_times<const N: usize>(vertices: [[f64; 3]; N], duration: f64) -> Result<Self> {
         require_positive("duration", duration)?;
         let times = (0..N).map(|i| duration * (i as f64 / (N - 1) as f64)).collect();
         Self::through(times, vertices.to_vec())
@@ -74,17 +74,17 @@ impl Curve for Polyline {
     }
 
     fn position(&self, t: f64) -> [f64; 3] {
-        let (stroke, elapsed) = self.knots.locate(t);
-        let share = elapsed / self.knots.span(stroke);
-        let [from, to] = [self.vertices[stroke], self.vertices[stroke + 1]];
+        let (segment, elapsed) = self.knots.locate(t);
+        let share = elapsed / self.knots.span(segment);
+        let [from, to] = [self.vertices[segment], self.vertices[segment + 1]];
         // In this form both ends are exact.
         std::array::from_fn(|i| (1.0 - share) * from[i] + share * to[i])
     }
 
     fn velocity(&self, t: f64) -> [f64; 3] {
-        let (stroke, _) = self.knots.locate(t);
-        let [from, to] = [self.vertices[stroke], self.vertices[stroke + 1]];
-        std::array::from_fn(|i| (to[i] - from[i]) / self.knots.span(stroke))
+        let (segment, _) = self.knots.locate(t);
+        let [from, to] = [self.vertices[segment], self.vertices[segment + 1]];
+        std::array::from_fn(|i| (to[i] - from[i]) / self.knots.span(segment))
     }
 
     fn corners(&self) -> Vec<f64> {
@@ -103,12 +103,12 @@ pub(super) fn check_points(points: &[[f64; 3]]) -> Result<()> {
 
 /// The length (m) travelled up to each point.
 fn arc_lengths(points: &[[f64; 3]]) -> Vec<f64> {
-    let strokes = points.windows(2).map(|ends| {
+    let segments = points.windows(2).map(|ends| {
         let [x, y, z]: [f64; 3] = std::array::from_fn(|i| ends[1][i] - ends[0][i]);
         x.hypot(y).hypot(z)
     });
     let mut travelled = 0.0;
-    let sums = strokes.map(|length| {
+    let sums = segments.map(|length| {
         travelled += length;
         travelled
     });

@@ -73,7 +73,7 @@ impl Reference {
         self.positions[i]
     }
 
-    /// Velocity at row `i` (m/s), if it is known; at a corner, that of the stroke that begins.
+    /// Velocity at row `i` (m/s), if it is known; at a corner, that of the segment that begins.
     pub fn velocity(&self, i: usize) -> Option<[f64; 3]> {
         self.velocities.as_ref().map(|velocities| velocities[i])
     }

@@ -45,7 +45,7 @@ impl Path {
         self.curve.position(t)
     }
 
-    /// Velocity (m/s); at a corner, that of the stroke that begins.
+    /// Velocity (m/s); at a corner, that of the segment that begins.
     pub fn velocity(&self, t: f64) -> [f64; 3] {
         self.curve.velocity(t)
     }

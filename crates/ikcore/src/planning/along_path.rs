@@ -1,11 +1,11 @@
 //! Along a given path.
 
 use super::cost::Cost;
-use super::course::Course;
 use super::plan::Plan;
 use super::planar_arm::Elbow;
+use super::tip_path::TipPath;
 use super::{timed, tpbso};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::limits::Limits;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, DerivativeFree, Monitor, Stop};
@@ -46,19 +46,22 @@ pub struct AlongPathOptions {
     pub seed: u64,
 }
 
-/// Plans a motion of `robot` whose tip follows `course`.
+/// Plans a motion of `robot` whose tip follows `path`.
 ///
 /// # Errors
-/// Any [`Error`](crate::Error) for wrong input, [`Error::Unreachable`](crate::Error::Unreachable) for a place out of
+/// Any [`Error`] for wrong input, [`Error::Unreachable`] for a place out of
 /// reach. That no plan keeps everything is a status, not an error.
 pub fn plan_along_path(
     robot: &Robot,
-    course: &Course,
+    tip_path: &TipPath,
     options: &AlongPathOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
+    if options.objective == Cost::TipTravel {
+        return Err(Error::unknown_option("objective along a path", "tip_travel", &["time", "joint_travel"]));
+    }
     match options.method {
-        AlongPathMethod::Timed => timed::along_path(robot, course, options, monitor),
-        AlongPathMethod::Tpbso => tpbso::along_path(robot, course, options, monitor),
+        AlongPathMethod::Timed => timed::along_path(robot, tip_path, options, monitor),
+        AlongPathMethod::Tpbso => tpbso::along_path(robot, tip_path, options, monitor),
     }
 }

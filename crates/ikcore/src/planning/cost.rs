@@ -3,8 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::motion_limits::MotionLimits;
+use crate::math::polynomial::{derivative, evaluate, roots};
+use crate::math::vector::distance;
 use crate::robot::Robot;
+use crate::trajectory::{Coefficients, Trajectory};
 use crate::wording::words;
+
+/// Chords that each piece of the tip's curve is measured by; on smooth pieces good to six digits.
+const CHORDS: usize = 256;
 
 /// What a plan minimises (Wang et al. 2019, eq. 8-10).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -39,7 +45,16 @@ impl Cost {
         }
     }
 
-    /// What is a lot of it for `robot` under `limits`: the measure of penalties.
+    /// Its value on `trajectory` (s, rad or m).
+    pub(super) fn of(self, robot: &Robot, trajectory: &Trajectory) -> f64 {
+        match self {
+            Self::Time => trajectory.duration(),
+            Self::JointTravel => joint_travel(trajectory),
+            Self::TipTravel => tip_travel(robot, trajectory),
+        }
+    }
+
+    /// A large value of it for `robot` under `limits`, by which penalties are scaled.
     pub(super) fn scale(self, robot: &Robot, limits: &MotionLimits) -> f64 {
         let ranges = (0..limits.dof()).map(|j| limits.finite_range(j));
         match self {
@@ -54,4 +69,44 @@ impl Cost {
 fn chain_length(robot: &Robot) -> f64 {
     let poses = robot.link_poses(&vec![0.0; robot.dof()]).unwrap_or_default();
     poses.windows(2).map(|ends| (ends[1].translation.vector - ends[0].translation.vector).norm()).sum()
+}
+
+/// How far all joints together travel: exact, from turning point to turning point.
+fn joint_travel(trajectory: &Trajectory) -> f64 {
+    let (knots, n) = (trajectory.knots(), trajectory.joints().len());
+    let of_piece = |(i, polynomial): (usize, &Coefficients)| {
+        let span = knots[i / n + 1] - knots[i / n];
+        let turns = roots(&derivative(polynomial), 0.0, span);
+        let mut last = evaluate(polynomial, 0.0)[0];
+        let mut travel = 0.0;
+        for s in turns.into_iter().chain([span]) {
+            let next = evaluate(polynomial, s)[0];
+            travel += (next - last).abs();
+            last = next;
+        }
+        travel
+    };
+    trajectory.coefficients().iter().enumerate().map(of_piece).sum()
+}
+
+/// How far the tip travels, by chords.
+fn tip_travel(robot: &Robot, trajectory: &Trajectory) -> f64 {
+    let n = trajectory.joints().len();
+    let pieces = trajectory.knots().windows(2).zip(trajectory.coefficients().chunks(n));
+    let of_piece = |(ends, polynomials): (&[f64], &[Coefficients])| {
+        let at = |i: usize| {
+            let s = (ends[1] - ends[0]) * i as f64 / CHORDS as f64;
+            let q: Vec<f64> = polynomials.iter().map(|polynomial| evaluate(polynomial, s)[0]).collect();
+            robot.tip_position(&q)
+        };
+        let mut last = at(0);
+        let mut travel = 0.0;
+        for i in 1..=CHORDS {
+            let next = at(i);
+            travel += distance(&next, &last);
+            last = next;
+        }
+        travel
+    };
+    pieces.map(of_piece).sum()
 }

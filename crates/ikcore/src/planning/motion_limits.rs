@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::plan::Violation;
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits, Profile};
+use crate::limits::{Field, Limits};
 use crate::math::interval;
 use crate::robot::{JointKind, Robot};
 use crate::trajectory::Trajectory;
@@ -37,10 +37,7 @@ impl MotionLimits {
         limits.require_for(robot)?;
         limits.require_none(&[Field::Jerk], method, "retime the plan with a jerk limit afterwards")?;
         limits.validate(0.0, 0)?;
-        let constants = |field: Field| -> Result<Vec<f64>> {
-            let profiles = limits.field(field).unwrap_or_default();
-            profiles.iter().map(|profile| constant(profile, field, method)).collect()
-        };
+        let constants = |field: Field| limits.constants(field, method, "give numbers");
         let joints = robot.joints().iter().map(|joint| (joint.name.clone(), joint.kind)).collect();
         let mut acceleration = constants(Field::Acceleration)?;
         acceleration.resize(robot.dof(), f64::INFINITY);
@@ -91,23 +88,6 @@ impl MotionLimits {
     /// None in practice: the limits were checked.
     pub fn applied_to(&self, robot: &Robot) -> Result<Robot> {
         robot.with_limits(|j, joint| (joint.lower, joint.upper) = (self.lower[j], self.upper[j]))
-    }
-
-    /// Err unless `q` lies within the position limits; `what` names it.
-    ///
-    /// # Errors
-    /// [`Error::OutsideLimits`].
-    pub fn require_inside(&self, what: &str, q: &[f64]) -> Result<()> {
-        match (0..self.dof()).find(|j| !(self.lower[*j] <= q[*j] && q[*j] <= self.upper[*j])) {
-            None => Ok(()),
-            Some(j) => Err(Error::OutsideLimits {
-                what: what.into(),
-                joint: self.joint_name(j).into(),
-                value: q[j],
-                lower: self.lower[j],
-                upper: self.upper[j],
-            }),
-        }
     }
 
     /// Err for a joint without a velocity limit, which `method` needs.
@@ -162,16 +142,5 @@ impl MotionLimits {
             }
         }
         Ok(())
-    }
-}
-
-fn constant(profile: &Profile, field: Field, method: &str) -> Result<f64> {
-    match profile {
-        Profile::Constant(value) => Ok(*value),
-        _ => Err(Error::UnsupportedLimit {
-            field: format!("time-varying {field}"),
-            method: method.into(),
-            remedy: "give numbers".into(),
-        }),
     }
 }

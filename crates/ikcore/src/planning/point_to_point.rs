@@ -1,7 +1,7 @@
 //! From one end to another.
 
 use super::cost::Cost;
-use super::end::End;
+use super::endpoint::Endpoint;
 use super::plan::Plan;
 use super::planar_arm::Elbow;
 use super::{minmax, tpbso};
@@ -72,8 +72,8 @@ impl PointToPointOptions {
 /// status, not an error.
 pub fn plan_point_to_point(
     robot: &Robot,
-    start: &End,
-    end: &End,
+    start: &Endpoint,
+    end: &Endpoint,
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {

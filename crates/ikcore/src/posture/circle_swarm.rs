@@ -4,6 +4,7 @@
 use super::linkage::{Linkage, Point2};
 use crate::error::{Error, Result, require_positive};
 use crate::rng::LazyRng;
+use crate::solver::{Monitor, Status};
 
 /// More particles or generations than this are a mistake.
 const MOST: usize = 1_000_000;
@@ -35,9 +36,9 @@ impl Default for CircleSwarm {
 /// Draws of a particle before no posture is taken to exist.
 const DRAWS: usize = 10_000;
 
-/// What a swarm has found.
+/// What a search has found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Flight {
+pub struct FoundPosture {
     /// The best posture (n,).
     pub q: Vec<f64>,
     /// Its index.
@@ -46,6 +47,8 @@ pub struct Flight {
     pub history: Vec<f64>,
     /// Postures whose index was computed.
     pub evaluations: usize,
+    /// [`Status::Solved`], or [`Status::Interrupted`] before the search was over.
+    pub status: Status,
 }
 
 struct Particle {
@@ -58,6 +61,7 @@ struct Swarm<'a> {
     options: &'a CircleSwarm,
     linkage: &'a Linkage,
     rng: &'a mut LazyRng,
+    monitor: &'a mut dyn Monitor,
     q: Vec<f64>,
     /// Index, points and configuration.
     best: (f64, Vec<Point2>, Vec<f64>),
@@ -91,25 +95,42 @@ impl CircleSwarm {
         2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs()
     }
 
-    /// Flies over the postures of `linkage`; None where no posture was found.
-    pub fn fly(&self, linkage: &Linkage, rng: &mut LazyRng) -> Option<Flight> {
+    /// The best posture of `linkage` that the swarm meets; None where it meets none.
+    pub fn search(&self, linkage: &Linkage, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Option<FoundPosture> {
         let n = linkage.links();
         let best = (f64::NEG_INFINITY, vec![], vec![]);
-        let mut swarm = Swarm { options: self, linkage, rng, q: vec![0.0; n], best, evaluations: 0 };
-        let mut particles = (0..self.population).map(|_| swarm.draw()).collect::<Option<Vec<_>>>()?;
-        let mut history = vec![swarm.best.0];
-        for _ in 1..self.generations {
-            for particle in &mut particles {
-                swarm.advance(particle)?;
-            }
-            history.push(swarm.best.0);
-        }
+        let mut swarm = Swarm { options: self, linkage, rng, monitor, q: vec![0.0; n], best, evaluations: 0 };
+        let mut history = vec![];
+        let status = swarm.run(&mut history)?;
         let (index, _, q) = swarm.best;
-        Some(Flight { q, index, history, evaluations: swarm.evaluations })
+        Some(FoundPosture { q, index, history, evaluations: swarm.evaluations, status })
     }
 }
 
 impl Swarm<'_> {
+    /// All generations, or as many as the monitor lets pass; writes the best index after each. None where a particle finds no
+    /// posture.
+    fn run(&mut self, history: &mut Vec<f64>) -> Option<Status> {
+        let mut particles = vec![];
+        for _ in 0..self.options.population {
+            particles.push(self.draw()?);
+            if !self.monitor.keep_going() {
+                return Some(Status::Interrupted);
+            }
+        }
+        history.push(self.best.0);
+        for _ in 1..self.options.generations {
+            for particle in &mut particles {
+                self.advance(particle)?;
+                if !self.monitor.keep_going() {
+                    return Some(Status::Interrupted);
+                }
+            }
+            history.push(self.best.0);
+        }
+        Some(Status::Solved)
+    }
+
     /// A particle somewhere on the circles, steps (1) and (2) of the paper.
     fn draw(&mut self) -> Option<Particle> {
         let links = self.linkage.links();

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::circle_swarm::{CircleSwarm, Flight};
+use super::circle_swarm::{CircleSwarm, FoundPosture};
 use super::linkage::{Linkage, Measure, Region};
 use crate::error::Result;
 use crate::ik::{SolveOptions, solve};
@@ -40,7 +40,7 @@ pub struct Posture {
     pub index: f64,
     /// The best index after each generation of a swarm; empty for our own search.
     pub history: Vec<f64>,
-    /// [`Status::Solved`], or why there is no posture.
+    /// [`Status::Solved`]; [`Status::Interrupted`] with the best so far; or why there is no posture.
     pub status: Status,
     /// Errors of the tip at `q`.
     pub error: TipError,
@@ -81,7 +81,7 @@ pub fn best_posture(
     options.swarm.map_or(Ok(()), |swarm| swarm.validate())?;
     let linkage = Linkage::new(robot, target, options.measure, options.region)?;
     let found = match options.swarm {
-        Some(swarm) => swarm.fly(&linkage, &mut rng::stream(options.seed, 0)),
+        Some(swarm) => swarm.search(&linkage, &mut rng::stream(options.seed, 0), monitor),
         None => evolve(&linkage, options.seed, monitor),
     };
     let posture = |q: Vec<f64>, index, history, status, evaluations| {
@@ -89,39 +89,44 @@ pub fn best_posture(
         let error = TipError { position: distance(&tip, target), rotation: f64::NAN };
         Posture { q, index, history, status, error, evaluations, elapsed: stopwatch.elapsed() }
     };
-    if let Some(Flight { q, index, history, evaluations }) = found {
-        return Ok(posture(q, index, history, Status::Solved, evaluations));
+    if let Some(FoundPosture { q, index, history, evaluations, status }) = found {
+        return Ok(posture(q, index, history, status, evaluations));
     }
     let nearest = solve(robot, &Target::Position(*target), &SolveOptions::default(), monitor)?;
     let status = match nearest.status {
-        Status::Solved => Status::Stalled, // it can be reached, but not as was asked
+        Status::Solved => Status::Stalled, // within reach, but not in a posture as asked for
         status => status,
     };
     Ok(posture(nearest.q.to_vec(), f64::NAN, vec![], status, nearest.evaluations))
 }
 
 /// Our own search; None where no posture was met.
-fn evolve(linkage: &Linkage, seed: u64, monitor: &mut dyn Monitor) -> Option<Flight> {
+fn evolve(linkage: &Linkage, seed: u64, monitor: &mut dyn Monitor) -> Option<FoundPosture> {
     let links = linkage.links();
-    let mut objective = Closed { linkage, q: vec![0.0; links], best: None, evaluations: 0 };
+    let mut objective = ClosedLinkage { linkage, q: vec![0.0; links], best: None, evaluations: 0 };
     let bounds = Bounds::from_ranges((2..links).map(|_| (-PI, PI)));
     let stop = Stop { max_evaluations: EVALUATIONS_A_LINK * links, ..Stop::default() };
     let mut rng = rng::stream(seed, 0);
     let x0 = vec![0.0; links - 2];
-    run(&DifferentialEvolution::default(), &mut Evaluator::new(&mut objective, &bounds, stop, &mut rng, monitor), &x0);
-    let Closed { best, evaluations, .. } = objective;
-    best.map(|(index, q)| Flight { q, index, history: vec![], evaluations })
+    let mut evaluator = Evaluator::new(&mut objective, &bounds, stop, &mut rng, monitor);
+    let status = match run(&DifferentialEvolution::default(), &mut evaluator, &x0).status() {
+        Status::Interrupted => Status::Interrupted,
+        _ => Status::Solved,
+    };
+    let ClosedLinkage { best, evaluations, .. } = objective;
+    best.map(|(index, q)| FoundPosture { q, index, history: vec![], evaluations, status })
 }
 
-/// Minus the index over the headings of all links but the last two, the better of the two sides.
-struct Closed<'a> {
+/// Minus the index as a function of the headings of all links but the last two, which close the linkage on one of two sides:
+/// the better of them.
+struct ClosedLinkage<'a> {
     linkage: &'a Linkage,
     q: Vec<f64>,
     best: Option<(f64, Vec<f64>)>,
     evaluations: usize,
 }
 
-impl Objective for Closed<'_> {
+impl Objective for ClosedLinkage<'_> {
     fn dimension(&self) -> usize {
         self.linkage.links() - 2
     }

@@ -105,10 +105,10 @@ impl ChainBuilder {
     /// Checks the description and makes the robot.
     ///
     /// # Errors
-    /// [`Error::InvalidRobot`](crate::Error::InvalidRobot) for no joints, too many, or a joint or link named twice;
-    /// [`Error::EmptyRange`](crate::Error::EmptyRange), [`Error::NegativeLimit`](crate::Error::NegativeLimit) or
-    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for impossible limits;
-    /// [`Error::NotFinite`](crate::Error::NotFinite) for transforms.
+    /// [`Error::InvalidRobot`] for no joints, too many, or a joint or link named twice;
+    /// [`Error::EmptyRange`], [`Error::NegativeLimit`] or
+    /// [`Error::OutOfRange`] for impossible limits;
+    /// [`Error::NotFinite`] for transforms.
     pub fn build(self) -> Result<Robot> {
         Robot::new(self)
     }

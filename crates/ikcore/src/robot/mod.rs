@@ -1,5 +1,6 @@
 //! Robots: the serial chain from a base link to a tip link, its joints, limits and kinematics.
 
+mod arrays;
 mod as_built;
 mod builder;
 mod catalog;
@@ -11,7 +12,6 @@ mod dispatch;
 mod joint;
 mod kinematics;
 mod lane_search;
-mod many;
 mod model;
 mod planar;
 mod reach;

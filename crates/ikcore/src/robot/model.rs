@@ -141,6 +141,23 @@ impl Robot {
         require_finite(what, q, |i| format!("joint '{}'", self.joints()[i].name))
     }
 
+    /// Err unless `q` (n,) lies in the box from `lower` to `upper` (n,); `what` names it in the message.
+    ///
+    /// # Errors
+    /// [`Error::OutsideLimits`] names the joint, its value and its limits.
+    pub fn require_within(&self, what: &str, q: &[f64], lower: &[f64], upper: &[f64]) -> Result<()> {
+        match (0..q.len()).find(|j| !(lower[*j] <= q[*j] && q[*j] <= upper[*j])) {
+            None => Ok(()),
+            Some(j) => Err(Error::OutsideLimits {
+                what: what.into(),
+                joint: self.joints()[j].name.clone(),
+                value: q[j],
+                lower: lower[j],
+                upper: upper[j],
+            }),
+        }
+    }
+
     /// Pose of the tip at `q` (n,) (rad, m).
     ///
     /// # Errors
@@ -195,11 +212,11 @@ impl Robot {
         self.chain.jacobian(q, columns)
     }
 
-    /// Tip and joint torques (N m, N for sliding joints) in one pass and without a Jacobian: what the joints feel of the
-    /// wrench that `pull` says of the tip. `q` and `torques` have one entry per joint.
+    /// Tip and joint torques (N m, N for sliding joints) J'w in one pass, without a Jacobian; w is the `wrench` on the tip. `q`
+    /// and `torques` have one entry per joint.
     #[inline]
-    pub fn tip_and_torques(&self, q: &[f64], pull: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
-        self.chain.torques(q, pull, torques)
+    pub fn tip_and_torques(&self, q: &[f64], wrench: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
+        self.chain.torques(q, wrench, torques)
     }
 
     /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).

@@ -17,8 +17,7 @@ impl Robot {
     /// has its frame at joint i; the last frame is `tip`.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a length that is not positive and finite;
-    /// [`Error::InvalidRobot`](crate::Error::InvalidRobot) for no link at all.
+    /// [`Error::OutOfRange`] for a length that is not positive and finite; [`Error::WrongLength`] for no link at all.
     pub fn planar(lengths: &[f64]) -> Result<Self> {
         if lengths.is_empty() {
             let (what, expected) = ("lengths of a planar arm".into(), "at least 1".into());

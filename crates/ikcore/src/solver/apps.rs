@@ -3,7 +3,7 @@
 //!
 //! The search is free, as published: a joint may pass its limits, and eq. (12) brings it back by whole turns.
 
-use super::conduct::{Conduct, Domain, Goal};
+use super::conduct::{Conduct, Domain, Termination};
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Result, require_positive};
@@ -89,8 +89,8 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
     type State = State;
 
     fn conduct(&self) -> Conduct {
-        let goal = if self.error_threshold.is_some() { Goal::Threshold } else { Goal::Solved };
-        Conduct { domain: Domain::Wrapped, goal }
+        let termination = if self.error_threshold.is_some() { Termination::Threshold } else { Termination::Solved };
+        Conduct { domain: Domain::Wrapped, termination }
     }
 
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
@@ -105,7 +105,7 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
     /// The paper evaluates E, updates theta, and stops if that E was small enough: its last update is made from there.
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
         if state.arrived {
-            evaluator.check_strayed()?;
+            evaluator.check_solved_outside()?;
             return Err(Halt::BelowThreshold);
         }
         if !state.error.is_finite() || state.gradient.iter().all(|slope| *slope == 0.0) {
@@ -129,7 +129,7 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
         if *theta == before {
             return Err(Halt::Stalled);
         }
-        if self.error_threshold.is_none() { evaluator.check_strayed() } else { Ok(()) }
+        if self.error_threshold.is_none() { evaluator.check_solved_outside() } else { Ok(()) }
     }
 }
 

@@ -16,7 +16,7 @@ use smallvec::SmallVec;
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result, require_positive};
-use crate::math::vector::sign;
+use crate::math::ordered::sign;
 use crate::objective::{Objective, Point};
 use crate::wording::words;
 

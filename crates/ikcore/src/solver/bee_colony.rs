@@ -3,7 +3,7 @@
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
-use super::population::{Members, Population, Schedule};
+use super::population::{Generation, Members, Population, Schedule};
 use crate::error::{Error, Result};
 use crate::objective::Objective;
 
@@ -68,7 +68,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeeColony {
 
     /// One cycle: employed bees, onlookers, a scout.
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
-        if state.population.is_drawn(&self.schedule, evaluator)? {
+        if state.population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             return Ok(());
         }
         for (bee, source) in state.chosen.iter_mut().enumerate() {

@@ -7,10 +7,10 @@
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
-use super::population::{Members, Memory, Population, Schedule};
+use super::population::{Generation, Members, Memory, Population, Schedule};
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
-use crate::math::vector::sign;
+use crate::math::ordered::sign;
 use crate::objective::Objective;
 use crate::wording::words;
 
@@ -133,13 +133,13 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
     /// Lines 5 to 21 of Algorithm 1.
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
         let State { population, memory, velocities, antennae, step } = state;
-        if population.is_drawn(&self.schedule, evaluator)? {
+        if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             velocities.draw(population, evaluator.rng());
             // The draw spans half the width; the limit is on all velocities.
             velocities.all.iter_mut().for_each(|v| *v *= (2.0 * self.velocity_limit).min(1.0));
         } else {
             // eq. (27), with inertia and limit
-            velocities.turn([self.inertia, self.c1, self.c2], population, memory, evaluator.rng());
+            velocities.update([self.inertia, self.c1, self.c2], population, memory, evaluator.rng());
             self.feel(&population.members, &velocities.all, *step, antennae, evaluator)?;
             self.advance(&mut population.members, &velocities.all, antennae, *step);
             population.members.evaluate_from(0, evaluator)?;

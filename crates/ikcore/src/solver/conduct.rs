@@ -1,4 +1,4 @@
-//! What a solver declares of itself: where it searches, and what ends it.
+//! A solver's declarations: where it searches, and what ends it.
 
 /// Where a solver's points may lie. What is returned lies in the box whatever the domain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -6,14 +6,14 @@ pub enum Domain {
     /// In the box: what is outside is clipped.
     #[default]
     Clipped,
-    /// Anywhere, for entries that repeat themselves: they are brought into the box by whole periods where that is
-    /// possible, and searched on outside where it is not. Other entries are clipped.
+    /// Anywhere, for entries with a period: they are brought into the box by whole periods where that is possible, and left
+    /// outside where it is not. Other entries are clipped.
     Wrapped,
 }
 
 /// What ends a run before its budget does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Goal {
+pub enum Termination {
     /// The problem's own test.
     #[default]
     Solved,
@@ -27,6 +27,6 @@ pub enum Goal {
 pub struct Conduct {
     /// Where it searches.
     pub domain: Domain,
-    /// What ends it.
-    pub goal: Goal,
+    /// What ends it before its budget does.
+    pub termination: Termination,
 }

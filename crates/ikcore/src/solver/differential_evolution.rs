@@ -2,7 +2,7 @@
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
-use super::population::{Members, Population, Schedule};
+use super::population::{Generation, Members, Population, Schedule};
 use crate::error::{Error, Result};
 use crate::objective::{Bounds, Objective};
 use crate::rng::LazyRng;
@@ -73,7 +73,7 @@ impl<O: Objective + ?Sized> Solver<O> for DifferentialEvolution {
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
         let State { population, trials } = state;
-        if population.is_drawn(&self.schedule, evaluator)? {
+        if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             return Ok(());
         }
         let members = &mut population.members;

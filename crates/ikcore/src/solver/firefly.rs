@@ -6,7 +6,7 @@
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
-use super::population::{Members, Population, Schedule};
+use super::population::{Generation, Members, Population, Schedule};
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Objective, Point};
 use crate::rng::split;
@@ -103,7 +103,7 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
         let State { population, moving, moved, attractor, randomness, scales, draws } = state;
-        if population.is_drawn(&self.turns(), evaluator)? {
+        if population.begin_generation(&self.turns(), evaluator)? == Generation::First {
             return Ok(());
         }
         let Population { members, widths, .. } = population;

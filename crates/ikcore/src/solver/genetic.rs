@@ -7,7 +7,7 @@
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
-use super::population::{Members, Population, Schedule};
+use super::population::{Generation, Members, Population, Schedule};
 use crate::error::{Error, Result, require_positive};
 use crate::objective::Objective;
 use crate::rng::LazyRng;
@@ -107,7 +107,7 @@ impl<O: Objective + ?Sized> Solver<O> for Genetic {
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
         let State { population, children, ranking, scale } = state;
-        if population.is_drawn(&self.schedule, evaluator)? {
+        if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             return Ok(());
         }
         let parents = &population.members;

@@ -49,7 +49,7 @@ pub use bas::{Bas, Variant};
 pub use bee_colony::BeeColony;
 pub use beetle_swarm::BeetleSwarm;
 pub use broyden_bas::BroydenBas;
-pub use conduct::{Conduct, Domain, Goal};
+pub use conduct::{Conduct, Domain, Termination};
 pub use differential_evolution::DifferentialEvolution;
 pub use driver::{Outcome, Solver, run};
 pub use evaluator::{Best, Evaluator, Halt};

@@ -1,4 +1,4 @@
-//! What all swarms share: the members of a generation, the best place of each, and when a swarm gives up.
+//! What all populations share: the members of a generation, the best place of each, and when the search gives up.
 //!
 //! The first generation is the start and, for the rest, uniform draws in the box. A step of a swarm is one generation:
 //! the first step draws and evaluates the other members, so that a start that is solved costs one evaluation.
@@ -7,22 +7,22 @@ use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result};
 use crate::objective::{Objective, Point};
 
-/// How many members, and for how long.
+/// The size of a population, and when it gives up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Schedule {
     /// Members of a generation.
     pub population: usize,
     /// Generations after which the swarm gives up, the first included.
     pub max_generations: usize,
-    /// It gives up earlier when so many generations in a row gain nothing: less than a millionth of the best value.
+    /// It gives up earlier after so many generations in a row without a gain of a millionth of the best value.
     pub stall_generations: usize,
 }
 
 /// The share of the best value that counts as a gain: the function tolerance of the MATLAB solvers.
 const GAIN: f64 = 1e-6;
 
-/// The largest population: it must fit into memory, and more help nobody.
-const MOST: usize = 1_000_000;
+/// The largest population: it must fit into memory.
+const LARGEST_POPULATION: usize = 1_000_000;
 
 impl Schedule {
     /// Members of a generation; as many generations as the budget allows, but no more than 50 without a gain (the MATLAB
@@ -37,8 +37,8 @@ impl Schedule {
     /// [`Error::OutOfRange`] names the option and its range.
     pub fn validate(&self, fewest: usize) -> Result<()> {
         let Self { population, max_generations, stall_generations } = *self;
-        if !(fewest..=MOST).contains(&population) {
-            let requirement = format!("between {fewest} and {MOST}");
+        if !(fewest..=LARGEST_POPULATION).contains(&population) {
+            let requirement = format!("between {fewest} and {LARGEST_POPULATION}");
             return Err(Error::out_of_range("population", &requirement, population as f64));
         }
         for (name, count) in [("max_generations", max_generations), ("stall_generations", stall_generations)] {
@@ -134,8 +134,19 @@ pub struct Population {
     pub widths: Point,
     /// Generations so far, the first included.
     pub generation: usize,
+    /// The best value when a gain was last seen.
     milestone: f64,
+    /// Generations since then.
     without_gain: usize,
+}
+
+/// Which generation a step has begun.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Generation {
+    /// The first, whose members are drawn and evaluated already.
+    First,
+    /// One that the algorithm makes of the one before.
+    Later,
 }
 
 impl Population {
@@ -156,28 +167,28 @@ impl Population {
         Ok(Self { members, widths, generation: 0, milestone: f64::INFINITY, without_gain: 0 })
     }
 
-    /// What begins every step: completes the first generation, and later gives up where the schedule says so. True if
-    /// this step has drawn the first generation.
+    /// Begins a step: gives up where the schedule says so, and completes the first generation by drawing and evaluating its
+    /// other members. Later generations are the algorithm's work.
     ///
     /// # Errors
     /// The evaluator's [`Halt`]; [`Halt::Stalled`] by the schedule.
-    pub fn is_drawn<O: Objective + ?Sized>(
+    pub fn begin_generation<O: Objective + ?Sized>(
         &mut self,
         schedule: &Schedule,
         evaluator: &mut Evaluator<'_, O>,
-    ) -> Result<bool, Halt> {
+    ) -> Result<Generation, Halt> {
         if self.generation == schedule.max_generations || self.has_stalled(schedule, evaluator.attempt_value()) {
             return Err(Halt::Stalled);
         }
         self.generation += 1;
         if self.generation > 1 {
-            return Ok(false);
+            return Ok(Generation::Later);
         }
         for i in 1..schedule.population {
             evaluator.bounds().sample(evaluator.rng(), self.members.point_mut(i));
         }
         self.members.evaluate_from(1, evaluator)?;
-        Ok(true)
+        Ok(Generation::First)
     }
 
     fn has_stalled(&mut self, schedule: &Schedule, best: f64) -> bool {
@@ -206,7 +217,7 @@ impl Memory {
         Self { members: Members::new(population, dimension), leader: 0 }
     }
 
-    /// Takes over what `now` does better; the first time, everything.
+    /// Takes over the places that are better in `now`; the first time, all of them.
     pub fn update(&mut self, now: &Population) {
         for i in 0..now.members.values.len() {
             if now.members.values[i] < self.members.values[i] || now.generation == 1 {
@@ -217,8 +228,8 @@ impl Memory {
     }
 }
 
-/// Fills `rows` with `row` again and again: what is the same for all members, laid out as their coordinates are.
-pub fn repeat(row: &[f64], rows: &mut [f64]) {
+/// Fills `rows` with copies of `row`, so that a loop over the coordinates of all members can read what they have in common.
+pub fn tile(row: &[f64], rows: &mut [f64]) {
     let mut filled = row.len().min(rows.len());
     rows[..filled].copy_from_slice(&row[..filled]);
     while filled < rows.len() {

@@ -2,13 +2,13 @@
 //! Eberhart 1998).
 //!
 //! The global-best swarm; velocities are clamped to a share of the box as Eberhart and Shi (2000) advise for both forms,
-//! and a particle that meets a wall stops there, if nothing else is said.
+//! and by default a particle stops at the walls of the box.
 
 use std::fmt;
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
-use super::population::{Memory, Population, Schedule, repeat};
+use super::population::{Generation, Memory, Population, Schedule, tile};
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Bounds, Objective};
@@ -163,7 +163,7 @@ pub struct State {
     population: Population,
     memory: Memory,
     velocities: Velocities,
-    room: Room,
+    tiled: TiledBounds,
 }
 
 impl<O: Objective + ?Sized> Solver<O> for Pso {
@@ -174,21 +174,21 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
         Ok(State {
             memory: Memory::new(self.schedule.population, x0.len()),
             velocities: Velocities::new(&population, self.velocity_limit),
-            room: Room::new(evaluator.bounds(), &population),
+            tiled: TiledBounds::new(evaluator.bounds(), &population),
             population,
         })
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
-        let State { population, memory, velocities, room } = state;
-        if population.is_drawn(&self.schedule, evaluator)? {
+        let State { population, memory, velocities, tiled } = state;
+        if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             velocities.draw(population, evaluator.rng());
         } else {
-            velocities.turn(self.weights(), population, memory, evaluator.rng());
+            velocities.update(self.weights(), population, memory, evaluator.rng());
             let (points, velocities) = (&mut population.members.points, &mut velocities.all);
             match self.walls {
-                Walls::Absorbing => room.stop(points, velocities),
-                Walls::Random => room.draw_anew(points, velocities, evaluator.rng()),
+                Walls::Absorbing => tiled.stop(points, velocities),
+                Walls::Random => tiled.draw_anew(points, velocities, evaluator.rng()),
             }
             population.members.evaluate_from(0, evaluator)?;
         }
@@ -200,32 +200,32 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
     }
 }
 
-/// The box, laid out as the particles' coordinates are.
+/// The bounds of every coordinate of every particle.
 #[derive(Debug, Clone)]
-struct Room {
+struct TiledBounds {
     lower: Vec<f64>,
     upper: Vec<f64>,
 }
 
-impl Room {
+impl TiledBounds {
     fn new(bounds: &Bounds, population: &Population) -> Self {
-        let repeated = |row| {
+        let tiled = |row| {
             let mut rows = vec![0.0; population.members.points.len()];
-            repeat(row, &mut rows);
+            tile(row, &mut rows);
             rows
         };
-        Self { lower: repeated(bounds.lower()), upper: repeated(bounds.upper()) }
+        Self { lower: tiled(bounds.lower()), upper: tiled(bounds.upper()) }
     }
 
-    /// x = x + v; what meets a wall stops there.
+    /// x = x + v; a coordinate that would leave the box stops at its bound.
     fn stop(&self, points: &mut [f64], velocities: &mut [f64]) {
         let walls = self.lower.iter().zip(&self.upper);
         for ((x, v), (lower, upper)) in points.iter_mut().zip(velocities).zip(walls) {
-            fly(x, v, *lower, *upper);
+            move_within(x, v, *lower, *upper);
         }
     }
 
-    /// x = x + v; what would leave the box is somewhere in it.
+    /// x = x + v; a coordinate that would leave the box is drawn anew.
     fn draw_anew(&self, points: &mut [f64], velocities: &[f64], rng: &mut LazyRng) {
         let walls = self.lower.iter().zip(&self.upper);
         for ((x, v), (lower, upper)) in points.iter_mut().zip(velocities).zip(walls) {
@@ -237,7 +237,7 @@ impl Room {
 
 /// Moves x by v. A coordinate that met its bound has no velocity left.
 #[inline]
-fn fly(x: &mut f64, v: &mut f64, lower: f64, upper: f64) {
+fn move_within(x: &mut f64, v: &mut f64, lower: f64, upper: f64) {
     let wanted = *x + *v;
     let raised = if wanted > lower { wanted } else { lower };
     *x = if raised < upper { raised } else { upper };

@@ -3,7 +3,7 @@
 
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
-use super::population::{Members, Memory, Population, Schedule, repeat};
+use super::population::{Generation, Members, Memory, Population, Schedule, tile};
 use crate::error::{Result, require_positive};
 use crate::math::logarithm::ln;
 use crate::objective::{Objective, Point};
@@ -40,7 +40,7 @@ impl Qpso {
 pub struct State {
     population: Population,
     memory: Memory,
-    around: Around,
+    scratch: Scratch,
 }
 
 impl<O: Objective + ?Sized> Solver<O> for Qpso {
@@ -49,14 +49,14 @@ impl<O: Objective + ?Sized> Solver<O> for Qpso {
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
         let memory = Memory::new(self.schedule.population, x0.len());
-        Ok(State { around: Around::new(&population.members), population, memory })
+        Ok(State { scratch: Scratch::new(&population.members), population, memory })
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
-        let State { population, memory, around } = state;
-        if !population.is_drawn(&self.schedule, evaluator)? {
-            find_mean(memory, &mut around.mean);
-            self.draw_particles(&mut population.members.points, memory, around, evaluator.rng());
+        let State { population, memory, scratch } = state;
+        if population.begin_generation(&self.schedule, evaluator)? == Generation::Later {
+            find_mean(memory, &mut scratch.mean);
+            self.draw_particles(&mut population.members.points, memory, scratch, evaluator.rng());
             population.members.evaluate_from(0, evaluator)?;
         }
         memory.update(population);
@@ -64,10 +64,10 @@ impl<O: Objective + ?Sized> Solver<O> for Qpso {
     }
 }
 
-/// What particles are drawn around, laid out as their coordinates are: each update is one long loop, which the compiler
+/// What an update reads, repeated for every particle, so that it is one long loop over all coordinates, which the compiler
 /// vectorises whatever the dimension.
 #[derive(Debug, Clone)]
-struct Around {
+struct Scratch {
     /// Mean of the best places.
     mean: Point,
     means: Vec<f64>,
@@ -76,7 +76,7 @@ struct Around {
     draws: Vec<f64>,
 }
 
-impl Around {
+impl Scratch {
     fn new(members: &Members) -> Self {
         let none = vec![0.0; members.points.len()];
         let mean = Point::from_elem(0.0, members.dimension());
@@ -99,13 +99,13 @@ fn find_mean(memory: &Memory, mean: &mut [f64]) {
 
 impl Qpso {
     /// x = phi p + (1 - phi) g -+ alpha |m - x| ln(1/u), phi, u and the sign anew for each coordinate.
-    fn draw_particles(&self, points: &mut [f64], memory: &Memory, around: &mut Around, rng: &mut LazyRng) {
-        repeat(memory.members.point(memory.leader), &mut around.leader);
-        repeat(&around.mean, &mut around.means);
-        rng.fill(&mut around.draws);
+    fn draw_particles(&self, points: &mut [f64], memory: &Memory, scratch: &mut Scratch, rng: &mut LazyRng) {
+        tile(memory.members.point(memory.leader), &mut scratch.leader);
+        tile(&scratch.mean, &mut scratch.means);
+        rng.fill(&mut scratch.draws);
         let count = points.len();
         let (x, p) = (&mut points[..count], &memory.members.points[..count]);
-        let (g, mean, draws) = (&around.leader[..count], &around.means[..count], &around.draws[..count]);
+        let (g, mean, draws) = (&scratch.leader[..count], &scratch.means[..count], &scratch.draws[..count]);
         for k in 0..count {
             let [phi, rest] = split(draws[k]);
             // Sign and size from one draw, evenly in (-1, 1): neither end can occur, where the logarithm is infinite.

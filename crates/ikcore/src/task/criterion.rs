@@ -1,4 +1,4 @@
-//! What counts of a target's six components, and when it is reached.
+//! The weights of a target's six components, and the test whether it is reached.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,11 +13,11 @@ use crate::objective::{Linearization, Score};
 pub struct Criterion {
     /// Largest distance and angle.
     pub tolerance: Tolerance,
-    /// Where components are told apart.
+    /// Weights and tolerances component by component; None: all components weigh the same.
     pub components: Option<Components>,
     /// Where the tip is to stay; None: anywhere.
     pub region: Option<Region>,
-    /// What a tip outside its region is worth.
+    /// The value of a tip outside its region.
     pub outside: Outside,
 }
 
@@ -38,7 +38,7 @@ pub struct Components {
     pub tolerance: Option<[f64; ROWS]>,
 }
 
-/// What a criterion makes of a tip.
+/// How far a tip is from its target, by a criterion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assessment {
     /// The weighted sum of squares, and whether the target is reached.
@@ -87,20 +87,20 @@ impl Criterion {
         self.components.as_ref().map_or(Ok(()), Components::validate)
     }
 
-    /// Whether the coordinates of a position are told apart, so that its distance alone does not say enough.
+    /// Whether components are assessed one by one, so that the distance from a position alone does not decide.
     #[inline(always)]
-    pub(super) fn tells_apart(&self) -> bool {
+    pub(super) fn is_componentwise(&self) -> bool {
         self.components.is_some() || self.region.is_some()
     }
 
-    /// What `error`, with the sum of squares `value`, comes to where components are not told apart.
+    /// The assessment of `error` with the sum of squares `value`, where all components weigh the same.
     #[inline(always)]
-    pub(super) fn of_whole(&self, error: SquaredError, value: f64) -> Assessment {
+    pub(super) fn assess_unweighted(&self, error: SquaredError, value: f64) -> Assessment {
         Assessment { score: Score { value, solved: error.within(&self.tolerance) }, error }
     }
 
-    /// What the residual of `target`, in base coordinates, comes to by `components`.
-    pub(super) fn of_components(
+    /// The assessment of the residual of `target`, in base coordinates, by `components`.
+    pub(super) fn assess_components(
         &self,
         components: &Components,
         target: &Target,

@@ -1,5 +1,5 @@
-//! E of Yuan et al. 2016, eq. (11): half the sum of squared differences between the entries of the wanted matrix and the
-//! tip's, and the wrench that pulls the tip down its gradient.
+//! E of Yuan et al. 2016, eq. (11): half the sum of squared differences between the entries of the target's matrix and the
+//! tip's, and the wrench on the tip that is minus its gradient.
 //!
 //! Moved by v and turned by w, the tip changes E by -(f . v + m . w). Here f = p_d - p, and, since a turn moves the axis
 //! r_c by w x r_c, m is the sum of r_c x d_c over the columns r_c of its rotation and d_c of the wanted one.
@@ -10,7 +10,7 @@ use crate::math::arithmetic::Separate;
 use crate::math::so3::cross;
 use crate::robot::Wrench;
 
-/// E: of a pose over three axes and the position, of other targets over what they ask for.
+/// E: of a pose over its three axes and position, of other targets over the parts that they ask for.
 #[inline]
 pub fn error(target: &Target, tip: &Frame) -> f64 {
     let away = target.position().map_or(0.0, |wanted| position::error(&wanted, &tip.origin));
@@ -19,7 +19,7 @@ pub fn error(target: &Target, tip: &Frame) -> f64 {
 
 /// The wrench (f, m), minus the derivative of E.
 #[inline]
-pub fn pull(target: &Target, tip: &Frame) -> Wrench {
+pub fn wrench(target: &Target, tip: &Frame) -> Wrench {
     let [fx, fy, fz] = target.position().map_or([0.0; 3], |wanted| position::residual(&tip.origin, &wanted));
     let mut moment = [0.0; 3];
     for (r, d) in axes(target, tip) {

@@ -73,20 +73,20 @@ impl Target {
         }
     }
 
-    /// How far the tip of `robot` at `q` is from here, by `criterion`.
+    /// The assessment of the tip of `robot` at `q`, by `criterion`.
     #[inline]
     pub fn assess(&self, robot: &Robot, q: &[f64], criterion: &Criterion) -> Assessment {
-        match (self, criterion.tells_apart()) {
+        match (self, criterion.is_componentwise()) {
             (Self::Position(target), false) => position_alone(target, &robot.tip_position(q), criterion),
             _ => self.assess_tip(&robot.tip(q), criterion),
         }
     }
 
-    /// Hands [`assess`](Self::assess) at the configurations stored one after another to `keep`, in order; side by side
+    /// Hands the [assessments](Self::assess) of the configurations stored one after another to `keep`, in order; several at a time
     /// where only positions matter.
     #[inline]
     pub fn assess_all(&self, robot: &Robot, qs: &[f64], criterion: &Criterion, mut keep: impl FnMut(Assessment)) {
-        match (self, criterion.tells_apart()) {
+        match (self, criterion.is_componentwise()) {
             (Self::Position(target), false) => {
                 robot.tip_positions(qs, |tip| keep(position_alone(target, &tip, criterion)));
             }
@@ -94,42 +94,42 @@ impl Target {
         }
     }
 
-    /// How far a tip is from here, by `criterion`.
+    /// The assessment of `tip`, by `criterion`.
     #[inline]
     pub fn assess_tip(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
         if let Some(region) = &criterion.region {
-            return self.assess_in(region, tip, criterion);
+            return self.assess_tip_within(region, tip, criterion);
         }
         let (error, value) = self.error(tip);
         match &criterion.components {
-            None => criterion.of_whole(error, value),
-            Some(components) => criterion.of_components(components, self, &self.residual(tip), error),
+            None => criterion.assess_unweighted(error, value),
+            Some(components) => criterion.assess_components(components, self, &self.residual(tip), error),
         }
     }
 
-    /// Weighted residual and Jacobian at `q`, and what `criterion` makes of them.
+    /// Weighted residual and Jacobian at `q`, and the assessment by `criterion`.
     #[inline]
     pub fn linearize(&self, robot: &Robot, q: &[f64], criterion: &Criterion, out: &mut Linearization) -> Assessment {
         let tip = robot.tip_and_jacobian(q, &mut out.columns);
-        self.complete(&tip, q.len(), criterion, out)
+        self.linearize_tip(&tip, q.len(), criterion, out)
     }
 
     /// The same from a tip and its geometric Jacobian, which stands in the first `dof` columns of `out`.
     #[inline]
-    pub fn complete(&self, tip: &Frame, dof: usize, criterion: &Criterion, out: &mut Linearization) -> Assessment {
+    pub fn linearize_tip(&self, tip: &Frame, dof: usize, criterion: &Criterion, out: &mut Linearization) -> Assessment {
         if let Some(region) = &criterion.region {
-            return self.complete_in(region, tip, dof, criterion, out);
+            return self.linearize_tip_within(region, tip, dof, criterion, out);
         }
-        let (error, value) = self.complete_whole(tip, dof, out);
-        let Some(components) = &criterion.components else { return criterion.of_whole(error, value) };
-        let assessment = criterion.of_components(components, self, &out.residual, error);
+        let (error, value) = self.linearize_unweighted(tip, dof, out);
+        let Some(components) = &criterion.components else { return criterion.assess_unweighted(error, value) };
+        let assessment = criterion.assess_components(components, self, &out.residual, error);
         components.apply(self, dof, out);
         assessment
     }
 
     /// Unweighted residual and Jacobian, in base coordinates; the errors and r'r.
     #[inline]
-    fn complete_whole(&self, tip: &Frame, dof: usize, out: &mut Linearization) -> (SquaredError, f64) {
+    fn linearize_unweighted(&self, tip: &Frame, dof: usize, out: &mut Linearization) -> (SquaredError, f64) {
         match self {
             Self::Pose(target) => summed(pose::linearize(target, tip, dof, out)),
             Self::Position(target) => {
@@ -163,7 +163,7 @@ impl Target {
 
     fn residual(&self, tip: &Frame) -> [f64; ROWS] {
         let mut out = Linearization::default();
-        self.complete_whole(tip, 0, &mut out);
+        self.linearize_unweighted(tip, 0, &mut out);
         out.residual
     }
 }
@@ -171,7 +171,7 @@ impl Target {
 #[inline(always)]
 fn position_alone(target: &[f64; 3], tip: &[f64; 3], criterion: &Criterion) -> Assessment {
     let squared = position::error(target, tip);
-    criterion.of_whole(SquaredError { position: Some(squared), rotation: None }, squared)
+    criterion.assess_unweighted(SquaredError { position: Some(squared), rotation: None }, squared)
 }
 
 /// Errors whose squares are those of the residual.

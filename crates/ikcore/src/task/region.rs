@@ -1,13 +1,14 @@
 //! A box that the tip is kept in: p_min < p < p_max, eq. (5) of Cheng et al. (2020).
 //!
-//! The tip goes to the point of the box that is nearest to its target, a margin inside: a search that ends at its
-//! tolerance then ends inside. Where the task leaves a coordinate free, that coordinate is pulled back by what it is
-//! outside, and not at all while it is inside.
+//! The tip is led to the point of the box that is nearest to its target, a margin inside the faces, so that a search that ends
+//! within its tolerance ends inside. A coordinate that the task leaves free has its distance to the box for a residual, which is
+//! zero inside.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Assessment, Criterion, Target};
 use crate::error::{Error, Result};
+use crate::math::vector::dot;
 use crate::math::{Frame, MAX_DOF};
 use crate::objective::Linearization;
 
@@ -17,14 +18,14 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The widest margin (m): no tolerance, however wide, keeps the tip farther from the faces.
 const WIDEST_MARGIN: f64 = 1e-3;
 
-/// What a tip outside its region is worth to a search.
+/// The value of a tip outside its region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Outside {
-    /// As much as it is near its target: a search that starts outside finds in.
+    /// Smaller nearer to the target in the region, so that a search that starts outside finds in.
     #[default]
     Graded,
-    /// Nothing: a search that starts inside stays there.
-    Worthless,
+    /// Infinite, so that a search that starts inside stays there.
+    Infinite,
 }
 
 /// An open box in the frame of the base; infinite where it has no face.
@@ -96,8 +97,8 @@ impl Region {
         }
     }
 
-    /// The coordinates of `point` that are outside, with the face that each has passed, in words.
-    pub(crate) fn passed(&self, point: &[f64; 3]) -> String {
+    /// The faces that `point` violates, in words.
+    pub(crate) fn violated_faces(&self, point: &[f64; 3]) -> String {
         let face = |k: usize| match point[k] {
             at if at <= self.lower[k] => Some(format!("{} above {}", AXES[k], self.lower[k])),
             at if at >= self.upper[k] => Some(format!("{} below {}", AXES[k], self.upper[k])),
@@ -108,7 +109,7 @@ impl Region {
 }
 
 impl Criterion {
-    /// How far from the faces the tip is led (m).
+    /// The distance from the faces at which the tip is led (m).
     fn margin(&self) -> f64 {
         let within = match self.components.and_then(|components| Some((components.weights, components.tolerance?))) {
             Some((weights, tolerance)) => {
@@ -119,7 +120,7 @@ impl Criterion {
         (0.5 * within).min(WIDEST_MARGIN)
     }
 
-    /// Where the tip is led for the sake of `target`: there, or as near as the region allows.
+    /// Where the tip is led: the `target`, or the nearest place that the region allows.
     pub fn aim(&self, target: &Target) -> Target {
         match &self.region {
             Some(region) => target.with_position(|wanted| region.nearest(wanted, self.margin())),
@@ -127,15 +128,14 @@ impl Criterion {
         }
     }
 
-    /// Why the region keeps the tip from `target`, in words, if it does: even the nearest point of it is beyond the
-    /// tolerance.
-    pub fn held_back(&self, target: &Target) -> Option<String> {
+    /// Why the region keeps the tip from `target`, in words, if it does: where even its nearest point is beyond the tolerance.
+    pub fn blocked_by_region(&self, target: &Target) -> Option<String> {
         let (region, wanted) = (self.region.as_ref()?, target.position()?);
         let anywhere = Self { region: None, ..*self };
         let axes = target.frame().map_or(Frame::IDENTITY.axes, |frame| frame.axes);
         let nearest = Frame { axes, origin: region.nearest(&wanted, 0.0) };
         let error = target.assess_tip(&nearest, &anywhere);
-        (!error.score.solved).then(|| format!("its region keeps {}", region.passed(&wanted)))
+        (!error.score.solved).then(|| format!("its region keeps {}", region.violated_faces(&wanted)))
     }
 
     /// The coordinates of the tip that `target` leaves free.
@@ -149,16 +149,16 @@ impl Criterion {
 }
 
 impl Target {
-    /// What `criterion` makes of `tip`, which is to be in `region`.
-    pub(super) fn assess_in(&self, region: &Region, tip: &Frame, criterion: &Criterion) -> Assessment {
+    /// The assessment of `tip`, which is to be in `region`.
+    pub(super) fn assess_tip_within(&self, region: &Region, tip: &Frame, criterion: &Criterion) -> Assessment {
         let anywhere = Criterion { region: None, ..*criterion };
-        let pull = pull(region, &tip.origin, criterion, self);
+        let excess = free_excess(region, &tip.origin, criterion, self);
         let led = criterion.aim(self).assess_tip(tip, &anywhere);
-        self.judged(region, tip, criterion, led.score.value + squared(&pull))
+        self.assess_led(region, tip, criterion, led.score.value + dot(&excess, &excess))
     }
 
     /// The same, with residual and Jacobian.
-    pub(super) fn complete_in(
+    pub(super) fn linearize_tip_within(
         &self,
         region: &Region,
         tip: &Frame,
@@ -171,23 +171,24 @@ impl Target {
         for (linear, [x, y, z, ..]) in linear.iter_mut().zip(&out.columns[..dof]) {
             *linear = [*x, *y, *z];
         }
-        let led = criterion.aim(self).complete(tip, dof, &anywhere, out);
-        let pull = pull(region, &tip.origin, criterion, self);
-        for k in (0..3).filter(|k| pull[*k] != 0.0) {
-            out.residual[k] = pull[k];
+        let led = criterion.aim(self).linearize_tip(tip, dof, &anywhere, out);
+        let excess = free_excess(region, &tip.origin, criterion, self);
+        for k in (0..3).filter(|k| excess[*k] != 0.0) {
+            out.residual[k] = excess[k];
             out.columns[..dof].iter_mut().zip(&linear).for_each(|(column, linear)| column[k] = linear[k]);
         }
-        self.judged(region, tip, criterion, led.score.value + squared(&pull))
+        self.assess_led(region, tip, criterion, led.score.value + dot(&excess, &excess))
     }
 
-    /// Errors are those to the target itself; solved is who is inside, and as near as the region allows.
-    fn judged(&self, region: &Region, tip: &Frame, criterion: &Criterion, value: f64) -> Assessment {
+    /// The assessment of a tip that is led at this `value`. Its errors are those to the target itself; it is solved inside the
+    /// region, as near to the target as that allows.
+    fn assess_led(&self, region: &Region, tip: &Frame, criterion: &Criterion, value: f64) -> Assessment {
         let anywhere = &Criterion { region: None, ..*criterion };
         let inside = region.contains(&tip.origin);
         let within = self.with_position(|wanted| region.nearest(wanted, 0.0));
         let mut assessment = self.assess_tip(tip, anywhere);
         assessment.score.value = match criterion.outside {
-            Outside::Worthless if !inside => f64::INFINITY,
+            Outside::Infinite if !inside => f64::INFINITY,
             _ => value,
         };
         assessment.score.solved = inside && within.assess_tip(tip, anywhere).score.solved;
@@ -207,12 +208,8 @@ impl Target {
 }
 
 /// How far each free coordinate of the tip is outside (m).
-fn pull(region: &Region, tip: &[f64; 3], criterion: &Criterion, target: &Target) -> [f64; 3] {
+fn free_excess(region: &Region, tip: &[f64; 3], criterion: &Criterion, target: &Target) -> [f64; 3] {
     let inside = region.nearest(tip, criterion.margin());
     let free = criterion.free(target);
     std::array::from_fn(|k| if free[k] { tip[k] - inside[k] } else { 0.0 })
-}
-
-fn squared(vector: &[f64; 3]) -> f64 {
-    vector.iter().map(|entry| entry * entry).sum()
 }

@@ -1,10 +1,12 @@
 //! Following a path, tick by tick, inside the limits.
 //!
-//! Algorithm 1 of Cheng et al. (2020), read so that it can be run: in every tick the box is the position limits
-//! intersected with what the velocity limit lets the accepted configuration reach, so that no answer can break either
-//! (a position limit that closes in faster than its joint may move is followed as fast as that, and reported);
-//! the tick's rule works until the error is in its band or, for random searches, below that of the tick before; time
-//! always advances, and the best configuration found is always kept.
+//! Algorithm 1 of Cheng et al. (2020), with what it leaves open settled:
+//!
+//! - The box of a tick is the position limits intersected with what the velocity limit lets the accepted configuration
+//!   reach, so that no answer can break either. A position limit that closes in faster than its joint may move is
+//!   followed at the joint's limit, and reported.
+//! - The tick's rule works until the error is in its band or, for random searches, below that of the tick before.
+//! - Time always advances, and the best configuration found is always kept.
 
 pub mod controller;
 mod model_free;
@@ -12,13 +14,15 @@ mod plant;
 mod record;
 mod rule;
 mod session;
+mod step;
 
 pub use controller::Controller;
 pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
 pub use plant::{Fault, FunctionPlant, KinematicPlant, Plant};
 pub use record::Record;
 pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
-pub use session::{Session, Step};
+pub use session::Session;
+pub use step::Step;
 
 use crate::error::{Error, Result};
 use crate::ik::{Prefer, SolveOptions, solve};
@@ -60,7 +64,8 @@ impl TrackOptions {
     /// Checks that the rule serves the goals, and the goals the robot.
     fn check_goals(&self, robot: &Robot) -> Result<()> {
         if !self.goals.is_empty() && !self.rule.serves_goals() {
-            let problem = "goals beside the path are served by the library's own rule and by WeightedPseudoInverse: leave solver out";
+            let problem = "goals beside the path are served by the library's own rule and by WeightedPseudoInverse: leave \
+                           solver out";
             return Err(Error::Contradiction { problem: problem.into() });
         }
         self.goals.iter().try_for_each(|goal| goal.validate(robot))
@@ -93,8 +98,8 @@ pub fn track(
         None => first_configuration(robot, reference, &limits, options, monitor)?,
     };
     let mut session = Session::new(robot, &start, reference.dt(), options)?;
-    let mut record =
-        Record::new(start.len(), reference.len(), session.limits().clone(), *session.criterion(), reference.dt());
+    let (limits, criterion) = (session.limits().clone(), *session.criterion());
+    let mut record = Record::new(start.len(), reference.len(), limits, options.limit_at, criterion, reference.dt());
     let beginning = session.begin(&target(reference, 0), reference.velocity(0))?;
     record.push(&session.accepted(), reference.position(0), &beginning);
     let finished = follow(reference, &mut session, &mut record, monitor)?;

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::controller::{self, Controller};
 use super::plant::{Fault, Plant, check};
 use super::record::{Accepted, Record};
-use super::session::Step;
+use super::step::Step;
 use crate::error::{Error, Result};
-use crate::limits::Limits;
+use crate::limits::{LimitAt, Limits};
 use crate::path::Reference;
 use crate::solver::stop::Stopwatch;
 use crate::solver::{Monitor, Status};
@@ -66,14 +66,16 @@ pub fn track_model_free(
     let ModelFreeOptions { controller, tolerance, seed, .. } = options;
     let mut session = controller::Session::new(controller, start, reference.dt(), limits.clone(), *tolerance, *seed)?;
     let band = Tolerance { position: *tolerance, rotation: f64::INFINITY };
-    let track = Record::new(start.len(), reference.len(), limits, band.into(), reference.dt());
+    let track = Record::new(start.len(), reference.len(), limits, LimitAt::Interval, band.into(), reference.dt());
     let command = Vec::with_capacity(reference.len() * start.len());
     let mut record = ModelFreeRecord { track, command, fault: None };
     let mut interrupted = false;
     for i in 0..=ticks {
-        interrupted = !monitor.keep_going();
-        if interrupted {
-            break;
+        if i % plant.ticks_between_looks() == 0 {
+            interrupted = !monitor.keep_going();
+            if interrupted {
+                break;
+            }
         }
         match tick(plant, &mut session, reference.position(i), &mut record.track)? {
             Ok(step) => record.push(&session, reference.position(i), &step),
@@ -129,7 +131,7 @@ fn tick(
 
 impl ModelFreeRecord {
     fn push(&mut self, session: &controller::Session, reference: [f64; 3], step: &Step) {
-        let accepted = Accepted { time: session.time(), q: session.q(), velocity_limit: session.velocity_limit() };
+        let accepted = Accepted { q: session.q(), velocity_limit: session.velocity_limit() };
         self.track.push(&accepted, reference, step);
         self.command.extend_from_slice(session.measured_command());
     }
@@ -150,7 +152,7 @@ impl ModelFreeRecord {
     /// What happened, and what to try.
     pub fn message(&self) -> String {
         if let Some(Fault(reason)) = &self.fault {
-            let rows = self.track.time.len();
+            let rows = self.track.rows();
             let when = time(rows as f64 * self.track.dt());
             return format!("the plant {reason} at t = {when} s; the {rows} rows before are recorded");
         }

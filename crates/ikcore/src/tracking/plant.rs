@@ -13,6 +13,11 @@ pub trait Plant {
     /// # Errors
     /// [`Fault`] ends the run, with what was recorded until then.
     fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault>;
+
+    /// Ticks between two looks at the monitor: one, unless measurements take next to no time.
+    fn ticks_between_looks(&self) -> usize {
+        1
+    }
 }
 
 /// Why a plant has no answer, as the end of "the plant ...".
@@ -72,6 +77,10 @@ impl Plant for KinematicPlant {
         let ([x, y], [z, _]) = (self.rng.normal_pair(), self.rng.normal_pair());
         let noise = [x, y, z].map(|draw| self.noise * draw);
         Ok(std::array::from_fn(|k| position[k] + noise[k]))
+    }
+
+    fn ticks_between_looks(&self) -> usize {
+        64
     }
 }
 

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::session::Step;
-use crate::limits::{Field, Limits};
+use super::step::Step;
+use crate::limits::{Field, LimitAt, Limits};
 use crate::math::ordered::larger;
 use crate::robot::Beyond;
 use crate::solver::Status;
@@ -21,12 +21,8 @@ const ALLOWED_ULPS: f64 = 4.0;
 pub struct Record {
     /// Joints per row, n.
     pub dof: usize,
-    /// Times (k,) (s).
-    pub time: Vec<f64>,
     /// Configurations (k, n) (rad, m).
     pub q: Vec<f64>,
-    /// The velocity limit that each velocity was held against (k, n); NaN in row 0.
-    pub velocity_limit: Vec<f64>,
     /// Tip positions (k, 3) (m).
     pub position: Vec<[f64; 3]>,
     /// Wanted positions (k, 3) (m).
@@ -58,13 +54,12 @@ pub struct Record {
     pub status: Status,
     /// Time taken.
     pub elapsed: Duration,
+    limit_at: LimitAt,
     dt: f64,
 }
 
 /// What a tick has accepted.
 pub(super) struct Accepted<'a> {
-    /// When it ended (s).
-    pub time: f64,
     /// Configuration (n,).
     pub q: &'a [f64],
     /// The velocity limit that this one was held against (n,).
@@ -73,12 +68,17 @@ pub(super) struct Accepted<'a> {
 
 impl Record {
     /// An empty record of `dof` joints with room for `rows`.
-    pub(super) fn new(dof: usize, rows: usize, limits: Limits, criterion: Criterion, dt: f64) -> Self {
+    pub(super) fn new(
+        dof: usize,
+        rows: usize,
+        limits: Limits,
+        limit_at: LimitAt,
+        criterion: Criterion,
+        dt: f64,
+    ) -> Self {
         Self {
             dof,
-            time: Vec::with_capacity(rows),
             q: Vec::with_capacity(rows * dof),
-            velocity_limit: Vec::with_capacity(rows * dof),
             position: Vec::with_capacity(rows),
             reference: Vec::with_capacity(rows),
             position_error: Vec::with_capacity(rows),
@@ -94,6 +94,7 @@ impl Record {
             out_of_reach: None,
             status: Status::Lost,
             elapsed: Duration::ZERO,
+            limit_at,
             dt,
         }
     }
@@ -105,8 +106,7 @@ impl Record {
 
     /// Appends what a tick has accepted.
     pub(super) fn push(&mut self, accepted: &Accepted<'_>, reference: [f64; 3], step: &Step) {
-        self.push_limits(accepted);
-        self.time.push(accepted.time);
+        self.note_violations(accepted);
         self.q.extend_from_slice(accepted.q);
         self.position.push(step.position);
         self.reference.push(reference);
@@ -117,14 +117,14 @@ impl Record {
         self.step_iterations.push(step.iterations);
     }
 
-    /// What the velocities of the tick that has just ended were held against, and the violations.
-    fn push_limits(&mut self, accepted: &Accepted<'_>) {
-        let Accepted { time: to, q, velocity_limit } = *accepted;
-        let Some(from) = self.time.last().copied() else {
-            self.velocity_limit.resize(self.dof, f64::NAN);
+    /// What the tick that has just ended breaks of its limits.
+    fn note_violations(&mut self, accepted: &Accepted<'_>) {
+        let Accepted { q, velocity_limit } = *accepted;
+        let rows = self.rows();
+        if rows == 0 {
             return;
-        };
-        self.velocity_limit.extend_from_slice(velocity_limit);
+        }
+        let [from, to] = self.ends(rows);
         let limited_acceleration = self.limits.field(Field::Acceleration).is_some();
         let mut fastest = f64::NEG_INFINITY;
         for (j, (q, velocity_limit)) in q.iter().zip(velocity_limit).enumerate() {
@@ -157,7 +157,7 @@ impl Record {
 
     /// By how much the displacement `step` of joint `j` differs from that of the tick before, beyond the acceleration limit.
     fn too_sudden(&self, j: usize, step: f64, [from, to]: [f64; 2]) -> f64 {
-        let rows = self.q.len() / self.dof;
+        let rows = self.rows();
         let before = if rows > 1 { self.q[(rows - 1) * self.dof + j] - self.q[(rows - 2) * self.dof + j] } else { 0.0 };
         (step - before).abs() - self.limits.acceleration_over(j, from, to) * self.dt * self.dt
     }
@@ -175,6 +175,34 @@ impl Record {
             Some(_) => Status::Lost,
             None => last,
         };
+    }
+
+    /// How many rows there are, k.
+    pub fn rows(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Times (k,) (s).
+    pub fn time(&self) -> Vec<f64> {
+        (0..self.rows()).map(|row| self.time_of(row)).collect()
+    }
+
+    fn time_of(&self, row: usize) -> f64 {
+        row as f64 * self.dt
+    }
+
+    /// When the tick of row `row`, from 1, begins and ends (s).
+    fn ends(&self, row: usize) -> [f64; 2] {
+        [self.time_of(row - 1), self.time_of(row)]
+    }
+
+    /// The velocity limit that each velocity was held against (k, n); NaN in row 0.
+    pub fn velocity_limit(&self) -> Vec<f64> {
+        let mut limits = vec![f64::NAN; self.q.len()];
+        for (i, row) in limits.chunks_exact_mut(self.dof).enumerate().skip(1) {
+            self.limits.write_velocities_over(self.ends(i), self.limit_at, row);
+        }
+        limits
     }
 
     /// Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt; zero in row 0.
@@ -196,9 +224,9 @@ impl Record {
 
     /// What happened, and what to try.
     pub fn message(&self) -> String {
-        let last = self.time.len() - 1;
+        let last = self.rows() - 1;
         if self.status == Status::Interrupted {
-            return format!("interrupted at t = {} s: {}", time(self.time[last]), Status::Interrupted.advice());
+            return format!("interrupted at t = {} s: {}", time(self.time_of(last)), Status::Interrupted.advice());
         }
         if let Some((joint, when)) = self.worst_violation {
             let (joint, excess) = (self.limits.joint_name(joint), number(self.max_violation));
@@ -223,7 +251,7 @@ impl Record {
             let (position, rotation) = (smallest(&self.position_error), smallest(&self.rotation_error));
             return format!("never came within {band} (nearest {}): {advice}", self.in_words(position, rotation));
         };
-        let since = time(self.time[joined]);
+        let since = time(self.time_of(joined));
         let (position, rotation) = (largest(&self.position_error[joined..]), largest(&self.rotation_error[joined..]));
         let worst = self.in_words(position, rotation);
         if self.status == Status::Solved {

@@ -1,55 +1,19 @@
 //! One control loop: the accepted configuration, the clock, the box of the tick and the rule that moves within it.
 
-use serde::{Deserialize, Serialize};
-
 use super::TrackOptions;
 use super::record::Accepted;
-use super::rule::{Found, Running, Tick, TickRule};
+use super::rule::{Running, Tick, TickResult, TickRule};
+use super::step::Step;
 use crate::error::{Result, require_finite, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point, Score};
 use crate::rng::{self, LazyRng};
 use crate::robot::{Beyond, Robot};
 use crate::solver::{Monitor, Status};
-use crate::task::{Assessment, Criterion, Goals, Target, TargetMotion, Task, TipError, Twist};
+use crate::task::{Assessment, Criterion, Goals, Target, TargetMotion, Task, Twist};
 
-/// What became of one tick.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Step {
-    /// [`Status::Solved`] in the band, [`Status::Improved`] nearer than before, else [`Status::Capped`].
-    pub status: Status,
-    /// Errors at the accepted configuration.
-    pub error: TipError,
-    /// Position of the tip there (m).
-    pub position: [f64; 3],
-    /// Evaluations of the forward kinematics.
-    pub evaluations: usize,
-    /// Iterations of the rule; passes of the beetle.
-    pub iterations: usize,
-    /// False where a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this tick.
-    pub inside_limits: bool,
-    /// The monitor asked to stop; nothing was accepted and time stands still.
-    pub interrupted: bool,
-}
-
-impl Step {
-    /// What happened, and what to try.
-    pub fn message(&self) -> String {
-        let error = &self.error;
-        let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
-        match self.status {
-            Status::Solved => format!("within the tolerances, {error} away{limits}"),
-            Status::HeldInRegion => {
-                format!("as near as its region allows, {error} away{limits}: {}", self.status.advice())
-            }
-            Status::Improved => format!("nearer than in the tick before, {error} away{limits}"),
-            status => format!("no nearer than in the tick before, {error} away{limits}: {}", status.advice()),
-        }
-    }
-}
-
-/// Halvings of a tick that would leave the region: what is taken back too much is below a thousandth of it.
-const HALVINGS: usize = 10;
+/// Bisections of a tick that would leave the region: they find how much of it may be kept to a thousandth.
+const BISECTIONS: usize = 10;
 
 /// A tracker in progress.
 #[derive(Debug)]
@@ -172,7 +136,7 @@ impl Session {
 
     /// What the last tick has accepted.
     pub(super) fn accepted(&self) -> Accepted<'_> {
-        Accepted { time: self.time(), q: &self.q, velocity_limit: self.velocity_limit() }
+        Accepted { q: &self.q, velocity_limit: self.velocity_limit() }
     }
 
     /// The robot that is moved.
@@ -190,7 +154,7 @@ impl Session {
         let Assessment { score, error } = target.assess(&self.robot, &self.q, &self.criterion);
         self.last_value = Some(score.value);
         let status = match score.solved {
-            true if self.criterion.held_back(&target).is_some() => Status::HeldInRegion,
+            true if self.criterion.blocked_by_region(&target).is_some() => Status::HeldInRegion,
             true => Status::Solved,
             false => Status::Improved,
         };
@@ -245,7 +209,7 @@ impl Session {
         self.keep_in_region(&target, &mut found);
         let Assessment { score: Score { value, solved }, error } = found.assessment;
         let status = match self.last_value {
-            _ if solved && self.criterion.held_back(&target).is_some() => Status::HeldInRegion,
+            _ if solved && self.criterion.blocked_by_region(&target).is_some() => Status::HeldInRegion,
             _ if solved => Status::Solved,
             Some(last) if value >= last => Status::Capped,
             _ => Status::Improved,
@@ -258,26 +222,26 @@ impl Session {
             (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
             self.last_target = Some((target, velocity));
         }
-        let Found { position, evaluations, iterations, interrupted, .. } = found;
+        let TickResult { position, evaluations, iterations, interrupted, .. } = found;
         let inside_limits = within && slow_enough;
         Ok(Step { status, error: error.into(), position, evaluations, iterations, inside_limits, interrupted })
     }
 
-    /// Takes back as much of a tick as would bring the tip out of its region. Where it began the tip is inside, and what lies
-    /// between there and any end in the box lies in the box too.
-    fn keep_in_region(&mut self, target: &Target, found: &mut Found) {
+    /// Takes back as much of a tick as would bring the tip out of its region. Where the tick began the tip is inside, and the box
+    /// is convex, so that any part of the tick ends in it.
+    fn keep_in_region(&mut self, target: &Target, found: &mut TickResult) {
         let Some(region) = self.criterion.region.filter(|region| !region.contains(&found.position)) else { return };
         let (mut kept, mut past) = (0.0, 1.0);
         let end = found.q.clone();
-        for _ in 0..HALVINGS {
+        for _ in 0..BISECTIONS {
             let share = 0.5 * (kept + past);
             between(&self.q, &end, share, &mut found.q);
             let inside = region.contains(&self.robot.tip_position(&found.q));
             (kept, past) = if inside { (share, past) } else { (kept, share) };
         }
         between(&self.q, &end, kept, &mut found.q);
-        found.arrive(&self.robot.tip(&found.q), target, &self.criterion);
-        found.evaluations += HALVINGS + 1;
+        found.set_tip(&self.robot.tip(&found.q), target, &self.criterion);
+        found.evaluations += BISECTIONS + 1;
         self.running.forget();
     }
 
@@ -332,5 +296,5 @@ fn require_room_to_stop(limits: &Limits) -> Result<()> {
     let remedy = "an arm that may not stop at once can be carried out of it; leave one of the two out";
     limits.require_none(&[Field::Acceleration], method, remedy)?;
     let remedy = "limits that move can push the arm out of it; give numbers, or leave region out";
-    limits.require_still(method, remedy)
+    [Field::Lower, Field::Upper].into_iter().try_for_each(|field| limits.constants(field, method, remedy).map(|_| ()))
 }

@@ -15,7 +15,7 @@ use pyo3::types::{PyDict, PyTuple};
 use given::Given;
 pub use of_call::{limits_of_call, limits_without_robot};
 pub use per_joint::PerJoint;
-pub use sampling::{CALLS_BETWEEN_LOOKS, Sampling};
+pub use sampling::{CALLS_BETWEEN_SIGNAL_CHECKS, Sampling};
 pub use sinusoid::PySinusoid;
 
 use crate::error::raise;

@@ -27,13 +27,13 @@ impl Sampling {
 }
 
 /// Functions written in C do not look for Ctrl-C themselves: so many calls take some milliseconds.
-pub const CALLS_BETWEEN_LOOKS: usize = 4096;
+pub const CALLS_BETWEEN_SIGNAL_CHECKS: usize = 4096;
 
 /// The values of a function at all times of the sampling, for each of `n` joints or for all of them.
 pub fn sampled(function: &Bound<'_, PyAny>, field: Field, sampling: &Sampling, n: usize) -> PyResult<Vec<Profile>> {
     let mut columns: Vec<Vec<f64>> = vec![];
     for i in 0..sampling.count {
-        if i % CALLS_BETWEEN_LOOKS == 0 {
+        if i % CALLS_BETWEEN_SIGNAL_CHECKS == 0 {
             function.py().check_signals()?;
         }
         let t = i as f64 * sampling.step;

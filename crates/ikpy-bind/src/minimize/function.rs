@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use ikcore::objective::{Objective, Pace, Score};
+use ikcore::objective::{CallPattern, Objective, Score};
 use ikcore::solver::Monitor;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyException;
@@ -59,9 +59,9 @@ impl Objective for Function<'_, '_> {
         self.dimension
     }
 
-    /// A call of Python takes so long that a look at the monitor after each costs nothing.
-    fn pace(&self) -> Pace {
-        Pace { at_once: if self.vectorized { usize::MAX } else { 1 }, between_looks: 1 }
+    /// A call of Python takes so long that a poll of the monitor after each costs nothing.
+    fn call_pattern(&self) -> CallPattern {
+        CallPattern { batch_size: if self.vectorized { usize::MAX } else { 1 }, poll_interval: 1 }
     }
 
     fn evaluate(&mut self, x: &[f64]) -> Score {

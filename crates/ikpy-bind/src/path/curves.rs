@@ -32,7 +32,7 @@ pub fn circle(center: &Bound<'_, PyAny>, diameter: f64, duration: f64, a: Direct
     Ok(Path::new(Circle::new(plane(center, a, b)?, diameter, duration).map_err(raise)?).into())
 }
 
-/// The letter M about `center` (3,), `width` along `a` and `height` along `b` (m), its four strokes equally long in
+/// The letter M about `center` (3,), `width` along `a` and `height` along `b` (m), its four segments equally long in
 /// time (Khan et al. 2022).
 #[pyfunction]
 #[pyo3(signature = (center, duration, *, width, height, a=Direction([0.0, 1.0, 0.0]), b=Direction([0.0, 0.0, 1.0])),
@@ -66,7 +66,7 @@ pub fn hypotrochoid(
     Ok(Path::new(curve.map_err(raise)?).into())
 }
 
-/// A five-pointed star about `center` (3,), its points `radius` (m) away, drawn in five strokes at constant speed from
+/// A five-pointed star about `center` (3,), its points `radius` (m) away, drawn in five segments at constant speed from
 /// the point on the side of `b`.
 #[pyfunction]
 #[pyo3(signature = (center, duration, *, radius, a=Direction([1.0, 0.0, 0.0]), b=Direction([0.0, 1.0, 0.0])),
@@ -96,7 +96,7 @@ pub fn rose(
     Ok(Path::new(Rose::new(plane(center, a, b)?, radius, count("k", k)?, duration).map_err(raise)?).into())
 }
 
-/// Straight strokes through `points` (k, 3) (m) at constant speed, `duration` (s) in all.
+/// Straight segments through `points` (k, 3) (m) at constant speed, `duration` (s) in all.
 #[pyfunction]
 pub fn polyline(points: &Bound<'_, PyAny>, duration: f64) -> PyResult<PyPath> {
     Ok(Path::new(Polyline::new(&positions("points", points)?, duration).map_err(raise)?).into())

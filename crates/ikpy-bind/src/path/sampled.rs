@@ -3,12 +3,12 @@
 use ikcore::math::ticks::ticks_of_path;
 use ikcore::nalgebra::Matrix3;
 use ikcore::path::Reference;
-use ikcore::planning::Course;
+use ikcore::planning::TipPath;
 use pyo3::prelude::*;
 
 use super::{Curve, Orientation, PyPath};
 use crate::error::raise;
-use crate::limits::CALLS_BETWEEN_LOOKS;
+use crate::limits::CALLS_BETWEEN_SIGNAL_CHECKS;
 
 /// Positions (m), and orientations where there are any.
 type Sampled = (Vec<[f64; 3]>, Option<Vec<Matrix3<f64>>>);
@@ -25,7 +25,7 @@ impl PyPath {
     }
 
     /// The same with the velocities at the ticks.
-    pub fn moving_reference(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
+    pub fn reference_with_velocities(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
         let reference = self.reference(py, dt)?;
         let velocities = (0..reference.len())
             .map(|i| self.velocity_at(py, reference.time(i).min(self.duration())))
@@ -34,21 +34,21 @@ impl PyPath {
     }
 
     /// The path as a planner sees it; Python functions are called here, before the core runs.
-    pub fn course(&self, py: Python<'_>) -> PyResult<Course> {
+    pub fn tip_path(&self, py: Python<'_>) -> PyResult<TipPath> {
         let corners = match &self.curve {
             Curve::Core(path) => path.corners(),
             Curve::Function { .. } => vec![],
         };
-        let times = Course::times(self.duration(), &corners);
+        let times = TipPath::times(self.duration(), &corners);
         let (positions, rotations) = self.at(py, times.iter().copied())?;
-        Course::sampled(times, positions, rotations).map_err(raise)
+        TipPath::sampled(times, positions, rotations).map_err(raise)
     }
 
     /// Positions and, where there are any, orientations at these times.
     fn at(&self, py: Python<'_>, times: impl Iterator<Item = f64>) -> PyResult<Sampled> {
         let (mut positions, mut rotations) = (vec![], vec![]);
         for (i, t) in times.enumerate() {
-            if i % CALLS_BETWEEN_LOOKS == 0 {
+            if i % CALLS_BETWEEN_SIGNAL_CHECKS == 0 {
                 py.check_signals()?;
             }
             positions.push(self.position_at(py, t)?);

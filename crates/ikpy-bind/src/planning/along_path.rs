@@ -1,7 +1,7 @@
 //! `plan_along_path`.
 
 use ikcore::path::Reference;
-use ikcore::planning::{self, AlongPathMethod, AlongPathOptions, Course};
+use ikcore::planning::{self, AlongPathMethod, AlongPathOptions, TipPath};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -61,7 +61,7 @@ pub fn plan_along_path(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyPlan> {
     let arm = robot.get().core.clone();
-    let course = read_course(py, path)?;
+    let tip_path = read_tip_path(py, path)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
     let options = AlongPathOptions {
         method: method.parse().map_err(raise)?,
@@ -74,19 +74,19 @@ pub fn plan_along_path(
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
-    let plan = watched(py, progress, |watcher| planning::plan_along_path(&arm, &course, &options, watcher))?;
+    let plan = watched(py, progress, |watcher| planning::plan_along_path(&arm, &tip_path, &options, watcher))?;
     let positions = match options.method {
-        AlongPathMethod::Timed => course.positions().as_flattened().to_vec(),
-        AlongPathMethod::Tpbso => (0..course.points().len()).flat_map(|i| course.points().position(i)).collect(),
+        AlongPathMethod::Timed => tip_path.positions().as_flattened().to_vec(),
+        AlongPathMethod::Tpbso => (0..tip_path.points().len()).flat_map(|i| tip_path.points().position(i)).collect(),
     };
     PyPlan::new(plan, Some(positions), robot, in_force, PyTuple::empty(py).unbind())
 }
 
 /// A `Path`, or points (k, 3), or poses (k, 4, 4).
-fn read_course(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<Course> {
+fn read_tip_path(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<TipPath> {
     match path.cast::<PyPath>() {
-        Ok(path) => path.get().course(py),
-        Err(_) => Course::through(&read_points(path)?).map_err(raise),
+        Ok(path) => path.get().tip_path(py),
+        Err(_) => TipPath::through(&read_points(path)?).map_err(raise),
     }
 }
 

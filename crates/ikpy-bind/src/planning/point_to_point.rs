@@ -1,6 +1,6 @@
 //! `plan_point_to_point`.
 
-use ikcore::planning::{self, End, PointToPointOptions};
+use ikcore::planning::{self, Endpoint, PointToPointOptions};
 use pyo3::prelude::*;
 
 use super::elbow::read_elbows;
@@ -83,10 +83,10 @@ pub fn plan_point_to_point(
 }
 
 /// An end given as a target or as joint angles.
-fn read_end(name: &str, target: Option<&Bound<'_, PyAny>>, q: Option<&Bound<'_, PyAny>>) -> PyResult<End> {
+fn read_end(name: &str, target: Option<&Bound<'_, PyAny>>, q: Option<&Bound<'_, PyAny>>) -> PyResult<Endpoint> {
     match (target, q) {
-        (Some(target), None) => read_target(name, target).map(End::Target),
-        (None, Some(q)) => vector(&format!("{name}_q"), q).map(End::Configuration),
+        (Some(target), None) => read_target(name, target).map(Endpoint::Target),
+        (None, Some(q)) => vector(&format!("{name}_q"), q).map(Endpoint::Configuration),
         (None, None) => Err(invalid(format!("no {name} was given: give {name}= a position or pose, or {name}_q="))),
         (Some(_), Some(_)) => Err(invalid(format!("both {name} and {name}_q were given: give one of them"))),
     }

@@ -80,7 +80,7 @@ impl PyModelFreeResult {
 
     fn __repr__(&self) -> String {
         let track = &self.core.track;
-        format!("<ModelFreeResult {}: {} rows, {}>", track.status.name(), track.time.len(), self.core.message())
+        format!("<ModelFreeResult {}: {} rows, {}>", track.status.name(), track.rows(), self.core.message())
     }
 
     /// What the plant raised goes along as far as it pickles itself.
@@ -105,7 +105,7 @@ impl PyModelFreeResult {
 
 impl PyModelFreeResult {
     fn new(py: Python<'_>, core: ModelFreeRecord, limits: Py<PyLimits>, exception: Option<PyErr>) -> PyResult<Self> {
-        let (k, n) = (core.track.time.len(), core.track.dof);
+        let (k, n) = (core.track.rows(), core.track.dof);
         let command = table(py, core.command.clone(), &[k, n])?.unbind();
         Ok(Self { columns: Columns::new(py, &core.track)?, command, limits, exception, core })
     }
@@ -178,8 +178,8 @@ fn run(
     }
     let mut plant = PythonPlant::new(plant)?;
     let record = tracking::track_model_free(&mut plant, reference, start, options, watcher);
-    if let Some(wish) = plant.wish_to_stop() {
-        return Err(wish);
+    if let Some(interrupt) = plant.take_interrupt() {
+        return Err(interrupt);
     }
     match record {
         Ok(record) => Ok((record, plant.exception)),

@@ -125,8 +125,8 @@ impl<'py> PythonPlant<'py> {
         fault
     }
 
-    /// What the plant raised, if that is no error but a wish to stop.
-    pub fn wish_to_stop(&mut self) -> Option<PyErr> {
+    /// What the plant raised, if that is no error but Ctrl-C or an exit.
+    pub fn take_interrupt(&mut self) -> Option<PyErr> {
         let py = self.call.py();
         self.exception.take_if(|error| !error.is_instance_of::<PyException>(py))
     }

@@ -20,9 +20,9 @@ pub struct Columns {
 
 impl Columns {
     pub fn new(py: Python<'_>, record: &Record) -> PyResult<Self> {
-        let (k, n) = (record.time.len(), record.dof);
+        let (k, n) = (record.rows(), record.dof);
         Ok(Self {
-            time: row(py, record.time.clone()).unbind(),
+            time: row(py, record.time()).unbind(),
             q: table(py, record.q.clone(), &[k, n])?.unbind(),
             qd: table(py, record.qd(), &[k, n])?.unbind(),
             position: table(py, record.position.as_flattened().to_vec(), &[k, 3])?.unbind(),
@@ -116,7 +116,7 @@ macro_rules! record {
 
             fn __len__(&self) -> usize {
                 let $result = self;
-                $record.time.len()
+                $record.rows()
             }
         }
     };

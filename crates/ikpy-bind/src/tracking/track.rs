@@ -89,7 +89,7 @@ impl PyTrackResult {
     #[getter]
     fn trajectory(&self) -> PyResult<PyTrajectory> {
         let names = self.robot.get().core.joints().iter().map(|joint| joint.name.clone()).collect();
-        Trajectory::from_samples(names, &self.core.time, &self.core.q, None, None)
+        Trajectory::from_samples(names, &self.core.time(), &self.core.q, None, None)
             .map(PyTrajectory::from)
             .map_err(raise)
     }
@@ -100,7 +100,7 @@ impl PyTrackResult {
     }
 
     fn __repr__(&self) -> String {
-        format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.time.len(), self.core.message())
+        format!("<TrackResult {}: {} rows, {}>", self.core.status.name(), self.core.rows(), self.core.message())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
@@ -119,7 +119,7 @@ impl PyTrackResult {
     fn new(py: Python<'_>, core: Record, robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
         Ok(Self {
             columns: Columns::new(py, &core)?,
-            velocity_limit: table(py, core.velocity_limit.clone(), &[core.time.len(), core.dof])?.unbind(),
+            velocity_limit: table(py, core.velocity_limit(), &[core.rows(), core.dof])?.unbind(),
             rotation_error: row(py, core.rotation_error.clone()).unbind(),
             step_iterations: counts(py, &core.step_iterations),
             robot,
@@ -182,7 +182,8 @@ pub fn track(
 ) -> PyResult<PyTrackResult> {
     let arm = robot.get().core.clone();
     let rule = tick_rule(solver)?;
-    let reference = if rule.uses_velocities() { path.moving_reference(py, dt)? } else { path.reference(py, dt)? };
+    let reference =
+        if rule.uses_velocities() { path.reference_with_velocities(py, dt)? } else { path.reference(py, dt)? };
     let sampling = Sampling::of_ticks(dt, reference.len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
@@ -206,7 +207,7 @@ pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
     if let Ok(rule) = solver.cast::<PyWeightedPseudoInverse>() {
         return Ok(rule.get().rule());
     }
-    known_solver(solver).map(TickRule::EachTick).ok_or_else(|| {
+    known_solver(solver).map(TickRule::Solver).ok_or_else(|| {
         let (names, got) = (solver_names(), summary(solver));
         invalid(format!("solver must be {names} or WeightedPseudoInverse, got {got}"))
     })

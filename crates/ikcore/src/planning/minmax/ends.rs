@@ -1,13 +1,14 @@
-//! Configurations of both ends, as near to each other in time as can be found.
+//! Pairs of configurations for both ends, as near to each other in time as can be found.
 
-use super::nearer;
+use super::displacement;
 use crate::error::{Error, Result};
-use crate::ik::{SolveOptions, solve};
+use crate::ik::{Solution, SolveOptions, solve};
 use crate::limits::{Field, Limits, Profile};
 use crate::objective::Point;
-use crate::planning::{End, MotionLimits};
+use crate::planning::{Endpoint, MotionLimits};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
+use crate::solver::stop::Stopwatch;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
 use crate::wording::number;
@@ -24,11 +25,12 @@ pub(super) struct Pair {
 pub(super) struct Search<'a> {
     pub robot: &'a Robot,
     pub limits: &'a MotionLimits,
-    pub ends: [&'a End; 2],
+    pub ends: [&'a Endpoint; 2],
     pub rng: LazyRng,
     pub evaluations: usize,
-    pub(super) seed: u64,
-    pub(super) position_limits: Limits,
+    pub stopwatch: Stopwatch,
+    pub seed: u64,
+    pub position_limits: Limits,
 }
 
 /// Names of the two ends in messages.
@@ -37,35 +39,41 @@ pub(super) const NAMES: [&str; 2] = ["start", "end"];
 impl<'a> Search<'a> {
     /// # Errors
     /// [`Error::OutsideLimits`] for a configuration outside the limits.
-    pub(super) fn new(robot: &'a Robot, limits: &'a MotionLimits, ends: [&'a End; 2], seed: u64) -> Result<Self> {
+    pub(super) fn new(
+        robot: &'a Robot,
+        limits: &'a MotionLimits,
+        ends: [&'a Endpoint; 2],
+        seed: u64,
+        stopwatch: Stopwatch,
+    ) -> Result<Self> {
         let constant = |values: &[f64]| values.iter().map(|value| Profile::Constant(*value)).collect();
         let position_limits = Limits::of(robot)
             .replace(Field::Lower, constant(&limits.lower))?
             .replace(Field::Upper, constant(&limits.upper))?;
         for (end, name) in ends.into_iter().zip(NAMES) {
-            if let End::Configuration(q) = end {
+            if let Endpoint::Configuration(q) = end {
                 position_limits.require_inside(name, 0.0, q)?;
             }
         }
-        Ok(Self { robot, limits, ends, rng: rng::stream(seed, 0), evaluations: 0, seed, position_limits })
+        Ok(Self { robot, limits, ends, rng: rng::stream(seed, 0), evaluations: 0, stopwatch, seed, position_limits })
     }
 
-    /// Up to twice `count` pairs, the quickest first: improved ones from that many random starts, and from the quickest of
-    /// all branches; one where the ends are given.
+    /// Up to twice `count` pairs, the quickest first: half from random starts, half from the quickest pairs of branches, all
+    /// improved along the self-motion. A single one where both configurations are given.
     ///
     /// # Errors
     /// [`Error::Unreachable`] for an end that no configuration was found for.
     pub(super) fn pairs(&mut self, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<Pair>> {
-        let given = self.ends.iter().all(|end| matches!(end, End::Configuration(_)));
+        let given = self.ends.iter().all(|end| matches!(end, Endpoint::Configuration(_)));
         let mut pairs: Vec<Pair> = vec![];
         for attempt in 0..if given { 1 } else { count } {
             if attempt > 0 && !monitor.keep_going() {
                 break;
             }
             let Some(first) = self.configuration(0, None, attempt, monitor)? else { continue };
-            // The second end is sought from the first: most often that is near already. From a first end that is given
-            // it would always be the same.
-            let another = attempt == 0 || matches!(self.ends[0], End::Target(_));
+            // The second end is sought from the first, since the solution is then near most often. Where the first is given, only
+            // once: every attempt would find the same.
+            let another = attempt == 0 || matches!(self.ends[0], Endpoint::Target(_));
             let near = another.then_some(&first[..]);
             let Some(second) = self.configuration(1, near, attempt, monitor)? else { continue };
             let pair = self.improved(self.pair(first, second), monitor);
@@ -85,7 +93,7 @@ impl<'a> Search<'a> {
         Ok(pairs)
     }
 
-    /// Up to `count` pairs that `accept` likes, not improved, from up to `tries` random starts; the quickest first.
+    /// Up to `count` pairs that `accept` takes, not improved, from up to `tries` random starts; the quickest first.
     ///
     /// # Errors
     /// None once [`pairs`](Self::pairs) has found some.
@@ -126,8 +134,8 @@ impl<'a> Search<'a> {
         monitor: &mut dyn Monitor,
     ) -> Result<Option<Point>> {
         let target = match self.ends[end] {
-            End::Configuration(q) => return Ok(Some(q.as_slice().into())),
-            End::Target(target) => target,
+            Endpoint::Configuration(q) => return Ok(Some(q.as_slice().into())),
+            Endpoint::Target(target) => target,
         };
         let start = match near {
             Some(q) => Some(q.to_vec()),
@@ -145,12 +153,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn solve(
-        &mut self,
-        target: &Target,
-        start: Option<Vec<f64>>,
-        monitor: &mut dyn Monitor,
-    ) -> Result<crate::ik::Solution> {
+    fn solve(&mut self, target: &Target, start: Option<Vec<f64>>, monitor: &mut dyn Monitor) -> Result<Solution> {
         let limits = Some(self.position_limits.clone());
         let options = SolveOptions { start, limits, seed: self.seed, ..SolveOptions::default() };
         let solution = solve(self.robot, target, &options, monitor)?;
@@ -164,15 +167,15 @@ impl<'a> Search<'a> {
         ranges.map(|(lower, upper)| self.rng.uniform_in(lower, upper)).collect()
     }
 
-    /// The pair moved along what its targets leave free, or itself where that does not help.
+    /// The pair moved along its self-motion, or itself where that does not help.
     fn improved(&mut self, pair: Pair, monitor: &mut dyn Monitor) -> Pair {
         let ends = self.ends;
         let free = ends.map(|end| match end {
-            End::Target(target) => Some(target),
-            End::Configuration(_) => None,
+            Endpoint::Target(target) => Some(target),
+            Endpoint::Configuration(_) => None,
         });
         let mut moved = pair.clone();
-        self.evaluations += nearer::bring_nearer(self.robot, self.limits, free, &mut moved);
+        self.evaluations += displacement::shorten(self.robot, self.limits, free, &mut moved);
         for (target, q) in free.into_iter().zip([&mut moved.start, &mut moved.end]) {
             let Some(target) = target else { continue };
             match self.solve(target, Some(q.to_vec()), monitor) {
@@ -194,7 +197,7 @@ impl Pair {
         near(&self.start, &other.start) && near(&self.end, &other.end)
     }
 
-    /// Err unless the ends differ: a motion needs a way to go.
+    /// Err unless the ends differ.
     pub(super) fn require_motion(&self) -> Result<()> {
         let largest = self.start.iter().zip(&self.end).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         if largest > 0.0 {

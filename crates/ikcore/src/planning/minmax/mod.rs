@@ -1,31 +1,26 @@
 //! The planner that searches the ends' configurations first: those that lie nearest to each other in time, joined by a
-//! straight line in joint space, or by a way around obstacles.
+//! straight line in joint space, or by a path around obstacles.
 //!
 //! | file | what |
 //! |---|---|
 //! | [`ends`] | pairs of configurations for start and end |
 //! | [`branches`] | the same from all solutions of inverse kinematics |
-//! | [`nearer`] | smallest largest displacement, along what the targets leave free |
-//! | [`pace`] | the quickest smooth timing of straight lines |
-//! | [`around`] | a way around obstacles, its timing certified |
-//! | [`connect`] | two trees that grow towards each other, and shortcuts |
-//! | [`clear`] | a trajectory as a motion that can be certified |
-//! | [`travel`] | what a motion costs |
+//! | [`displacement`] | both moved along their self-motion, to the smallest largest displacement |
+//! | [`line_timing`] | the quickest smooth timing of straight lines |
+//! | [`among_obstacles`] | a path around obstacles, its timing certified |
+//! | [`rrt_connect`] | two trees that grow towards each other, and shortcuts |
 
-mod around;
+mod among_obstacles;
 mod branches;
-mod clear;
-mod connect;
+mod displacement;
 mod ends;
-mod nearer;
-mod pace;
-mod travel;
+mod line_timing;
+mod rrt_connect;
 
-pub(super) use self::around::{refuse_collision, too_near};
-pub(super) use self::clear::InTime;
 use self::ends::{Pair, Search};
-use self::pace::Polyline;
-use super::{Cost, End, Improvement, MotionLimits, Plan, PointToPointOptions};
+use self::line_timing::Polyline;
+use super::collision::can_collide;
+use super::{Cost, Endpoint, Improvement, MotionLimits, Plan, PointToPointOptions};
 use crate::error::{Error, Result};
 use crate::robot::Robot;
 use crate::solver::stop::Stopwatch;
@@ -38,8 +33,8 @@ const PAIRS: usize = 8;
 /// Plans from `start` to `end`; see [`plan_point_to_point`](super::plan_point_to_point).
 pub(super) fn point_to_point(
     robot: &Robot,
-    start: &End,
-    end: &End,
+    start: &Endpoint,
+    end: &Endpoint,
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
@@ -54,19 +49,16 @@ pub(super) fn point_to_point(
         let problem = "method=\"minmax\" chooses how the arm bends: leave elbows out, or use method=\"tpbso\"";
         return Err(Error::Contradiction { problem: problem.into() });
     }
-    let mut search = Search::new(robot, &limits, [start, end], options.seed)?;
-    let shape_known = !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
-    let mut plan = if options.obstacles.is_empty() && !shape_known {
-        freely(&mut search, options.objective, monitor)?
+    let mut search = Search::new(robot, &limits, [start, end], options.seed, stopwatch)?;
+    if can_collide(robot, &options.obstacles) {
+        among_obstacles::plan(&mut search, options, monitor)
     } else {
-        around::plan(&mut search, options, monitor)?
-    };
-    plan.elapsed = stopwatch.elapsed();
-    Ok(plan)
+        without_obstacles(&mut search, options.objective, monitor)
+    }
 }
 
-/// Without anything to touch: straight from end to end.
-fn freely(search: &mut Search, objective: Cost, monitor: &mut dyn Monitor) -> Result<Plan> {
+/// Straight from end to end.
+fn without_obstacles(search: &mut Search, objective: Cost, monitor: &mut dyn Monitor) -> Result<Plan> {
     let pairs = search.pairs(PAIRS, monitor)?;
     let mut best: Option<(f64, Trajectory)> = None;
     let mut history = vec![];
@@ -93,12 +85,9 @@ fn freely(search: &mut Search, objective: Cost, monitor: &mut dyn Monitor) -> Re
         violations,
         status,
         evaluations,
-        elapsed: NO_TIME,
+        elapsed: search.stopwatch.elapsed(),
     })
 }
-
-/// Until the stopwatch is read.
-const NO_TIME: std::time::Duration = std::time::Duration::ZERO;
 
 /// The quicker of a quintic and of constant velocity between blends.
 fn straight(pair: &Pair, limits: &MotionLimits) -> Result<Trajectory> {
@@ -111,7 +100,7 @@ fn straight(pair: &Pair, limits: &MotionLimits) -> Result<Trajectory> {
     }
 }
 
-/// Err for a joint without a velocity and an acceleration limit: nothing would set its pace.
+/// Err for a joint with neither a velocity nor an acceleration limit, which would take no time.
 fn require_pace(robot: &Robot, limits: &MotionLimits) -> Result<()> {
     let unlimited = |j: &usize| limits.velocity[*j].is_infinite() && limits.acceleration[*j].is_infinite();
     match (0..robot.dof()).find(unlimited) {

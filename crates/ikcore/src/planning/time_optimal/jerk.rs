@@ -152,12 +152,12 @@ impl Smoothed<'_> {
             let [s, rate, acceleration, change] = self.parameter(t);
             let (piece, from) = self.path.locate(s);
             for j in 0..jerk.len() {
-                let [_, slope, bend] = self.path.joint_at(piece, from, j);
+                let [_, first, second] = self.path.joint_at(piece, from, j);
                 let third = 6.0 * self.path.powers(piece)[3][j];
                 let derivatives = [
-                    slope * rate,
-                    bend * rate * rate + slope * acceleration,
-                    third * rate.powi(3) + 3.0 * bend * rate * acceleration + slope * change,
+                    first * rate,
+                    second * rate * rate + first * acceleration,
+                    third * rate.powi(3) + 3.0 * second * rate * acceleration + first * change,
                 ];
                 largest = largest.max(scale(derivatives, [limits.velocity[j], limits.acceleration[j], jerk[j]]));
             }
@@ -188,10 +188,10 @@ impl Smoothed<'_> {
             let [s, rate, acceleration, _] = self.parameter(*t);
             let (piece, from) = self.path.locate(s);
             for j in 0..n {
-                let [position, slope, bend] = self.path.joint_at(piece, from, j);
+                let [position, first, second] = self.path.joint_at(piece, from, j);
                 q.push(position);
-                qd.push(slope * rate);
-                qdd.push(bend * rate * rate + slope * acceleration);
+                qd.push(first * rate);
+                qdd.push(second * rate * rate + first * acceleration);
             }
         }
         let played = Trajectory::from_samples(self.path.joints().to_vec(), knots, &q, Some(&qd), Some(&qdd))?;

@@ -96,7 +96,7 @@ impl JointPath {
         (0..self.joints.len()).map(|joint| self.joint_at(piece, from, joint)[1].powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Whether the path stands at its beginning, or at its end, however fast the parameter goes: a clamped spline does.
+    /// Whether dq/ds vanishes at its beginning, or at its end, as that of a clamped spline does.
     pub(super) fn has_no_direction(&self, at_end: bool) -> bool {
         let piece = if at_end { self.pieces() - 1 } else { 0 };
         let chord = (0..self.joints.len())
@@ -106,7 +106,7 @@ impl JointPath {
         self.slope(piece, at_end) <= VANISHING * chord / self.length(piece)
     }
 
-    /// Whether the direction jumps between this piece and the next: only standing still passes there.
+    /// Whether the direction jumps between this piece and the next, so that the joints must stop there.
     pub(super) fn has_corner_after(&self, piece: usize) -> bool {
         self.jumps_after(piece, 1)
     }

@@ -2,7 +2,7 @@
 
 use super::joint_path::JointPath;
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits, Profile};
+use crate::limits::{Field, Limits};
 
 /// Constant limits of each joint (n,). Only positions are a matter of the path alone.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +25,8 @@ impl TimingLimits {
     /// [`Error::NegativeLimit`], [`Error::EmptyRange`].
     pub fn new(limits: &Limits, method: &str) -> Result<Self> {
         limits.validate(0.0, 0)?;
-        let constants = |field: Field| constants(limits, field, method);
+        let remedy = "when a point of the path is passed is what it looks for; give numbers";
+        let constants = |field: Field| limits.constants(field, method, remedy);
         let acceleration = constants(Field::Acceleration)?;
         let unlimited = acceleration.iter().position(|limit| *limit == f64::INFINITY);
         if let Some(joint) = if acceleration.is_empty() { Some(0) } else { unlimited } {
@@ -85,18 +86,4 @@ impl TimingLimits {
         }
         Ok(())
     }
-}
-
-/// The constants of a field; none where there is no such limit.
-fn constants(limits: &Limits, field: Field, method: &str) -> Result<Vec<f64>> {
-    let profiles = limits.field(field).unwrap_or_default();
-    let constant = |profile: &Profile| match profile {
-        Profile::Constant(value) => Ok(*value),
-        _ => Err(Error::UnsupportedLimit {
-            field: format!("time-varying {field}"),
-            method: method.into(),
-            remedy: "when a point of the path is passed is what it looks for; give numbers".into(),
-        }),
-    };
-    profiles.iter().map(constant).collect()
 }

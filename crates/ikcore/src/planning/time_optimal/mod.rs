@@ -6,16 +6,16 @@
 //! | `spline`, `polyline` | paths through waypoints |
 //! | `limits` | [`TimingLimits`] |
 //! | `grid` | the path cut into segments |
-//! | `shape` | derivatives of the path over a segment |
-//! | `ceiling` | the velocity limits |
+//! | `derivatives` | derivatives of the path over a segment |
+//! | `velocity_curve` | the velocity limits |
 //! | `strips` | the acceleration limits |
 //! | `reachability` | the fastest speed profile on a grid |
 //! | `refine` | a grid that is fine where it matters |
 //! | `compose` | speed profile to trajectory |
 //! | `jerk` | the same, smoothed to keep jerk limits |
 
-mod ceiling;
 mod compose;
+mod derivatives;
 mod grid;
 mod jerk;
 mod joint_path;
@@ -23,9 +23,9 @@ mod limits;
 mod polyline;
 mod reachability;
 mod refine;
-mod shape;
 mod spline;
 mod strips;
+mod velocity_curve;
 
 pub use crate::math::cubic_spline::SplineEnds;
 pub use joint_path::JointPath;
@@ -67,10 +67,10 @@ pub fn time_optimal(path: &JointPath, limits: &TimingLimits, options: &TimingOpt
     time(path, limits, options)
 }
 
-/// [`time_optimal`] for whoever looks after the position limits.
+/// [`time_optimal`] for callers that see to the position limits themselves.
 ///
 /// # Errors
-/// As there, but for those.
+/// The same, except for position limits.
 pub(super) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
     let ends = [end_range(path, options.start_speed, false)?, end_range(path, options.end_speed, true)?];
     let fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends);
@@ -93,8 +93,8 @@ pub(super) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOpti
     }
 }
 
-/// How long the fastest motion from rest to rest on a grid of about so many segments takes (s), for whoever compares many
-/// paths; position limits are the caller's.
+/// How long the fastest motion from rest to rest on a grid of about so many segments takes (s): quick, for comparing many
+/// paths. Position limits are left to the caller.
 ///
 /// # Errors
 /// None in practice: from rest to rest there is always a way.
@@ -103,8 +103,8 @@ pub(super) fn coarse_duration(path: &JointPath, limits: &TimingLimits, segments:
     SpeedProfile::fastest(path, limits, cut(path, segments), ends).map(|profile| profile.duration())
 }
 
-/// The squared path speeds for a joint speed at an end. Where the path has no direction the joints are at rest however
-/// fast the parameter goes, and the fastest is best.
+/// The range of squared path speeds that give a joint speed at an end. Where dq/ds vanishes the joints are at rest at any
+/// path speed.
 fn end_range(path: &JointPath, speed: f64, at_end: bool) -> Result<Range> {
     let name = if at_end { "end_speed" } else { "start_speed" };
     if !(speed >= 0.0 && speed.is_finite()) {

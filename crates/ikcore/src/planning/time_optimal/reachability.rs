@@ -5,15 +5,15 @@
 //! width of the interval that the strips leave for u, which is concave and piecewise linear in x: it converges from
 //! outside in a few steps, exactly.
 
-use super::ceiling::{UNLIMITED, ceilings};
+use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
 use super::limits::TimingLimits;
-use super::shape::Shape;
 use super::strips::{Line, Strips};
+use super::velocity_curve::{UNLIMITED, maximum_velocity_curve};
 use crate::error::{Error, Result};
 
-/// The squared path speeds that are wanted at an end: from - to.
+/// The smallest and the largest squared path speed that is allowed at a point.
 pub(super) type Range = [f64; 2];
 
 /// x = (ds/dt)^2 at the ends of all segments, linear in s in between: constant acceleration along the path.
@@ -34,11 +34,11 @@ impl SpeedProfile {
         segments: Vec<Segment>,
         [start, end]: [Range; 2],
     ) -> Result<Self> {
-        let mut shape = Shape::new(path.joints().len());
+        let mut derivatives = PathDerivatives::new(path.joints().len());
         let mut strips = Strips::new(path.joints().len());
-        let ceilings = ceilings(path, limits, &segments, &mut shape);
-        let mut pass = Pass { path, limits, segments: &segments, shape: &mut shape, strips: &mut strips };
-        let controllable = pass.backward(ceilings, end)?;
+        let velocity_curve = maximum_velocity_curve(path, limits, &segments, &mut derivatives);
+        let mut pass = Pass { path, limits, segments: &segments, derivatives: &mut derivatives, strips: &mut strips };
+        let controllable = pass.backward(velocity_curve, end)?;
         let squared_speeds = pass.forward(&controllable, start)?;
         Ok(Self { segments, squared_speeds })
     }
@@ -59,37 +59,38 @@ struct Pass<'a> {
     path: &'a JointPath,
     limits: &'a TimingLimits,
     segments: &'a [Segment],
-    shape: &'a mut Shape,
+    derivatives: &'a mut PathDerivatives,
     strips: &'a mut Strips,
 }
 
 impl Pass<'_> {
+    /// Segment `i`, with its constraints at hand.
     fn enter(&mut self, i: usize) -> Segment {
         let segment = self.segments[i];
-        self.shape.fill(self.path, &segment);
-        self.strips.fill(self.shape, segment.length, self.limits);
+        self.derivatives.fill(self.path, &segment);
+        self.strips.fill(self.derivatives, segment.length, self.limits);
         segment
     }
 
     /// The controllable sets: at each grid point the range of x from which the end can be reached.
-    fn backward(&mut self, ceilings: Vec<f64>, end: Range) -> Result<Vec<Range>> {
+    fn backward(&mut self, velocity_curve: Vec<f64>, end: Range) -> Result<Vec<Range>> {
         let last = self.segments.len();
-        let mut sets: Vec<Range> = ceilings.into_iter().map(|ceiling| [0.0, ceiling]).collect();
+        let mut sets: Vec<Range> = velocity_curve.into_iter().map(|highest| [0.0, highest]).collect();
         sets[last] = [end[0], end[1].min(sets[last][1])];
         if sets[last][0] > sets[last][1] {
             return Err(too_fast("end"));
         }
         for i in (0..last).rev() {
             let segment = self.enter(i);
-            let [slowest, ceiling] = sets[i + 1];
-            let launch = LAUNCH_SHARE * (2.0 * segment.length * self.strips.launch).min(ceiling);
-            sets[i + 1][0] = slowest.max(launch);
+            let [lowest, highest] = sets[i + 1];
+            let launch = LAUNCH_SHARE * (2.0 * segment.length * self.strips.launch).min(highest);
+            sets[i + 1][0] = lowest.max(launch);
             let next = Coupling::new(sets[i + 1], segment.length);
-            let ceiling = sets[i][1].min(self.strips.ceiling);
-            // Whoever stands here can launch.
-            let floor = if next.set[0] <= launch { Some(0.0) } else { self.boundary(0.0, &next) };
-            sets[i] = match (floor, self.boundary(ceiling, &next)) {
-                (Some(floor), Some(ceiling)) if floor <= ceiling => [floor, ceiling],
+            let highest = sets[i][1].min(self.strips.largest_x);
+            // The next point may be passed so slowly that it is reached from rest.
+            let lowest = if next.set[0] <= launch { Some(0.0) } else { self.boundary(0.0, &next) };
+            sets[i] = match (lowest, self.boundary(highest, &next)) {
+                (Some(lowest), Some(highest)) if lowest <= highest => [lowest, highest],
                 _ => return Err(too_fast("end")),
             };
         }
@@ -110,14 +111,14 @@ impl Pass<'_> {
         for i in 0..self.segments.len() {
             let segment = self.enter(i);
             let u = self.strips.upper(x).at(x);
-            let [floor, ceiling] = sets[i + 1];
-            x = (x + 2.0 * segment.length * u).clamp(floor, ceiling);
+            let [lowest, highest] = sets[i + 1];
+            x = (x + 2.0 * segment.length * u).clamp(lowest, highest);
             xs.push(x);
         }
         Ok(xs)
     }
 
-    /// The nearest x to `from` that leaves an acceleration; None where there is none on that side.
+    /// The nearest x to `from` for which some acceleration is feasible; None where there is none on that side.
     fn boundary(&self, from: f64, next: &Coupling) -> Option<f64> {
         let mut x = from.min(UNLIMITED);
         loop {

@@ -34,13 +34,13 @@ impl JointPath {
         };
         let n = joints.len();
         let spline = CubicSpline::over(breaks, ends);
-        let [mut values, mut bends] = [(); 2].map(|()| vec![0.0; rows]);
+        let [mut values, mut curvatures] = [(); 2].map(|()| vec![0.0; rows]);
         let mut coefficients = vec![0.0; POWERS * (rows - 1) * n];
         for j in 0..n {
             values.iter_mut().zip(waypoints.chunks_exact(n)).for_each(|(value, row)| *value = row[j]);
-            spline.bends(&values, &mut bends);
+            spline.curvatures(&values, &mut curvatures);
             for piece in 0..rows - 1 {
-                let of_joint = spline.piece(piece, &values, &bends).coefficients();
+                let of_joint = spline.piece(piece, &values, &curvatures).coefficients();
                 for (power, coefficient) in of_joint.into_iter().enumerate() {
                     coefficients[(POWERS * piece + power) * n + j] = coefficient;
                 }

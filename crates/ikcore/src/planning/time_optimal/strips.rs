@@ -3,8 +3,8 @@
 //! Each limit is a strip |a u + b x| <= c. For a given x the strips leave an interval of u, between the lowest of their
 //! upper lines and the highest of their lower lines; both are broken lines, convex towards each other.
 
+use super::derivatives::PathDerivatives;
 use super::limits::TimingLimits;
-use super::shape::Shape;
 
 /// The line u = offset - slope x.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,19 +20,19 @@ impl Line {
     }
 }
 
-/// Upper lines as they are, lower ones by their offset with the other sign: the two sides of a strip are parallel.
+/// Each strip by its upper line. Its lower one is parallel and has the negative offset.
 #[derive(Debug, Default)]
 pub(super) struct Strips {
     offsets: Vec<f64>,
     slopes: Vec<f64>,
-    /// The bound on x of strips that say nothing of u.
-    pub ceiling: f64,
+    /// The bound on x of those strips that do not bound u.
+    pub largest_x: f64,
     /// The largest u from a standing start.
     pub launch: f64,
 }
 
-/// A coefficient of u below this share of the largest is none: its line would be so steep that its rounding counts, while
-/// what it says of u does not.
+/// A coefficient of u below this share of the largest counts as zero: its line would be so steep that it is mostly
+/// rounding, and it hardly bounds u.
 const NEGLIGIBLE: f64 = 1e-9;
 
 impl Strips {
@@ -40,19 +40,19 @@ impl Strips {
         Self {
             offsets: vec![0.0; 3 * joints],
             slopes: vec![0.0; 3 * joints],
-            ceiling: f64::INFINITY,
+            largest_x: f64::INFINITY,
             launch: f64::INFINITY,
         }
     }
 
-    /// The strips of a segment of this `shape` and `length`.
+    /// The strips of a segment with these `derivatives` of the path and of this `length`.
     ///
     /// On it d2q/dt2 = q'(s) u + q''(s) x(s), with x(s) = x + 2 u (s - s_i), is a quadratic in s. Bounds on its three
     /// Bernstein coefficients bound it at every point, not at the grid points alone.
-    pub fn fill(&mut self, shape: &Shape, length: f64, limits: &TimingLimits) {
+    pub fn fill(&mut self, derivatives: &PathDerivatives, length: f64, limits: &TimingLimits) {
         let n = limits.acceleration.len();
-        let [d0, d1, d2] = shape.slope.each_ref().map(|row| &row[..n]);
-        let [e0, e1] = shape.bend.each_ref().map(|row| &row[..n]);
+        let [d0, d1, d2] = derivatives.first.each_ref().map(|row| &row[..n]);
+        let [e0, e1] = derivatives.second.each_ref().map(|row| &row[..n]);
         let (offsets, slopes) = (&mut self.offsets[..3 * n], &mut self.slopes[..3 * n]);
         for j in 0..n {
             (offsets[j], slopes[j]) = (d0[j], e0[j]);
@@ -60,12 +60,12 @@ impl Strips {
             (offsets[2 * n + j], slopes[2 * n + j]) = (d2[j] + 2.0 * length * e1[j], e1[j]);
         }
         let largest = offsets.iter().fold(0.0_f64, |largest, a| largest.max(a.abs()));
-        (self.ceiling, self.launch) = (f64::INFINITY, f64::INFINITY);
+        (self.largest_x, self.launch) = (f64::INFINITY, f64::INFINITY);
         for (of_end, slopes) in offsets.chunks_exact_mut(n).zip(slopes.chunks_exact_mut(n)) {
             for ((offset, slope), c) in of_end.iter_mut().zip(slopes).zip(&limits.acceleration) {
                 let (a, b) = (*offset, *slope);
                 if a.abs() <= NEGLIGIBLE * largest {
-                    self.ceiling = self.ceiling.min(if b == 0.0 { f64::INFINITY } else { c / b.abs() });
+                    self.largest_x = self.largest_x.min(if b == 0.0 { f64::INFINITY } else { c / b.abs() });
                     (*offset, *slope) = (f64::INFINITY, 0.0);
                 } else {
                     (*offset, *slope) = (c / a.abs(), b / a);

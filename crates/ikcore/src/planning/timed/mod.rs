@@ -1,28 +1,28 @@
 //! Along a path as fast as the limits allow: the arm's redundancy and the timing found together.
 //!
-//! The search outside chooses the posture in which the arm passes each point of the path, a few numbers a motion; the
-//! fastest timing of the joint path that follows is exact and costs little. So what is searched is small, and what is
-//! found keeps every limit.
+//! An outer search chooses the posture in which the arm passes each point of the path, by a few numbers for the whole motion.
+//! For the joint path that follows from them, the fastest timing is found exactly and at little cost. So the search space is
+//! small, and every limit is kept.
 //!
 //! | file | what |
 //! |---|---|
-//! | `self_motion` | configurations along the path, and what may be chosen of them |
-//! | `null_space` | what moves the joints and leaves the tip |
-//! | `project` | the nearest configuration that reaches a target |
-//! | `passage` | splines through configurations, fine enough to keep to the path |
+//! | `self_motion` | configurations along the path, and the freedom to choose them |
+//! | `null_space` | directions that move the joints and leave the tip where it is |
+//! | `projection` | the nearest configuration that reaches a target |
+//! | `interpolation` | splines through configurations, fine enough to keep to the path |
 //! | `cost` | the duration as a function of the choice |
 
 mod cost;
+mod interpolation;
 mod null_space;
-mod passage;
-mod project;
+mod projection;
 mod self_motion;
 
-use super::course::Course;
-use super::stray::Stray;
+use super::deviation::TipDeviation;
+use super::search::{Found, Search};
 use super::time_optimal::{coarse_duration, time};
-use super::tpbso::search::{Found, Search};
-use super::{AlongPathOptions, Cost, MotionLimits, Plan, TimingLimits, TimingOptions};
+use super::tip_path::TipPath;
+use super::{AlongPathOptions, MotionLimits, Plan, TimingLimits, TimingOptions};
 use crate::error::{Error, Result, require_positive};
 use crate::limits::Limits;
 use crate::robot::Robot;
@@ -30,12 +30,12 @@ use crate::solver::stop::Stopwatch;
 use crate::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Monitor, Schedule, Status, Stop};
 use crate::wording::number;
 use cost::TimedCost;
-use passage::{Corners, Interpolation, Passage};
+use interpolation::{Corners, Interpolation, Waypoints};
 use self_motion::SelfMotion;
 
 const METHOD: &str = "method=\"timed\"";
 
-/// Evaluations of the search: after so many the duration falls by less than a hundredth.
+/// Evaluations of the search; more of them shorten the motion by less than a hundredth.
 const EVALUATIONS: usize = 2000;
 
 /// Members of a generation of the search.
@@ -44,7 +44,7 @@ const POPULATION: usize = 30;
 /// Allowed distance of the tip from the path, as a share of its extent.
 const ACCURACY: f64 = 1e-3;
 
-/// Segments of the timing in each piece of the spline when ways to take corners are compared.
+/// Segments of the timing in each piece of the spline when the alternatives at corners are compared.
 const SEGMENTS_A_PIECE: usize = 4;
 
 /// Plans along a path.
@@ -53,7 +53,7 @@ const SEGMENTS_A_PIECE: usize = 4;
 /// As [`plan_along_path`](super::plan_along_path).
 pub(super) fn along_path(
     robot: &Robot,
-    course: &Course,
+    tip_path: &TipPath,
     options: &AlongPathOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
@@ -61,17 +61,17 @@ pub(super) fn along_path(
     require_supported(options)?;
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     let timing_limits = timing_limits_of(robot, options.limits.as_ref())?;
-    // Points that stand for a curve do not say more of it than this.
-    let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * course.extent() + course.coarseness());
+    // Points sampled from a curve determine it no better than to their coarseness.
+    let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * tip_path.extent() + tip_path.coarseness());
     require_positive("accuracy", accuracy)?;
     if let Some(q) = &options.start {
         robot.check("start_q", q)?;
-        limits.require_inside("start_q", q)?;
-        require_on_path(robot, q, course, accuracy)?;
+        robot.require_within("start_q", q, &limits.lower, &limits.upper)?;
+        require_on_path(robot, q, tip_path, accuracy)?;
     }
     let robot = limits.applied_to(robot)?;
-    let mut motion = SelfMotion::new(&robot, course, options.start.as_deref(), options.seed)?;
-    let interpolation = settle(&mut motion, &robot, course, accuracy, &timing_limits)?;
+    let mut motion = SelfMotion::new(&robot, tip_path, options.start.as_deref(), options.seed)?;
+    let interpolation = choose_corners(&mut motion, &robot, tip_path, accuracy, &timing_limits)?;
     let cost = TimedCost {
         motion,
         interpolation,
@@ -84,28 +84,28 @@ pub(super) fn along_path(
     plan(cost, options, stopwatch, monitor)
 }
 
-/// Decides how corners are taken, by what is quicker on the nominal motion, and gives that the knots it needs.
-fn settle<'a>(
+/// Decides whether the arm stops at corners, by what is quicker on the nominal motion, and gives that motion the knots it needs.
+fn choose_corners<'a>(
     motion: &mut SelfMotion<'_>,
     robot: &'a Robot,
-    course: &'a Course,
+    tip_path: &'a TipPath,
     accuracy: f64,
     limits: &TimingLimits,
 ) -> Result<Interpolation<'a>> {
-    let mut quickest: Option<(f64, Interpolation, Passage)> = None;
-    for corners in Corners::on(course) {
-        let interpolation = Interpolation { robot, course, corners: *corners };
-        let passage = interpolation.refined(motion.nominal().clone(), accuracy)?;
-        let path = interpolation.path(&passage)?;
+    let mut quickest: Option<(f64, Interpolation, Waypoints)> = None;
+    for corners in Corners::on(tip_path) {
+        let interpolation = Interpolation { robot, tip_path, corners: *corners };
+        let waypoints = interpolation.refined(motion.nominal().clone(), accuracy)?;
+        let path = interpolation.path(&waypoints)?;
         let duration = coarse_duration(&path, limits, SEGMENTS_A_PIECE * path.pieces())?;
         if quickest.as_ref().is_none_or(|(least, ..)| duration < *least) {
-            quickest = Some((duration, interpolation, passage));
+            quickest = Some((duration, interpolation, waypoints));
         }
     }
-    let stopping = || (Interpolation { robot, course, corners: Corners::Stopped }, motion.nominal().clone());
-    let (interpolation, passage) =
-        quickest.map_or_else(stopping, |(_, interpolation, passage)| (interpolation, passage));
-    motion.take(passage);
+    let stopping = || (Interpolation { robot, tip_path, corners: Corners::Stopped }, motion.nominal().clone());
+    let (interpolation, waypoints) =
+        quickest.map_or_else(stopping, |(_, interpolation, waypoints)| (interpolation, waypoints));
+    motion.take(waypoints);
     Ok(interpolation)
 }
 
@@ -118,21 +118,21 @@ fn plan(
 ) -> Result<Plan> {
     let found = search(&mut cost, options, monitor)?;
     let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
-    let (passage, _) = cost.passage(z);
-    let passage = cost.interpolation.refined(passage, cost.accuracy)?;
-    let path = cost.interpolation.path(&passage)?;
+    let (waypoints, _) = cost.waypoints(z);
+    let waypoints = cost.interpolation.refined(waypoints, cost.accuracy)?;
+    let path = cost.interpolation.path(&waypoints)?;
     let trajectory = time(&path, cost.timing_limits, &TimingOptions::default())?;
-    let Interpolation { robot, course, .. } = cost.interpolation;
+    let Interpolation { robot, tip_path, .. } = cost.interpolation;
     let configurations = |share: f64, q: &mut [f64]| path.position(share, q);
-    let farthest = Stray { robot, course, configurations }.farthest(&passage.knots);
+    let deviation = TipDeviation { robot, tip_path, configurations }.largest(&waypoints.knots);
     let mut violations = cost.limits.violations(&trajectory);
-    violations.extend(farthest.violations(course, cost.accuracy));
+    violations.extend(deviation.violations(tip_path, cost.accuracy));
     let keeps_everything = violations.is_empty();
     Ok(Plan {
         objective: options.objective,
         cost: options.objective.of(robot, &trajectory),
         clearance: None,
-        accuracy: Some(farthest.distance.value),
+        accuracy: Some(deviation.distance.value),
         redundancy: vec![],
         violations,
         status: match &found {
@@ -154,19 +154,15 @@ fn search(cost: &mut TimedCost<'_>, options: &AlongPathOptions, monitor: &mut dy
     let standard: AnySolver<DerivativeFree> =
         AnySolver::Single(DifferentialEvolution { schedule, ..DifferentialEvolution::default() }.into());
     let search = Search {
-        solver: Some(options.solver.as_ref().unwrap_or(&standard)),
-        stop: Some(options.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() })),
+        solver: options.solver.as_ref().unwrap_or(&standard),
+        stop: options.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() }),
         seed: options.seed,
     };
     search.run(cost, &bounds, monitor).map(Some)
 }
 
-/// Err for what only the other planner, or none, can do.
+/// Err for an option that only the other planner knows.
 fn require_supported(options: &AlongPathOptions) -> Result<()> {
-    if options.objective == Cost::TipTravel {
-        let known = ["time", "joint_travel"];
-        return Err(Error::unknown_option("objective along a path", "tip_travel", &known));
-    }
     match options.elbow {
         None => Ok(()),
         Some(_) => Err(Error::Contradiction {
@@ -177,9 +173,9 @@ fn require_supported(options: &AlongPathOptions) -> Result<()> {
     }
 }
 
-/// Err unless `q` has the tip at the beginning of the course, as near as it must be all along.
-fn require_on_path(robot: &Robot, q: &[f64], course: &Course, accuracy: f64) -> Result<()> {
-    let distance = course.distance(robot.tip_position(q), 0.0, 0.0);
+/// Err unless `q` has the tip at the beginning of the path, as near as it must be all along.
+fn require_on_path(robot: &Robot, q: &[f64], tip_path: &TipPath, accuracy: f64) -> Result<()> {
+    let distance = tip_path.distance(robot.tip_position(q), 0.0, 0.0);
     if distance <= accuracy {
         return Ok(());
     }

@@ -6,14 +6,14 @@
 
 use nalgebra::DMatrix;
 
+use super::interpolation::Waypoints;
 use super::null_space::{null_space, turned};
-use super::passage::Passage;
-use super::project::project;
+use super::projection::project;
 use crate::error::{Error, Result};
 use crate::math::MAX_DOF;
 use crate::math::cubic_spline::CubicSpline;
 use crate::objective::{Bounds, LeastSquares, Linearization};
-use crate::planning::course::Course;
+use crate::planning::tip_path::TipPath;
 use crate::problem::Problem;
 use crate::rng;
 use crate::robot::Robot;
@@ -36,11 +36,11 @@ const JUMP: f64 = 1.5;
 /// The arm on its path.
 pub struct SelfMotion<'a> {
     robot: &'a Robot,
-    course: &'a Course,
+    tip_path: &'a TipPath,
     bounds: Bounds,
     /// What the tip reaches at the nominal motion's knots.
     targets: Vec<Target>,
-    nominal: Passage,
+    nominal: Waypoints,
     /// Directions of the self-motion at each node: a column each.
     bases: Vec<DMatrix<f64>>,
     /// What the offset at a node contributes at a point: point by point, node by node.
@@ -51,25 +51,25 @@ pub struct SelfMotion<'a> {
 }
 
 impl<'a> SelfMotion<'a> {
-    /// The arm on `course`.
+    /// The arm on `path`.
     ///
     /// # Errors
     /// [`Error::Unreachable`] names the first place that no motion from any start reached.
-    pub fn new(robot: &'a Robot, course: &'a Course, start: Option<&[f64]>, seed: u64) -> Result<Self> {
+    pub fn new(robot: &'a Robot, tip_path: &'a TipPath, start: Option<&[f64]>, seed: u64) -> Result<Self> {
         let joints = robot.joints();
-        let knots = course.knots(INTERVALS);
+        let knots = tip_path.knots(INTERVALS);
         let mut motion = Self {
             robot,
-            course,
+            tip_path,
             bounds: Bounds::from_ranges(joints.iter().map(|joint| (joint.lower, joint.upper))),
-            targets: knots.iter().map(|knot| course.target(*knot)).collect(),
+            targets: knots.iter().map(|knot| tip_path.target(*knot)).collect(),
             weights: node_weights(&knots),
-            nominal: Passage { knots, waypoints: vec![] },
+            nominal: Waypoints { knots, rows: vec![] },
             bases: vec![],
             starts_as_given: start.is_some(),
             linearization: Linearization::default(),
         };
-        motion.nominal.waypoints = match start {
+        motion.nominal.rows = match start {
             Some(q) => motion.follow(q).map_err(|lost| motion.error(&lost))?,
             None => motion.shortest(seed)?,
         };
@@ -78,13 +78,13 @@ impl<'a> SelfMotion<'a> {
     }
 
     /// The nominal motion.
-    pub fn nominal(&self) -> &Passage {
+    pub fn nominal(&self) -> &Waypoints {
         &self.nominal
     }
 
-    /// Takes another nominal motion on the same course.
-    pub fn take(&mut self, nominal: Passage) {
-        self.targets = nominal.knots.iter().map(|knot| self.course.target(*knot)).collect();
+    /// Takes another nominal motion on the same path.
+    pub fn take(&mut self, nominal: Waypoints) {
+        self.targets = nominal.knots.iter().map(|knot| self.tip_path.target(*knot)).collect();
         self.weights = node_weights(&nominal.knots);
         self.nominal = nominal;
         self.bases = self.self_motions();
@@ -119,7 +119,7 @@ impl<'a> SelfMotion<'a> {
         let mut correction = [0.0; MAX_DOF];
         for point in 0..self.points() {
             let q = &mut waypoints[point * n..(point + 1) * n];
-            q.copy_from_slice(&self.nominal.waypoints[point * n..(point + 1) * n]);
+            q.copy_from_slice(&self.nominal.rows[point * n..(point + 1) * n]);
             for (node, basis) in self.bases.iter().enumerate() {
                 let weight = self.weights[point * NODES + node];
                 for (k, z) in z[node * freedom..(node + 1) * freedom].iter().enumerate() {
@@ -179,7 +179,7 @@ impl<'a> SelfMotion<'a> {
         } else {
             "only another branch of configurations does, and the arm cannot jump to it".into()
         };
-        Error::Unreachable { what: self.course.place(self.nominal.knots[lost.point]), problem }
+        Error::Unreachable { what: self.tip_path.place(self.nominal.knots[lost.point]), problem }
     }
 
     /// From `start` along all points, each from the one before.
@@ -210,7 +210,7 @@ impl<'a> SelfMotion<'a> {
         for node in 0..NODES {
             let point = self.nominal.knots.partition_point(|knot| *knot < node as f64 / (NODES - 1) as f64);
             let point = point.min(self.points() - 1);
-            let q = &self.nominal.waypoints[point * n..(point + 1) * n];
+            let q = &self.nominal.rows[point * n..(point + 1) * n];
             let mut problem = Problem::new(self.robot, &self.targets[point], Tolerance::default());
             problem.linearize(q, &mut self.linearization);
             let jacobian = DMatrix::from_fn(6, n, |row, joint| self.linearization.columns[joint][row]);
@@ -246,11 +246,11 @@ fn node_weights(knots: &[f64]) -> Vec<f64> {
     let spline = CubicSpline::natural((0..NODES).map(|node| node as f64 / (NODES - 1) as f64).collect());
     let mut weights = vec![0.0; knots.len() * NODES];
     for node in 0..NODES {
-        let (mut values, mut bends) = ([0.0; NODES], [0.0; NODES]);
+        let (mut values, mut curvatures) = ([0.0; NODES], [0.0; NODES]);
         values[node] = 1.0;
-        spline.bends(&values, &mut bends);
+        spline.curvatures(&values, &mut curvatures);
         for (point, knot) in knots.iter().enumerate() {
-            weights[point * NODES + node] = spline.at(*knot, &values, &bends);
+            weights[point * NODES + node] = spline.at(*knot, &values, &curvatures);
         }
     }
     weights

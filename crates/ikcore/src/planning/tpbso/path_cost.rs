@@ -1,30 +1,30 @@
 //! Along a path in uniform time: the decision vector and cost of Wang et al. (2019), eq. (7) and (19)-(25).
 
+use super::penalties::{BROKEN_LIMIT, NO_CONFIGURATION};
 use super::redundancy::{NODES, Redundancy, nearest_turn};
-use super::weights::{BROKEN_LIMIT, NO_CONFIGURATION};
 use crate::error::Result;
 use crate::math::cubic_spline::{CubicSpline, Piece};
 use crate::objective::{Bounds, Objective, Score};
 use crate::planning::cost::Cost;
-use crate::planning::course::Course;
+use crate::planning::deviation::{LargestDeviation, TipDeviation};
 use crate::planning::motion_limits::MotionLimits;
 use crate::planning::planar_arm::Orientations;
-use crate::planning::stray::{Farthest, Stray};
+use crate::planning::tip_path::TipPath;
 use crate::robot::Robot;
 use crate::trajectory::{Trajectory, polynomial};
 
 /// The spline goes through every second point; those between measure its accuracy.
 const STRIDE: usize = 2;
 
-/// The motion may last from this share of the slowest joint's way through its range ...
+/// The shortest duration allowed, over the time that the slowest joint takes through its range.
 const SHORTEST: f64 = 0.025;
 
-/// ... to so many times that ...
+/// The longest duration allowed, over the same time ...
 const LONGEST: f64 = 5.0;
 
-/// ... or, on a path that turns the joints more than once through it, to so many times what the middle of all free
-/// orientations takes.
-const LONGER_THAN_MIDDLE: f64 = 1.5;
+/// ... or, where that is longer, as on a path that takes joints through their range more than once, over the duration with all
+/// free orientations in the middle of their ranges.
+const LONGEST_OVER_MIDDLE: f64 = 1.5;
 
 /// The cost F of eq. (25), as a function of \[x_phi (5 a free link), T\].
 #[derive(Debug, Clone)]
@@ -39,14 +39,14 @@ pub struct PathCost<'a> {
     start: Option<&'a [f64]>,
     motion: Motion,
     /// Of the splines through x_phi.
-    node_bends: Vec<f64>,
+    node_curvatures: Vec<f64>,
 }
 
 /// Splines of all joints over the path from 0 to 1: joint by joint, knot by knot.
 #[derive(Debug, Clone)]
 struct Motion {
     values: Vec<f64>,
-    bends: Vec<f64>,
+    curvatures: Vec<f64>,
 }
 
 impl<'a> PathCost<'a> {
@@ -66,8 +66,8 @@ impl<'a> PathCost<'a> {
         let size = robot.dof() * spline.knots().len();
         Self {
             scale: cost.scale(robot, limits),
-            motion: Motion { values: vec![0.0; size], bends: vec![0.0; size] },
-            node_bends: vec![0.0; NODES * redundancy.links()],
+            motion: Motion { values: vec![0.0; size], curvatures: vec![0.0; size] },
+            node_curvatures: vec![0.0; NODES * redundancy.links()],
             robot,
             limits,
             redundancy,
@@ -78,7 +78,7 @@ impl<'a> PathCost<'a> {
         }
     }
 
-    /// What the decision vector may be. A given start fixes the first node of every free link.
+    /// The range of the decision vector. A given start fixes the first node of every free link.
     ///
     /// # Errors
     /// [`Error::InvalidPath`](crate::Error::InvalidPath) for a start that is not on the path.
@@ -91,12 +91,12 @@ impl<'a> PathCost<'a> {
             }
         }
         let middle: Vec<f64> = ranges.iter().map(|(lowest, highest)| 0.5 * (lowest + highest)).collect();
-        let longest = (LONGEST * whole_range).max(LONGER_THAN_MIDDLE * self.least_duration(&middle));
+        let longest = (LONGEST * whole_range).max(LONGEST_OVER_MIDDLE * self.least_duration(&middle));
         ranges.push((SHORTEST * whole_range, longest));
         Ok(Bounds::from_ranges(ranges.into_iter()))
     }
 
-    /// How long these free orientations take at least (s); 0 where a point has no configuration.
+    /// The shortest duration (s) with these free orientations; 0 where a point has no configuration.
     fn least_duration(&mut self, nodes: &[f64]) -> f64 {
         if self.place_knots(nodes).is_err() {
             return 0.0;
@@ -116,9 +116,9 @@ impl<'a> PathCost<'a> {
         let mut coefficients = vec![];
         for i in 0..knots.len() - 1 {
             coefficients.extend((0..self.robot.dof()).map(|j| {
-                let Piece { value, slope, bend, rate, .. } = self.piece(j, i);
-                let [first, second, third] = [duration, duration.powi(2), duration.powi(3)];
-                polynomial([value, slope / first, bend / (2.0 * second), rate / (6.0 * third)])
+                let Piece { value, slope, curvature, third, .. } = self.piece(j, i);
+                let [t, t2, t3] = [duration, duration.powi(2), duration.powi(3)];
+                polynomial([value, slope / t, curvature / (2.0 * t2), third / (6.0 * t3)])
             }));
         }
         Some(Trajectory::new(self.limits.joint_names(), knots, coefficients))
@@ -127,17 +127,17 @@ impl<'a> PathCost<'a> {
     /// The free orientations of decision vector `x` at every point of the path; those without are left out.
     pub fn orientations(&mut self, x: &[f64]) -> Vec<Orientations> {
         let nodes = &x[..x.len() - 1];
-        self.redundancy.bends(nodes, &mut self.node_bends);
+        self.redundancy.curvatures(nodes, &mut self.node_curvatures);
         let mut q = vec![0.0; self.robot.dof()];
         let points = 0..self.redundancy.points();
-        points.filter_map(|i| self.redundancy.configuration(i, nodes, &self.node_bends, &mut q).ok()).collect()
+        points.filter_map(|i| self.redundancy.configuration(i, nodes, &self.node_curvatures, &mut q).ok()).collect()
     }
 
-    /// How far the tip strays from `course` in the motion of the last [`trajectory`](Self::trajectory), at its points and
+    /// The largest deviations of the tip from `tip_path` in the motion of the last [`trajectory`](Self::trajectory), at its points and
     /// between them.
-    pub fn stray(&self, course: &Course) -> Farthest {
+    pub fn deviation(&self, tip_path: &TipPath) -> LargestDeviation {
         // Points at equal times need not lie at equal distances.
-        let shares = course.point_shares();
+        let shares = tip_path.point_shares();
         let last = shares.len() - 1;
         let configurations = |share: f64, q: &mut [f64]| {
             let i = shares.partition_point(|start| *start <= share).clamp(1, last) - 1;
@@ -145,7 +145,7 @@ impl<'a> PathCost<'a> {
             self.place((i as f64 + part) / last as f64, q);
         };
         let knots: Vec<f64> = (0..last).step_by(STRIDE).chain([last]).map(|i| shares[i]).collect();
-        Stray { robot: self.robot, course, configurations }.farthest(&knots)
+        TipDeviation { robot: self.robot, tip_path, configurations }.largest(&knots)
     }
 
     /// Distances (m) of the tip from the points that the splines do not pass: the skipped point of each stride.
@@ -160,12 +160,12 @@ impl<'a> PathCost<'a> {
     /// How much the cosines of eq. (1) exceed 1, in all.
     fn place_knots(&mut self, nodes: &[f64]) -> Result<(), f64> {
         let (n, knots, last) = (self.robot.dof(), self.spline.knots().len(), self.redundancy.points() - 1);
-        self.redundancy.bends(nodes, &mut self.node_bends);
+        self.redundancy.curvatures(nodes, &mut self.node_curvatures);
         let mut q = [0.0; crate::math::MAX_DOF];
         let mut excess = 0.0;
         for knot in 0..knots {
             let point = (knot * STRIDE).min(last);
-            match self.redundancy.configuration(point, nodes, &self.node_bends, &mut q[..n]) {
+            match self.redundancy.configuration(point, nodes, &self.node_curvatures, &mut q[..n]) {
                 Err(cosine) => excess += cosine.abs(),
                 Ok(_) => {
                     for j in 0..n {
@@ -183,8 +183,10 @@ impl<'a> PathCost<'a> {
         if excess > 0.0 {
             return Err(excess);
         }
-        for (values, bends) in self.motion.values.chunks_exact(knots).zip(self.motion.bends.chunks_exact_mut(knots)) {
-            self.spline.bends(values, bends);
+        for (values, curvatures) in
+            self.motion.values.chunks_exact(knots).zip(self.motion.curvatures.chunks_exact_mut(knots))
+        {
+            self.spline.curvatures(values, curvatures);
         }
         Ok(())
     }
@@ -192,7 +194,7 @@ impl<'a> PathCost<'a> {
     fn piece(&self, joint: usize, i: usize) -> Piece {
         let knots = self.spline.knots().len();
         let of_joint = joint * knots..(joint + 1) * knots;
-        self.spline.piece(i, &self.motion.values[of_joint.clone()], &self.motion.bends[of_joint])
+        self.spline.piece(i, &self.motion.values[of_joint.clone()], &self.motion.curvatures[of_joint])
     }
 
     /// F of eq. (25), with the weights that it is printed without: else error could be traded for time.
@@ -232,7 +234,7 @@ impl<'a> PathCost<'a> {
                 }
             }
             speed = speed.max(piece.steepest());
-            acceleration = acceleration.max(piece.bend.abs());
+            acceleration = acceleration.max(piece.curvature.abs());
         }
         (travel, speed, acceleration, outside)
     }
@@ -240,9 +242,9 @@ impl<'a> PathCost<'a> {
     /// Joint positions after a share `u` of the time.
     fn place(&self, u: f64, q: &mut [f64]) {
         let knots = self.spline.knots().len();
-        let joints = self.motion.values.chunks_exact(knots).zip(self.motion.bends.chunks_exact(knots));
-        for (q, (values, bends)) in q.iter_mut().zip(joints) {
-            *q = self.spline.at(u, values, bends);
+        let joints = self.motion.values.chunks_exact(knots).zip(self.motion.curvatures.chunks_exact(knots));
+        for (q, (values, curvatures)) in q.iter_mut().zip(joints) {
+            *q = self.spline.at(u, values, curvatures);
         }
     }
 

@@ -11,7 +11,7 @@ use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Orientation, Orientations,
 use crate::task::Target;
 use crate::wording::number;
 
-/// Numbers in \[0, 1\] by which the course of each free orientation is given: the paper's x_phi.
+/// Numbers in \[0, 1\] by which the path of each free orientation is given: the paper's x_phi.
 pub const NODES: usize = 5;
 
 /// A planar arm along the points of a path.
@@ -51,11 +51,11 @@ impl Redundancy {
     }
 
     /// Writes the joint angles at point `i`, wrapped, where `x` holds [`NODES`] numbers for each free link, from the tip
-    /// down, and `bends` their splines' second derivatives; returns the free orientations.
+    /// down, and `curvatures` their splines' second derivatives; returns the free orientations.
     ///
     /// # Errors
     /// The cosine of eq. (1) where there is no configuration.
-    pub fn configuration(&self, i: usize, x: &[f64], bends: &[f64], q: &mut [f64]) -> Result<Orientations, f64> {
+    pub fn configuration(&self, i: usize, x: &[f64], curvatures: &[f64], q: &mut [f64]) -> Result<Orientations, f64> {
         let Place { mut position, orientation } = self.places[i];
         let mut link = self.arm.dof() - 1;
         let mut absolute: SmallVec<[f64; 8]> = SmallVec::new();
@@ -66,9 +66,9 @@ impl Redundancy {
         }
         let mut free = Orientations::new();
         let u = i as f64 / (self.places.len() - 1) as f64;
-        for (values, bends) in x.chunks_exact(NODES).zip(bends.chunks_exact(NODES)) {
+        for (values, curvatures) in x.chunks_exact(NODES).zip(curvatures.chunks_exact(NODES)) {
             // Clamped: between its nodes the spline may leave what its nodes keep to.
-            let share = self.nodes.at(u, values, bends).clamp(0.0, 1.0);
+            let share = self.nodes.at(u, values, curvatures).clamp(0.0, 1.0);
             let (middle, half) = self.arm.orientation_range(position, link).ok_or(OUT_OF_REACH)?;
             let value = middle - half + 2.0 * half * share; // eq. (7)
             position = self.arm.start_of(link, position, value);
@@ -115,9 +115,9 @@ impl Redundancy {
     }
 
     /// Writes the second derivatives of the splines through the nodes `x`.
-    pub fn bends(&self, x: &[f64], bends: &mut [f64]) {
-        for (values, bends) in x.chunks_exact(NODES).zip(bends.chunks_exact_mut(NODES)) {
-            self.nodes.bends(values, bends);
+    pub fn curvatures(&self, x: &[f64], curvatures: &mut [f64]) {
+        for (values, curvatures) in x.chunks_exact(NODES).zip(curvatures.chunks_exact_mut(NODES)) {
+            self.nodes.curvatures(values, curvatures);
         }
     }
 }

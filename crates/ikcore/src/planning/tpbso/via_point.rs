@@ -1,9 +1,9 @@
 //! From end to end through a via point: the decision vector of Wang et al. (2019), section III-A, and its cost.
 
-use super::placement::Placement;
+use super::collision_test::CollisionTest;
+use super::end_configurations::EndConfigurations;
+use super::penalties::{BROKEN_LIMIT, NO_CONFIGURATION};
 use super::rest_segment::{Extremes, RestSegment, ViaPoint, quartic, quintic};
-use super::surroundings::Surroundings;
-use super::weights::{BROKEN_LIMIT, NO_CONFIGURATION};
 use crate::error::Result;
 use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Objective, Score};
@@ -12,13 +12,13 @@ use crate::planning::motion_limits::MotionLimits;
 use crate::robot::Robot;
 use crate::trajectory::{Trajectory, polynomial};
 
-/// Moments in each segment at which the tip is looked at.
+/// Samples of each segment, at which the tip and collisions are evaluated.
 const SAMPLES: usize = 50;
 
-/// The segments may last from this share of the slowest joint's way through its range ...
+/// The shortest duration of a segment, over the time that the slowest joint takes through its range.
 const SHORTEST: f64 = 0.05;
 
-/// ... to so many times that.
+/// The longest, over the same time.
 const LONGEST: f64 = 4.0;
 
 /// The cost F of eq. (15), as a function of \[theta_m (n), its rate (n), phi_s, phi_f, t1, t2\].
@@ -26,11 +26,11 @@ const LONGEST: f64 = 4.0;
 pub struct ViaPointCost<'a> {
     robot: &'a Robot,
     limits: &'a MotionLimits,
-    start: Placement,
-    end: Placement,
+    start: EndConfigurations,
+    end: EndConfigurations,
     cost: Cost,
     scale: f64,
-    surroundings: Option<&'a Surroundings<'a>>,
+    collisions: Option<&'a CollisionTest<'a>>,
 }
 
 /// A decision vector, taken apart.
@@ -51,14 +51,14 @@ impl<'a> ViaPointCost<'a> {
     pub fn new(
         robot: &'a Robot,
         limits: &'a MotionLimits,
-        [start, end]: [Placement; 2],
+        [start, end]: [EndConfigurations; 2],
         cost: Cost,
-        surroundings: Option<&'a Surroundings<'a>>,
+        collisions: Option<&'a CollisionTest<'a>>,
     ) -> Self {
-        Self { scale: cost.scale(robot, limits), robot, limits, start, end, cost, surroundings }
+        Self { scale: cost.scale(robot, limits), robot, limits, start, end, cost, collisions }
     }
 
-    /// What the decision vector may be.
+    /// The range of the decision vector.
     pub fn bounds(&self) -> Bounds {
         let n = self.robot.dof();
         let positions = (0..n).map(|j| self.limits.finite_range(j));
@@ -134,8 +134,8 @@ impl<'a> ViaPointCost<'a> {
             Cost::JointTravel => travel,
             Cost::TipTravel => self.tip_travel(&segments, &decision),
         };
-        if let Some(surroundings) = self.surroundings {
-            self.samples(&segments, &decision, |q| broken += surroundings.touching(q));
+        if let Some(collisions) = self.collisions {
+            self.samples(&segments, &decision, |q| broken += collisions.touching(q));
         }
         cost + BROKEN_LIMIT * self.scale * broken
     }

@@ -1,4 +1,4 @@
-//! Evaluations that tell more than a value, and fewer for who asks for values alone.
+//! Evaluations with residuals and derivatives, and the view of a run for solvers that use values alone.
 
 use std::mem;
 
@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 
 use super::{Evaluator, Halt};
 use crate::math::box_step::ROWS;
-use crate::objective::{Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, Slope};
+use crate::objective::{Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, SmoothScore};
 
 impl<O: Residual + ?Sized> Evaluator<'_, O> {
     /// Clips `x` to the box; value and residual there.
@@ -46,15 +46,15 @@ impl<O: Gradient + ?Sized> Evaluator<'_, O> {
     pub fn differentiate(&mut self, x: &mut [f64], gradient: &mut [f64]) -> Result<f64, Halt> {
         self.spend(1)?;
         self.admit(x);
-        let Slope { error, score } = self.objective.differentiate(x, gradient);
+        let SmoothScore { error, score } = self.objective.differentiate(x, gradient);
         let value = self.record(x, score);
         Ok(if value.is_finite() { error } else { f64::INFINITY })
     }
 }
 
 impl Evaluator<'_, dyn Differentiable + '_> {
-    /// Lends the run to a solver that asks for values alone, so that there is one compiled copy of such a solver whatever
-    /// the objective offers beyond.
+    /// Lends the run to a solver that uses values alone, so that such a solver is compiled once, whatever else the objective
+    /// offers.
     pub fn with_values_only<R>(&mut self, work: impl FnOnce(&mut Evaluator<'_, dyn Objective + '_>) -> R) -> R {
         let mut narrowed = Evaluator {
             objective: &mut *self.objective as &mut dyn Objective,
@@ -63,24 +63,15 @@ impl Evaluator<'_, dyn Differentiable + '_> {
             rng: &mut *self.rng,
             monitor: &mut *self.monitor,
             stopwatch: self.stopwatch,
-            evaluations: self.evaluations,
-            next_poll: self.next_poll,
-            best: mem::take(&mut self.best),
-            attempt_value: self.attempt_value,
-            attempts: self.attempts,
+            progress: mem::take(&mut self.progress),
             dimension: self.dimension,
-            pace: self.pace,
+            pattern: self.pattern,
             conduct: self.conduct,
             periods: SmallVec::new(),
-            strayed: false,
+            solved_outside: false,
         };
         let result = work(&mut narrowed);
-        let Evaluator { evaluations, next_poll, best, attempt_value, attempts, .. } = narrowed;
-        self.evaluations = evaluations;
-        self.next_poll = next_poll;
-        self.best = best;
-        self.attempt_value = attempt_value;
-        self.attempts = attempts;
+        self.progress = narrowed.progress;
         result
     }
 }

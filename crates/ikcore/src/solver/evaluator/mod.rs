@@ -9,10 +9,10 @@ pub use halt::Halt;
 
 use smallvec::SmallVec;
 
-use super::conduct::{Conduct, Domain, Goal};
+use super::conduct::{Conduct, Domain, Termination};
 use super::stop::{Monitor, Stop, Stopwatch};
 use crate::math::MAX_DOF;
-use crate::objective::{Bounds, Objective, Pace, Score};
+use crate::objective::{Bounds, CallPattern, Objective, Score};
 use crate::rng::LazyRng;
 
 /// Points whose scores are kept on the stack.
@@ -26,18 +26,31 @@ pub struct Evaluator<'a, O: ?Sized> {
     rng: &'a mut LazyRng,
     monitor: &'a mut dyn Monitor,
     stopwatch: Option<Stopwatch>,
-    evaluations: usize,
-    next_poll: usize,
-    best: Best,
-    attempt_value: f64,
-    attempts: usize,
+    progress: Progress,
     dimension: usize,
-    pace: Pace,
+    pattern: CallPattern,
     conduct: Conduct,
-    /// After how much each entry repeats itself; empty where everything is clipped.
+    /// The period of each entry; empty where everything is clipped.
     periods: SmallVec<[Option<f64>; MAX_DOF]>,
     /// Whether the last point was solved, but outside the box.
-    strayed: bool,
+    solved_outside: bool,
+}
+
+/// What a run has done so far.
+struct Progress {
+    evaluations: usize,
+    /// Evaluations at which the monitor and the clock are asked next.
+    next_poll: usize,
+    best: Best,
+    attempts: usize,
+    /// The best value of the current attempt.
+    attempt_value: f64,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        Self { evaluations: 0, next_poll: 0, best: Best::default(), attempts: 1, attempt_value: f64::INFINITY }
+    }
 }
 
 impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
@@ -49,7 +62,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         rng: &'a mut LazyRng,
         monitor: &'a mut dyn Monitor,
     ) -> Self {
-        let pace = objective.pace();
+        let pattern = objective.call_pattern();
         Self {
             dimension: objective.dimension(),
             objective,
@@ -58,19 +71,15 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             rng,
             monitor,
             stopwatch: stop.max_time.map(|_| Stopwatch::start()),
-            evaluations: 0,
-            next_poll: pace.between_looks,
-            best: Best::default(),
-            attempt_value: f64::INFINITY,
-            attempts: 1,
-            pace,
+            progress: Progress { next_poll: pattern.poll_interval, ..Progress::default() },
+            pattern,
             conduct: Conduct::default(),
             periods: SmallVec::new(),
-            strayed: false,
+            solved_outside: false,
         }
     }
 
-    /// Takes over what the solver declares of itself.
+    /// Takes over the declarations of a solver.
     pub(super) fn adopt(&mut self, conduct: Conduct) {
         self.conduct = conduct;
         if conduct.domain == Domain::Wrapped {
@@ -98,29 +107,29 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
 
     /// The best point so far.
     pub fn best(&self) -> &Best {
-        &self.best
+        &self.progress.best
     }
 
     /// Evaluations so far.
     pub fn evaluations(&self) -> usize {
-        self.evaluations
+        self.progress.evaluations
     }
 
     /// Starts tried so far.
     pub fn attempts(&self) -> usize {
-        self.attempts
+        self.progress.attempts
     }
 
     /// The best value since the current attempt began.
     pub fn attempt_value(&self) -> f64 {
-        self.attempt_value
+        self.progress.attempt_value
     }
 
     /// Counts a new attempt and writes its start into `x`.
     pub fn next_attempt(&mut self, x: &mut [f64]) {
-        self.objective.propose_start(self.attempts, self.bounds, self.rng, x);
-        self.attempts += 1;
-        self.attempt_value = f64::INFINITY;
+        self.objective.propose_start(self.progress.attempts, self.bounds, self.rng, x);
+        self.progress.attempts += 1;
+        self.progress.attempt_value = f64::INFINITY;
     }
 
     /// Clips `x` to the box, or wraps it there, as the solver declared.
@@ -149,8 +158,8 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     /// # Errors
     /// As for one point; with a budget for some of them only, the first ones are evaluated before the halt.
     pub fn evaluate_all(&mut self, mut xs: &mut [f64], values: &mut [f64]) -> Result<(), Halt> {
-        for values in values.chunks_mut(self.pace.at_once) {
-            let affordable = values.len().min(self.stop.max_evaluations - self.evaluations);
+        for values in values.chunks_mut(self.pattern.batch_size) {
+            let affordable = values.len().min(self.stop.max_evaluations - self.progress.evaluations);
             if affordable == 0 {
                 return Err(Halt::Budget);
             }
@@ -181,7 +190,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     /// # Errors
     /// [`Halt::Solved`].
     pub fn before_steps(&self) -> Result<(), Halt> {
-        if self.stop.min_iterations == 0 { self.check_goal() } else { Ok(()) }
+        if self.stop.min_iterations == 0 { self.check_termination() } else { Ok(()) }
     }
 
     /// What the driver asks after every step: is it time to stop?
@@ -192,9 +201,9 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         if iterations < self.stop.min_iterations {
             return Ok(());
         }
-        self.check_goal()?;
+        self.check_termination()?;
         match self.stop.value_below {
-            Some(value) if self.best.value < value => Err(Halt::BelowValue),
+            Some(value) if self.progress.best.value < value => Err(Halt::BelowValue),
             _ if iterations >= self.stop.max_iterations => Err(Halt::Budget),
             _ => Ok(()),
         }
@@ -205,40 +214,40 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     /// # Errors
     /// [`Halt::Solved`].
     pub fn check_solved(&self) -> Result<(), Halt> {
-        if self.best.solved { Err(Halt::Solved) } else { Ok(()) }
+        if self.progress.best.solved { Err(Halt::Solved) } else { Ok(()) }
     }
 
     /// Err(OutsideBox) if the last point evaluated was solved, but outside the box.
     ///
     /// # Errors
     /// [`Halt::OutsideBox`].
-    pub fn check_strayed(&self) -> Result<(), Halt> {
-        if self.strayed { Err(Halt::OutsideBox) } else { Ok(()) }
+    pub fn check_solved_outside(&self) -> Result<(), Halt> {
+        if self.solved_outside { Err(Halt::OutsideBox) } else { Ok(()) }
     }
 
     /// A solver with a threshold of its own goes on where others are done.
-    fn check_goal(&self) -> Result<(), Halt> {
-        match self.conduct.goal {
-            Goal::Solved => self.check_solved(),
-            Goal::Threshold => Ok(()),
+    fn check_termination(&self) -> Result<(), Halt> {
+        match self.conduct.termination {
+            Termination::Solved => self.check_solved(),
+            Termination::Threshold => Ok(()),
         }
     }
 
     #[inline]
     fn spend(&mut self, count: usize) -> Result<(), Halt> {
-        if self.evaluations + count > self.stop.max_evaluations {
+        if self.progress.evaluations + count > self.stop.max_evaluations {
             return Err(Halt::Budget);
         }
-        if self.evaluations >= self.next_poll {
+        if self.progress.evaluations >= self.progress.next_poll {
             self.poll()?;
         }
-        self.evaluations += count;
+        self.progress.evaluations += count;
         Ok(())
     }
 
     #[cold]
     fn poll(&mut self) -> Result<(), Halt> {
-        self.next_poll = self.evaluations + self.pace.between_looks;
+        self.progress.next_poll = self.progress.evaluations + self.pattern.poll_interval;
         if !self.monitor.keep_going() {
             return Err(Halt::Interrupted);
         }
@@ -252,16 +261,16 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     #[inline]
     fn record(&mut self, x: &[f64], score: Score) -> f64 {
         let value = if score.value.is_finite() { score.value } else { f64::INFINITY };
-        self.attempt_value = self.attempt_value.min(value);
+        self.progress.attempt_value = self.progress.attempt_value.min(value);
         let solved = score.solved && value.is_finite();
         if self.conduct.domain == Domain::Wrapped {
             let outside = !self.bounds.contains(x);
-            self.strayed = solved && outside;
+            self.solved_outside = solved && outside;
             if outside {
                 return value;
             }
         }
-        self.best.challenge(x, value, solved);
+        self.progress.best.challenge(x, value, solved);
         value
     }
 }

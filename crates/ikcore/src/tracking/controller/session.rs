@@ -9,7 +9,7 @@ use crate::objective::Point;
 use crate::rng::{self, LazyRng};
 use crate::solver::Status;
 use crate::task::TipError;
-use crate::tracking::session::Step;
+use crate::tracking::step::Step;
 
 /// A controller in progress. [`command`](Self::command) says where to send the arm, [`observe`](Self::observe) is told where
 /// its tip was there; a tick is over when the controller has no more to ask in it.

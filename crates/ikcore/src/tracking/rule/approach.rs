@@ -1,9 +1,9 @@
-//! Towards a target that is farther away than a tick reaches: all joints at once, in proportion to their parts of the way.
+//! The approach to a target that is farther away than a tick reaches: all joints move in proportion to their displacements.
 //!
-//! The step that lowers the error most within the box of a tick drives every joint to its limit, and in the next tick the other
-//! way if that serves the error better. So the whole way is taken by the model, between the position limits, and a tick
-//! covers the largest share of it that no joint's limit forbids. Where accelerations are limited, no joint goes faster than
-//! it can brake before its part of the way ends. A target that moves is caught up with on top of its own motion.
+//! The step that lowers the error most within the box of a tick drives every joint to its limit, and back in the next tick where
+//! that lowers the error more. So the displacement to the target is computed without that box, between the position limits, and
+//! a tick covers the largest share of it that every joint's limits allow. Where accelerations are limited, every joint can also
+//! still stop before its displacement ends. A target that moves is caught up with on top of its own motion.
 
 use super::Tick;
 use crate::math::box_step::{box_step, least_damping};
@@ -13,20 +13,20 @@ use crate::robot::Columns;
 use crate::solver::LevenbergMarquardt;
 use crate::task::Target;
 
-/// A target is slow that takes up no more than this share of any velocity limit.
+/// A target is slow where following it takes no more than this share of any velocity limit.
 const SLOW: f64 = 0.5;
 
-/// What a tick covers of the way to a target that is not slow, where it is all but followed: whatever gets the tip nearest to
-/// it in this tick is then better than a way that has no end.
+/// A target that is not slow counts as near where a tick covers this share of the displacement to it: the step that brings the
+/// tip nearest in this tick is then better than an approach that never ends.
 const NEAR: f64 = 0.5;
 
-/// What lies before an arm that is behind its target (n,) (rad, m).
-pub(super) struct Way {
+/// The displacement of the joints to a target that the arm is behind (n,) (rad, m).
+pub(super) struct Approach {
     /// What the joints have to catch up with.
     catch_up: Point,
     /// What they do beside that, to keep up with the target's own motion.
     keep_up: Point,
-    /// Below which share of the way in reach the target counts as far.
+    /// The target is far where the tick can cover less than this share of the displacement.
     far_below: f64,
     /// The largest share of `catch_up` that the tick's box allows.
     within_reach: f64,
@@ -34,8 +34,8 @@ pub(super) struct Way {
     within_braking: f64,
 }
 
-impl Way {
-    /// The way from `q`. Tip and Jacobian are those at `near`, the configuration of the tick's box that is nearest to `q`.
+impl Approach {
+    /// The approach from `q`. Tip and Jacobian are those at `near`, the configuration of the tick's box that is nearest to `q`.
     pub fn new(q: &[f64], near: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Self {
         let to = |target: &Target| -> Point {
             let end = destination(target, near, tip, columns, tick);
@@ -53,9 +53,9 @@ impl Way {
             catch_up = whole;
             keep_up.fill(0.0);
         }
-        let mut way = Self { catch_up, keep_up, far_below, within_reach: 1.0, within_braking: 1.0 };
-        way.find_shares(q, tick);
-        way
+        let mut approach = Self { catch_up, keep_up, far_below, within_reach: 1.0, within_braking: 1.0 };
+        approach.find_shares(q, tick);
+        approach
     }
 
     fn find_shares(&mut self, q: &[f64], tick: &Tick<'_>) {
@@ -76,7 +76,7 @@ impl Way {
     }
 
     /// Whether the target is so far away that joints are better moved in proportion.
-    pub fn is_long(&self) -> bool {
+    pub fn is_far(&self) -> bool {
         self.within_reach < self.far_below
     }
 
@@ -85,8 +85,8 @@ impl Way {
         self.within_braking < 1.0
     }
 
-    /// Moves `q` by one tick on the way.
-    pub fn walk(&self, q: &mut [f64], tick: &Tick<'_>) {
+    /// Moves `q` by one tick.
+    pub fn advance(&self, q: &mut [f64], tick: &Tick<'_>) {
         let share = self.within_reach.min(self.within_braking);
         for (q, (catch_up, keep_up)) in q.iter_mut().zip(self.catch_up.iter().zip(&self.keep_up)) {
             *q += keep_up + share * catch_up;
@@ -95,12 +95,12 @@ impl Way {
     }
 }
 
-/// Where the `target`, linearised at `q`, is met between the position limits. Damped as a descent from there would be: far
-/// away it gives little more than a direction.
+/// Where the `target`, linearised at `q`, is met between the position limits; damped as a descent from `q` would be, since far
+/// away the linearisation gives little more than a direction.
 fn destination(target: &Target, q: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Point {
     let n = q.len();
     let mut at = Linearization { columns: *columns, ..Linearization::default() };
-    let value = target.complete(tip, n, tick.criterion, &mut at).score.value;
+    let value = target.linearize_tip(tip, n, tick.criterion, &mut at).score.value;
     let (mut lower, mut upper) = ([0.0; MAX_DOF], [0.0; MAX_DOF]);
     for j in 0..n {
         [lower[j], upper[j]] = tick.limits.position_range(j, tick.time, tick.time + tick.dt);

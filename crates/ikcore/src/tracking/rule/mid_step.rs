@@ -6,8 +6,8 @@
 //! alive. Where a step does not lower the error, the box or a singularity is in the way: Levenberg-Marquardt, which only
 //! ever lowers it, takes over for the tick.
 
-use super::approach::Way;
-use super::{Found, Tick};
+use super::approach::Approach;
+use super::{Tick, TickResult};
 use crate::limits::Field;
 use crate::math::{
     Frame, MAX_DOF,
@@ -35,6 +35,17 @@ pub struct Memory {
     linearization: Box<Linearization>,
 }
 
+/// The linear model of a step: tip and Jacobian from which it is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Model {
+    /// Both at the beginning of the tick.
+    Begin,
+    /// The tip at the beginning, the Jacobian extrapolated to the middle of the tick.
+    MidTick,
+    /// Both where the last step has led.
+    Here,
+}
+
 /// Tip and geometric Jacobian at a configuration.
 #[derive(Debug)]
 struct Kinematics {
@@ -54,24 +65,24 @@ impl Kinematics {
     }
 }
 
-pub fn advance(memory: &mut Memory, q: &[f64], mut tick: Tick<'_>) -> Found {
+pub fn advance(memory: &mut Memory, q: &[f64], mut tick: Tick<'_>) -> TickResult {
     let mut x = Point::from_slice(q);
     tick.tick_box.clip(&mut x);
-    let mut found = Found::at(x);
+    let mut found = TickResult::at(x);
     if !memory.begin_known || *found.q != *q {
         // The first tick, or one that has to begin elsewhere because q is outside its limits.
         memory.begin.update(tick.robot, &found.q);
         memory.before_known = false;
         found.evaluations += 1;
     }
-    found.arrive(&memory.begin.tip, tick.target, tick.criterion);
+    found.set_tip(&memory.begin.tip, tick.target, tick.criterion);
     let value_at_rest = found.value();
-    let way = memory.way_with_braking(q, &found.q, &tick);
+    let braking = memory.approach_with_braking(q, &found.q, &tick);
     let mut moved =
-        way.is_none() && (memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick));
+        braking.is_none() && (memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick));
     if !found.is_solved() {
         moved = true;
-        if !memory.approach(way, q, value_at_rest, &mut found, &tick) {
+        if !memory.follow_approach(braking, q, value_at_rest, &mut found, &tick) {
             memory.levenberg_marquardt(&mut found, tick);
         }
     }
@@ -80,28 +91,28 @@ pub fn advance(memory: &mut Memory, q: &[f64], mut tick: Tick<'_>) -> Found {
 }
 
 impl Memory {
-    /// The arm did not go where it was sent.
+    /// Drops what is known: the arm is not where the last tick ended.
     pub fn forget(&mut self) {
         (self.begin_known, self.before_known) = (false, false);
     }
 
-    /// A step on which the freedom that the target leaves goes down the gradient of the goals, for the length of the tick,
-    /// and steps by the model from there. Whether that ended in the band; if not, nothing was done.
-    fn towards_goals(&mut self, found: &mut Found, tick: &mut Tick<'_>) -> bool {
+    /// A step that takes the joints down the gradient of the goals as far as the target leaves them free, and then steps by the
+    /// model until the tip is in the band. Whether it got there; if not, `found` is left as it was.
+    fn towards_goals(&mut self, found: &mut TickResult, tick: &mut Tick<'_>) -> bool {
         if tick.goals.is_empty() {
             return false;
         }
         let mut trial = found.clone();
-        let mut wished = found.q.clone();
-        tick.goals.cost(tick.robot, &found.q, &mut wished);
-        for (wished, q) in wished.iter_mut().zip(&found.q) {
-            *wished = q - tick.dt * *wished;
+        let mut preferred = found.q.clone();
+        tick.goals.cost(tick.robot, &found.q, &mut preferred);
+        for (preferred, q) in preferred.iter_mut().zip(&found.q) {
+            *preferred = q - tick.dt * *preferred;
         }
-        tick.tick_box.clip(&mut wished);
-        self.step(&mut trial, tick, self.before_known, false, Some(&wished));
+        tick.tick_box.clip(&mut preferred);
+        self.step(&mut trial, tick, self.first_model(), Some(&preferred));
         std::mem::swap(&mut self.here, &mut self.trial);
-        trial.arrive(&self.here.tip, tick.target, tick.criterion);
-        while !trial.is_solved() && trial.iterations < MOST_STEPS && self.lowers(&mut trial, tick, false, true) {}
+        trial.set_tip(&self.here.tip, tick.target, tick.criterion);
+        while !trial.is_solved() && trial.iterations < MOST_STEPS && self.lowers(&mut trial, tick, Model::Here) {}
         found.evaluations = trial.evaluations;
         if trial.is_solved() {
             *found = trial;
@@ -110,96 +121,104 @@ impl Memory {
     }
 
     /// Steps by the model while they lower the error; whether one did.
-    fn gauss_newton(&mut self, found: &mut Found, tick: &Tick<'_>) -> bool {
+    fn gauss_newton(&mut self, found: &mut TickResult, tick: &Tick<'_>) -> bool {
         let mut moved = false;
-        let mut extrapolate = self.before_known;
+        let mut model = self.first_model();
         // One step at least: an arm that waited until it is out of its band would move in jerks.
         while found.iterations == 0 || (found.iterations < MOST_STEPS && !found.is_solved()) {
-            if self.lowers(found, tick, extrapolate, moved) {
-                moved = true;
-            } else if !extrapolate {
-                break;
-            }
-            extrapolate = false;
+            model = match (self.lowers(found, tick, model), model) {
+                (true, _) => Model::Here,
+                (false, Model::MidTick) => Model::Begin,
+                (false, Model::Begin | Model::Here) => break,
+            };
+            moved |= model == Model::Here;
         }
         moved
     }
 
-    /// One step from where `found` is: at `here` once the arm `moved`, before that at `begin`. It is kept if it lowers the
-    /// error; whether it did.
-    fn lowers(&mut self, found: &mut Found, tick: &Tick<'_>, extrapolate: bool, moved: bool) -> bool {
+    /// The best model that is known at the beginning of a tick.
+    fn first_model(&self) -> Model {
+        if self.before_known { Model::MidTick } else { Model::Begin }
+    }
+
+    /// One step from where `found` is. It is kept if it lowers the error; whether it did.
+    fn lowers(&mut self, found: &mut TickResult, tick: &Tick<'_>, model: Model) -> bool {
         let from = Point::from_slice(&found.q);
-        self.step(found, tick, extrapolate, moved, None);
+        self.step(found, tick, model, None);
         if tick.target.assess_tip(&self.trial.tip, tick.criterion).score.value < found.value() {
             std::mem::swap(&mut self.here, &mut self.trial);
-            found.arrive(&self.here.tip, tick.target, tick.criterion);
+            found.set_tip(&self.here.tip, tick.target, tick.criterion);
             return true;
         }
         found.q = from;
         false
     }
 
-    /// Moves `found.q` to where the linearised target is met, as near as can be to `wished`, and leaves its kinematics in
-    /// `trial`.
-    fn step(&mut self, found: &mut Found, tick: &Tick<'_>, extrapolate: bool, moved: bool, wished: Option<&[f64]>) {
+    /// Moves `found.q` to where the target is met by the `model`, with the joints that it leaves free as near as possible to
+    /// `preferred`, and leaves the kinematics there in `trial`.
+    fn step(&mut self, found: &mut TickResult, tick: &Tick<'_>, model: Model, preferred: Option<&[f64]>) {
         let n = found.q.len();
-        let current = if moved { &self.here } else { &self.begin };
+        let current = match model {
+            Model::Here => &self.here,
+            Model::Begin | Model::MidTick => &self.begin,
+        };
         let Linearization { columns, .. } = &mut *self.linearization;
         columns[..n].copy_from_slice(&current.columns[..n]);
-        if extrapolate {
+        if model == Model::MidTick {
             towards_middle(&mut columns[..n], &self.before.columns);
         }
-        tick.target.complete(&current.tip, n, tick.criterion, &mut self.linearization);
+        tick.target.linearize_tip(&current.tip, n, tick.criterion, &mut self.linearization);
         let Linearization { columns, residual } = &*self.linearization;
         let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
         let damping = least_damping(&columns[..n]);
         let from = Point::from_slice(&found.q);
-        match wished {
+        match preferred {
             None => box_step(columns, residual, damping, &from, lower, upper, &mut found.q),
-            Some(wished) => box_step_near(columns, residual, damping, &from, wished, lower, upper, &mut found.q),
+            Some(preferred) => box_step_near(columns, residual, damping, &from, preferred, lower, upper, &mut found.q),
         }
         self.trial.update(tick.robot, &found.q);
         found.evaluations += 1;
         found.iterations += 1;
     }
 
-    /// The way to a target that the arm has not caught up with, and that it could reach faster than it could stop there.
-    fn way_with_braking(&self, q: &[f64], near: &[f64], tick: &Tick<'_>) -> Option<Way> {
+    /// The approach to a target that the arm has not caught up with, where it has to brake in time to stop there.
+    fn approach_with_braking(&self, q: &[f64], near: &[f64], tick: &Tick<'_>) -> Option<Approach> {
         let limited = tick.limits.field(Field::Acceleration).is_some();
         if !limited || tick.motion.begin.assess_tip(&self.begin.tip, tick.criterion).score.solved {
             return None;
         }
-        Some(self.way(q, near, tick)).filter(Way::needs_braking)
+        Some(self.approach(q, near, tick)).filter(Approach::needs_braking)
     }
 
-    fn way(&self, q: &[f64], near: &[f64], tick: &Tick<'_>) -> Way {
-        Way::new(q, near, &self.begin.tip, &self.begin.columns, tick)
+    fn approach(&self, q: &[f64], near: &[f64], tick: &Tick<'_>) -> Approach {
+        Approach::new(q, near, &self.begin.tip, &self.begin.columns, tick)
     }
 
-    /// One tick from `q` towards a target that is far, or before which the arm has to brake; whether it is one, and the tick
-    /// brought it nearer.
-    fn approach(
+    /// One tick from `q` towards a target that is far, or before which the arm has to brake. Whether the target is such a one,
+    /// and the tick brought the arm nearer.
+    fn follow_approach(
         &mut self,
-        braking: Option<Way>,
+        braking: Option<Approach>,
         q: &[f64],
         value_at_rest: f64,
-        found: &mut Found,
+        found: &mut TickResult,
         tick: &Tick<'_>,
     ) -> bool {
         let must_brake = braking.is_some();
         let mut x = Point::from_slice(q);
-        let way = braking.unwrap_or_else(|| {
+        let approach = braking.unwrap_or_else(|| {
             let mut near = Point::from_slice(q);
             tick.tick_box.clip(&mut near);
-            self.way(q, &near, tick)
+            self.approach(q, &near, tick)
         });
-        if !must_brake && !way.is_long() {
+        if !must_brake && !approach.is_far() {
             return false;
         }
-        way.walk(&mut x, tick);
+        approach.advance(&mut x, tick);
         self.trial.update(tick.robot, &x);
-        let mut ahead = Found { q: x, evaluations: found.evaluations + 1, iterations: found.iterations + 1, ..*found };
-        ahead.arrive(&self.trial.tip, tick.target, tick.criterion);
+        let mut ahead =
+            TickResult { q: x, evaluations: found.evaluations + 1, iterations: found.iterations + 1, ..*found };
+        ahead.set_tip(&self.trial.tip, tick.target, tick.criterion);
         // An arm that has to brake may be carried away from its target.
         if !must_brake && ahead.value() >= value_at_rest {
             return false;
@@ -209,8 +228,8 @@ impl Memory {
         true
     }
 
-    /// What the model's steps could not do, as far as it can be done.
-    fn levenberg_marquardt(&mut self, found: &mut Found, tick: Tick<'_>) {
+    /// Lowers the error as far as possible where the model's steps cannot.
+    fn levenberg_marquardt(&mut self, found: &mut TickResult, tick: Tick<'_>) {
         let mut problem = Problem::new(tick.robot, tick.target, *tick.criterion);
         let objective: &mut dyn Differentiable = &mut problem;
         let mut evaluator = Evaluator::new(objective, tick.tick_box, Stop::default(), tick.rng, tick.monitor);
@@ -218,13 +237,13 @@ impl Memory {
         let evaluations = evaluator.evaluations();
         found.q.copy_from_slice(&evaluator.best().x);
         self.here.update(tick.robot, &found.q);
-        found.arrive(&self.here.tip, tick.target, tick.criterion);
+        found.set_tip(&self.here.tip, tick.target, tick.criterion);
         found.evaluations += evaluations + 1;
         found.iterations += outcome.iterations;
         found.interrupted = outcome.halt == Halt::Interrupted;
     }
 
-    /// What is known at the end of a tick is known at the beginning of the next.
+    /// Hands the kinematics at the end of this tick on to the beginning of the next.
     fn hand_on(&mut self, moved: bool) {
         if moved {
             std::mem::swap(&mut self.before, &mut self.begin);

@@ -1,7 +1,7 @@
 //! Tick rules: what moves a modelled arm by one tick inside a given box.
 
+mod any_solver;
 mod approach;
-mod each_tick;
 mod mid_step;
 mod weighted_pseudo_inverse;
 
@@ -23,7 +23,7 @@ pub enum TickRule {
     #[default]
     MidStep,
     /// A solver, begun anew from the accepted configuration.
-    EachTick(AnySolver),
+    Solver(AnySolver),
     /// Velocities by the weighted pseudo-inverse of the Jacobian.
     WeightedPseudoInverse(WeightedPseudoInverse),
 }
@@ -35,7 +35,7 @@ pub(super) struct Tick<'a> {
     pub criterion: &'a Criterion,
     /// What to do with the freedom that the target leaves.
     pub goals: &'a mut Goals,
-    /// How the target comes to where it is to be met, for rules that work with velocities.
+    /// How the target moves during the tick, for rules that work with velocities.
     pub motion: TargetMotion,
     /// When the tick begins (s).
     pub time: f64,
@@ -53,9 +53,9 @@ pub(super) struct Tick<'a> {
     pub monitor: &'a mut dyn Monitor,
 }
 
-/// Where a rule would end the tick.
+/// Where a rule ends the tick, and what it took to get there.
 #[derive(Debug, Clone)]
-pub(super) struct Found {
+pub(super) struct TickResult {
     pub q: Point,
     pub assessment: Assessment,
     /// Position of the tip there (m).
@@ -66,7 +66,7 @@ pub(super) struct Found {
     pub interrupted: bool,
 }
 
-impl Found {
+impl TickResult {
     /// At `q`, with nothing known of it yet.
     fn at(q: Point) -> Self {
         let score = Score { value: f64::INFINITY, solved: false };
@@ -74,8 +74,8 @@ impl Found {
         Self { q, assessment, position: [f64::NAN; 3], evaluations: 0, iterations: 0, interrupted: false }
     }
 
-    /// The tip is there.
-    pub fn arrive(&mut self, tip: &Frame, target: &Target, criterion: &Criterion) {
+    /// Takes over the tip at `q`.
+    pub fn set_tip(&mut self, tip: &Frame, target: &Target, criterion: &Criterion) {
         (self.assessment, self.position) = (target.assess_tip(tip, criterion), tip.origin);
     }
 
@@ -92,7 +92,7 @@ impl Found {
 #[derive(Debug)]
 pub(super) enum Running {
     MidStep(mid_step::Memory),
-    EachTick(AnySolver),
+    Solver(AnySolver),
     WeightedPseudoInverse(WeightedPseudoInverse, weighted_pseudo_inverse::Scratch),
 }
 
@@ -104,7 +104,7 @@ impl TickRule {
     pub fn validate(&self) -> Result<()> {
         match self {
             Self::MidStep => Ok(()),
-            Self::EachTick(solver) => solver.validate(),
+            Self::Solver(solver) => solver.validate(),
             Self::WeightedPseudoInverse(rule) => rule.validate(),
         }
     }
@@ -112,14 +112,14 @@ impl TickRule {
     /// Checks them for `robot` and ticks of `dt` (s).
     pub(super) fn validate_for(&self, robot: &Robot, dt: f64) -> Result<()> {
         match self {
-            Self::MidStep | Self::EachTick(_) => Ok(()),
+            Self::MidStep | Self::Solver(_) => Ok(()),
             Self::WeightedPseudoInverse(rule) => rule.validate_for(robot, dt),
         }
     }
 
     /// Whether goals beside the path are served.
     pub(super) fn serves_goals(&self) -> bool {
-        !matches!(self, Self::EachTick(_))
+        !matches!(self, Self::Solver(_))
     }
 
     /// Whether the velocity of the target makes a difference.
@@ -130,7 +130,7 @@ impl TickRule {
     pub(super) fn start(&self) -> Running {
         match self {
             Self::MidStep => Running::MidStep(mid_step::Memory::default()),
-            Self::EachTick(solver) => Running::EachTick(solver.clone()),
+            Self::Solver(solver) => Running::Solver(solver.clone()),
             Self::WeightedPseudoInverse(rule) => {
                 Running::WeightedPseudoInverse(rule.clone(), weighted_pseudo_inverse::Scratch::default())
             }
@@ -139,7 +139,7 @@ impl TickRule {
 }
 
 impl Running {
-    /// What is remembered of the last tick is no longer so.
+    /// Drops what is remembered of the last tick: the arm is not where the rule left it.
     pub fn forget(&mut self) {
         if let Self::MidStep(memory) = self {
             memory.forget();
@@ -147,10 +147,10 @@ impl Running {
     }
 
     /// Ends one tick that begins at `q`.
-    pub fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> Found {
+    pub fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> TickResult {
         match self {
             Self::MidStep(memory) => mid_step::advance(memory, q, tick),
-            Self::EachTick(solver) => each_tick::advance(solver, q, tick),
+            Self::Solver(solver) => any_solver::advance(solver, q, tick),
             Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, q, tick),
         }
     }

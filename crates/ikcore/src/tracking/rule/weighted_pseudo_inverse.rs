@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use super::{Found, Tick};
+use super::{Tick, TickResult};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::MAX_DOF;
 use crate::math::box_step::box_step;
@@ -113,8 +113,8 @@ pub struct Scratch {
     neighbours: [Box<Linearization>; 2],
 }
 
-pub fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, q: &[f64], mut tick: Tick<'_>) -> Found {
-    let mut found = Found::at(Point::from_slice(q));
+pub fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, q: &[f64], mut tick: Tick<'_>) -> TickResult {
+    let mut found = TickResult::at(Point::from_slice(q));
     let mut stage = |from: &[f64], share: f64| {
         found.evaluations += 1;
         displacement(rule, scratch, q, from, share, &mut tick)
@@ -135,7 +135,7 @@ pub fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, q: &[f64], m
         }
     }
     tick.tick_box.clip(&mut found.q);
-    found.arrive(&tick.robot.tip(&found.q), tick.target, tick.criterion);
+    found.set_tip(&tick.robot.tip(&found.q), tick.target, tick.criterion);
     found.evaluations += 1;
     found.iterations = 1;
     found
@@ -152,7 +152,7 @@ fn displacement(
 ) -> Point {
     let gain = rule.gain.unwrap_or(SHARE_A_TICK / tick.dt);
     let drift = linearize(scratch, from, share, tick);
-    let wished = null_space_step(rule, from, share, tick);
+    let null_space_step = null_space_step(rule, from, share, tick);
     let Linearization { columns, residual } = &mut *scratch.linearization;
     let columns = &mut columns[..q.len()];
     // In units in which the norm of W is the length: y = W^(1/2) q.
@@ -161,7 +161,7 @@ fn displacement(
         column.iter_mut().for_each(|entry| *entry *= unit);
     }
     let scaled = |values: &[f64]| -> Point { values.iter().zip(&units).map(|(value, unit)| value / unit).collect() };
-    let demand = Demand {
+    let equations = ScaledEquations {
         // J q' = -K r - dr/dt, times dt.
         residual: std::array::from_fn(|i| tick.dt * (gain * residual[i] + drift[i])),
         lambda: rule.damping * columns.as_flattened().iter().map(|entry| entry * entry).sum::<f64>(),
@@ -170,12 +170,12 @@ fn displacement(
         lower: scaled(tick.tick_box.lower()),
         upper: scaled(tick.tick_box.upper()),
     };
-    let y = demand.meet(&scaled(&wished));
+    let y = equations.solve(&scaled(&null_space_step));
     y.iter().zip(&units).zip(q).map(|((y, unit), q)| y * unit - q).collect()
 }
 
-/// What a tick asks of the joints: J (y' - y) = -residual, y' in the box.
-struct Demand<'a> {
+/// The equations of a tick in scaled joint positions: J (y' - y) = -residual, y' in the box.
+struct ScaledEquations<'a> {
     columns: &'a [[f64; 6]],
     residual: [f64; 6],
     lambda: f64,
@@ -184,20 +184,20 @@ struct Demand<'a> {
     upper: Point,
 }
 
-/// How much of a wish is tried, one after the other, until the tip moves as it is to.
-const SHARES_OF_WISH: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0];
+/// Shares of the null-space step that are tried, one after the other, until the equations are met.
+const NULL_SPACE_SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0];
 
-/// Of the demanded motion, what counts as met.
+/// The equations count as met where this share of the residual is left.
 const MET: f64 = 1e-9;
 
-impl Demand<'_> {
-    /// The y' nearest to y + `wish` in which all is met; less of the wish where it would drive joints to their bounds
-    /// that the tip needs; what misses least where nothing meets all.
-    fn meet(&self, wish: &[f64]) -> Point {
+impl ScaledEquations<'_> {
+    /// The y' nearest to y + `step` that meets the equations. A smaller share of the step is taken where it would drive joints to
+    /// their bounds that the tip needs; where no share meets the equations, the one with the smallest residual.
+    fn solve(&self, step: &[f64]) -> Point {
         let enough = MET * norm(&self.residual);
         let mut best = (f64::INFINITY, Point::new());
-        for share in SHARES_OF_WISH {
-            let (missed, there) = self.near(wish, share);
+        for share in NULL_SPACE_SHARES {
+            let (missed, there) = self.nearest_to(step, share);
             if missed <= enough {
                 return there;
             }
@@ -208,19 +208,19 @@ impl Demand<'_> {
         best.1
     }
 
-    /// The y' nearest to y + share * `wish`, and what it misses.
-    fn near(&self, wish: &[f64], share: f64) -> (f64, Point) {
+    /// The y' nearest to y + share * `step`, and the residual that it leaves.
+    fn nearest_to(&self, step: &[f64], share: f64) -> (f64, Point) {
         let bounds = self.lower.iter().zip(&self.upper);
-        let wished = self.y.iter().zip(wish).zip(bounds);
+        let moved = self.y.iter().zip(step).zip(bounds);
         let begin: Point =
-            wished.map(|((y, wish), (lower, upper))| (y + share * wish).max(*lower).min(*upper)).collect();
+            moved.map(|((y, step), (lower, upper))| (y + share * step).max(*lower).min(*upper)).collect();
         let mut there = begin.clone();
-        box_step(self.columns, &self.left_at(&begin), self.lambda, &begin, &self.lower, &self.upper, &mut there);
-        (norm(&self.left_at(&there)), there)
+        box_step(self.columns, &self.residual_at(&begin), self.lambda, &begin, &self.lower, &self.upper, &mut there);
+        (norm(&self.residual_at(&there)), there)
     }
 
     /// residual + J (there - y).
-    fn left_at(&self, there: &[f64]) -> [f64; 6] {
+    fn residual_at(&self, there: &[f64]) -> [f64; 6] {
         let mut left = self.residual;
         for ((column, there), y) in self.columns.iter().zip(there).zip(&self.y) {
             left.iter_mut().zip(column).for_each(|(sum, entry)| *sum += entry * (there - y));
@@ -236,9 +236,9 @@ fn linearize(scratch: &mut Scratch, from: &[f64], share: f64, tick: &Tick<'_>) -
     let tip = tick.robot.tip_and_jacobian(from, &mut scratch.linearization.columns);
     for (neighbour, time) in scratch.neighbours.iter_mut().zip([tick.dt, -tick.dt]) {
         neighbour.columns[..n].copy_from_slice(&scratch.linearization.columns[..n]);
-        target.moved(&twist, time).complete(&tip, n, tick.criterion, neighbour);
+        target.moved(&twist, time).linearize_tip(&tip, n, tick.criterion, neighbour);
     }
-    target.complete(&tip, n, tick.criterion, &mut scratch.linearization);
+    target.linearize_tip(&tip, n, tick.criterion, &mut scratch.linearization);
     let [later, earlier] = &scratch.neighbours;
     std::array::from_fn(|i| (later.residual[i] - earlier.residual[i]) / (2.0 * tick.dt))
 }

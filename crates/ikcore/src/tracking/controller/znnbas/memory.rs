@@ -2,7 +2,8 @@
 
 use super::super::{Tick, Verdict};
 use super::{Accept, Antenna, Delay, Znnbas};
-use crate::math::vector::{sign, squared_distance};
+use crate::math::ordered::sign;
+use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::rng::LazyRng;
 

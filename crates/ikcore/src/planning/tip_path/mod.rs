@@ -1,54 +1,57 @@
-//! Where the tip is to go, whatever the time.
+//! The curve that the tip is to follow, whatever the time.
 
 mod corners;
-mod stroke;
+mod segment;
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use crate::error::{Error, Result};
+use crate::math::vector::distance;
 use crate::math::{Frame, pose};
 use crate::path::{Path, Reference};
 use crate::task::Target;
 use crate::wording::number;
-use stroke::{distance, distance_to_stroke, turn};
+use segment::{distance_to_segment, turn};
 
-/// The places that the tip is to pass, in order, straight from one to the next and turning about a fixed axis in between.
+/// The curve that the tip is to follow: straight segments between positions, with a rotation about a fixed axis on each where
+/// orientations are given.
 ///
-/// A place on it is told by its share of the whole way, from 0 to 1; a radian of turning counts as a metre.
+/// A place on it is named by its path parameter, its share of the whole length from 0 to 1, for which a radian of rotation
+/// counts as a metre.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Course {
+pub struct TipPath {
     shares: Vec<f64>,
     positions: Vec<[f64; 3]>,
     rotations: Option<Vec<UnitQuaternion<f64>>>,
-    /// Rows where the direction jumps.
+    /// Rows at which the direction jumps.
     corners: Vec<usize>,
-    /// When each row of a path is passed (s); None for given points, which go by their numbers.
+    /// When each row of a timed path is passed (s); None for given points, which messages number.
     times: Option<Vec<f64>>,
     points: Reference,
-    /// Shares of the way at which they lie.
+    /// Path parameters of those points.
     point_shares: Vec<f64>,
 }
 
-/// Intervals of equal time that a [`Path`] is looked at in: its chords leave a circle by 5e-6 of the radius.
+/// Intervals of equal time in which a [`Path`] is sampled: on a circle their chords err by 5e-6 of the radius.
 const INTERVALS: usize = 1000;
 
 /// Intervals of equal time between the points that the published planner passes.
 const POINTS: usize = 50;
 
-/// Steps below this share of the way lead nowhere: a path that pauses.
+/// A path pauses where it advances by less than this share of its length.
 const PAUSE: f64 = 1e-9;
 
-impl Course {
+impl TipPath {
     /// Straight from row to row of `points`; their times do not matter.
     ///
     /// # Errors
-    /// [`Error::InvalidPath`] where a point repeats the one before it: no curve leads on from there.
+    /// [`Error::InvalidPath`] where a point repeats the one before it.
     pub fn through(points: &Reference) -> Result<Self> {
         refuse_repetition(points)?;
         Self::from_rows(points.clone(), (0..points.len()).collect(), None)
     }
 
-    /// Along `path`, looked at closely.
+    /// Along `path`, finely sampled.
     ///
     /// # Errors
     /// As [`sampled`](Self::sampled).
@@ -59,7 +62,7 @@ impl Course {
         Self::sampled(times, positions, rotations)
     }
 
-    /// The times (s) at which a path of this `duration` is looked at, those of its `corners` among them.
+    /// The times (s) at which a path of this `duration` is sampled, those of its `corners` among them.
     pub fn times(duration: f64, corners: &[f64]) -> Vec<f64> {
         let even = (0..=INTERVALS).map(|i| duration * (i as f64 / INTERVALS as f64));
         let inside = corners.iter().copied().filter(|t| 0.0 < *t && *t < duration);
@@ -69,7 +72,7 @@ impl Course {
         times
     }
 
-    /// Through a path's `positions` (m) and rotations at its [`times`](Self::times). Where it pauses does not matter.
+    /// Through a path's `positions` (m) and rotations at its [`times`](Self::times). Pauses are left out.
     ///
     /// # Errors
     /// [`Error::InvalidPath`] for a path that stays in one place; [`Error::NotFinite`], [`Error::NotRigid`].
@@ -91,7 +94,7 @@ impl Course {
         let rotations: Option<Vec<_>> = rows.clone().map(|i| reference.rotation(i).map(quaternion)).collect();
         let step = |i: usize| {
             let turned = rotations.as_ref().map_or(0.0, |rows| rows[i - 1].angle_to(&rows[i]));
-            distance(reference.position(i), reference.position(i - 1)).hypot(turned)
+            distance(&reference.position(i), &reference.position(i - 1)).hypot(turned)
         };
         let steps: Vec<f64> = rows.clone().map(|i| if i == 0 { 0.0 } else { step(i) }).collect();
         let way: f64 = steps.iter().sum();
@@ -112,7 +115,7 @@ impl Course {
         let positions: Vec<[f64; 3]> = kept.iter().map(|i| reference.position(*i)).collect();
         let place = points.iter().map(|i| reference.position(*i)).collect();
         let turned = points.iter().map(|i| reference.rotation(*i)).collect();
-        let course = Self {
+        let tip_path = Self {
             shares: kept.iter().map(|i| share(*i)).collect(),
             corners: vec![],
             rotations: rotations.map(|rows| kept.iter().map(|i| rows[*i]).collect()),
@@ -121,7 +124,7 @@ impl Course {
             point_shares: points.iter().map(|i| share(*i)).collect(),
             positions,
         };
-        Ok(Self { corners: course.sharpest_turns(), ..course })
+        Ok(Self { corners: tip_path.sharpest_turns(), ..tip_path })
     }
 
     /// The points that the published planner passes: those given, or 51 at equal times.
@@ -129,12 +132,12 @@ impl Course {
         &self.points
     }
 
-    /// Shares of the way at which they lie.
+    /// Their path parameters.
     pub fn point_shares(&self) -> &[f64] {
         &self.point_shares
     }
 
-    /// Positions (m) between which it is straight.
+    /// The ends of its straight segments (m).
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }
@@ -153,25 +156,25 @@ impl Course {
         self.rotations.as_ref().map_or(0.0, |rows| rows.windows(2).map(|pair| pair[0].angle_to(&pair[1])).sum())
     }
 
-    /// By how much (m) chords between its rows may leave the curve that was sampled: the rise of an arc that turns as they
-    /// do.
+    /// By how much (m) the segments may leave the curve that was sampled: the rise of a circular arc with their lengths and
+    /// angles.
     pub fn coarseness(&self) -> f64 {
         let smooth = |row: &usize| self.corners.binary_search(row).is_err();
         let rise = |row: usize| {
             let [before, here, after] = [row - 1, row, row + 1].map(|i| self.positions[i]);
-            let chord = distance(before, here).max(distance(here, after));
+            let chord = distance(&before, &here).max(distance(&here, &after));
             0.5 * chord * (0.25 * turn(before, here, after)).tan()
         };
         (1..self.positions.len() - 1).filter(smooth).map(rise).fold(0.0, f64::max)
     }
 
-    /// Shares of the way at which its direction jumps.
+    /// Path parameters at which its direction jumps.
     pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
         self.corners.iter().map(|row| self.shares[*row])
     }
 
-    /// Shares of the way from 0 to 1, all corners among them, the others about one `intervals`-th apart and at rows as far
-    /// as there are any.
+    /// Path parameters from 0 to 1, all corners among them, the others about 1 / `intervals` apart, at rows where rows are dense
+    /// enough.
     pub fn knots(&self, intervals: usize) -> Vec<f64> {
         let spacing = 1.0 / intervals as f64;
         let (mut knots, mut fixed) = (vec![0.0], true);
@@ -182,7 +185,7 @@ impl Course {
                 continue;
             }
             if since < 0.5 * spacing && !fixed {
-                knots.pop(); // too near to what must be there
+                knots.pop(); // too near to a knot that is needed
             }
             let from = knots[knots.len() - 1];
             let count = ((share - from) / spacing).round().max(1.0) as usize;
@@ -193,7 +196,7 @@ impl Course {
         knots
     }
 
-    /// What the tip is to reach at this share of the way.
+    /// What the tip is to reach at this path parameter.
     pub fn target(&self, share: f64) -> Target {
         let (row, part) = self.locate(share);
         let position = self.position(share);
@@ -213,14 +216,14 @@ impl Course {
         std::array::from_fn(|k| (1.0 - part) * from[k] + part * to[k])
     }
 
-    /// How far (m) a position is from the stretch between two shares of the way.
+    /// The distance (m) of a position from the part of the curve between two path parameters.
     pub fn distance(&self, position: [f64; 3], from: f64, to: f64) -> f64 {
         let (first, last) = (self.locate(from.max(0.0)).0, self.locate(to.min(1.0)).0);
-        let strokes = self.positions[first..=last + 1].windows(2);
-        strokes.map(|ends| distance_to_stroke(position, ends[0], ends[1])).fold(f64::INFINITY, f64::min)
+        let segments = self.positions[first..=last + 1].windows(2);
+        segments.map(|ends| distance_to_segment(position, ends[0], ends[1])).fold(f64::INFINITY, f64::min)
     }
 
-    /// The place at this share of the way, in words.
+    /// The place at this path parameter, in words.
     pub fn place(&self, share: f64) -> String {
         let (row, part) = self.locate(share);
         match &self.times {
@@ -234,7 +237,7 @@ impl Course {
         }
     }
 
-    /// The row that begins the stroke at this share of the way, and how much of the stroke lies behind.
+    /// The row at which the segment of this path parameter begins, and the share of the segment before it.
     fn locate(&self, share: f64) -> (usize, f64) {
         let row = self.shares.partition_point(|start| *start <= share).clamp(1, self.shares.len() - 1) - 1;
         let [from, to] = [self.shares[row], self.shares[row + 1]];
@@ -242,7 +245,7 @@ impl Course {
     }
 }
 
-/// Err where a point is the one before it again: no curve leads on from there.
+/// Err where a point repeats the one before it: a spline needs points that differ.
 ///
 /// # Errors
 /// [`Error::InvalidPath`].

@@ -1,4 +1,4 @@
-//! Kinematics of many configurations at once, as the row-after-row tables that arrays are made of.
+//! Kinematics of many configurations, in and out as arrays stored row after row.
 
 use super::{Columns, MAX_DOF, Robot};
 use crate::error::{Error, Result};

@@ -6,26 +6,17 @@ use crate::error::Result;
 use crate::objective::{Bounds, Objective, Point, Score};
 use crate::planning::plan::Improvement;
 use crate::rng;
-use crate::solver::{AnySolver, BeetleSwarm, DerivativeFree, Evaluator, Monitor, Outcome, Schedule, Status, Stop};
+use crate::solver::{AnySolver, DerivativeFree, Evaluator, Monitor, Outcome, Status, Stop};
 
 /// What searches, and for how long.
 pub struct Search<'a> {
-    /// None: the beetle swarm.
-    pub solver: Option<&'a AnySolver<DerivativeFree>>,
-    /// None: as many evaluations as the beetle swarm spends in its 200 iterations.
-    pub stop: Option<Stop>,
+    /// The algorithm.
+    pub solver: &'a AnySolver<DerivativeFree>,
+    /// Its budgets.
+    pub stop: Stop,
     /// Of the random draws.
     pub seed: u64,
 }
-
-/// The beetle swarm, for as long as its budget lasts: the published one does not look whether it still gains.
-fn published_swarm() -> BeetleSwarm {
-    let swarm = BeetleSwarm::default();
-    BeetleSwarm { schedule: Schedule { stall_generations: usize::MAX, ..swarm.schedule }, ..swarm }
-}
-
-/// 50 beetles that look at two antennae and at where they go, 200 times, and at where they start.
-const EVALUATIONS: usize = 50 * (3 * 200 + 1);
 
 /// What a search found.
 pub struct Found {
@@ -55,16 +46,14 @@ impl Search<'_> {
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for wrong options of the solver or a budget of zero.
     pub fn run(&self, cost: &mut dyn Objective, bounds: &Bounds, monitor: &mut dyn Monitor) -> Result<Found> {
-        let standard = AnySolver::Single(DerivativeFree::from(published_swarm()));
-        let solver = self.solver.unwrap_or(&standard);
-        let stop = self.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() });
+        let Self { solver, stop, seed } = *self;
         solver.validate()?;
         stop.validate()?;
         let done = Cell::new(0);
         let mut recorded = Recorded { cost, history: vec![], done: &done };
         let mut reporting = Reporting { monitor, done: &done, total: stop.max_evaluations };
         // Stream 0 and those after it belong to the inverse kinematics of the ends.
-        let mut rng = rng::stream(self.seed, u64::MAX);
+        let mut rng = rng::stream(seed, u64::MAX);
         let mut x0 = Point::from_elem(0.0, recorded.dimension());
         bounds.sample(&mut rng, &mut x0);
         let objective: &mut dyn Objective = &mut recorded;

@@ -1,22 +1,23 @@
-//! Where a course has corners.
+//! The corners of a path.
 
-use super::Course;
-use super::stroke::turn;
+use super::TipPath;
+use super::segment::turn;
 
-/// Turning by more than this (rad) within a short stretch is a corner; by less, a curve.
+/// A change of direction by more than this (rad) within a short part of the path is a corner, by less a bend.
 const CORNER: f64 = 0.5;
 
-/// Half that stretch, as a share of the way. In it there is one corner at the most, and noise of measured points is none.
+/// Half the length of that part, as a share of the path. It holds one corner at most, and is long enough that noise in
+/// measured points does not pass for one.
 const NEAR: f64 = 0.005;
 
-impl Course {
-    /// Rows at which the direction turns more than anywhere near, and by enough for a corner.
+impl TipPath {
+    /// Rows at which the direction changes more than anywhere near, and by enough for a corner.
     pub(super) fn sharpest_turns(&self) -> Vec<usize> {
         let shares = &self.shares;
         let turn_at = |row: usize| {
             turn(self.position(shares[row] - NEAR), self.positions[row], self.position(shares[row] + NEAR))
         };
-        // Nearer to its ends than that, the course has no direction that could be told from noise.
+        // Nearer to the ends of the path its direction cannot be told from noise.
         let inner = (1..shares.len() - 1).filter(|row| NEAR <= shares[*row] && shares[*row] <= 1.0 - NEAR);
         let turns = inner.map(|row| (row, turn_at(row)));
         let sharp: Vec<(usize, f64)> = turns.filter(|(_, turn)| *turn > CORNER).collect();

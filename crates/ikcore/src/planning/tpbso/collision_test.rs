@@ -1,8 +1,8 @@
-//! What a motion may not touch: looked at in samples by the search, certified for the plan.
+//! The collisions of a motion: tested at samples by the search, certified for the plan.
 
 use crate::error::Result;
 use crate::obstacle::{Obstacle, Scene, Shape, Sweep};
-use crate::planning::minmax::{InTime, refuse_collision, too_near};
+use crate::planning::collision::{self, TimedMotion, refuse_collision, too_near};
 use crate::planning::plan::Violation;
 use crate::planning::planar_arm::PlanarArm;
 use crate::planning::point_to_point::PointToPointOptions;
@@ -11,7 +11,7 @@ use crate::trajectory::Trajectory;
 
 /// What a motion of a robot may not touch.
 #[derive(Debug, Clone)]
-pub struct Surroundings<'a> {
+pub struct CollisionTest<'a> {
     scene: Scene<'a>,
     margin: f64,
     /// For a planar arm of lines among ellipses: the exact test of section 4, several times quicker than distances.
@@ -27,46 +27,32 @@ struct UnitDisc {
     semi_axes: [f64; 2],
 }
 
-/// A search keeps so much more than the margin, in shares of the arm's length: between two samples it may come nearer.
+/// What a search keeps beyond the margin, as a share of the arm's length, because the arm may come nearer between two samples.
 /// Without it 9 to 20 of 20 plans graze an obstacle that their samples miss.
 const ALLOWANCE: f64 = 0.005;
 
-/// `robot` as the planner sees it among these obstacles: links without capsules are lines where the arm is planar, as
-/// published. None where there is nothing to touch.
-///
-/// # Errors
-/// As [`Robot::with_capsules_along_links`].
-pub fn body(robot: &Robot, obstacles: &[Obstacle]) -> Result<Option<Robot>> {
-    let bare = robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
-    match (bare, obstacles.is_empty()) {
-        (true, true) => Ok(None),
-        (true, false) if PlanarArm::of(robot).is_some() => robot.with_capsules_along_links(0.0).map(Some),
-        _ => Ok(Some(robot.clone())),
-    }
-}
-
-impl<'a> Surroundings<'a> {
-    /// What `body` may not touch, of the planner's `options`; `lines` for a planar arm that had no capsules.
+impl<'a> CollisionTest<'a> {
+    /// What `robot`, seen as `lines` where it has no other shape, may not touch of the planner's `options`.
     ///
     /// # Errors
-    /// [`Error::NoCapsules`], [`Error::InvalidObstacle`], [`Error::OutOfRange`] for a negative margin.
-    pub fn new(body: &'a Robot, options: &'a PointToPointOptions, lines: bool) -> Result<Self> {
+    /// [`Error::NoCapsules`](crate::Error::NoCapsules), [`Error::InvalidObstacle`](crate::Error::InvalidObstacle),
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a negative margin.
+    pub fn new(robot: &'a Robot, lines: Option<&'a Robot>, options: &'a PointToPointOptions) -> Result<Self> {
         let margin = options.kept_margin()?;
-        let scene = Scene::new(body, &options.obstacles)?;
-        if !lines {
-            return Ok(Self { scene, margin, flat: None });
-        }
-        let arm = PlanarArm::of(body);
-        let room = margin + arm.as_ref().map_or(0.0, |arm| ALLOWANCE * arm.lengths().iter().sum::<f64>());
-        let discs: Option<Vec<_>> = options.obstacles.iter().map(|obstacle| UnitDisc::of(obstacle, room)).collect();
-        // Lines may pass over each other: the paper's arm has no thickness.
-        Ok(Self { scene: scene.without_self_collision(), margin, flat: arm.zip(discs) })
+        let scene = collision::scene(robot, lines, &options.obstacles)?;
+        let flat = lines.and_then(|lines| {
+            let arm = PlanarArm::of(lines)?;
+            let kept = margin + ALLOWANCE * arm.lengths().iter().sum::<f64>();
+            let discs: Option<Vec<_>> = options.obstacles.iter().map(|obstacle| UnitDisc::of(obstacle, kept)).collect();
+            Some((arm, discs?))
+        });
+        Ok(Self { scene, margin, flat })
     }
 
     /// Err for a configuration that is too near to something; `what` names it.
     ///
     /// # Errors
-    /// [`Error::InCollision`].
+    /// [`Error::InCollision`](crate::Error::InCollision).
     pub fn refuse_collision(&self, what: &str, q: &[f64]) -> Result<()> {
         refuse_collision(what, &self.scene, q, self.margin)
     }
@@ -89,18 +75,18 @@ impl<'a> Surroundings<'a> {
     /// The smallest distance (m) on all of the motion, proven between samples too, and what it breaks; None where nothing
     /// can touch.
     pub fn clearance(&self, trajectory: &Trajectory) -> Option<(f64, Option<Violation>)> {
-        let near = Sweep::new(&self.scene).smallest(&InTime(trajectory), [0.0, trajectory.duration()])?;
+        let near = Sweep::new(&self.scene).smallest(&TimedMotion(trajectory), [0.0, trajectory.duration()])?;
         let distance = near.contact.distance;
         Some((distance, (distance < self.margin).then(|| too_near(&near.contact, self.margin))))
     }
 }
 
 impl UnitDisc {
-    /// The ellipse of `obstacle` with `room` around it; None for any other shape.
-    fn of(obstacle: &Obstacle, room: f64) -> Option<Self> {
+    /// The ellipse of `obstacle` grown by `kept` (m); None for any other shape.
+    fn of(obstacle: &Obstacle, kept: f64) -> Option<Self> {
         match *obstacle.shape() {
             Shape::Ellipse { center, semi_axes, angle } => {
-                let semi_axes = semi_axes.map(|semi_axis| semi_axis + room);
+                let semi_axes = semi_axes.map(|semi_axis| semi_axis + kept);
                 Some(Self { center, direction: [angle.cos(), angle.sin()], semi_axes })
             }
             _ => None,

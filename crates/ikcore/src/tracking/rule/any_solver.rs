@@ -1,21 +1,21 @@
 //! Any solver as a tick rule: begun anew from the accepted configuration, in the box of the tick.
 
-use super::{Found, Tick};
+use super::{Tick, TickResult};
 use crate::objective::Differentiable;
 use crate::problem::Problem;
 use crate::solver::{AnySolver, Evaluator, Halt, Stop};
 use crate::task::{Criterion, Outside};
 
-pub fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> Found {
+pub fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> TickResult {
     let Tick { robot, target, criterion, tick_box, last_value, rng, monitor, .. } = tick;
     // The arm begins inside its region: nothing outside need be looked at.
-    let kept = Criterion { outside: Outside::Worthless, ..*criterion };
+    let kept = Criterion { outside: Outside::Infinite, ..*criterion };
     let mut problem = Problem::new(robot, target, kept);
     let objective: &mut dyn Differentiable = &mut problem;
     let mut evaluator = Evaluator::new(objective, tick_box, stop(solver, last_value), rng, monitor);
     let outcome = solver.run(&mut evaluator, q);
     let best = evaluator.best().x.clone();
-    Found {
+    TickResult {
         assessment: target.assess(robot, &best, criterion),
         position: robot.tip_position(&best),
         q: best,

@@ -1,39 +1,49 @@
-//! How fast the velocity limits let the path be followed.
+//! How fast the velocity limits let the path be followed: the maximum velocity curve.
 
+use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
 use super::limits::TimingLimits;
-use super::shape::Shape;
 use crate::math::polynomial::quadratic_roots;
 
 /// Stands for "as fast as you like", and leaves room to calculate.
 pub(super) const UNLIMITED: f64 = 1e100;
 
-/// From one grid point to the next the bound may grow by this factor at most. Where the path turns it has a pole, and a
-/// line from a finite to an infinite bound bounds nothing.
+/// From one grid point to the next the bound may grow by this factor at most. Where all joints turn back at once dq/ds is
+/// zero and the bound infinite, and a line from a finite to an infinite bound bounds nothing.
 const LARGEST_GROWTH: f64 = 4.0;
 
 /// Bounds on the squared path speed x = (ds/dt)^2 at the ends of all segments, such that a motion which keeps them, with
 /// x linear in s in between, keeps the velocity limits at every point: |dq/ds| sqrt(x) <= v.
-pub(super) fn ceilings(path: &JointPath, limits: &TimingLimits, segments: &[Segment], shape: &mut Shape) -> Vec<f64> {
-    let mut ceilings = at_grid_points(path, limits, segments, shape);
-    tame_poles(&mut ceilings);
+pub(super) fn maximum_velocity_curve(
+    path: &JointPath,
+    limits: &TimingLimits,
+    segments: &[Segment],
+    derivatives: &mut PathDerivatives,
+) -> Vec<f64> {
+    let mut curve = at_grid_points(path, limits, segments, derivatives);
+    tame_poles(&mut curve);
     let mut factor_before = f64::INFINITY;
-    let mut left = ceilings[0];
+    let mut left = curve[0];
     for (i, segment) in segments.iter().enumerate() {
-        shape.fill(path, segment);
-        let right = ceilings[i + 1];
-        let factor = chord_factor(shape, limits, left, right);
-        ceilings[i] = left * factor.min(factor_before);
+        derivatives.fill(path, segment);
+        let right = curve[i + 1];
+        let factor = chord_factor(derivatives, limits, left, right);
+        curve[i] = left * factor.min(factor_before);
         (left, factor_before) = (right, factor);
     }
-    ceilings[segments.len()] = left * factor_before;
-    ceilings
+    curve[segments.len()] = left * factor_before;
+    curve
 }
 
 /// min over the joints of (v / q')^2; zero at corners.
-fn at_grid_points(path: &JointPath, limits: &TimingLimits, segments: &[Segment], shape: &mut Shape) -> Vec<f64> {
-    let mut ceilings = vec![UNLIMITED; segments.len() + 1];
+fn at_grid_points(
+    path: &JointPath,
+    limits: &TimingLimits,
+    segments: &[Segment],
+    derivatives: &mut PathDerivatives,
+) -> Vec<f64> {
+    let mut curve = vec![UNLIMITED; segments.len() + 1];
     let bound = |slope: &[f64]| {
         let ratios = slope
             .iter()
@@ -42,38 +52,38 @@ fn at_grid_points(path: &JointPath, limits: &TimingLimits, segments: &[Segment],
         ratios.map(|ratio| ratio * ratio).fold(UNLIMITED, f64::min)
     };
     for (i, segment) in segments.iter().enumerate() {
-        shape.fill(path, segment);
-        ceilings[i] = bound(&shape.slope[0]).min(ceilings[i]);
-        ceilings[i + 1] = bound(&shape.slope[2]);
+        derivatives.fill(path, segment);
+        curve[i] = bound(&derivatives.first[0]).min(curve[i]);
+        curve[i + 1] = bound(&derivatives.first[2]);
         if segment.piece > 0 && segment.from == 0.0 && path.has_corner_after(segment.piece - 1) {
-            ceilings[i] = 0.0;
+            curve[i] = 0.0;
         }
     }
-    ceilings
+    curve
 }
 
-fn tame_poles(ceilings: &mut [f64]) {
-    for i in 1..ceilings.len() {
-        ceilings[i] = ceilings[i].min(growth(ceilings[i - 1]));
+fn tame_poles(curve: &mut [f64]) {
+    for i in 1..curve.len() {
+        curve[i] = curve[i].min(growth(curve[i - 1]));
     }
-    for i in (1..ceilings.len()).rev() {
-        ceilings[i - 1] = ceilings[i - 1].min(growth(ceilings[i]));
+    for i in (1..curve.len()).rev() {
+        curve[i - 1] = curve[i - 1].min(growth(curve[i]));
     }
 }
 
-/// What may follow on a bound; a corner's zero says nothing about its neighbours.
+/// The largest bound that may stand beside this one; a corner's zero says nothing about its neighbours.
 fn growth(bound: f64) -> f64 {
     if bound == 0.0 { UNLIMITED } else { LARGEST_GROWTH * bound }
 }
 
 /// By how much the chord x(s) from `left` to `right` must be lowered to keep the velocity limits in between.
-fn chord_factor(shape: &Shape, limits: &TimingLimits, left: f64, right: f64) -> f64 {
+fn chord_factor(derivatives: &PathDerivatives, limits: &TimingLimits, left: f64, right: f64) -> f64 {
     let m = (0.5 * (left + right)).sqrt();
     if m == 0.0 || m >= UNLIMITED.sqrt() {
         return 1.0;
     }
     let [g0, g1] = [left, right].map(|x| 0.5 * (x / m + m));
-    let [d0, d1, d2] = &shape.slope;
+    let [d0, d1, d2] = &derivatives.first;
     let mut excess = 1.0_f64;
     for (j, limit) in limits.velocity.iter().enumerate() {
         // sqrt(x) lies below its tangent at any m^2, sqrt(x) <= (x / m + m) / 2, which is linear in s as x is; so the
@@ -89,17 +99,17 @@ fn chord_factor(shape: &Shape, limits: &TimingLimits, left: f64, right: f64) -> 
 
 /// The largest q'(s)^2 x(s) between the ends of a segment, for q' with these Bernstein coefficients and x linear.
 ///
-/// It is level where q' = 0, or where 2 q'' x + q' x' = 0, a quadratic.
+/// Its derivative vanishes where q' = 0, or where 2 q'' x + q' x' = 0, a quadratic.
 fn fastest([d0, d1, d2]: [f64; 3], [left, right]: [f64; 2]) -> f64 {
-    let (slope, bend) = (2.0 * (d1 - d0), d0 - 2.0 * d1 + d2);
+    let (slope, curvature) = (2.0 * (d1 - d0), d0 - 2.0 * d1 + d2);
     let rise = right - left;
     let level = quadratic_roots(
         2.0 * slope * left + d0 * rise,
-        2.0 * (slope * rise + 2.0 * bend * left) + slope * rise,
-        4.0 * bend * rise + bend * rise,
+        2.0 * (slope * rise + 2.0 * curvature * left) + slope * rise,
+        4.0 * curvature * rise + curvature * rise,
         0.0,
         1.0,
     );
-    let squared = |s: f64| (d0 + s * (slope + s * bend)).powi(2) * (left + s * rise);
+    let squared = |s: f64| (d0 + s * (slope + s * curvature)).powi(2) * (left + s * rise);
     level.into_iter().map(squared).fold(squared(0.0).max(squared(1.0)), f64::max)
 }

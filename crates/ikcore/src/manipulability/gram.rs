@@ -1,5 +1,5 @@
-//! The quick way far from singularities: det(J J') by an LDL' factorisation, a tenth of the work of singular values. Near
-//! them squaring J would lose the digits that matter; there the singular values take over.
+//! The Gram matrix J J' and its LDL' factorisation: the index far from singularities, at a tenth of the work of singular values.
+//! Near singularities squaring J would lose the digits that matter; there the singular values take over.
 
 use std::ops::Range;
 
@@ -11,13 +11,13 @@ const ROWS: usize = 6;
 const NEAR: f64 = 1e-6;
 
 /// J J' = L D L' of the rows that count.
-pub(super) struct Regular {
+pub(super) struct GramFactor {
     rows: Range<usize>,
     /// Below the diagonal L, on it the pivots.
     factor: [[f64; ROWS]; ROWS],
 }
 
-impl Regular {
+impl GramFactor {
     /// Of the matrix with these columns; None near a singularity.
     pub fn of(columns: &[[f64; ROWS]], rows: Range<usize>) -> Option<Self> {
         let mut a = [[0.0; ROWS]; ROWS];

@@ -63,8 +63,8 @@ impl Hull {
         triangles.into_iter().map(|triangle| triangle.map(corner)).collect()
     }
 
-    /// Middle and radius of a ball that holds it.
-    pub(super) fn ball(&self) -> ([f64; 3], f64) {
+    /// Centre and radius of a sphere that holds it.
+    pub(super) fn bounding_sphere(&self) -> ([f64; 3], f64) {
         let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;
         let reach = self.corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
         (middle.into(), reach)

@@ -1,30 +1,30 @@
 //! The derivatives of the path over one segment, as Bernstein coefficients: a polynomial stays between the smallest and
-//! the largest of its own, so that a bound on them is a bound at every point of the segment.
+//! the largest of its Bernstein coefficients, so that a bound on them is a bound at every point of the segment.
 
 use super::grid::Segment;
 use super::joint_path::JointPath;
 
 /// Of each joint, over one segment: the quadratic dq/ds and the linear d2q/ds2.
 #[derive(Debug)]
-pub(super) struct Shape {
+pub(super) struct PathDerivatives {
     /// Bernstein coefficients of dq/ds: at the beginning, between, at the end.
-    pub slope: [Vec<f64>; 3],
+    pub first: [Vec<f64>; 3],
     /// d2q/ds2 at the beginning and at the end.
-    pub bend: [Vec<f64>; 2],
+    pub second: [Vec<f64>; 2],
 }
 
-impl Shape {
+impl PathDerivatives {
     pub fn new(joints: usize) -> Self {
-        Self { slope: [(); 3].map(|()| vec![0.0; joints]), bend: [(); 2].map(|()| vec![0.0; joints]) }
+        Self { first: [(); 3].map(|()| vec![0.0; joints]), second: [(); 2].map(|()| vec![0.0; joints]) }
     }
 
-    /// The shape of `path` over `segment`.
+    /// The derivatives of `path` over `segment`.
     pub fn fill(&mut self, path: &JointPath, segment: &Segment) {
         let Segment { piece, from, length } = *segment;
         let [_, c1, c2, c3] = path.powers(piece);
         let n = c1.len();
-        let [d0, d1, d2] = self.slope.each_mut().map(|row| &mut row[..n]);
-        let [e0, e1] = self.bend.each_mut().map(|row| &mut row[..n]);
+        let [d0, d1, d2] = self.first.each_mut().map(|row| &mut row[..n]);
+        let [e0, e1] = self.second.each_mut().map(|row| &mut row[..n]);
         for j in 0..n {
             e0[j] = 2.0 * c2[j] + 6.0 * c3[j] * from;
             e1[j] = e0[j] + 6.0 * c3[j] * length;

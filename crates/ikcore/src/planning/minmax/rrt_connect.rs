@@ -1,16 +1,16 @@
-//! A collision-free way through joint space: two trees that grow towards each other (RRT-Connect, Kuffner and LaValle,
+//! A collision-free path through joint space: two trees that grow towards each other (RRT-Connect, Kuffner and LaValle,
 //! ICRA 2000), every edge certified between its ends.
 
-use super::pace::Polyline;
+use super::line_timing::Polyline;
 use crate::obstacle::{Edge, Scene, Sweep};
 use crate::planning::MotionLimits;
 use crate::rng::LazyRng;
 use crate::solver::Monitor;
 
-/// How the search for a way ended.
+/// How the search for a path ended.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Way {
-    /// A way, clear on all its lines.
+pub(super) enum Connection {
+    /// A path, clear on all its lines.
     Found(Polyline),
     /// The budget was spent before the trees met.
     NotFound,
@@ -18,22 +18,22 @@ pub(super) enum Way {
     Interrupted,
 }
 
-/// Length of an edge while a tree grows, in ranges of the joints.
+/// Length of an edge while a tree grows: the joints' displacements, each as a share of its range.
 const STRIDE: f64 = 0.08;
 
-/// What the search is held to.
-pub(super) struct Room<'a> {
+/// The search, and what it keeps to.
+pub(super) struct TreeSearch<'a> {
     pub scene: &'a Scene<'a>,
     pub sweep: Sweep<'a>,
     /// Distance to keep (m).
     pub margin: f64,
     /// Lowest and highest value of each joint.
     pub ranges: Vec<(f64, f64)>,
-    /// Configurations that may be looked at in all.
+    /// Configurations that may be examined in all.
     pub budget: usize,
 }
 
-impl<'a> Room<'a> {
+impl<'a> TreeSearch<'a> {
     pub(super) fn new(scene: &'a Scene<'a>, limits: &MotionLimits, margin: f64, budget: usize) -> Self {
         let joints = scene.robot().joints().iter().enumerate();
         let ranges = joints.map(|(j, joint)| joint.sampling_range_within(limits.lower[j], limits.upper[j])).collect();
@@ -46,48 +46,48 @@ impl<'a> Room<'a> {
     }
 
     fn is_spent(&self) -> bool {
-        self.sweep.looks() >= self.budget
+        self.sweep.examined() >= self.budget
     }
 
-    /// Squared distance in ranges of the joints.
+    /// Squared distance, each joint's displacement as a share of its range.
     fn squared_distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let share = |j: usize| (a[j] - b[j]) / (self.ranges[j].1 - self.ranges[j].0).max(1e-9);
         (0..a.len()).map(|j| share(j) * share(j)).sum()
     }
 
-    /// A way from `start` to any of `ends`.
+    /// A path from `start` to any of `ends`.
     pub(super) fn connect(
         &mut self,
         start: &[f64],
         ends: &[Vec<f64>],
         rng: &mut LazyRng,
         monitor: &mut dyn Monitor,
-    ) -> Way {
+    ) -> Connection {
         let mut growing = Tree::rooted(&[start.to_vec()]);
         let mut other = Tree::rooted(ends);
         let mut from_start = true;
         while !self.is_spent() {
             if !monitor.keep_going() {
-                return Way::Interrupted;
+                return Connection::Interrupted;
             }
             let sample: Vec<f64> = self.ranges.iter().map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect();
             if let Some(reached) = self.grow(&mut growing, &sample, 1) {
                 let goal = growing.nodes[reached].clone();
                 let meeting = self.grow(&mut other, &goal, usize::MAX);
                 if let Some(meeting) = meeting.filter(|node| other.nodes[*node] == goal) {
-                    let (mut way, mut rest) = (growing.way_from_root(reached), other.way_from_root(meeting));
+                    let (mut path, mut rest) = (growing.path_from_root(reached), other.path_from_root(meeting));
                     rest.reverse();
-                    way.extend(rest.into_iter().skip(1));
+                    path.extend(rest.into_iter().skip(1));
                     if !from_start {
-                        way.reverse();
+                        path.reverse();
                     }
-                    return Way::Found(Polyline(way));
+                    return Connection::Found(Polyline(path));
                 }
             }
             std::mem::swap(&mut growing, &mut other);
             from_start = !from_start;
         }
-        Way::NotFound
+        Connection::NotFound
     }
 
     /// Grows `tree` towards `goal` by up to `strides` edges; returns the last node reached, None where it cannot grow.
@@ -115,9 +115,9 @@ impl<'a> Room<'a> {
         reached
     }
 
-    /// Straightens a way: points that can be left out, then random shortcuts.
-    pub(super) fn shorten(&mut self, way: Polyline, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Polyline {
-        let mut points = self.with_long_lines(way.0);
+    /// Straightens a path: leaves out points that are not needed, then tries random shortcuts.
+    pub(super) fn shorten(&mut self, path: Polyline, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Polyline {
+        let mut points = self.with_longest_lines(path.0);
         for _ in 0..SHORTCUTS {
             if points.len() < 3 || self.is_spent() || !monitor.keep_going() {
                 break;
@@ -130,11 +130,11 @@ impl<'a> Room<'a> {
                 points.dedup();
             }
         }
-        Polyline(self.with_long_lines(points))
+        Polyline(self.with_longest_lines(points))
     }
 
     /// From each point straight to the farthest one that can be reached so.
-    fn with_long_lines(&mut self, points: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    fn with_longest_lines(&mut self, points: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         let last = points.len() - 1;
         let (mut i, mut kept) = (0, vec![points[0].clone()]);
         while i < last {
@@ -174,10 +174,10 @@ impl Tree {
         self.nodes.len() - 1
     }
 
-    fn way_from_root(&self, node: usize) -> Vec<Vec<f64>> {
+    fn path_from_root(&self, node: usize) -> Vec<Vec<f64>> {
         let line = std::iter::successors(Some(node), |node| self.parents[*node]);
-        let mut way: Vec<Vec<f64>> = line.map(|node| self.nodes[node].clone()).collect();
-        way.reverse();
-        way
+        let mut path: Vec<Vec<f64>> = line.map(|node| self.nodes[node].clone()).collect();
+        path.reverse();
+        path
     }
 }

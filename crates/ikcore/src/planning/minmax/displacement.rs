@@ -1,8 +1,8 @@
-//! Moves both ends along what their targets leave free, so that the slowest joint has less to do.
+//! Moves both ends along the self-motion that their targets leave, so that the joint that takes longest takes less time.
 //!
-//! Smallest largest displacement: Lawson's algorithm (1961). Least squares over the displacements, each weighted; joints
-//! that have more to do than others gain weight, until the largest ones are equal. Each round is one Gauss-Newton step on
-//! the targets at the same time.
+//! The smallest largest displacement is found by Lawson's algorithm (1961): least squares over weighted displacements, in
+//! which joints with larger displacements gain weight until the largest ones are equal. Each round is also a Gauss-Newton
+//! step towards the targets.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -16,14 +16,14 @@ use crate::task::{Criterion, Target};
 const ROUNDS: usize = 20;
 /// No joint moves farther in one round (rad, m).
 const LONGEST_STEP: f64 = 0.4;
-/// Share of the sum of all weights that any movement costs. Of the motions of a plane's arms with 3 to 5 links it brings
-/// all to the least duration; a tenth or ten times as much, fewer.
+/// Damping of the steps, as a share of the sum of all weights. With it all tested motions of planar arms with 3 to 5 links reach
+/// the shortest duration; with a tenth or ten times as much, fewer do.
 const DAMPING: f64 = 0.0125;
-/// No weight falls below this share of the sum.
+/// The smallest weight, as a share of the sum.
 const SMALLEST_WEIGHT: f64 = 1e-3;
 
 /// Moves the ends of `pair` whose target is given; returns how many times kinematics were evaluated.
-pub(super) fn bring_nearer(robot: &Robot, limits: &MotionLimits, free: [Option<&Target>; 2], pair: &mut Pair) -> usize {
+pub(super) fn shorten(robot: &Robot, limits: &MotionLimits, free: [Option<&Target>; 2], pair: &mut Pair) -> usize {
     let n = robot.dof();
     let free_ends: Vec<(usize, &Target)> = free.into_iter().enumerate().filter_map(|(i, t)| Some((i, t?))).collect();
     if free_ends.is_empty() {
@@ -56,7 +56,7 @@ pub(super) fn bring_nearer(robot: &Robot, limits: &MotionLimits, free: [Option<&
     ROUNDS * free_ends.len()
 }
 
-/// The step of all free ends that minimises sum w (scale (displacement + step of the end - step of the start))^2 while
+/// The step of all free ends that minimises the sum of w (scale (displacement + step of the end - step of the start))^2 while
 /// each target's residual vanishes to first order: the system of Lagrange multipliers.
 fn weighted_step(
     displacement: &[f64],
@@ -68,9 +68,9 @@ fn weighted_step(
     let n = displacement.len();
     let unknowns = n * free.len();
     let rows: Vec<(usize, usize)> = (0..free.len()).flat_map(|a| (0..ROWS).map(move |row| (a, row))).collect();
-    // Rows that no joint moves, such as z for an arm in the plane, say nothing.
-    let says_something = |(a, row): &(usize, usize)| linearizations[*a].columns[..n].iter().any(|c| c[*row] != 0.0);
-    let rows: Vec<(usize, usize)> = rows.into_iter().filter(says_something).collect();
+    // Rows that no joint moves, such as z for an arm in the plane, constrain nothing.
+    let constrains = |(a, row): &(usize, usize)| linearizations[*a].columns[..n].iter().any(|c| c[*row] != 0.0);
+    let rows: Vec<(usize, usize)> = rows.into_iter().filter(constrains).collect();
     if rows.len() >= unknowns {
         return None; // nothing is left free
     }
@@ -91,7 +91,7 @@ fn weighted_step(
     for (index, (a, row)) in rows.into_iter().enumerate() {
         let index = unknowns + index;
         right[index] = -linearizations[a].residual[row];
-        // A singular arm cannot serve every row.
+        // In a singular configuration not every row can be met.
         matrix[(index, index)] = -1e-9;
         for j in 0..n {
             let entry = linearizations[a].columns[j][row];

@@ -1,4 +1,4 @@
-//! Timing: the quickest smooth motion along straight lines in joint space that keeps velocity and acceleration limits.
+//! The quickest smooth motion along straight lines in joint space within velocity and acceleration limits.
 
 use crate::error::Result;
 use crate::planning::MotionLimits;
@@ -10,10 +10,10 @@ const QUINTIC_SPEED: f64 = 15.0 / 8.0;
 const QUINTIC_ACCELERATION: f64 = 5.773_502_691_896_258;
 /// Largest acceleration of a blend, over change of velocity / duration.
 const BLEND_ACCELERATION: f64 = 1.5;
-/// So much longer than exact, that rounding breaks no limit.
+/// Durations are longer than the exact ones by this factor, so that rounding breaks no limit.
 const CAUTION: f64 = 1.0 + 1e-12;
 
-/// Rounds in which blends are fitted between the velocities beside them.
+/// Rounds in which blends and velocities are adjusted to each other.
 const ROUNDS: usize = 200;
 
 impl MotionLimits {
@@ -77,7 +77,7 @@ impl Polyline {
                     BLEND_ACCELERATION * change.abs() / limits.acceleration[j]
                 });
                 let needed = CAUTION * needed.fold(0.0, f64::max);
-                // At rest on one side a blend costs time: there it is no longer than it must be.
+                // A blend from or to rest costs time: it is no longer than the acceleration limits need.
                 let at_end = before.is_none() || after.is_none();
                 *blend = if at_end && needed > 0.0 { needed.min(room) } else { room };
                 if needed > room * (1.0 + 1e-9) {
@@ -138,7 +138,7 @@ fn line_duration(line: &[Vec<f64>], limits: &MotionLimits) -> f64 {
     if fastest > 0.0 {
         return fastest;
     }
-    // Without velocity limits acceleration alone sets the pace.
+    // Without velocity limits the acceleration limits alone decide.
     0.5 * limits.quintic_duration((0..limits.dof()).map(|j| line[1][j] - line[0][j]))
 }
 

@@ -6,14 +6,14 @@ use crate::task::Target;
 
 /// Where a motion starts or ends.
 #[derive(Debug, Clone, PartialEq)]
-pub enum End {
+pub enum Endpoint {
     /// The tip is there; which configuration is the planner's choice.
     Target(Target),
     /// Exactly this configuration (n,) (rad, m).
     Configuration(Vec<f64>),
 }
 
-impl End {
+impl Endpoint {
     /// Err unless all numbers are finite and a configuration has one a joint; `what` names the end.
     ///
     /// # Errors

@@ -1,10 +1,10 @@
-//! Where a motion starts or ends, as a function of parameters that a search is free to choose.
+//! The configurations in which a motion may start or end, as a function of parameters that a search is free to choose.
 
 use std::f64::consts::PI;
 
 use crate::error::{Error, Result};
 use crate::ik::{Prepared, Solution, SolveOptions};
-use crate::planning::end::End;
+use crate::planning::endpoint::Endpoint;
 use crate::planning::motion_limits::MotionLimits;
 use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Place, PlanarArm};
 use crate::rng;
@@ -12,10 +12,10 @@ use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
 
-/// All configurations of one end that a search chooses from.
+/// The configurations of one end.
 #[derive(Debug, Clone)]
-pub enum Placement {
-    /// One, no choice.
+pub enum EndConfigurations {
+    /// A single one.
     Fixed(Vec<f64>),
     /// A planar arm: the absolute orientations phi of the links from the third on are free.
     Planar {
@@ -26,24 +26,27 @@ pub enum Placement {
         /// Which way it bends.
         elbow: Elbow,
     },
-    /// Any arm: one of these, found by inverse kinematics, neighbours next to each other.
+    /// Any arm: one of these, found by inverse kinematics and ordered so that similar ones are neighbours.
     OneOf(Vec<Vec<f64>>),
 }
 
-/// Inverse kinematics from so many random starts makes the list of [`Placement::OneOf`].
+/// Inverse kinematics from so many random starts makes the list of [`EndConfigurations::OneOf`].
 const STARTS: usize = 48;
+
+/// A target that is not reached from so many of them is taken to be out of reach: each is a search from many starts of its own.
+const FUTILE_STARTS: usize = 3;
 
 /// Solutions nearer to each other than this in every joint count as one (rad or m).
 const DISTINCT: f64 = 1e-3;
 
-impl Placement {
-    /// What `end` leaves open; `what` names it.
+impl EndConfigurations {
+    /// Those of `end`; `what` names it.
     ///
     /// # Errors
     /// [`Error::OutsideLimits`] for a configuration beyond its limits, [`Error::Unreachable`] for a target out of reach.
     pub fn new(
         what: &str,
-        end: &End,
+        end: &Endpoint,
         robot: &Robot,
         limits: &MotionLimits,
         elbow: Elbow,
@@ -51,11 +54,11 @@ impl Placement {
         monitor: &mut dyn Monitor,
     ) -> Result<Self> {
         let target = match end {
-            End::Configuration(q) => {
-                limits.require_inside(what, q)?;
+            Endpoint::Configuration(q) => {
+                robot.require_within(what, q, &limits.lower, &limits.upper)?;
                 return Ok(Self::Fixed(q.clone()));
             }
-            End::Target(target) => target,
+            Endpoint::Target(target) => target,
         };
         if let Some((arm, place)) = planar(robot, target) {
             if let Some(problem) = arm.problem(&place) {
@@ -75,7 +78,7 @@ impl Placement {
         }
     }
 
-    /// What each parameter may be.
+    /// The range of each parameter.
     pub fn range(&self) -> (f64, f64) {
         match self {
             Self::Fixed(_) | Self::Planar { .. } => (-PI, PI),
@@ -86,7 +89,7 @@ impl Placement {
     /// Writes the configuration of these parameters.
     ///
     /// # Errors
-    /// The cosine of eq. (1) where the parameters leave a planar arm too long or too short a way.
+    /// The cosine of eq. (1), which no angle has, where the parameters of a planar arm allow no solution.
     pub fn configuration(&self, parameters: &[f64], q: &mut [f64]) -> Result<(), f64> {
         match self {
             Self::Fixed(fixed) => q.copy_from_slice(fixed),
@@ -137,8 +140,7 @@ fn solutions(
         } else if nearest.is_none() {
             nearest = Some(solution);
         }
-        // A target that is out of reach for the first start is so for all.
-        if solution_is_hopeless(&found, i) {
+        if found.is_empty() && i + 1 == FUTILE_STARTS {
             break;
         }
     }
@@ -149,11 +151,6 @@ fn solutions(
         }
         _ => Ok(chained(found)),
     }
-}
-
-/// Each start is a search from many starts of its own: three in vain are enough.
-fn solution_is_hopeless(found: &[Vec<f64>], searches: usize) -> bool {
-    found.is_empty() && searches >= 2
 }
 
 /// Orders by nearest neighbours, so that similar parameters mean similar configurations.

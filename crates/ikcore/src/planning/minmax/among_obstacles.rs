@@ -1,0 +1,201 @@
+//! Plans among obstacles: collision-free configurations for both ends, a collision-free path between them, and a timing whose
+//! whole motion is certified.
+
+use super::ends::{NAMES, Pair, Search};
+use super::line_timing::Polyline;
+use super::rrt_connect::{Connection, TreeSearch};
+use super::{PAIRS, no_pair, straight};
+use crate::error::Result;
+use crate::math::vector::squared_distance;
+use crate::obstacle::{Scene, Sweep};
+use crate::planning::collision::{RESERVE, TimedMotion, as_lines, refuse_collision, scene, too_near};
+use crate::planning::{Endpoint, Improvement, MotionLimits, Plan, PointToPointOptions};
+use crate::rng;
+use crate::solver::{Monitor, Status};
+use crate::trajectory::Trajectory;
+
+/// Configurations that all trees together may examine: about half a second.
+const BUDGET: usize = 200_000;
+/// With fewer collision-free pairs than this, more are sought ...
+const FEW_PAIRS: usize = 3;
+/// ... from this many random starts.
+const TRIES: usize = 400;
+/// Intervals of a straight line at whose ends its penetration is measured.
+const INTERVALS: usize = 16;
+/// Paths that are searched, of which the quickest is taken.
+const PATHS: u64 = 4;
+/// How often blends are narrowed before the motion stops at every corner instead.
+const NARROWINGS: usize = 12;
+
+/// Plans for ends and options that are in order.
+pub(super) fn plan(search: &mut Search, options: &PointToPointOptions, monitor: &mut dyn Monitor) -> Result<Plan> {
+    let margin = options.kept_margin()?;
+    let lines = as_lines(search.robot)?;
+    let scene = scene(search.robot, lines.as_ref(), &options.obstacles)?;
+    let pairs = search.pairs(PAIRS, monitor)?;
+    let first = pairs.first().ok_or_else(no_pair)?;
+    let is_clear = |q: &[f64]| scene.is_clear(q, margin + RESERVE);
+    for (what, end) in NAMES.into_iter().zip(search.ends) {
+        if let Endpoint::Configuration(q) = end {
+            refuse_collision(what, &scene, q, margin)?;
+        }
+    }
+    let is_open = |pair: &Pair| is_clear(&pair.start) && is_clear(&pair.end);
+    let mut open: Vec<Pair> = pairs.iter().filter(|pair| is_open(pair)).cloned().collect();
+    let given = search.ends.iter().all(|end| matches!(end, Endpoint::Configuration(_)));
+    if open.len() < FEW_PAIRS && !given {
+        open.extend(search.random_pairs(PAIRS, TRIES, is_open, monitor)?);
+    }
+    let limits = search.limits;
+    let mut trees =
+        TreeSearch::new(&scene, limits, margin + RESERVE, options.stop.map_or(BUDGET, |stop| stop.max_evaluations));
+    let found = match open.is_empty() {
+        true => Found::Nothing(Status::Stalled),
+        false => best_path(&mut trees, limits, &open, options.seed, margin, monitor)?,
+    };
+    search.evaluations += trees.sweep.examined();
+    let (trajectory, ended) = match found {
+        Found::Clear(trajectory) => (trajectory, Status::Solved),
+        Found::Nothing(status) => {
+            let tried = if open.is_empty() { &pairs } else { &open };
+            (straight(least_penetrating(&scene, tried).unwrap_or(first), limits)?, status)
+        }
+    };
+    finish(search, &scene, trajectory, ended, options, margin)
+}
+
+/// The pair whose straight line penetrates least, by samples.
+fn least_penetrating<'p>(scene: &Scene, pairs: &'p [Pair]) -> Option<&'p Pair> {
+    let distance = |pair: &Pair| {
+        let at = |i: usize| -> Vec<f64> {
+            let share = i as f64 / INTERVALS as f64;
+            pair.start.iter().zip(&pair.end).map(|(start, end)| start + share * (end - start)).collect()
+        };
+        let nearest = (0..=INTERVALS).filter_map(|i| scene.nearest(&at(i)).ok().flatten());
+        nearest.map(|contact| contact.distance).fold(f64::INFINITY, f64::min)
+    };
+    pairs.iter().max_by(|one, other| distance(one).total_cmp(&distance(other)))
+}
+
+/// The result of the search for a path.
+enum Found {
+    Clear(Trajectory),
+    Nothing(Status),
+}
+
+/// The quickest straight motion between `open` pairs that is free of collisions; else the quickest of some paths around obstacles.
+fn best_path(
+    trees: &mut TreeSearch,
+    limits: &MotionLimits,
+    open: &[Pair],
+    seed: u64,
+    margin: f64,
+    monitor: &mut dyn Monitor,
+) -> Result<Found> {
+    for pair in open {
+        if trees.is_clear(&pair.start, &pair.end) {
+            let trajectory = straight(pair, limits)?;
+            if keeps_clear(trees, &trajectory, margin) {
+                return Ok(Found::Clear(trajectory));
+            }
+        }
+    }
+    // The ends of all pairs that share the start of the quickest: any of them will do.
+    let start = &open[0].start;
+    let ends: Vec<Vec<f64>> = open.iter().filter(|pair| pair.start == *start).map(|pair| pair.end.to_vec()).collect();
+    let mut best: Option<Trajectory> = None;
+    for attempt in 1..=PATHS {
+        let mut rng = rng::stream(seed, attempt);
+        let path = match trees.connect(start, &ends, &mut rng, monitor) {
+            Connection::Found(path) => trees.shorten(path, &mut rng, monitor),
+            Connection::NotFound => break,
+            Connection::Interrupted => return Ok(best.map_or(Found::Nothing(Status::Interrupted), Found::Clear)),
+        };
+        let trajectory = timed(trees, &path, limits, margin)?;
+        if best.as_ref().is_none_or(|best| trajectory.duration() < best.duration()) {
+            best = Some(trajectory);
+        }
+    }
+    Ok(best.map_or(Found::Nothing(Status::BudgetSpent), Found::Clear))
+}
+
+/// A smooth timing of a collision-free path: with blends as wide as can be certified, or else with a stop at each corner.
+fn timed(trees: &mut TreeSearch, path: &Polyline, limits: &MotionLimits, margin: f64) -> Result<Trajectory> {
+    let stopping = path.with_stops(limits)?;
+    let mut shares = vec![1.0; path.0.len()];
+    for _ in 0..NARROWINGS {
+        let Some(blended) = path.with_blends(limits, &shares).transpose()? else { break };
+        if blended.duration() >= stopping.duration() {
+            break;
+        }
+        match trees.sweep.check(&TimedMotion(&blended), [0.0, blended.duration()], margin) {
+            Ok(()) => return Ok(blended),
+            Err(near) => {
+                let corner = nearest_corner(path, &blended, near.at)?;
+                shares[corner] *= 0.5;
+            }
+        }
+    }
+    Ok(stopping)
+}
+
+/// The inner point of the path that the motion is nearest to at time `t` (s).
+fn nearest_corner(path: &Polyline, motion: &Trajectory, t: f64) -> Result<usize> {
+    let n = motion.joints().len();
+    let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    motion.at(t, &mut q, &mut qd, &mut qdd)?;
+    let distance = |i: usize| squared_distance(&path.0[i], &q);
+    let inner = 1..path.0.len() - 1;
+    let nearest = inner.min_by(|i, k| distance(*i).total_cmp(&distance(*k)));
+    Ok(nearest.unwrap_or(0))
+}
+
+fn keeps_clear(trees: &mut TreeSearch, trajectory: &Trajectory, margin: f64) -> bool {
+    trees.sweep.check(&TimedMotion(trajectory), [0.0, trajectory.duration()], margin).is_ok()
+}
+
+/// The plan with what its trajectory breaks, by the exact limits and the smallest certified distance.
+fn finish(
+    search: &Search,
+    scene: &Scene,
+    trajectory: Trajectory,
+    ended: Status,
+    options: &PointToPointOptions,
+    margin: f64,
+) -> Result<Plan> {
+    let smallest = Sweep::new(scene).smallest(&TimedMotion(&trajectory), [0.0, trajectory.duration()]);
+    let mut violations = search.limits.violations(&trajectory);
+    let clearance = smallest.map(|near| {
+        let distance = near.contact.distance;
+        if ended == Status::Solved {
+            // Certified above; the search for the smallest may stop just short of it.
+            return distance.max(margin);
+        }
+        if distance < margin {
+            violations.push(too_near(&near.contact, margin));
+        }
+        distance
+    });
+    let status = match ended {
+        // A straight line that no search could certify with room to spare may still keep everything.
+        _ if violations.is_empty() => Status::Solved,
+        Status::Solved => Status::Stalled,
+        status => status,
+    };
+    let cost = options.objective.of(search.robot, &trajectory);
+    let evaluations = search.evaluations;
+    let history = vec![Improvement { evaluations, cost }];
+    Ok(Plan {
+        trajectory,
+        objective: options.objective,
+        cost,
+        history,
+        clearance,
+        accuracy: None,
+        redundancy: vec![],
+        violations,
+        status,
+        evaluations,
+        elapsed: search.stopwatch.elapsed(),
+    })
+}

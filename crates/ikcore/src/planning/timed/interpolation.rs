@@ -1,0 +1,142 @@
+//! Splines of the joints through waypoints on a path: through enough of them that the tip keeps to the path in between.
+
+use super::projection::project;
+use crate::error::Result;
+use crate::math::MAX_DOF;
+use crate::objective::{Bounds, Linearization};
+use crate::planning::deviation::TipDeviation;
+use crate::planning::tip_path::TipPath;
+use crate::planning::{JointPath, SplineEnds};
+use crate::robot::Robot;
+
+/// Joint positions along a path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Waypoints {
+    /// Path parameters, from 0 to 1.
+    pub knots: Vec<f64>,
+    /// The joint positions at each knot, row after row.
+    pub rows: Vec<f64>,
+}
+
+/// What the joints do at the corners of a path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Corners {
+    /// One spline leads through them: it rounds each corner, the less the denser its knots are.
+    Passed,
+    /// A spline ends and the next begins at each corner: the arm stops there, and keeps to the path as well as elsewhere.
+    Stopped,
+}
+
+impl Corners {
+    /// The alternatives for a path.
+    pub fn on(tip_path: &TipPath) -> &'static [Self] {
+        match tip_path.corners().next() {
+            None => &[Self::Passed],
+            Some(_) => &[Self::Passed, Self::Stopped],
+        }
+    }
+}
+
+/// Splines of a robot's joints along a path.
+#[derive(Debug)]
+pub struct Interpolation<'a> {
+    /// The robot.
+    pub robot: &'a Robot,
+    /// The path.
+    pub tip_path: &'a TipPath,
+    /// What it does at corners.
+    pub corners: Corners,
+}
+
+/// An interval is halved where the tip deviates by more than this share of the accuracy.
+const ENOUGH: f64 = 0.8;
+
+/// Samples inside each interval.
+const SAMPLES: usize = 7;
+
+/// How often an interval may be halved: to a four-thousandth of its length.
+const HALVINGS: usize = 12;
+
+/// No more knots than this are added.
+const MOST_KNOTS: usize = 2000;
+
+impl Interpolation<'_> {
+    /// The joint path through these waypoints, over the path parameter.
+    ///
+    /// # Errors
+    /// None in practice: waypoints that differ make a spline.
+    pub fn path(&self, waypoints: &Waypoints) -> Result<JointPath> {
+        let n = self.robot.dof();
+        let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
+        // Natural ends, without curvature, would be less accurate.
+        let spline = |from: usize, to: usize| {
+            let rows = &waypoints.rows[from * n..(to + 1) * n];
+            JointPath::spline(names.clone(), rows, Some(&waypoints.knots[from..=to]), SplineEnds::NotAKnot)
+        };
+        let last = waypoints.knots.len() - 1;
+        if self.corners == Corners::Passed {
+            return spline(0, last);
+        }
+        let mut ends = vec![0];
+        ends.extend(self.tip_path.corners().map(|corner| waypoints.knots.partition_point(|knot| *knot < corner)));
+        ends.push(last);
+        let stretches = ends.windows(2).map(|ends| spline(ends[0], ends[1])).collect::<Result<Vec<_>>>()?;
+        JointPath::joined(stretches).map_or_else(|| spline(0, last), Ok)
+    }
+
+    /// The waypoints with knots added until the tip is within `accuracy` (m, rad) of the path, or until more bring nothing.
+    ///
+    /// # Errors
+    /// None in practice, as for [`path`](Self::path).
+    pub fn refined(&self, mut waypoints: Waypoints, accuracy: f64) -> Result<Waypoints> {
+        for _ in 0..HALVINGS {
+            let path = self.path(&waypoints)?;
+            let deviation = TipDeviation {
+                robot: self.robot,
+                tip_path: self.tip_path,
+                configurations: |share: f64, q: &mut [f64]| path.position(share, q),
+            };
+            let is_coarse = |i: &usize| {
+                let [from, to] = [waypoints.knots[*i], waypoints.knots[*i + 1]];
+                // A given start may itself be off the path.
+                deviation.between(from, to, SAMPLES) > ENOUGH * accuracy + deviation.at(from)
+            };
+            let coarse: Vec<usize> = (0..waypoints.knots.len() - 1).filter(is_coarse).collect();
+            if coarse.is_empty() || waypoints.knots.len() + coarse.len() > MOST_KNOTS {
+                break;
+            }
+            let finer = self.halved(&waypoints, &coarse, &path);
+            if finer.knots.len() == waypoints.knots.len() {
+                break;
+            }
+            waypoints = finer;
+        }
+        Ok(waypoints)
+    }
+
+    /// The waypoints with a knot in the middle of each of these intervals, where the path can be reached there.
+    fn halved(&self, waypoints: &Waypoints, intervals: &[usize], path: &JointPath) -> Waypoints {
+        let n = self.robot.dof();
+        let bounds = Bounds::from_ranges(self.robot.joints().iter().map(|joint| (joint.lower, joint.upper)));
+        let mut scratch = Linearization::default();
+        let mut finer = Waypoints { knots: vec![], rows: vec![] };
+        let mut intervals = intervals.iter().peekable();
+        for (i, knot) in waypoints.knots.iter().enumerate() {
+            finer.knots.push(*knot);
+            finer.rows.extend_from_slice(&waypoints.rows[i * n..(i + 1) * n]);
+            if intervals.next_if_eq(&&i).is_none() {
+                continue;
+            }
+            let middle = 0.5 * (knot + waypoints.knots[i + 1]);
+            let mut q = [0.0; MAX_DOF];
+            let q = &mut q[..n];
+            path.position(middle, q);
+            bounds.clip(q);
+            if project(self.robot, &self.tip_path.target(middle), &bounds, q, &mut scratch) == 0.0 {
+                finer.knots.push(middle);
+                finer.rows.extend_from_slice(q);
+            }
+        }
+        finer
+    }
+}

@@ -1,0 +1,23 @@
+//! Straight segments between positions (m).
+
+use crate::math::so3::{cross, norm};
+use crate::math::vector::{distance, dot};
+
+/// By how much (rad) the direction changes at the middle one of three positions; 0 where there is no direction.
+pub(super) fn turn(before: [f64; 3], here: [f64; 3], after: [f64; 3]) -> f64 {
+    let (u, v) = (between(before, here), between(here, after));
+    norm(&cross(&u, &v)).atan2(dot(&u, &v))
+}
+
+/// The distance of a position from the segment between two others.
+pub(super) fn distance_to_segment(position: [f64; 3], from: [f64; 3], to: [f64; 3]) -> f64 {
+    let along = between(from, to);
+    let squared = dot(&along, &along);
+    let part = if squared > 0.0 { (dot(&between(from, position), &along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    let nearest: [f64; 3] = std::array::from_fn(|k| from[k] + part * along[k]);
+    distance(&position, &nearest)
+}
+
+fn between(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| b[k] - a[k])
+}
