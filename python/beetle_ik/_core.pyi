@@ -1298,7 +1298,7 @@ class Trajectory:
     def max_jerk(self) -> _Array: ...  # (n,), exact inside the pieces
     def at(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...  # q, qd, qdd: (n,) each, or (k, n) for (k,)
     def sample(self, dt: float) -> tuple[_Array, _Array, _Array, _Array]: ...  # time, q, qd, qdd
-    def then(self, next: Trajectory, *, pause: float = 0.0) -> Trajectory: ...  # s
+    def then(self, motion: Trajectory, *, pause: float = 0.0) -> Trajectory: ...  # s
     def to_csv(self, file: str | os.PathLike[str]) -> None: ...
     def to_npz(self, file: str | os.PathLike[str]) -> None: ...
     @staticmethod

@@ -130,9 +130,7 @@ def test_positions_leave_the_orientation_free() -> None:
     assert np.isnan(batch.rotation_error).all()
     assert batch.status[1] == bik.Status.OUT_OF_REACH
     assert batch.evaluations[1] <= 400
-    assert batch.message == (
-        "1 of 2 solved; 1 OUT_OF_REACH: move or turn the target into reach, or move the base"
-    )
+    assert batch.message == ("1 of 2 solved; 1 OUT_OF_REACH: move or turn the target into reach, or move the base")
 
 
 def test_starts_are_one_for_each_or_one_for_all() -> None:

@@ -105,7 +105,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Trajectory.from_npz": {"file": "motion.npz"},
     "Trajectory.from_samples": {"time": [0, 1], "q": [[0, 0], [1, 1]]},
     "Trajectory.sample": {"dt": 0.5},
-    "Trajectory.then": {"next": bik.Trajectory.from_samples([0.0, 1.0], [[1.0, 1.0], [0.0, 0.0]])},
+    "Trajectory.then": {"motion": bik.Trajectory.from_samples([0.0, 1.0], [[1.0, 1.0], [0.0, 0.0]])},
     "Trajectory.to_csv": {"file": "written.csv"},
     "Trajectory.to_npz": {"file": "written.npz"},
     "ZNNBAS.session": {".": bik.ZNNBAS(), **TICKS},

@@ -176,10 +176,10 @@ impl PyTrajectory {
         Ok((row(py, times), q, qd, qdd))
     }
 
-    /// This motion, a rest of `pause` (s), and then `next`, a motion of the same joints that begins where this one ends.
-    #[pyo3(signature = (next, *, pause=0.0))]
-    fn then(&self, next: &Self, pause: f64) -> PyResult<Self> {
-        self.0.then(&next.0, pause).map(Self).map_err(raise)
+    /// This motion, a rest of `pause` (s), and then `motion`, of the same joints, which begins where this one ends.
+    #[pyo3(signature = (motion, *, pause=0.0))]
+    fn then(&self, motion: &Self, pause: f64) -> PyResult<Self> {
+        self.0.then(&motion.0, pause).map(Self).map_err(raise)
     }
 
     /// Writes the samples at the knots as CSV, whole or not at all.
