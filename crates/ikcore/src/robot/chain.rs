@@ -56,29 +56,20 @@ const LANES: usize = 4;
 impl Chain {
     /// Folds `elements` between `base` and `tool`. The number of moving elements has been checked.
     pub fn new(elements: &[Element], base: &Pose, tool: &Pose) -> Self {
-        let mut chain = Self {
-            moving: 0,
-            stages: Stages::new(&[]),
-            motions: vec![],
-            tip: Frame::IDENTITY,
-            links: vec![],
-            stretched: Reach { center: [0.0; 3], radius: 0.0, normal: None, upright: None },
-            kernels: Kernels::for_stages(padded_size(elements)),
-        };
+        let (mut stages, mut motions, mut links) = (vec![], vec![], vec![]);
         // Constant transform since the last moving element, already in that element's z-aligned frame.
         let mut constant = *base;
-        let mut stages = vec![];
         for element in elements {
             match element {
                 Element::Fixed(transform) => constant *= transform,
                 Element::Link(name) => {
                     let offset = Frame::from(&constant);
-                    chain.links.push(LinkFrame { name: name.clone(), stages: stages.len(), offset });
+                    links.push(LinkFrame { name: name.clone(), stages: stages.len(), offset });
                 }
                 Element::Moving { axis, turns, joint, scale, offset } => {
                     let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
                     stages.push(Frame::from(&(constant * aligned)));
-                    chain.motions.push(if *turns {
+                    motions.push(if *turns {
                         Motion { joint: *joint, turn_scale: *scale, turn_offset: *offset, ..Motion::NONE }
                     } else {
                         Motion { joint: *joint, slide_scale: *scale, slide_offset: *offset, ..Motion::NONE }
@@ -87,19 +78,20 @@ impl Chain {
                 }
             }
         }
-        chain.tip = Frame::from(&(constant * tool));
-        chain.moving = stages.len();
-        chain.stages = Stages::new(&stages);
-        chain.motions.resize(padded_size(elements).next_multiple_of(LANES), Motion::NONE);
-        chain.stretched = Reach::of_links(&stages, &chain.motions, &chain.tip);
-        chain
+        let tip = Frame::from(&(constant * tool));
+        let moving = stages.len();
+        let padded = SIZES.into_iter().find(|size| *size >= moving).unwrap_or(moving);
+        motions.resize(padded.next_multiple_of(LANES), Motion::NONE);
+        Self {
+            moving,
+            stretched: Reach::of_links(&stages, &motions, &tip),
+            stages: Stages::new(&stages),
+            motions,
+            tip,
+            links,
+            kernels: Kernels::for_stages(padded),
+        }
     }
-}
-
-/// The number of moving elements, rounded up to one that kernels are compiled for.
-fn padded_size(elements: &[Element]) -> usize {
-    let moving = elements.iter().filter(|element| matches!(element, Element::Moving { .. })).count();
-    SIZES.into_iter().find(|size| *size >= moving).unwrap_or(moving)
 }
 
 /// A rotation whose z axis is `axis`; exact where the axis is a coordinate axis.
