@@ -1,0 +1,178 @@
+//! A path followed to its end.
+
+use super::record::Record;
+use super::rule::TickRule;
+use super::session::Session;
+use crate::error::{Error, Result};
+use crate::ik::{Prefer, SolveOptions, solve};
+use crate::limits::{Field, LimitAt, Limits, Profile};
+use crate::manipulability::Motion;
+use crate::path::Reference;
+use crate::robot::{Beyond, Robot};
+use crate::solver::stop::Stopwatch;
+use crate::solver::{Monitor, Status, Stop};
+use crate::task::{Criterion, Goal, Target, Task, Tolerance};
+
+/// How to track.
+#[derive(Debug, Clone, Default)]
+pub struct TrackOptions {
+    /// What runs in every tick.
+    pub rule: TickRule,
+    /// What of the path matters; None: all that it says.
+    pub task: Option<Task>,
+    /// What to do with the freedom that the task leaves.
+    pub goals: Vec<Goal>,
+    /// The error band.
+    pub tolerance: Tolerance,
+    /// Limits to keep; None keeps the robot's.
+    pub limits: Option<Limits>,
+    /// Where in a tick its velocity limit is taken.
+    pub limit_at: LimitAt,
+    /// Seed of the random draws: the same seed, the same bits.
+    pub seed: u64,
+}
+
+impl TrackOptions {
+    /// When a tick is within its band.
+    pub(super) fn criterion(&self) -> Result<Criterion> {
+        self.task.as_ref().map_or(Ok(()), Task::validate)?;
+        let criterion = self.task.map_or(self.tolerance.into(), |task| task.criterion(self.tolerance));
+        criterion.validate().map(|()| criterion)
+    }
+
+    /// Checks that the rule serves the goals, and the goals the robot.
+    pub(super) fn check_goals(&self, robot: &Robot) -> Result<()> {
+        if !self.goals.is_empty() && !self.rule.serves_goals() {
+            let problem = "goals beside the path are served by the library's own rule and by WeightedPseudoInverse: leave \
+                           solver out";
+            return Err(Error::Contradiction { problem: problem.into() });
+        }
+        self.goals.iter().try_for_each(|goal| goal.validate(robot))
+    }
+
+    /// The limits in force for `robot`.
+    pub(super) fn limits_for(&self, robot: &Robot) -> Limits {
+        self.limits.clone().unwrap_or_else(|| Limits::of(robot))
+    }
+}
+
+/// Follows `reference` with the tip of `robot`, from `start` (n,), or from a configuration solved for its first point.
+///
+/// # Errors
+/// Any [`enum@Error`] for wrong input. A path that cannot be followed is a status, not an error. A monitor that
+/// asks to stop leaves the record of the ticks that were finished.
+pub fn track(
+    robot: &Robot,
+    reference: &Reference,
+    start: Option<&[f64]>,
+    options: &TrackOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Record> {
+    let stopwatch = Stopwatch::start();
+    let limits = options.limits_for(robot);
+    limits.validate(reference.dt(), reference.len() - 1)?;
+    options.criterion()?; // before a start is solved for by other tolerances
+    let start = match start {
+        Some(q) => q.to_vec(),
+        None => first_configuration(robot, reference, &limits, options, monitor)?,
+    };
+    let mut session = Session::new(robot, &start, reference.dt(), options)?;
+    let (limits, criterion) = (session.limits().clone(), *session.criterion());
+    let mut record = Record::new(start.len(), reference.len(), limits, options.limit_at, criterion, reference.dt());
+    let beginning = session.begin(&target(reference, 0), reference.velocity(0))?;
+    record.push(&session.accepted(), reference.position(0), &beginning);
+    let finished = follow(reference, &mut session, &mut record, monitor)?;
+    record.finish(!finished, stopwatch.elapsed());
+    if finished && !matches!(record.status, Status::Solved | Status::HeldInRegion) {
+        record.out_of_reach = farthest_out_of_reach(reference, record.joined().unwrap_or(0), &session)?;
+    }
+    Ok(record)
+}
+
+/// How far the path leads out of reach from row `first` on, and when (s), where it does beyond doubt.
+fn farthest_out_of_reach(reference: &Reference, first: usize, session: &Session) -> Result<Option<(Beyond, f64)>> {
+    let mut farthest: Option<(Beyond, f64)> = None;
+    let Ok(bounds) = session.limits().position_box() else { return Ok(None) }; // they vary in time
+    for i in first..reference.len() {
+        if let Some(beyond) = session.beyond_reach(&target(reference, i), &bounds)?
+            && farthest.is_none_or(|(most, _)| (beyond.distance, beyond.lean) > (most.distance, most.lean))
+        {
+            farthest = Some((beyond, reference.time(i)));
+        }
+    }
+    Ok(farthest)
+}
+
+/// Ticks to the end of `reference`; false where the monitor asked to stop before.
+fn follow(
+    reference: &Reference,
+    session: &mut Session,
+    record: &mut Record,
+    monitor: &mut dyn Monitor,
+) -> Result<bool> {
+    let last = reference.len() - 1;
+    for i in 1..=last {
+        // Asked here too: most ticks are over before the evaluator would ask.
+        if !monitor.keep_going() {
+            return Ok(false);
+        }
+        let step = session.step_moving(&target(reference, i), reference.velocity(i), monitor)?;
+        if step.interrupted {
+            return Ok(false);
+        }
+        record.push(&session.accepted(), reference.position(i), &step);
+        monitor.progress(i, last);
+    }
+    Ok(true)
+}
+
+/// The target of row `i`: a pose where the reference has orientations.
+fn target(reference: &Reference, i: usize) -> Target {
+    match reference.pose(i) {
+        Some(pose) => Target::from(&pose),
+        None => Target::Position(reference.position(i)),
+    }
+}
+
+/// Evaluations within which the first configuration is chosen: no worse than the best of all most of the time, in a sixth of
+/// the time. A target that is still unsolved gets a solve's whole budget.
+const CHOOSING: usize = 1000;
+
+/// A configuration on, or nearest to, the path's first point, by the default solver: the best for the goals, or one with
+/// room for what is to come.
+fn first_configuration(
+    robot: &Robot,
+    reference: &Reference,
+    limits: &Limits,
+    options: &TrackOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Vec<f64>> {
+    let at_start = |field: Field| -> Vec<Profile> {
+        let profiles = limits.field(field).unwrap_or_default().iter();
+        profiles.map(|profile| Profile::Constant(profile.at(0.0))).collect()
+    };
+    let limits = Limits::of(robot)
+        .replace(Field::Lower, at_start(Field::Lower))?
+        .replace(Field::Upper, at_start(Field::Upper))?;
+    // Tighter than the band, so that the track does not begin at its edge.
+    let tolerance =
+        Tolerance { position: 0.1 * options.tolerance.position, rotation: 0.1 * options.tolerance.rotation };
+    let target = target(reference, 0);
+    let goals = if options.goals.is_empty() { roomy(&target) } else { options.goals.clone() };
+    let TrackOptions { task, seed, .. } = *options;
+    let (limits, prefer) = (Some(limits), Prefer::Best);
+    let stop = Stop { max_evaluations: CHOOSING, ..Stop::default() };
+    let options = SolveOptions { task, goals, prefer, tolerance, limits, stop, seed, ..SolveOptions::default() };
+    let chosen = solve(robot, &target, &options, monitor)?;
+    if chosen.status != Status::BudgetSpent {
+        return Ok(chosen.q.to_vec());
+    }
+    let options = SolveOptions { stop: Stop::default(), ..options };
+    Ok(solve(robot, &target, &options, monitor)?.q.to_vec())
+}
+
+/// Goals for a start that has the most room for what is to come: away from singularities and limits.
+fn roomy(target: &Target) -> Vec<Goal> {
+    let motion = if matches!(target, Target::Position(_)) { Motion::Position } else { Motion::Pose };
+    vec![Goal::Manipulability { motion, weight: 1.0 }, Goal::Centring { weight: 1.0 }]
+}
