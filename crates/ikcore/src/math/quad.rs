@@ -4,8 +4,8 @@ use std::ops::Neg;
 
 use super::arithmetic::Arithmetic;
 
-/// Four numbers, on which [`Arithmetic`] works lane by lane. Left to itself, the compiler takes
-/// the vectors of three that kinematics is full of to pieces; this it leaves whole.
+/// Four numbers, on which [`Arithmetic`] works lane by lane. A vector of three takes one with a lane to spare: arrays of three
+/// the compiler takes to pieces, which costs a third more time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(32))]
 pub struct Quad(pub [f64; 4]);
@@ -48,13 +48,14 @@ impl Quad {
     /// The cross product of two vectors.
     #[inline(always)]
     pub fn cross<A: Arithmetic>(self, other: Self) -> Self {
-        // a x b = (a o Pb - Pa o b) moved round once more, with P v = (y, z, x).
-        let product = A::mul_quad(self.moved_round(), other);
-        A::mul_add_quad(self, other.moved_round(), -product).moved_round()
+        // a x b = P (a * Pb - Pa * b), entry by entry, with the cyclic permutation P.
+        let product = A::mul_quad(self.permuted(), other);
+        A::mul_add_quad(self, other.permuted(), -product).permuted()
     }
 
+    /// y, z, x.
     #[inline(always)]
-    fn moved_round(self) -> Self {
+    fn permuted(self) -> Self {
         let [x, y, z, w] = self.0;
         Self([y, z, x, w])
     }
