@@ -3,7 +3,8 @@
 use crate::math::box_step::ROWS;
 use crate::math::quad::Quad;
 use crate::objective::{
-    Bounds, FourLinearizations, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SideBySide, SmoothScore,
+    Bounds, FourLinearizations, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SideBySide,
+    SmoothScore,
 };
 use crate::rng::LazyRng;
 use crate::robot::{Robot, Seeds};

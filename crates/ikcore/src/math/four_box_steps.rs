@@ -89,7 +89,11 @@ impl FourBoxSteps<'_> {
         for (column, free) in self.columns.iter().zip(free) {
             for i in 0..R {
                 let entry = Four::of(column[i]) * *free;
-                for k in 0..=i {
+                // Of a length that the compiler knows, so that it unrolls the loop.
+                for k in 0..R {
+                    if k > i {
+                        break;
+                    }
                     sum[i][k] = entry.mul_add(Four::of(column[k]), sum[i][k]);
                 }
             }

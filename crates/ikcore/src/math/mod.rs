@@ -1,6 +1,7 @@
 //! Rotations, rigid transforms, fast sines, singular values, polynomials, cubics between two ends, splines, knots in time and the one bounded step.
 //! Plain arrays where it is hot, nalgebra elsewhere.
 
+pub mod arctangent;
 pub mod arithmetic;
 pub mod box_step;
 pub mod cubic_spline;

@@ -1,6 +1,7 @@
 //! Rotations: logarithm and the Jacobian that goes with it, safe at no turn and at half a turn.
 
 use super::Frame;
+use super::arctangent::angle_of;
 use super::arithmetic::Separate;
 use super::real::{One, Real};
 use super::triple::Triple;
@@ -60,10 +61,7 @@ impl<R: Real> Turn<R> {
     #[inline(always)]
     fn vector(&self, target: &Axes<R>, frame: &Axes<R>) -> Triple<R> {
         let Self { sine_axis, sine, cosine } = *self;
-        let mut angle = R::splat(0.0);
-        for lane in 0..R::LANES {
-            angle = angle.with_lane(lane, sine.lane(lane).atan2(cosine.lane(lane)));
-        }
+        let angle = angle_of(sine, cosine);
         let series = R::splat(1.0) + sine * sine / R::splat(6.0);
         let mut vector = sine_axis * sine.choose_below(R::splat(SMALL), series, angle / sine);
         for lane in 0..R::LANES {

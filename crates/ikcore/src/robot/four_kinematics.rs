@@ -82,12 +82,7 @@ impl<A: Arithmetic> Frames<A> {
     fn stage(chain: &Chain, i: usize, sine: Quad, cosine: Quad, slide: Quad) -> Self {
         let Self { x, y, z, origin } = Self::splat(&chain.stages.frame(i));
         let [sine, cosine, slide] = [Four::of(sine), Four::of(cosine), Four::of(slide)];
-        Self {
-            x: y.mul_add(sine, x * cosine),
-            y: x.mul_add(-sine, y * cosine),
-            z,
-            origin: z.mul_add(slide, origin),
-        }
+        Self { x: y.mul_add(sine, x * cosine), y: x.mul_add(-sine, y * cosine), z, origin: z.mul_add(slide, origin) }
     }
 
     /// A vector of these frames' coordinates, turned into the base's.

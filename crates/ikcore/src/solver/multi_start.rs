@@ -92,12 +92,7 @@ impl RestartRule {
     /// # Errors
     /// The halt of a step that ended the run.
     #[inline]
-    pub(super) fn begins_again(
-        &self,
-        step: Result<(), Halt>,
-        attempt: &mut Attempt,
-        value: f64,
-    ) -> Result<bool, Halt> {
+    pub(super) fn begins_again(&self, step: Result<(), Halt>, attempt: &mut Attempt, value: f64) -> Result<bool, Halt> {
         match step {
             Ok(()) => Ok(self.abandons(attempt, value)),
             Err(Halt::Stalled | Halt::OutsideBox) => Ok(true),

@@ -23,7 +23,7 @@ pub fn run_side_by_side<'a, L, O: SideBySide + 'a>(
     mut runs: impl Iterator<Item = (L, Evaluator<'a, O>, Point)>,
     ended: impl FnMut(L, Evaluator<'a, O>, Outcome),
 ) {
-    let mut four = Four {
+    let mut abreast = Lanes {
         solver,
         bounds,
         ended,
@@ -33,18 +33,18 @@ pub fn run_side_by_side<'a, L, O: SideBySide + 'a>(
         here: 0,
     };
     loop {
-        four.take_up(&mut runs);
-        if four.lanes.iter().all(Option::is_none) {
+        abreast.take_up(&mut runs);
+        if abreast.lanes.iter().all(Option::is_none) {
             return;
         }
-        four.go_to_trials();
-        let scores = four.evaluate();
-        four.judge(&scores);
+        abreast.go_to_trials();
+        let scores = abreast.evaluate();
+        abreast.judge(&scores);
     }
 }
 
 /// Four runs, each in a lane of the arrays.
-struct Four<'s, 'a, L, O, F> {
+struct Lanes<'s, 'a, L, O, F> {
     solver: &'s MultiStart<LevenbergMarquardt>,
     bounds: &'s Bounds,
     ended: F,
@@ -75,7 +75,7 @@ enum Next {
     Trial,
 }
 
-impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Outcome)> Four<'_, 'a, L, O, F> {
+impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Outcome)> Lanes<'_, 'a, L, O, F> {
     /// Fills lanes that are empty.
     fn take_up(&mut self, runs: &mut impl Iterator<Item = (L, Evaluator<'a, O>, Point)>) {
         for lane in self.lanes.iter_mut().filter(|lane| lane.is_none()) {
@@ -112,11 +112,11 @@ impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Outcome)> Four<'_,
 
     /// One bounded step in every lane; what it writes into lanes that begin means nothing.
     fn step(&mut self) {
-        let lambda = |lane: &Option<Lane<'a, L, O>>| lane.as_ref().map_or(Ok(1.0), |lane| lane.descent.lambda()).unwrap_or(1.0);
+        let lambda =
+            |lane: &Option<Lane<'a, L, O>>| lane.as_ref().map_or(Ok(1.0), |lane| lane.descent.lambda()).unwrap_or(1.0);
         let n = self.bounds.lower().len();
         let FourLinearizations { residual, columns } = &self.linearizations[self.here];
-        let [first, second] = &mut self.points;
-        let (x, trials) = if self.here == 0 { (first, second) } else { (second, first) };
+        let (x, trials) = here_and_there(&mut self.points, self.here);
         let steps = FourBoxSteps {
             columns: &columns[..n],
             residual,
@@ -145,8 +145,8 @@ impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Outcome)> Four<'_,
     /// Decides what becomes of the trials, and of the runs.
     fn judge(&mut self, scores: &[Score; LANES]) {
         let (n, there) = (self.bounds.lower().len(), 1 - self.here);
+        let mut x = [0.0; MAX_DOF];
         for (l, score) in scores.iter().enumerate() {
-            let mut x = [0.0; MAX_DOF];
             for (x, trials) in x.iter_mut().zip(&self.points[there][..n]) {
                 *x = trials.0[l];
             }
@@ -162,11 +162,9 @@ impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Outcome)> Four<'_,
     /// Takes point and linearization of a lane along where its trial was refused.
     fn carry_over(&mut self, l: usize) {
         let (n, here) = (self.bounds.lower().len(), self.here);
-        let [first, second] = &mut self.points;
-        let (from, to) = if here == 0 { (first, second) } else { (second, first) };
+        let (from, to) = here_and_there(&mut self.points, here);
         from[..n].iter().zip(to).for_each(|(from, to)| to.0[l] = from.0[l]);
-        let [first, second] = &mut self.linearizations;
-        let (from, to) = if here == 0 { (first, second) } else { (second, first) };
+        let (from, to) = here_and_there(&mut self.linearizations, here);
         from.residual.iter().zip(&mut to.residual).for_each(|(from, to)| to.0[l] = from.0[l]);
         let columns = from.columns[..n].as_flattened().iter().zip(to.columns.as_flattened_mut());
         columns.for_each(|(from, to)| to.0[l] = from.0[l]);
@@ -186,6 +184,11 @@ impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Outcome)> Four<'_,
             (self.ended)(label, evaluator, outcome);
         }
     }
+}
+
+/// The one numbered `here`, and the other.
+fn here_and_there<T>([first, second]: &mut [T; 2], here: usize) -> (&mut T, &mut T) {
+    if here == 0 { (first, second) } else { (second, first) }
 }
 
 impl<L, O: SideBySide> Lane<'_, L, O> {
