@@ -58,6 +58,20 @@ fn whole_turns_inside_the_limits_are_counted() {
 }
 
 #[test]
+fn a_solution_known_to_be_near_is_not_passed_by_for_one_far_away() {
+    for name in ["ur3e", "ur5e", "ur10"] {
+        let robot = robot(name);
+        for (i, start) in configurations(&robot, 150).iter().enumerate() {
+            let aside = |j: usize| 0.5 * (1.7 * i as f64 + 2.3 * j as f64).sin();
+            let inside = |j: usize, angle: f64| angle.clamp(robot.joints()[j].lower, robot.joints()[j].upper);
+            let known: Vec<f64> = start.iter().enumerate().map(|(j, angle)| inside(j, angle + aside(j))).collect();
+            let nearest = solved(&robot, &pose_at(&robot, &known), &near(start));
+            assert!(distance(&nearest.q, start) <= distance(&known, start) + 1e-4, "{name} {i}: {:?}", nearest.q);
+        }
+    }
+}
+
+#[test]
 fn on_a_redundant_arm_the_nearest_is_a_minimum_along_the_self_motion() {
     let robot = robot("iiwa14");
     for q in configurations(&robot, 10) {

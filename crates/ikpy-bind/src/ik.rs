@@ -102,7 +102,7 @@ impl PySolution {
 ///     position_tolerance: m.
 ///     rotation_tolerance: rad, geodesic angle.
 ///     goals: of `goals`, one or several: the solution found is moved along the self-motion to where they are best near it.
-///     prefer: "any" solution, or the "nearest" to the start: of those found until twelve in a row were no nearer, each moved
+///     prefer: "any" solution, or the "nearest" to the start: of those found until 24 in a row were no nearer, each moved
 ///         along the self-motion and by whole turns inside the limits towards the start, the one with the smallest
 ///         |q - start| (rad, m); or the "best" for the goals, of those found all over, each moved along the self-motion, until
 ///         40 in a row were no better; an arm with one joint more than its task needs is led once along every curve of

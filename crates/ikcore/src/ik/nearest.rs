@@ -15,7 +15,7 @@ use crate::solver::{Monitor, Status};
 use crate::task::{Goal, Goals, Target};
 
 /// Solutions in a row that are no nearer, before the search is over.
-const PATIENCE: usize = 12;
+const PATIENCE: usize = 24;
 
 /// Distances that differ by less (rad, m) are the same.
 const SAME: f64 = 1e-9;
@@ -90,11 +90,13 @@ pub(crate) fn bring_near(robot: &Robot, bounds: &Bounds, reference: &[f64], q: &
     }
 }
 
-/// A random point no farther from `start` than `share` of each joint's range.
+/// A random point no farther from `start` than `share` of each joint's range: of one turn where that is less and repeats,
+/// as what lies beyond comes back by whole turns.
 fn spread(robot: &Robot, bounds: &Bounds, start: &[f64], share: f64, rng: &mut LazyRng, x: &mut [f64]) {
     for (j, joint) in robot.joints().iter().enumerate() {
         let (lower, upper) = joint.sampling_range_within(bounds.lower()[j], bounds.upper()[j]);
-        x[j] = start[j] + share * (upper - lower) * rng.uniform_in(-1.0, 1.0);
+        let range = if robot.repeats_every_turn(j) { (upper - lower).min(TAU) } else { upper - lower };
+        x[j] = start[j] + share * range * rng.uniform_in(-1.0, 1.0);
     }
     bounds.clip(x);
 }

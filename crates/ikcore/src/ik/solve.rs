@@ -51,7 +51,7 @@ pub struct SolveOptions {
 ///
 /// With goals, the solution found is moved along the self-motion until they are as good as they get near it. With
 /// [`Prefer::Nearest`] further solutions are sought from starts spread ever wider about the given one, each moved along the
-/// self-motion and by whole turns towards it, until twelve in a row are no nearer or the budget is spent. Near is what has the
+/// self-motion and by whole turns towards it, until 24 in a row are no nearer or the budget is spent. Near is what has the
 /// smallest |q - start|, joints counted in rad and m. With [`Prefer::Best`] solutions are sought from all over until 40 in
 /// a row, each moved along the self-motion, serve the goals no better. An arm with one joint more than its task needs is led
 /// once along every curve of solutions, past the limits that cut it, until 40 solutions or 1200 evaluations in a row meet
