@@ -88,6 +88,13 @@ def test_same_seed_same_bits_and_a_given_start_is_kept() -> None:
     np.testing.assert_array_equal(plans[0].trajectory.q[0], start)
 
 
+def test_a_seam_whose_quickest_motion_grazes_a_position_limit() -> None:
+    seam = bik.paths.polyline([[0.5, -0.2, 0.4], [0.5, 0.2, 0.4], [0.6, 0.25, 0.4]], duration=5.0)
+    downwards = seam.with_orientation(bik.pose((0, 0, 0), rpy=(np.pi, 0, 0))[:3, :3])
+    plan = bik.plan_along_path(bik.Robot.named("iiwa14"), downwards, limits=bik.Limits(acceleration=4.0))
+    assert plan.success, plan.message
+
+
 def test_an_arm_without_redundancy_is_timed() -> None:
     plan = bik.plan_along_path(bik.Robot.named("ur5e"), circle(True), limits=ACCELERATION)
     assert plan.success, plan.message

@@ -35,6 +35,10 @@ const REACH: f64 = FRAC_PI_2;
 /// Segments of the timing in each piece of the spline while searching: enough to rank postures.
 const SEGMENTS_A_PIECE: usize = 2;
 
+/// The search keeps this share of its range between a joint and its limits: the knots that the spline is given afterwards
+/// may move it by as much.
+const MARGIN: f64 = 5e-4;
+
 /// What a violation costs, as a multiple of the scale, where it is as large as its limit.
 const BROKEN: f64 = 10.0;
 
@@ -56,19 +60,27 @@ impl TimedCost<'_> {
     }
 
     fn value(&mut self, z: &[f64]) -> Result<f64> {
-        let n = self.motion.dof();
         let (waypoints, missed) = self.waypoints(z);
         if missed > 0.0 {
             // Larger than the cost of any motion that reaches all points.
             return Ok(BROKEN * BROKEN * self.scale * (1.0 + missed));
         }
         let path = self.interpolation.path(&waypoints)?;
-        let outside: f64 = (0..n).map(|j| path.excess(j, self.limits.lower[j], self.limits.upper[j])).sum();
         let cost = match self.objective {
-            Cost::JointTravel => travel(&waypoints.rows, n),
+            Cost::JointTravel => travel(&waypoints.rows, self.motion.dof()),
             _ => coarse_duration(&path, self.timing_limits, SEGMENTS_A_PIECE * path.pieces())?,
         };
-        Ok(cost + BROKEN * self.scale * (self.deviation(&waypoints, &path) + outside))
+        Ok(cost + BROKEN * self.scale * (self.deviation(&waypoints, &path) + self.outside(&path)))
+    }
+
+    /// By how much joints come nearer to their limits than the margin, summed (rad, m).
+    fn outside(&self, path: &JointPath) -> f64 {
+        let excess = |j: usize| {
+            let (lower, upper) = self.limits.finite_range(j);
+            let margin = MARGIN * (upper - lower);
+            path.excess(j, self.limits.lower[j] + margin, self.limits.upper[j] - margin)
+        };
+        (0..self.motion.dof()).map(excess).sum()
     }
 
     /// By how much the tip exceeds the accuracy in the middle between knots, as multiples of it, summed.
