@@ -65,6 +65,24 @@ def test_a_wrong_model_and_a_noisy_sensor() -> None:
     assert not np.array_equal(plant.move(START), plant.move(START))
 
 
+def test_a_late_sensor_is_named_and_told_to_the_controller() -> None:
+    def late() -> Callable[[np.ndarray], np.ndarray]:
+        sent = [np.array(START)]
+
+        def measure(q: np.ndarray) -> np.ndarray:
+            sent.append(q.copy())
+            return tip(sent[-2])
+
+        return measure
+
+    lost = track(late(), SHORT, dt=0.05, limits=LIMITS, position_tolerance=1e-4)
+    assert not lost.success
+    assert lost.message.endswith("and of a late sensor the controller must be told by sensor_delay")
+    controller = bik.BroydenBAS(sensor_delay=1)
+    followed = track(late(), SHORT, dt=0.05, limits=LIMITS, position_tolerance=1e-4, controller=controller)
+    assert followed.success, followed.message
+
+
 def test_znnbas_measures_once_a_step() -> None:
     controller = bik.ZNNBAS(gain=10, antenna_length=0.1, delay_steps=10)
     result = track(bik.KinematicPlant(ARM), SHORT, dt=1e-3, controller=controller, position_tolerance=0.3, seed=3)

@@ -161,7 +161,8 @@ impl ModelFreeRecord {
             Status::Solved | Status::Interrupted => message,
             _ => format!(
                 "{message}. Over the second half the error was {} m (root mean square): a position_tolerance below what the \
-                 sensor and the controller can keep is never met",
+                 sensor and the controller can keep is never met, and of a late sensor the controller must be told by \
+                 sensor_delay",
                 number(self.settled_error())
             ),
         }
