@@ -9,6 +9,8 @@ mod mimic;
 mod tree;
 mod xml;
 
+use std::string::FromUtf8Error;
+
 use self::document::Document;
 use self::tree::Tree;
 use super::model::Robot;
@@ -55,12 +57,20 @@ impl Robot {
 }
 
 fn read(path: &str) -> Result<String> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| Error::Unreadable { path: path.into(), problem: error.to_string() })?;
+    let bytes =
+        std::fs::read(path).map_err(|error| Error::Unreadable { path: path.into(), problem: error.to_string() })?;
+    let text = String::from_utf8(bytes).map_err(|error| not_utf8(&error))?;
     if let Some(stem) = path.strip_suffix(".xacro") {
         let stem = stem.strip_suffix(".urdf").unwrap_or(stem);
         let problem = format!("'{path}' is a xacro file: run `xacro {path} > {stem}.urdf` and load the result");
         return Err(Error::Urdf { line: None, problem });
     }
     Ok(text)
+}
+
+fn not_utf8(error: &FromUtf8Error) -> Error {
+    let (bytes, valid) = (error.as_bytes(), error.utf8_error().valid_up_to());
+    let line = 1 + bytes[..valid].iter().filter(|byte| **byte == b'\n').count();
+    let problem = format!("byte 0x{:02x} is not UTF-8; save the file with the encoding UTF-8", bytes[valid]);
+    Error::Urdf { line: u32::try_from(line).ok(), problem }
 }
