@@ -23,13 +23,20 @@ _QUINTIC = 5
 _PREFIXES = tuple(f"{derivative}:" for derivative in _DERIVATIVES)
 
 
-def to_csv(trajectory: Trajectory, file: str | os.PathLike[str]) -> None:
-    """Write the trajectory's knots as CSV: time (s), then positions and what derivatives its degree needs."""
+def to_csv(trajectory: Trajectory, file: str | os.PathLike[str], dt: float | None = None) -> None:
+    """Write samples as CSV: time (s), then positions and what derivatives the trajectory's degree needs.
+
+    Args:
+        trajectory: the motion.
+        file: what to write, whole or not at all.
+        dt: time between samples (s), the end beside; None: its knots.
+    """
     degree = trajectory.coefficients.shape[2] - 1
     kept = _DERIVATIVES[: max(degree, 1) // 2 + 1 if degree <= _QUINTIC else 2]
-    samples = (trajectory.q, trajectory.qd, trajectory.qdd)[: len(kept)]
+    knots = trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd
+    time, *samples = knots if dt is None else trajectory.sample(dt)
     columns = ["time", *(f"{derivative}:{joint}" for derivative in kept for joint in trajectory.joint_names)]
-    write_table(file, columns, np.column_stack((trajectory.time, *samples)))
+    write_table(file, columns, np.column_stack((time, *samples[: len(kept)])))
 
 
 def from_csv(file: str | os.PathLike[str]) -> Trajectory:

@@ -29,6 +29,18 @@ def test_csv_keeps_what_determines_the_pieces(tmp_path: Path, derivatives: int) 
     np.testing.assert_allclose(read.coefficients, written.coefficients, rtol=0, atol=1e-13)
 
 
+def test_csv_of_even_samples_for_controllers(tmp_path: Path) -> None:
+    written = bik.time_optimal([[0.0, 0.0], [1.0, 2.0], [1.5, 1.0]], bik.Limits(acceleration=5.0))
+    written.to_csv(tmp_path / "motion.csv", dt=1e-3)
+    read = bik.Trajectory.from_csv(tmp_path / "motion.csv")
+    time, q, qd, _ = written.sample(1e-3)
+    np.testing.assert_array_equal(read.time, time)
+    np.testing.assert_array_equal(read.q, q)
+    np.testing.assert_allclose(read.qd, qd, atol=1e-12)
+    with pytest.raises(bik.InvalidInputError, match=r"^dt must be positive and finite, got 0$"):
+        written.to_csv(tmp_path / "motion.csv", dt=0.0)
+
+
 def test_a_missing_folder_is_named(tracked: bik.TrackResult, tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match=r"No such folder: '.*missing'$"):
         tracked.trajectory.to_csv(tmp_path / "missing" / "motion.csv")

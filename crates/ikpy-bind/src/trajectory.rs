@@ -182,14 +182,15 @@ impl PyTrajectory {
         self.0.then(&motion.0, pause).map(Self).map_err(raise)
     }
 
-    /// Writes the samples at the knots as CSV, whole or not at all.
-    fn to_csv(slf: Bound<'_, Self>, file: Bound<'_, PyAny>) -> PyResult<()> {
-        upward::write(slf.into_any(), "to_csv", file)
+    /// Writes samples as CSV, whole or not at all: every `dt` (s) and at the end; None: at the knots.
+    #[pyo3(signature = (file, *, dt=None))]
+    fn to_csv(slf: Bound<'_, Self>, file: Bound<'_, PyAny>, dt: Option<f64>) -> PyResult<()> {
+        upward::write(slf.py(), "to_csv", (&slf, file, dt))
     }
 
     /// Writes knots and coefficients as npz, whole or not at all.
     fn to_npz(slf: Bound<'_, Self>, file: Bound<'_, PyAny>) -> PyResult<()> {
-        upward::write(slf.into_any(), "to_npz", file)
+        upward::write(slf.py(), "to_npz", (&slf, file))
     }
 
     /// Reads what `to_csv` wrote, or any CSV with a column `time` and one column per joint.

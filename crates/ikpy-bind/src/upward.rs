@@ -16,9 +16,9 @@ pub fn plot<'py>(result: Bound<'py, PyAny>, function: &str) -> PyResult<Bound<'p
     call(result.py(), "beetle_ik.plot", function, (result,))
 }
 
-/// `beetle_ik.export.<function>(trajectory, file)`.
-pub fn write<'py>(trajectory: Bound<'py, PyAny>, function: &str, file: Bound<'py, PyAny>) -> PyResult<()> {
-    call(trajectory.py(), "beetle_ik.export", function, (trajectory, file)).map(|_| ())
+/// `beetle_ik.export.<function>(trajectory, file, ...)`.
+pub fn write<'py>(py: Python<'py>, function: &str, arguments: impl pyo3::call::PyCallArgs<'py>) -> PyResult<()> {
+    call(py, "beetle_ik.export", function, arguments).map(|_| ())
 }
 
 /// `beetle_ik.export.<function>(file)`.
