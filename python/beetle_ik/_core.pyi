@@ -4,7 +4,7 @@
 # SI units and radians throughout; results are read-only.
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from enum import IntEnum
 from typing import Any, Literal, Never, Protocol, TypeAlias, final, overload, type_check_only
 
@@ -726,6 +726,7 @@ class SolutionSet(_Outcome):
     def __getitem__(self, index: int | np.integer, /) -> Solution: ...
     @overload
     def __getitem__(self, index: _Several, /) -> list[Solution]: ...
+    def __iter__(self) -> Iterator[Solution]: ...
 
 def solve_batch(
     robot: Robot,
@@ -775,6 +776,7 @@ class BatchSolution:
     def __getitem__(self, index: int | np.integer, /) -> Solution: ...
     @overload
     def __getitem__(self, index: _Several, /) -> BatchSolution: ...
+    def __iter__(self) -> Iterator[Solution]: ...
 
 # --- minimisation of any function ----------------------------------------------------------------
 
@@ -1299,7 +1301,8 @@ class Trajectory:
     def at(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...  # q, qd, qdd: (n,) each, or (k, n) for (k,)
     def sample(self, dt: float) -> tuple[_Array, _Array, _Array, _Array]: ...  # time, q, qd, qdd
     def then(self, motion: Trajectory, *, pause: float = 0.0) -> Trajectory: ...  # s
-    def to_csv(self, file: str | os.PathLike[str]) -> None: ...
+    # Every dt (s) and at the end; None: at the knots.
+    def to_csv(self, file: str | os.PathLike[str], *, dt: float | None = None) -> None: ...
     def to_npz(self, file: str | os.PathLike[str]) -> None: ...
     @staticmethod
     def from_csv(file: str | os.PathLike[str]) -> Trajectory: ...

@@ -6,7 +6,7 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -96,6 +96,14 @@ def test_items_are_solutions() -> None:
     for index in (3, -4, sys.maxsize, -sys.maxsize):
         with pytest.raises(IndexError, match=f"^index {index} is outside a batch of 3$"):
             batch[index]
+
+
+def test_results_of_several_are_iterable_for_type_checkers_too() -> None:
+    for several in (bik.solve_batch(PANDA, TARGETS[:3]), bik.solve_all(bik.Robot.named("ur5e"), [0.4, 0.2, 0.3])):
+        assert isinstance(several, Iterable)
+        one_by_one = iter(several)
+        np.testing.assert_array_equal(next(one_by_one).q, several[0].q)
+        assert len(list(one_by_one)) == len(several) - 1
 
 
 @pytest.mark.parametrize(

@@ -57,7 +57,11 @@ def dh(**fields: object) -> bik.Robot:
         ),
         (lambda: IIWA.random_configurations(-1), Invalid, "m must be zero or more, got -1"),
         (lambda: IIWA.random_configurations(1, seed=-3), Invalid, "seed must be zero or more, got -3"),
-        (lambda: IIWA.random_configurations(1, seed=2**64), Invalid, "seed must be smaller, got 18446744073709551616"),
+        (
+            lambda: IIWA.random_configurations(1, seed=2**64),
+            Invalid,
+            "seed must be below 2^64, got 18446744073709551616",
+        ),
     ]
 )
 def test_joint_angles(call: Callable[[], object], error: type[Exception], message: str) -> None:
@@ -222,6 +226,13 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(Invalid) as caught:
         bik.Robot.from_urdf(file)
     assert str(caught.value).startswith(f"cannot read '{file}': ")  # then the operating system's reason
+
+
+def test_a_file_in_another_encoding(tmp_path: Path) -> None:
+    file = tmp_path / "arm.urdf"
+    file.write_bytes("<?xml version='1.0'?>\n<robot name='Müller'/>".encode("latin-1"))
+    message = "URDF line 2: byte 0xfc is not UTF-8; save the file with the encoding UTF-8"
+    assert_told(lambda: bik.Robot.from_urdf(file), Urdf, message)
 
 
 def test_a_file_of_urdf_is_read_by_name_and_by_path(tmp_path: Path) -> None:

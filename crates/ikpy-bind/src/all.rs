@@ -6,9 +6,9 @@ use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyList;
+use pyo3::types::{PyIterator, PyList};
 
-use crate::convert::{Picked, count, picked, table, vector};
+use crate::convert::{Picked, count, items, picked, table, vector};
 use crate::error::raise;
 use crate::ik::{PySolution, read_target};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
@@ -62,6 +62,11 @@ impl PySolutionSet {
             Picked::One(i) => Ok(Bound::new(py, solution(i))?.into_any()),
             Picked::Many(rows) => Ok(PyList::new(py, rows.into_iter().map(solution))?.into_any()),
         }
+    }
+
+    /// Each `Solution`.
+    fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyIterator>> {
+        items(slf.as_any())
     }
 
     fn __repr__(&self) -> String {

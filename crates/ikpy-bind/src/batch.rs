@@ -9,8 +9,11 @@ use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyIterator;
 
-use crate::convert::{Numbers, Picked, Rows, array, count, optional_count, picked, row, rows, shape_text, table};
+use crate::convert::{
+    Numbers, Picked, Rows, array, count, items, optional_count, picked, row, rows, shape_text, table,
+};
 use crate::error::{invalid, raise};
 use crate::goal::read_goals;
 use crate::ik::PySolution;
@@ -86,6 +89,11 @@ impl PyBatchSolution {
                 Ok(Bound::new(py, Self::new(py, batch, self.limits.clone_ref(py))?)?.into_any())
             }
         }
+    }
+
+    /// Each `Solution`.
+    fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyIterator>> {
+        items(slf.as_any())
     }
 
     fn __repr__(&self) -> String {

@@ -11,7 +11,7 @@ use numpy::{
 use pyo3::exceptions::{PyException, PyIndexError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyBytes, PyList, PyString, PyTuple, PyType};
+use pyo3::types::{IntoPyDict, PyBytes, PyIterator, PyList, PyString, PyTuple, PyType};
 
 use crate::error::{invalid, raise};
 
@@ -106,8 +106,8 @@ fn matrix<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>>
 
 /// A count or a seed. Taken as i128, because the overflow error of a narrower type would not say what was wrong.
 pub fn count<T: TryFrom<i128>>(what: &str, value: i128) -> PyResult<T> {
-    let bound = if value < 0 { "zero or more" } else { "smaller" };
-    T::try_from(value).map_err(|_| invalid(format!("{what} must be {bound}, got {value}")))
+    let bound = || if value < 0 { "zero or more".into() } else { format!("below 2^{}", 8 * size_of::<T>()) };
+    T::try_from(value).map_err(|_| invalid(format!("{what} must be {}, got {value}", bound())))
 }
 
 /// [`count`] where one was given.
@@ -143,6 +143,15 @@ pub fn picked(what: &str, index: &Bound<'_, PyAny>, len: usize) -> PyResult<Pick
             )))
         }
     }
+}
+
+/// The items of a sequence, each made when its turn comes.
+pub fn items<'py>(sequence: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyIterator>> {
+    let py = sequence.py();
+    let builtins = py.import(intern!(py, "builtins"))?;
+    let indices = builtins.call_method1(intern!(py, "range"), (sequence.len()?,))?;
+    let item = sequence.getattr(intern!(py, "__getitem__"))?;
+    builtins.call_method1(intern!(py, "map"), (item, indices))?.try_iter()
 }
 
 /// So many of a thing, in words.
