@@ -39,7 +39,18 @@ def swarm_for_hours() -> object:
     return bik.planar_posture(bik.Robot.planar([0.5] * 3), [0.5, 0.5, 0.0], swarm=swarm)
 
 
-LONG_CALLS = [track_for_minutes, solve_for_minutes, solve_one_endless_iteration, swarm_for_hours]
+def find_solutions_without_end() -> object:
+    # Each is found in a few evaluations, and there are millions.
+    return bik.solve_all(IIWA, [0.5, 0.0, 0.6], limit=10**9, stop=bik.Stop(max_evaluations=10**12))
+
+
+LONG_CALLS = [
+    track_for_minutes,
+    solve_for_minutes,
+    solve_one_endless_iteration,
+    swarm_for_hours,
+    find_solutions_without_end,
+]
 
 
 @contextmanager

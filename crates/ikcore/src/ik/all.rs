@@ -113,6 +113,7 @@ fn search(
         problem.propose_start(0, bounds, &mut rng, &mut x0);
     }
     let (mut solutions, mut known) = (Vec::<Solution>::new(), 0);
+    let mut interrupted = false;
     let last = loop {
         let attempt = run.attempt(prepared, &mut problem, &x0, &mut rng, monitor);
         let mut solution = prepared.marked_if_blocked(target, attempt);
@@ -128,7 +129,9 @@ fn search(
         }
         // Without a start any will do; with one, the nearest are wanted, and they may come last.
         let enough = start.is_none() && solutions.len() == options.limit;
-        if known == PATIENCE || enough || run.is_spent() {
+        // Attempts may be too short to ask.
+        interrupted = !monitor.keep_going();
+        if interrupted || known == PATIENCE || enough || run.is_spent() {
             break None;
         }
         problem.propose_start(1, bounds, &mut rng, &mut x0);
@@ -137,7 +140,7 @@ fn search(
         solutions.sort_by(|a, b| distance(&a.q, start).total_cmp(&distance(&b.q, start)));
     }
     solutions.truncate(options.limit);
-    let interrupted = last.as_ref().is_some_and(|solution| solution.status == Status::Interrupted);
+    interrupted |= last.as_ref().is_some_and(|solution| solution.status == Status::Interrupted);
     let miss = last.filter(|_| solutions.is_empty());
     let spent = run.solution(Status::Solved, reference, &problem);
     SolutionSet { solutions, miss, evaluations: spent.evaluations, elapsed: spent.elapsed, interrupted }

@@ -90,6 +90,10 @@ impl Search<'_, '_> {
         let mut nothing_new = 0;
         while nothing_new < PATIENCE && !self.run.is_spent() {
             nothing_new = if self.is_new(&q) { 0 } else { nothing_new + 1 };
+            // Searches may be too short to ask.
+            if !monitor.keep_going() {
+                return Status::Interrupted;
+            }
             let x0 = self.next_start(rng);
             let left = self.run.left();
             let reserve = left.saturating_sub(self.patience);

@@ -111,7 +111,9 @@ impl Status {
     pub fn advice(self) -> &'static str {
         match self {
             Self::Solved | Self::Improved => "",
-            Self::Capped => "give it more ticks, wider limits or a wider tolerance, or its solver more passes",
+            Self::Capped => {
+                "give it more ticks, wider limits, a wider tolerance, its solver more passes, or a target within reach"
+            }
             Self::Stalled => "try another start or seed, or MultiStart; the target may be out of reach",
             Self::BudgetSpent => "raise the budget in stop=Stop(...); the target may be out of reach",
             Self::TimeUp => "raise max_time",
