@@ -790,6 +790,7 @@ def minimize(
     stop: Stop | None = None,
     seed: int = 0,
     vectorized: bool = False,
+    progress: _Progress = None,
 ) -> Minimum: ...
 
 @final

@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -154,6 +155,32 @@ def test_the_functions_own_exception_comes_out_with_the_best_so_far(vectorized: 
     assert best.value == bowl(best.x)
     assert best.status == bik.Status.INTERRUPTED
     assert caught.value.__notes__ == [f"minimize: {best.message}; kept as `best` of this exception"]
+
+
+def test_progress_is_told_to_the_end_and_changes_nothing() -> None:
+    told_of: list[tuple[int, int]] = []
+    stop = bik.Stop(max_evaluations=900)
+    followed = bik.minimize(
+        bowl, LOWER, UPPER, solver=bik.PSO(), stop=stop, progress=lambda done, total: told_of.append((done, total))
+    )
+    assert told_of[-1] == (900, 900)
+    assert told_of == sorted(told_of)
+    np.testing.assert_array_equal(followed.x, bik.minimize(bowl, LOWER, UPPER, solver=bik.PSO(), stop=stop).x)
+
+
+def test_what_progress_raises_comes_out_with_the_best_so_far() -> None:
+    def slow_bowl(x: np.ndarray) -> float:
+        time.sleep(1e-3)
+        return bowl(x)
+
+    def progress(done: int, total: int) -> None:
+        raise ValueError(f"enough after {done} of {total}")
+
+    with pytest.raises(ValueError, match=r"^enough after [0-9]+ of 30000\n") as caught:
+        bik.minimize(slow_bowl, LOWER, UPPER, solver=bik.PSO(), progress=progress)
+    best = caught.value.best  # type: ignore[attr-defined]
+    assert best.status == bik.Status.INTERRUPTED
+    assert best.value == bowl(best.x)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no process can send itself Ctrl-C on Windows")

@@ -1,5 +1,6 @@
 //! The least value of any function in a box, by a solver that needs values alone.
 
+use std::cell::Cell;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
@@ -7,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result, require_finite};
 use crate::objective::{Bounds, CallPattern, Objective, Point, Score};
 use crate::rng::{self, LazyRng};
+use crate::solver::reporting::Reporting;
 use crate::solver::stop::Stopwatch;
 use crate::solver::{AnySolver, DerivativeFree, Evaluator, Monitor, Status, Stop};
 
@@ -87,12 +89,15 @@ pub fn minimize(
         Some(start) => x0.copy_from_slice(require_inside(bounds, start)?),
         None => bounds.sample(&mut rng, &mut x0),
     }
-    let mut recorded = Recorded { objective, enough: stop.value_below, evaluations: 0, history: Vec::new() };
+    let done = Cell::new(0);
+    let mut recorded = Recorded { objective, enough: stop.value_below, done: &done, history: Vec::new() };
+    let mut reporting = Reporting { monitor, done: &done, total: stop.max_evaluations };
     let narrowed: &mut dyn Objective = &mut recorded;
     let stop = Stop { value_below: None, ..*stop };
-    let mut evaluator = Evaluator::new(narrowed, bounds, stop, &mut rng, monitor);
+    let mut evaluator = Evaluator::new(narrowed, bounds, stop, &mut rng, &mut reporting);
     let outcome = solver.run(&mut evaluator, &x0);
     let (best, evaluations, restarts) = (evaluator.best().clone(), evaluator.evaluations(), evaluator.attempts() - 1);
+    monitor.progress(evaluations, evaluations);
     Ok(Minimum {
         x: best.x,
         value: best.value,
@@ -141,17 +146,17 @@ fn require_inside<'a>(bounds: &Bounds, start: &'a [f64]) -> Result<&'a [f64]> {
 struct Recorded<'a> {
     objective: &'a mut dyn Objective,
     enough: Option<f64>,
-    evaluations: usize,
+    done: &'a Cell<usize>,
     history: Vec<[f64; 2]>,
 }
 
 impl Recorded<'_> {
     fn note(&mut self, score: &mut Score) {
-        self.evaluations += 1;
+        self.done.set(self.done.get() + 1);
         score.solved = self.enough.is_some_and(|enough| score.value < enough);
         let value = if score.value.is_finite() { score.value } else { f64::INFINITY };
         if self.history.last().is_none_or(|[_, best]| value < *best) {
-            self.history.push([self.evaluations as f64, value]);
+            self.history.push([self.done.get() as f64, value]);
         }
     }
 

@@ -42,12 +42,21 @@ pub fn attended<T>(
     progress: Option<&Bound<'_, PyAny>>,
     call: impl FnOnce(&mut Watcher) -> PyResult<T>,
 ) -> PyResult<T> {
+    let (found, failure) = followed(py, progress, call)?;
+    failure.map_or(found, Err)
+}
+
+/// What such a call came to, and beside it what Ctrl-C or `progress` raised meanwhile.
+pub fn followed<T>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    call: impl FnOnce(&mut Watcher) -> T,
+) -> PyResult<(T, Option<PyErr>)> {
     let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
     let mut watcher = Watcher { progress: progress.update(py), ..Watcher::new() };
     let found = call(&mut watcher);
     progress.close(py)?;
-    watcher.finish()?;
-    found
+    Ok((found, watcher.failure))
 }
 
 /// The same for a call of the core, which needs no interpreter.

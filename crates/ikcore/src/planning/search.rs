@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::objective::{Bounds, Objective, Point, Score};
 use crate::planning::plan::Improvement;
 use crate::rng;
+use crate::solver::reporting::Reporting;
 use crate::solver::{AnySolver, DerivativeFree, Evaluator, Monitor, Outcome, Status, Stop};
 
 /// What searches, and for how long.
@@ -85,19 +86,5 @@ impl Objective for Recorded<'_> {
             self.history.push(Improvement { evaluations: self.done.get(), cost: score.value });
         }
         score
-    }
-}
-
-/// Tells the caller's monitor how many evaluations are done.
-struct Reporting<'a> {
-    monitor: &'a mut dyn Monitor,
-    done: &'a Cell<usize>,
-    total: usize,
-}
-
-impl Monitor for Reporting<'_> {
-    fn keep_going(&mut self) -> bool {
-        self.monitor.progress(self.done.get(), self.total);
-        self.monitor.keep_going()
     }
 }

@@ -39,6 +39,7 @@ pub mod newton_raphson;
 pub mod population;
 pub mod pso;
 pub mod qpso;
+pub(crate) mod reporting;
 pub mod side_by_side;
 pub mod stop;
 pub mod velocities;

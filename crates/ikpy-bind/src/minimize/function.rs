@@ -109,12 +109,16 @@ fn number(value: &Bound<'_, PyAny>) -> PyResult<f64> {
 
 /// Ends the search after a failure, and on Ctrl-C.
 pub struct Attendant<'f> {
-    pub watcher: Watcher,
+    pub watcher: &'f mut Watcher,
     pub failure: &'f Failure,
 }
 
 impl Monitor for Attendant<'_> {
     fn keep_going(&mut self) -> bool {
         self.failure.borrow().is_none() && self.watcher.keep_going()
+    }
+
+    fn progress(&mut self, done: usize, total: usize) {
+        self.watcher.progress(done, total);
     }
 }

@@ -13,7 +13,7 @@ use function::{Attendant, Failure, Function};
 use crate::convert::{copied, count, summary, table, vector};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
-use crate::monitor::Watcher;
+use crate::monitor::followed;
 use crate::outcome::outcome;
 use crate::solver::{PyStop, derivative_free_solver};
 use crate::stored::{self, Reduced};
@@ -101,6 +101,7 @@ impl PyMinimum {
 ///     stop: budgets; None: 30000 evaluations. `Stop(value_below=...)` says what is good enough.
 ///     seed: of the random draws: the same seed, the same bits.
 ///     vectorized: the function takes (m, n) and returns (m,), whole generations at once.
+///     progress: True for a bar on the terminal, or a callable of (done, total), evaluations.
 ///
 /// Returns:
 ///     A `Minimum`, its `success` only where a value was asked for and found.
@@ -112,7 +113,8 @@ impl PyMinimum {
 /// What the function raises comes out as it is, and so does KeyboardInterrupt; both have the best point so far, a
 /// `Minimum`, as attribute `best`, and a note that says so.
 #[pyfunction(name = "minimize")]
-#[pyo3(signature = (function, lower, upper, *, solver, start=None, stop=None, seed=0, vectorized=false))]
+#[pyo3(signature = (function, lower, upper, *, solver, start=None, stop=None, seed=0, vectorized=false,
+                    progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn minimize_function(
     py: Python<'_>,
@@ -124,6 +126,7 @@ pub fn minimize_function(
     stop: Option<&PyStop>,
     seed: i128,
     vectorized: bool,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyMinimum> {
     if !function.is_callable() {
         return Err(invalid(format!("function must be a callable of x, got {}", summary(function))));
@@ -137,10 +140,12 @@ pub fn minimize_function(
     };
     let failure = Failure::default();
     let mut objective = Function { function: function.clone(), dimension: lower.len(), vectorized, failure: &failure };
-    let mut attendant = Attendant { watcher: Watcher::new(), failure: &failure };
-    let core = minimize::minimize(&mut objective, &lower, &upper, &options, &mut attendant).map_err(raise)?;
-    let found = PyMinimum::new(py, core, Py::new(py, PyLimits::of_box(lower, upper))?)?;
-    match attendant.watcher.finish().err().or(failure.into_inner()) {
+    let (core, stopped) = followed(py, progress, |watcher| {
+        let mut attendant = Attendant { watcher, failure: &failure };
+        minimize::minimize(&mut objective, &lower, &upper, &options, &mut attendant)
+    })?;
+    let found = PyMinimum::new(py, core.map_err(raise)?, Py::new(py, PyLimits::of_box(lower, upper))?)?;
+    match stopped.or(failure.into_inner()) {
         Some(error) => Err(with_best(py, error, found)?),
         None => Ok(found),
     }
