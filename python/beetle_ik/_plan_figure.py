@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from ._core import Plan
+    from ._core import Plan, TrackResult
 
 _SAMPLES = 801
 _SNAPSHOTS = 6
@@ -30,9 +30,10 @@ _TITLE_WIDTH = 120  # letters a line
 class Scene:
     """The way of the arm in axes that suit it: flat for an arm that stays in a plane, else in space."""
 
-    def __init__(self, figure: Any, place: Any, plan: Plan) -> None:
+    def __init__(self, figure: Any, place: Any, plan: Plan | TrackResult) -> None:
         """Make the axes at `place`, a cell of a grid."""
         self._plan = plan
+        self._obstacles = getattr(plan, "obstacles", [])
         time = np.linspace(0.0, plan.trajectory.duration, _SAMPLES)
         self._q = plan.trajectory.at(time)[0]
         self._tip = plan.robot.fk(self._q)[:, :3, 3]
@@ -74,13 +75,13 @@ class Scene:
 
     def _scale(self) -> None:
         if self._flat:
-            draw_from_above(self.axes, self._plan.obstacles)
+            draw_from_above(self.axes, self._obstacles)
             # The arm may go where none of its pictures is.
             self.axes.update_datalim(self._corners.reshape(-1, 3)[:, :2])
             self.axes.autoscale_view()
             self.axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
             return
-        draw_in_space(self.axes, self._corners.reshape(-1, 3), self._plan.obstacles)
+        draw_in_space(self.axes, self._corners.reshape(-1, 3), self._obstacles)
 
 
 def draw(figure: Figure, plan: Plan) -> None:
@@ -115,7 +116,7 @@ def _draw_search(axes: Axes, plan: Plan) -> None:
     axes.set(xlabel="evaluations", ylabel="best cost so far", yscale="log" if (cost > 0).all() else "linear")
 
 
-def animate(figure: Figure, plan: Plan) -> Frames:
+def animate(figure: Figure, plan: Plan | TrackResult) -> Frames:
     """The arm on its way, in its own time."""
     scene = Scene(figure, figure.add_gridspec(1, 1)[0], plan)
     scene.draw_arm(0.0, color=SKY, alpha=0.4, label="arm at the start")

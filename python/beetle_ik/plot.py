@@ -110,12 +110,12 @@ def plan(plan: Plan) -> Figure:
     return figure
 
 
-def animation(plan: Plan) -> FuncAnimation:
-    """The arm on its planned way, in its own time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
-    _require("plan", plan, _core.Plan)
+def animation(result: Plan | TrackResult) -> FuncAnimation:
+    """The arm on its way, in its own time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
+    _require("result", result, _core.Plan, _core.TrackResult)
     with style():
         figure = _new_figure(5.0, 5.0)
-        return _plan_figure.animate(figure, plan).animation(figure)
+        return _plan_figure.animate(figure, result).animation(figure)
 
 
 def trajectory(trajectory: Trajectory) -> Figure:
@@ -168,9 +168,10 @@ def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
     return figure
 
 
-def _require(name: str, value: object, kind: type) -> None:
-    if not isinstance(value, kind):
-        raise _core.InvalidInputError(f"{name} must be a {kind.__name__}, got {value!r:.60}")
+def _require(name: str, value: object, *kinds: type) -> None:
+    if not isinstance(value, kinds):
+        wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
+        raise _core.InvalidInputError(f"{name} must be {wanted}, got {value!r:.60}")
 
 
 def _slopes(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -129,7 +129,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "plan_along_path": {"robot": ARM, "path": LINE, "limits": LIMITS, **QUICK},
     "plan_point_to_point": {"robot": PLANAR, "start": (1, 1, 0), "end": (1, 1.5, 0), "limits": LIMITS, **QUICK},
     "planar_posture": {"robot": PLANAR, "target": (1, 1, 0), "swarm": bik.CircleSwarm()},
-    "plot.animation": {"plan": PLAN},
+    "plot.animation": {"result": PLAN},
     "plot.model_free": {"result": MODEL_FREE},
     "plot.plan": {"plan": PLAN},
     "plot.robot": {"robot": ARM, "q": Q},

@@ -2,6 +2,7 @@
 
 import io
 import sys
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -10,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import beetle_ik as bik
+from beetle_ik import _plan_figure
 from beetle_ik._shapes import inside
 
 
@@ -137,3 +139,12 @@ def test_without_matplotlib_the_extra_is_named(tracked: bik.TrackResult, monkeyp
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(bik.BeetleIkError, match=r"^a figure needs matplotlib: pip install 'beetle-ik\[plot\]'$"):
         tracked.plot()
+
+
+def test_a_tracked_path_is_animated(tracked: bik.TrackResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_plan_figure, "_FRAMES_A_SECOND", 1)
+    monkeypatch.setattr(_plan_figure, "_PAUSE", 0)
+    bik.plot.animation(tracked).save(tmp_path / "track.gif", writer="pillow")
+    assert (tmp_path / "track.gif").read_bytes().startswith(b"GIF")
+    with pytest.raises(bik.InvalidInputError, match=r"^result must be a Plan or a TrackResult, got 3$"):
+        bik.plot.animation(3)  # type: ignore[arg-type]
