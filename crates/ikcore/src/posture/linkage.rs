@@ -1,4 +1,5 @@
-//! A planar arm with its tip held in place: joint points on circles.
+//! A planar arm with its tip held in place: joint points on circles. [`planar_arm`](crate::planning::planar_arm) has the
+//! same arm with orientations of links as unknowns, and says why each measures the links for itself.
 
 use std::f64::consts::TAU;
 
@@ -48,7 +49,7 @@ pub struct Linkage {
     target: Point2,
     lengths: Vec<f64>,
     /// Headings of the links at q = 0 (rad).
-    phases: Vec<f64>,
+    directions: Vec<f64>,
     measure: Measure,
     region: Option<Region>,
     manipulability: Manipulability,
@@ -89,7 +90,7 @@ impl Linkage {
             base: [screws[0].origin[0], screws[0].origin[1]],
             target: [target[0], target[1]],
             lengths: links.clone().map(|[x, y]| x.hypot(y)).collect(),
-            phases: links.map(|[x, y]| y.atan2(x)).collect(),
+            directions: links.map(|[x, y]| y.atan2(x)).collect(),
             measure,
             region,
             manipulability: Manipulability::of(robot, Motion::Position),
@@ -162,7 +163,7 @@ impl Linkage {
         let mut from = self.base;
         let mut before = 0.0;
         for (j, to) in points.iter().chain([&self.target]).enumerate() {
-            let turned = (to[1] - from[1]).atan2(to[0] - from[0]) - self.phases[j];
+            let turned = (to[1] - from[1]).atan2(to[0] - from[0]) - self.directions[j];
             q[j] = self.within_limits(j, turned - before)?;
             (from, before) = (*to, turned);
         }
