@@ -25,7 +25,7 @@ words!("measure": Measure { Tip => "tip", Overall => "overall" });
 
 /// A rectangle that no joint point may leave.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Region {
+pub struct Rectangle {
     /// Least x and y (m).
     pub lower: Point2,
     /// Largest x and y (m).
@@ -35,7 +35,7 @@ pub struct Region {
 /// Points count as inside a region up to this distance (m): optima often lie on its edge.
 const ON_EDGE: f64 = 1e-12;
 
-impl Region {
+impl Rectangle {
     fn contains(&self, point: &Point2) -> bool {
         (0..2).all(|k| self.lower[k] - ON_EDGE <= point[k] && point[k] <= self.upper[k] + ON_EDGE)
     }
@@ -51,7 +51,7 @@ pub struct Linkage {
     /// Headings of the links at q = 0 (rad).
     directions: Vec<f64>,
     measure: Measure,
-    region: Option<Region>,
+    region: Option<Rectangle>,
     manipulability: Manipulability,
 }
 
@@ -61,7 +61,7 @@ impl Linkage {
     /// # Errors
     /// [`Error::InvalidRobot`] unless the robot has at least three joints, all turning about z in one plane;
     /// [`Error::OutOfRange`] for a target out of that plane.
-    pub fn new(robot: &Robot, target: &[f64; 3], measure: Measure, region: Option<Region>) -> Result<Self> {
+    pub fn new(robot: &Robot, target: &[f64; 3], measure: Measure, region: Option<Rectangle>) -> Result<Self> {
         let screws = robot.screws(&vec![0.0; robot.dof()]);
         let invalid = |problem: String| Error::InvalidRobot { robot: robot.name().into(), problem };
         let height = screws[0].origin[2];
