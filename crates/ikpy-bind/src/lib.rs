@@ -18,6 +18,7 @@ mod planning;
 mod pose;
 mod posture;
 mod robot;
+mod solve_arguments;
 mod solver;
 mod stored;
 mod task;

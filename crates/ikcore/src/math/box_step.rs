@@ -47,8 +47,8 @@ pub fn least_damping(columns: &[[f64; ROWS]]) -> f64 {
     LEAST * columns.as_flattened().iter().map(|entry| entry * entry).sum::<f64>()
 }
 
-/// [`box_step`] with a preference: of the points that (nearly) solve residual + J (out - x) = 0, the one in the box that is nearest to
-/// `preferred`, itself in the box. What the task leaves free goes there.
+/// [`box_step`] with a preference: of the points that (nearly) solve residual + J (out - x) = 0, the one in the box that is
+/// nearest to `preferred`, itself in the box. What the task leaves free goes there.
 #[allow(clippy::too_many_arguments)]
 pub fn box_step_near(
     columns: &[[f64; ROWS]],
