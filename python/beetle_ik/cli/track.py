@@ -1,6 +1,5 @@
 """`beetle-ik track`: follow a path."""
 
-from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,9 +8,8 @@ import typer
 from .. import InvalidInputError, Limits, Robot
 from .. import Path as ReferencePath
 from .. import track as track_path
-from .._files import whole_folder
 from .curves import CurveName, make_curve, read_points
-from .files import write_files
+from .files import results_folder, write_files
 from .options import (
     AsJson,
     BaseLink,
@@ -110,7 +108,7 @@ def track(
     given |= {name: value for name, value in others.items() if value is not None}
     path = _reference(arm, curve, points, duration, given)
     limits, limits_from = _limits(velocity, velocity_sinusoid, acceleration)
-    with nullcontext() if out is None else whole_folder(out, option="--out") as folder:
+    with results_folder(out) as folder:
         result = track_path(
             arm,
             path,

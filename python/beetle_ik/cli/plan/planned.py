@@ -1,7 +1,7 @@
 """What a planned motion is reported by: options, figures, files."""
 
+import math
 from collections.abc import Callable
-from contextlib import nullcontext
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,8 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ... import InvalidInputError, Limits, Plan, Stop, plot
-from ..._files import whole_folder
-from ..files import can_draw, print_files, write_files
+from ..files import can_draw, print_files, results_folder, write_files
 from ..options import SolverName, limit, make_solver
 from ..show import print_json, print_pairs
 
@@ -63,7 +62,7 @@ def report(make: Callable[[], Plan], method: str, seed: int, out: Path | None, a
     """Plan, write the files, print, and leave with the exit status of the plan."""
     if animated and out is None:
         raise InvalidInputError("--animation writes a file: use --out DIR too")
-    with nullcontext() if out is None else whole_folder(out, option="--out") as folder:
+    with results_folder(out) as folder:
         plan = make()
         summary = _summarize(plan, method, seed)
         if folder is not None:
@@ -102,9 +101,9 @@ def _summarize(plan: Plan, method: str, seed: int) -> dict[str, Any]:
 
 def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
     rows = [("duration [s]", f"{summary['duration']:.6g}")]
-    if plan.accuracy == plan.accuracy:  # NaN from end to end
+    if not math.isnan(plan.accuracy):  # planned along a path
         rows.append(("distance from the path, at most [m]", f"{plan.accuracy:.3g}"))
-    if plan.clearance == plan.clearance:
+    if not math.isnan(plan.clearance):  # planned among obstacles
         rows.append(("smallest clearance [m]", f"{plan.clearance:.3g}"))
     rows += [("breaks", violation) for violation in summary["violations"]]
     rows += [("evaluations", str(plan.evaluations)), ("time [ms]", f"{1e3 * plan.elapsed:.3g}")]

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from ... import InvalidInputError, Limits, Trajectory, plot, time_optimal
 from ..._csv import read_table
-from ..._files import whole_folder
 from ..._text import counted
-from ..files import print_files, write_files
+from ..files import print_files, results_folder, write_files
 from ..options import AsJson, limit
 from ..show import listed, print_json, print_pairs
 
@@ -62,18 +61,18 @@ def retime(
         velocity=limit("--velocity-limit", velocity),
         jerk=limit("--jerk-limit", jerk),
     )
-    trajectory = time_optimal(
-        waypoints,
-        limits,
-        knots=None if spline == SplineName.POLYLINE else time,
-        spline=spline.value,
-        blend=blend,
-        gridpoints=gridpoints,
-        joint_names=joints,
-    )
-    summary = _summarize(file, trajectory, limits, waypoints, time)
-    if out is not None:
-        with whole_folder(out) as folder:
+    with results_folder(out) as folder:
+        trajectory = time_optimal(
+            waypoints,
+            limits,
+            knots=None if spline == SplineName.POLYLINE else time,
+            spline=spline.value,
+            blend=blend,
+            gridpoints=gridpoints,
+            joint_names=joints,
+        )
+        summary = _summarize(file, trajectory, limits, waypoints, time)
+        if folder is not None:
             write_files(folder, trajectory, summary, {"limits.png": lambda: plot.saturation(trajectory, limits)})
     if as_json:
         print_json(summary)
