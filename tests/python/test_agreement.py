@@ -63,7 +63,7 @@ def test_defaults_are_told_where_the_signature_cannot(solver: object) -> None:
 
 
 def test_every_public_name_is_documented() -> None:
-    for module in (bik, bik.goals, bik.obstacles, bik.paths, bik.plot, bik.tasks):
+    for module in (bik, bik.goals, bik.interop, bik.obstacles, bik.paths, bik.plot, bik.tasks, bik.vision):
         for name in module.__all__:
             thing = getattr(module, name)
             assert name == "__version__" or inspect.getdoc(thing), name

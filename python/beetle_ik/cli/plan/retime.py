@@ -8,14 +8,13 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from ... import InvalidInputError, Limits, Trajectory, plot, time_optimal
+from ... import Limits, Trajectory, plot, time_optimal
 from ..._csv import read_table
 from ..._text import counted
+from ...export import joint_positions
 from ..files import print_files, results_folder, write_files
 from ..options import AsJson, limit
 from ..show import listed, print_json, print_pairs
-
-_OTHER_COLUMNS = ("qd:", "qdd:")
 
 
 class SplineName(StrEnum):
@@ -55,7 +54,9 @@ def retime(
     as_json: AsJson = False,
 ) -> None:
     """Time the joint path through the rows of FILE as fast as the limits allow."""
-    joints, waypoints, time = _read(file)
+    table = read_table(file, [])
+    joints, waypoints = joint_positions(file, table)
+    time = table.get("time")
     limits = Limits(
         acceleration=limit("--acceleration-limit", acceleration),
         velocity=limit("--velocity-limit", velocity),
@@ -78,21 +79,6 @@ def retime(
         print_json(summary)
     else:
         _print(summary, out)
-
-
-def _read(file: Path) -> tuple[list[str], NDArray[np.float64], NDArray[np.float64] | None]:
-    """Joint names, their positions row by row, and the times, if the file has any."""
-    table = read_table(file, [])
-    columns = [column for column in table if column.startswith("q:")]
-    if not columns:
-        columns = [column for column in table if column != "time" and not column.startswith(_OTHER_COLUMNS)]
-    if not columns:
-        raise InvalidInputError(
-            f"{file}, line 1: no joint positions: expected a column for each joint, named 'q:joint' or by the joint "
-            f"alone; columns found: {', '.join(table)}"
-        )
-    waypoints = np.column_stack([table[column] for column in columns])
-    return [column.removeprefix("q:") for column in columns], waypoints, table.get("time")
 
 
 def _summarize(
