@@ -11,6 +11,7 @@ from .. import track as track_path
 from .curves import CurveName, make_curve, read_points
 from .files import results_folder, write_files
 from .options import (
+    Acceleration,
     AsJson,
     BaseLink,
     RobotName,
@@ -19,6 +20,7 @@ from .options import (
     Start,
     TipLink,
     UrdfFile,
+    Velocity,
     limit,
     load_robot,
     make_solver,
@@ -61,10 +63,7 @@ def track(
     k: Annotated[int | None, typer.Option("--k", help="Of the rose radius cos(k u).", rich_help_panel=_CURVE)] = None,
     a: Direction = None,
     b: Direction = None,
-    velocity: Annotated[
-        str | None,
-        typer.Option("--velocity-limit", help="In rad/s: a number, or one a joint: v1,v2,...; else the robot's."),
-    ] = None,
+    velocity: Velocity = None,
     velocity_sinusoid: Annotated[
         str | None,
         typer.Option(
@@ -72,9 +71,7 @@ def track(
             help="Or a limit that varies, the same for all joints: mean + amplitude sin(omega t), in rad/s.",
         ),
     ] = None,
-    acceleration: Annotated[
-        str | None, typer.Option("--acceleration-limit", help="The same in rad/s^2; else there is none.")
-    ] = None,
+    acceleration: Acceleration = None,
     solver: Annotated[
         SolverName | None,
         typer.Option(help="Without it the library's model-based rule; bas, chain and greedy are beetles."),

@@ -13,13 +13,6 @@ from ..files import can_draw, print_files, results_folder, write_files
 from ..options import SolverName, limit, make_solver
 from ..show import print_json, print_pairs
 
-Velocity = Annotated[
-    str | None,
-    typer.Option("--velocity-limit", help="In rad/s: a number, or one a joint: v1,v2,...; else the robot's."),
-]
-Acceleration = Annotated[
-    str | None, typer.Option("--acceleration-limit", help="The same in rad/s^2; else there is none.")
-]
 Budget = Annotated[
     int | None, typer.Option("--max-evaluations", min=1, help="Budget of the search; else the method's own.")
 ]

@@ -7,8 +7,19 @@ import typer
 
 from ... import plan_point_to_point
 from ...obstacles import Ellipse
-from ..options import AsJson, BaseLink, RobotName, Seed, TipLink, UrdfFile, load_robot, numbers
-from .planned import Acceleration, Animated, Budget, Out, Solver, Velocity, options, report
+from ..options import (
+    Acceleration,
+    AsJson,
+    BaseLink,
+    RobotName,
+    Seed,
+    TipLink,
+    UrdfFile,
+    Velocity,
+    load_robot,
+    numbers,
+)
+from .planned import Animated, Budget, Out, Solver, options, report
 
 
 class Method(StrEnum):
