@@ -38,7 +38,7 @@ impl TipPath {
     /// Through a path's `positions` (m) and rotations at its [`times`](Self::times). Pauses are left out.
     ///
     /// # Errors
-    /// [`Error::InvalidPath`] for a path that stays in one place; [`Error::NotFinite`], [`Error::NotRigid`].
+    /// [`Error::InvalidPath`](crate::Error::InvalidPath) for a path that stays in one place; those of [`Reference::new`].
     pub fn sampled(times: Vec<f64>, positions: Vec<[f64; 3]>, rotations: Option<Vec<Matrix3<f64>>>) -> Result<Self> {
         let reference = Reference::new(1.0, positions, rotations)?;
         let last = times.len() - 1;
