@@ -71,7 +71,10 @@ def test_configurations_are_kept() -> None:
 
 @pytest.mark.parametrize("solver", [bik.PSO(), bik.Genetic(), bik.DifferentialEvolution(), bik.BAS()])
 def test_other_searches_serve(solver: Any) -> None:
-    assert between(solver=solver).evaluations <= 3000
+    plan = between(solver=solver)
+    assert plan.evaluations <= 3000
+    ends = plan.trajectory.at([0.0, plan.trajectory.duration])[0]
+    np.testing.assert_allclose(ARM.fk(ends)[:, :3, 3], [START, END], atol=1e-9)
 
 
 def test_a_path_is_followed_within_the_accuracy() -> None:

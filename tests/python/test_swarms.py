@@ -51,6 +51,7 @@ def test_swarms_keep_the_limits_of_a_path_they_cannot_follow(solver: Any) -> Non
 def test_swarms_solve_for_positions(swarm: Any) -> None:
     found = bik.solve(IIWA, [0.4, 0.3, 0.8], solver=bik.MultiStart(swarm), position_tolerance=1e-4)
     assert found.success, found.message
+    assert np.linalg.norm(IIWA.fk(found.q)[:3, 3] - [0.4, 0.3, 0.8]) <= 1e-4
 
 
 def test_a_solve_may_stop_at_a_value() -> None:
