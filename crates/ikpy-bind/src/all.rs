@@ -6,12 +6,13 @@ use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
-use crate::convert::{Picked, count, picked, table, vector};
+use crate::convert::{count, table, vector};
 use crate::error::raise;
 use crate::ik::{PySolution, read_target};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::outcome::outcome;
+use crate::picked::{Picked, picked};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;

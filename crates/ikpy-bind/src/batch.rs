@@ -8,11 +8,12 @@ use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::convert::{Numbers, Picked, Rows, array, optional_count, picked, row, rows, shape_text, table};
+use crate::convert::{Numbers, Rows, array, optional_count, row, rows, shape_text, table};
 use crate::error::{invalid, raise};
 use crate::ik::PySolution;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
+use crate::picked::{Picked, picked};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;

@@ -14,6 +14,7 @@ mod obstacle;
 mod options;
 mod outcome;
 mod path;
+mod picked;
 mod planning;
 mod pose;
 mod posture;

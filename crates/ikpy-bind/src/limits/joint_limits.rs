@@ -6,7 +6,7 @@ use ikcore::robot::Robot;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use super::given::Given;
+use super::given::GivenLimit;
 use super::per_joint::PerJoint;
 use super::sampling::Sampling;
 use crate::error::raise;
@@ -26,7 +26,7 @@ use crate::options::NewArguments;
 #[pyclass(name = "Limits", module = "beetle_ik", frozen)]
 pub struct PyLimits {
     /// In the order of the fields.
-    given: [Option<Given>; 5],
+    given: [Option<GivenLimit>; 5],
 }
 
 const FIELDS: [Field; 5] = [Field::Lower, Field::Upper, Field::Velocity, Field::Acceleration, Field::Jerk];
@@ -44,7 +44,7 @@ impl PyLimits {
     ) -> PyResult<Self> {
         let mut given = [const { None }; 5];
         for ((slot, field), value) in given.iter_mut().zip(FIELDS).zip([lower, upper, velocity, acceleration, jerk]) {
-            *slot = value.map(|value| Given::read(field, value)).transpose()?;
+            *slot = value.map(|value| GivenLimit::read(field, value)).transpose()?;
         }
         Ok(Self { given })
     }
@@ -163,7 +163,7 @@ impl PyLimits {
 
     /// Err if a field is a callable of t, for motions without a known end.
     pub fn require_no_functions(&self, method: &str, instead: &str) -> PyResult<()> {
-        let is_function = |given: &Option<Given>| matches!(given, Some(Given::Function(_)));
+        let is_function = |given: &Option<GivenLimit>| matches!(given, Some(GivenLimit::Function(_)));
         match self.given.iter().position(is_function) {
             None => Ok(()),
             Some(i) => Err(raise(Error::UnsupportedLimit {
@@ -205,6 +205,6 @@ impl PyLimits {
 }
 
 /// A field that was given one number per joint.
-fn numbers(values: Vec<f64>) -> Option<Given> {
-    Some(Given::Numbers(PerJoint { values, single: false }))
+fn numbers(values: Vec<f64>) -> Option<GivenLimit> {
+    Some(GivenLimit::Numbers(PerJoint { values, single: false }))
 }

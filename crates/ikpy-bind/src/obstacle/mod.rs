@@ -1,14 +1,14 @@
 //! `bik.obstacles`.
 
+mod argument;
 mod body;
 mod clearance;
-mod given;
 mod shapes;
 
 use pyo3::prelude::*;
 
+pub use argument::Obstacles;
 use body::PyObstacle;
-pub use given::Given;
 use shapes::{PyBox, PyCapsule, PyConvexMesh, PyEllipse, PyEllipsoid, PySphere};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -10,7 +10,7 @@ use crate::error::{invalid, raise};
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
-use crate::obstacle::Given;
+use crate::obstacle::Obstacles;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
 
@@ -65,7 +65,7 @@ pub fn plan_point_to_point(
     let arm = robot.get().core.clone();
     let (start, end) = (read_end("start", start, start_q)?, read_end("end", end, end_q)?);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
-    let obstacles = Given::read(py, obstacles)?;
+    let obstacles = Obstacles::read(py, obstacles)?;
     let given = obstacles.tuple;
     let options = PointToPointOptions {
         method: method.parse().map_err(raise)?,

@@ -2,7 +2,7 @@
 //! whole motion is certified.
 
 use super::ends::{NAMES, Pair, PairSearch};
-use super::line_timing::Polyline;
+use super::line_timing::JointPolyline;
 use super::rrt_connect::{Connection, TreeSearch};
 use super::straight::{PAIRS, no_pair, straight};
 use crate::error::Result;
@@ -122,7 +122,7 @@ fn best_path(
 }
 
 /// A smooth timing of a collision-free path: with blends as wide as can be certified, or else with a stop at each corner.
-fn timed(trees: &mut TreeSearch, path: &Polyline, limits: &MotionLimits, margin: f64) -> Result<Trajectory> {
+fn timed(trees: &mut TreeSearch, path: &JointPolyline, limits: &MotionLimits, margin: f64) -> Result<Trajectory> {
     let stopping = path.with_stops(limits)?;
     let mut shares = vec![1.0; path.0.len()];
     for _ in 0..NARROWINGS {
@@ -142,7 +142,7 @@ fn timed(trees: &mut TreeSearch, path: &Polyline, limits: &MotionLimits, margin:
 }
 
 /// The inner point of the path that the motion is nearest to at time `t` (s).
-fn nearest_corner(path: &Polyline, motion: &Trajectory, t: f64) -> Result<usize> {
+fn nearest_corner(path: &JointPolyline, motion: &Trajectory, t: f64) -> Result<usize> {
     let n = motion.joints().len();
     let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     motion.at(t, &mut q, &mut qd, &mut qdd)?;

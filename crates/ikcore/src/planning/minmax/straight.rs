@@ -1,7 +1,7 @@
 //! Plans without obstacles: straight lines between the pairs of configurations, of which the best is taken.
 
 use super::ends::{Pair, PairSearch};
-use super::line_timing::Polyline;
+use super::line_timing::JointPolyline;
 use crate::error::{Error, Result};
 use crate::planning::{Cost, Improvement, MotionLimits, Plan};
 use crate::solver::{Monitor, Status};
@@ -45,7 +45,7 @@ pub fn without_obstacles(search: &mut PairSearch, objective: Cost, monitor: &mut
 /// The quicker of a quintic and of constant velocity between blends.
 pub fn straight(pair: &Pair, limits: &MotionLimits) -> Result<Trajectory> {
     pair.require_motion()?;
-    let line = Polyline(vec![pair.start.to_vec(), pair.end.to_vec()]);
+    let line = JointPolyline(vec![pair.start.to_vec(), pair.end.to_vec()]);
     let quintic = line.with_stops(limits)?;
     match line.with_blends(limits, &[1.0, 1.0]).transpose()? {
         Some(blended) if blended.duration() < quintic.duration() => Ok(blended),

@@ -9,14 +9,14 @@ use crate::convert::summary;
 use crate::error::invalid;
 
 /// Obstacles as a caller gave them.
-pub struct Given {
+pub struct Obstacles {
     /// For the core.
     pub core: Vec<Obstacle>,
     /// For results that carry them along.
     pub tuple: Py<PyTuple>,
 }
 
-impl Given {
+impl Obstacles {
     /// Any sequence of obstacles; None is none.
     pub fn read(py: Python<'_>, value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let wrong = |place: &str, got: &Bound<'_, PyAny>| {
