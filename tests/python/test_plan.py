@@ -249,6 +249,11 @@ def test_command_line_along_a_path() -> None:
     [
         (["point-to-point", "planar5", "--start", "9,0,0", "--end", "2,2,0"], "start cannot be reached"),
         (["point-to-point", "planar5", "--start", "3,0", "--end", "2,2,0"], "--start: expected 3 numbers"),
+        (["point-to-point", "planar5", "--start", "3,0,0"], "no end was given: use --end X,Y,Z or --end-q Q1,Q2,..."),
+        (
+            ["point-to-point", "planar5", "--start", "3,0,0", "--start-q", "0,0,0,0,0", "--end", "2,2,0"],
+            "both --start and --start-q were given: give one of them",
+        ),
         (["along-path", "planar5"], "give one of --path FILE and --curve with one of circle"),
     ],
 )
