@@ -123,8 +123,8 @@ impl Linkage {
     }
 
     /// `points` moved onto their circles: each in the direction in which it was seen from the one before, the last where the
-    /// circles of the last two links meet, the nearer of the two places. False where they do not meet.
-    pub fn repair(&self, points: &mut [Point2]) -> bool {
+    /// circles of the last two links meet, the nearer of the two places. None where they do not meet.
+    pub fn repair(&self, points: &mut [Point2]) -> Option<()> {
         let mut end = self.base;
         let last = points.len() - 1;
         for (point, length) in points[..last].iter_mut().zip(&self.lengths) {
@@ -135,9 +135,8 @@ impl Linkage {
         }
         let (near, target) = (points[last], self.target);
         let side = (target[0] - end[0]) * (near[1] - end[1]) - (target[1] - end[1]) * (near[0] - end[0]);
-        let meeting = self.last_point(&end, side);
-        points[last] = meeting.unwrap_or(near);
-        meeting.is_some()
+        points[last] = self.last_point(&end, side)?;
+        Some(())
     }
 
     /// Where the circle about `from` meets the circle about the target, on the left or on the right of the line between.

@@ -3,7 +3,7 @@
 use super::compose::compose;
 use super::grid::{check_gridpoints, cut};
 use super::jerk::smooth;
-use super::joint_path::JointPath;
+use super::joint_path::{JointPath, PathEnd};
 use super::limits::TimingLimits;
 use super::reachability::{Range, SpeedProfile};
 use super::refine::refine;
@@ -43,7 +43,8 @@ pub fn time_optimal(path: &JointPath, limits: &TimingLimits, options: &TimingOpt
 /// # Errors
 /// The same, except for position limits.
 pub fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
-    let ends = [end_range(path, options.start_speed, false)?, end_range(path, options.end_speed, true)?];
+    let ends =
+        [end_range(path, options.start_speed, PathEnd::Start)?, end_range(path, options.end_speed, PathEnd::End)?];
     let fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends);
     let profile = match options.gridpoints {
         Some(gridpoints) => {
@@ -70,27 +71,25 @@ pub fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) ->
 /// # Errors
 /// None in practice: from rest to rest there is always a way.
 pub fn coarse_duration(path: &JointPath, limits: &TimingLimits, segments: usize) -> Result<f64> {
-    let ends = [end_range(path, 0.0, false)?, end_range(path, 0.0, true)?];
+    let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
     SpeedProfile::fastest(path, limits, cut(path, segments), ends).map(|profile| profile.duration())
 }
 
 /// The range of squared path speeds that give a joint speed at an end. Where dq/ds vanishes the joints are at rest at any
 /// path speed.
-fn end_range(path: &JointPath, speed: f64, at_end: bool) -> Result<Range> {
-    let name = if at_end { "end_speed" } else { "start_speed" };
+fn end_range(path: &JointPath, speed: f64, end: PathEnd) -> Result<Range> {
+    let name = end.name();
     if !(speed >= 0.0 && speed.is_finite()) {
-        return Err(Error::out_of_range(name, "zero or more and finite", speed));
+        return Err(Error::out_of_range(format!("{name}_speed"), "zero or more and finite", speed));
     }
-    if !path.has_no_direction(at_end) {
-        let piece = if at_end { path.pieces() - 1 } else { 0 };
-        let squared = (speed / path.slope(piece, at_end)).powi(2);
+    if !path.has_no_direction(end) {
+        let squared = (speed / path.slope(end)).powi(2);
         return Ok([squared; 2]);
     }
     if speed == 0.0 {
         return Ok([0.0, f64::INFINITY]);
     }
-    let place = if at_end { "end" } else { "start" };
     let problem =
-        format!("{name} is {speed}, but the path has no direction at its {place}: give the spline other ends");
+        format!("{name}_speed is {speed}, but the path has no direction at its {name}: give the spline other ends");
     Err(Error::Infeasible { problem })
 }
