@@ -39,6 +39,7 @@ pub mod newton_raphson;
 pub mod population;
 pub mod pso;
 pub mod qpso;
+pub mod side_by_side;
 pub mod stop;
 pub mod velocities;
 
@@ -62,4 +63,5 @@ pub use newton_raphson::NewtonRaphson;
 pub use population::Schedule;
 pub use pso::Pso;
 pub use qpso::Qpso;
+pub use side_by_side::run_side_by_side;
 pub use stop::{Monitor, Status, Stop, Unattended};
