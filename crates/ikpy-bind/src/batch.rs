@@ -148,10 +148,11 @@ fn column<T: Element>(py: Python<'_>, items: &[Item], of: impl Fn(&Item) -> T) -
 ///     on_invalid: what to do about a target or start that is wrong: "raise" names its row; "skip" solves the others
 ///         and marks the row `Status.INVALID`, its q NaN.
 ///     progress: True for a bar on the terminal, or a callable of (done, total).
-///     task, goals, prefer: as for `solve`.
+///     task: as for `solve`.
 ///     solver: None: Levenberg-Marquardt from many starts.
 ///     position_tolerance: m.
 ///     rotation_tolerance: rad, geodesic angle.
+///     goals, prefer: as for `solve`.
 ///     limits: position limits to keep; None keeps the robot's.
 ///     stop: budgets of each target; None: as for `solve`.
 ///     seed: of the random draws: the same seed, the same bits.

@@ -20,12 +20,12 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     robot: the arm.
 ///     start, end: position (3,) (m) or pose (4, 4) of the tip; the configuration is the planner's choice.
 ///     start_q, end_q: instead of them, joint angles (n,).
-///     obstacles: what the robot may not touch, from `bik.obstacles`; it may never touch itself if it has capsules.
-///     margin: distance to keep from obstacles and between links (m); None: 1 mm.
 ///     limits: positions, velocities and accelerations to keep; None: the robot's.
 ///     method: "minmax": the ends' configurations that are nearest in time, joined at the limits' pace; "tpbso":
 ///         polynomials through a via point, searched by a beetle swarm (Wang et al. 2019).
 ///     objective: what to minimise: "time", "joint_travel" or "tip_travel".
+///     obstacles: what the robot may not touch, from `bik.obstacles`; it may never touch itself if it has capsules.
+///     margin: distance to keep from obstacles and between links (m); None: 1 mm.
 ///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1; None: (1, 1).
 ///     solver: what searches; None: the method's own.
 ///     stop: budgets; None: the method's own.

@@ -25,9 +25,10 @@ use crate::robot::PyRobot;
 ///     robot: the arm.
 ///     start: (n,), configuration at t = 0.
 ///     dt: time step (s).
-///     task, goals: as in `track`.
+///     task: as in `track`.
 ///     solver: what runs in every step: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule.
 ///     limits: None: the robot's. Numbers and `Sinusoid`s; a callable has no end to be sampled to.
+///     goals: as in `track`.
 ///     position_tolerance: m.
 ///     rotation_tolerance: rad.
 ///     seed: of the random draws.
