@@ -1,6 +1,6 @@
 //! The kinds of limits, and their names.
 
-use std::fmt;
+use crate::wording::words;
 
 /// A kind of limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,14 +17,10 @@ pub enum Field {
     Jerk,
 }
 
-impl fmt::Display for Field {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Lower => "lower",
-            Self::Upper => "upper",
-            Self::Velocity => "velocity",
-            Self::Acceleration => "acceleration",
-            Self::Jerk => "jerk",
-        })
-    }
-}
+words!("kind of limit": Field {
+    Lower => "lower",
+    Upper => "upper",
+    Velocity => "velocity",
+    Acceleration => "acceleration",
+    Jerk => "jerk",
+});

@@ -46,9 +46,7 @@ pub fn along_path(
     // Points sampled from a curve determine it no better than to their coarseness.
     let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * tip_path.extent() + tip_path.coarseness());
     require_positive("accuracy", accuracy)?;
-    if let Some(q) = &options.start {
-        robot.check("start_q", q)?;
-        robot.require_within("start_q", q, &limits.lower, &limits.upper)?;
+    if let Some(q) = options.start_within(robot, &limits)? {
         require_on_path(robot, q, tip_path, accuracy)?;
     }
     let robot = limits.applied_to(robot)?;

@@ -22,16 +22,13 @@ pub fn along_path(
     let arm = PlanarArm::of(robot).ok_or_else(|| not_planar(robot))?;
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     limits.require_velocities(METHOD)?;
-    if let Some(q) = &options.start {
-        robot.check("start_q", q)?;
-        robot.require_within("start_q", q, &limits.lower, &limits.upper)?;
-    }
-    let elbow = options.start.as_ref().map_or(options.elbow.unwrap_or_default(), |q| arm.elbow(q));
+    let start = options.start_within(robot, &limits)?;
+    let elbow = start.map_or(options.elbow.unwrap_or_default(), |q| arm.elbow(q));
     let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * tip_path.extent());
     require_positive("accuracy", accuracy)?;
     refuse_repetition(tip_path.points())?;
     let redundancy = Redundancy::new(arm, tip_path.points(), elbow)?;
-    let mut cost = PathCost::new(robot, &limits, redundancy, options.objective, accuracy, options.start.as_deref());
+    let mut cost = PathCost::new(robot, &limits, redundancy, options.objective, accuracy, start);
     let search = search(options.solver.as_ref(), options.stop, options.seed);
     let bounds = cost.bounds()?;
     let found = search.run(&mut cost, &bounds, monitor)?;
