@@ -119,7 +119,8 @@ fn step<A: Arithmetic, const R: usize>(
     // Bit j: joint j sits at a bound.
     let mut fixed = 0_u64;
     for _ in 0..ROUNDS {
-        let right: [One<A>; R] = std::array::from_fn(|i| One::of(remaining[i]));
+        let mut right = [One::of(0.0); R];
+        right.iter_mut().zip(remaining).for_each(|(entry, rest)| *entry = One::of(rest));
         let z = ldl::solve(gram::<A, R>(columns, lambda, n, fixed), right);
         let fixed_before = fixed;
         for j in (0..n).filter(|j| fixed_before & (1 << j) == 0) {
@@ -153,8 +154,14 @@ fn gram<A: Arithmetic, const R: usize>(columns: &[[f64; ROWS]], lambda: f64, n: 
             }
         }
     }
-    let entry = |i: usize, k: usize| sum[i][k / 4].0[k % 4] + if i == k { lambda } else { 0.0 };
-    std::array::from_fn(|i| std::array::from_fn(|k| One::of(entry(i, k))))
+    // Loops, where closures would be shorter: those the compiler may leave apart, without the instructions of this kernel.
+    let mut entries = [[One::of(0.0); R]; R];
+    for (i, row) in entries.iter_mut().enumerate() {
+        for (k, entry) in row.iter_mut().enumerate() {
+            *entry = One::of(sum[i][k / 4].0[k % 4] + if i == k { lambda } else { 0.0 });
+        }
+    }
+    entries
 }
 
 /// a'b, in pairs.

@@ -52,7 +52,8 @@ impl FourBoxSteps<'_> {
     /// On the first `R` rows.
     #[inline(always)]
     fn write_first_rows<A: Arithmetic, const R: usize>(&self, out: &mut [Quad]) {
-        let mut remaining: [Four<A>; R] = std::array::from_fn(|i| Four::of(self.residual[i]));
+        let mut remaining = [Four::<A>::splat(0.0); R];
+        remaining.iter_mut().zip(self.residual).for_each(|(entry, residual)| *entry = Four::of(*residual));
         // One where a joint is free, zero where it sits at a bound.
         let mut free = [Four::<A>::splat(1.0); MAX_DOF];
         for _ in 0..ROUNDS {
