@@ -153,10 +153,10 @@ const ANYWHERE: [f64; MAX_DOF] = [f64::INFINITY; MAX_DOF];
 /// What of `direction` the linearised task leaves free.
 fn tangent(at: &Linearization, q: &[f64], direction: &[f64]) -> Point {
     let n = q.len();
-    let wished: Point = q.iter().zip(direction).map(|(q, along)| q + along).collect();
-    let mut out = Point::from_slice(&wished);
+    let preferred: Point = q.iter().zip(direction).map(|(q, along)| q + along).collect();
+    let mut out = Point::from_slice(&preferred);
     let damping = least_damping(&at.columns[..n]);
-    box_step_near(&at.columns, &[0.0; 6], damping, q, &wished, &NOWHERE[..n], &ANYWHERE[..n], &mut out);
+    box_step_near(&at.columns, &[0.0; 6], damping, q, &preferred, &NOWHERE[..n], &ANYWHERE[..n], &mut out);
     difference(&out, q)
 }
 

@@ -134,12 +134,12 @@ impl SelfMotion<'_, '_> {
 
     /// The point of the linearised task that is nearest to a step of `rate` down `slope`.
     fn near(&self, at: &Linearization, here: &Place, slope: &[f64], rate: f64) -> Point {
-        let mut wished: Point = here.q.iter().zip(slope).map(|(q, slope)| q - rate * slope).collect();
-        self.bounds.clip(&mut wished);
-        let mut out = wished.clone();
+        let mut preferred: Point = here.q.iter().zip(slope).map(|(q, slope)| q - rate * slope).collect();
+        self.bounds.clip(&mut preferred);
+        let mut out = preferred.clone();
         let (Linearization { columns, residual }, Place { q, .. }) = (at, here);
         let damping = least_damping(&columns[..q.len()]);
-        box_step_near(columns, residual, damping, q, &wished, self.bounds.lower(), self.bounds.upper(), &mut out);
+        box_step_near(columns, residual, damping, q, &preferred, self.bounds.lower(), self.bounds.upper(), &mut out);
         out
     }
 

@@ -47,26 +47,26 @@ pub fn least_damping(columns: &[[f64; ROWS]]) -> f64 {
     LEAST * columns.as_flattened().iter().map(|entry| entry * entry).sum::<f64>()
 }
 
-/// [`box_step`] with a wish: of the points that (nearly) solve residual + J (out - x) = 0, the one in the box that is nearest to
-/// `wished`, itself in the box. What the task leaves free goes where it is wished.
+/// [`box_step`] with a preference: of the points that (nearly) solve residual + J (out - x) = 0, the one in the box that is
+/// nearest to `preferred`, itself in the box. What the task leaves free goes there.
 #[allow(clippy::too_many_arguments)]
 pub fn box_step_near(
     columns: &[[f64; ROWS]],
     residual: &[f64; ROWS],
     lambda: f64,
     x: &[f64],
-    wished: &[f64],
+    preferred: &[f64],
     lower: &[f64],
     upper: &[f64],
     out: &mut [f64],
 ) {
     let mut there = *residual;
-    for ((column, x), wished) in columns.iter().zip(x).zip(wished) {
+    for ((column, x), preferred) in columns.iter().zip(x).zip(preferred) {
         for (entry, slope) in there.iter_mut().zip(column) {
-            *entry += slope * (wished - x);
+            *entry += slope * (preferred - x);
         }
     }
-    box_step(columns, &there, lambda, wished, lower, upper, out);
+    box_step(columns, &there, lambda, preferred, lower, upper, out);
 }
 
 /// [`step`] compiled for AVX2 and FMA.
@@ -227,14 +227,14 @@ mod tests {
     }
 
     #[test]
-    fn what_the_task_leaves_free_goes_where_it_is_wished() {
+    fn what_the_task_leaves_free_goes_where_it_is_preferred() {
         // x + y is to become 1; of all such points, the nearest to (0.8, 0.6) is (0.6, 0.4); with x <= 0.4, (0.4, 0.6).
         let columns = [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 2];
         let residual = [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let near = |upper: f64| {
             let mut out = [0.0; 2];
-            let wished = [0.8_f64.min(upper), 0.6];
-            box_step_near(&columns, &residual, 1e-12, &[0.0; 2], &wished, &[-FREE; 2], &[upper, FREE], &mut out);
+            let preferred = [0.8_f64.min(upper), 0.6];
+            box_step_near(&columns, &residual, 1e-12, &[0.0; 2], &preferred, &[-FREE; 2], &[upper, FREE], &mut out);
             out
         };
         assert!(near(FREE).iter().zip([0.6, 0.4]).all(|(x, e)| (x - e).abs() < 1e-9), "{:?}", near(FREE));
