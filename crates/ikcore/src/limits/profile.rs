@@ -25,15 +25,21 @@ impl Sinusoid {
         self.mean + self.amplitude * (self.angular_frequency * t + self.phase).sin()
     }
 
-    /// The first time in \[`from`, `to`\] at which the sine is `sign` (1 or -1).
-    fn time_of_peak(&self, sign: f64, from: f64, to: f64) -> Option<f64> {
-        if self.angular_frequency == 0.0 {
-            return None;
+    /// (time, value) of its largest (`sign` 1) or smallest value (-1) over \[`from`, `to`\] (s).
+    fn extreme(&self, sign: f64, from: f64, to: f64) -> (f64, f64) {
+        let Self { mean, amplitude, angular_frequency, phase } = *self;
+        if angular_frequency == 0.0 {
+            return (from, self.at(from));
         }
-        let period = TAU / self.angular_frequency.abs();
-        let peak = (sign * FRAC_PI_2 - self.phase) / self.angular_frequency;
-        let first = peak + ((from - peak) / period).ceil() * period;
-        (first <= to).then_some(first.max(from))
+        let period = TAU / angular_frequency.abs();
+        let peak = (sign * amplitude.signum() * FRAC_PI_2 - phase) / angular_frequency;
+        let next = peak + ((from - peak) / period).ceil() * period;
+        if next <= to {
+            return (next.max(from), mean + sign * amplitude.abs());
+        }
+        // From peak to peak there is but one valley: the end that is nearer to its peak is the higher one.
+        let higher = if from - (next - period) < next - to { from } else { to };
+        (higher, self.at(higher))
     }
 }
 
@@ -87,30 +93,20 @@ impl Profile {
         }
     }
 
-    /// The largest (`sign` 1) or smallest (-1): at an end of the interval, a peak, or a sample between.
+    /// The largest (`sign` 1) or smallest (-1): of samples at one of them, or at an end of the interval.
     fn extreme(&self, sign: f64, from: f64, to: f64) -> (f64, f64) {
-        let mut best = (from, self.at(from));
-        let mut offer = |t: f64, value: f64| {
-            if sign * value > sign * best.1 {
-                best = (t, value);
-            }
-        };
         match self {
-            Self::Constant(_) => {}
-            Self::Sinusoid(sinusoid) => {
-                offer(to, self.at(to));
-                if let Some(t) = sinusoid.time_of_peak(sign * sinusoid.amplitude.signum(), from, to) {
-                    offer(t, sinusoid.mean + sign * sinusoid.amplitude.abs());
-                }
-            }
+            Self::Constant(value) => (from, *value),
+            Self::Sinusoid(sinusoid) => sinusoid.extreme(sign, from, to),
             Self::Sampled { step, values } => {
-                offer(to, self.at(to));
                 let first = (from / step).ceil().max(0.0) as usize;
                 let last = ((to / step).floor() as usize).min(values.len() - 1);
-                (first..=last).for_each(|i| offer(i as f64 * step, values[i]));
+                let samples = (first..=last).map(|i| (i as f64 * step, values[i]));
+                let higher =
+                    |best: (f64, f64), (t, value)| if sign * value > sign * best.1 { (t, value) } else { best };
+                std::iter::once((to, self.at(to))).chain(samples).fold((from, self.at(from)), higher)
             }
         }
-        best
     }
 
     /// Err unless it is a number at every time; `what` names it, as in "velocity limit of joint 'elbow'".
