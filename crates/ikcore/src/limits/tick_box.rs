@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Limits, Profile};
+use super::{Field, Limits, Profile};
 use crate::math::ordered::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::wording::words;
@@ -19,6 +19,16 @@ pub enum LimitAt {
 
 words!("limit_at": LimitAt { Interval => "interval", Start => "start" });
 
+impl LimitAt {
+    /// The `limit` that holds for the tick from `from` to `to` (s).
+    fn of(self, limit: &Profile, from: f64, to: f64) -> f64 {
+        match self {
+            Self::Interval => limit.smallest(from, to).1,
+            Self::Start => limit.at(from),
+        }
+    }
+}
+
 /// Where one tick may end, and the velocity limits that it came from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TickBox {
@@ -26,33 +36,42 @@ pub struct TickBox {
     pub bounds: Bounds,
     /// The velocity limit of each joint for this tick (rad/s, m/s).
     pub velocity: Point,
+    /// The lower position limits over the tick (rad, m).
+    pub floor: Point,
+    /// The upper ones.
+    pub ceiling: Point,
 }
 
 impl TickBox {
     /// The box of an arm that stands still at `q`.
     pub fn around(q: &[f64]) -> Self {
-        Self { bounds: Bounds::from_ranges(q.iter().map(|q| (*q, *q))), velocity: Point::from_elem(0.0, q.len()) }
+        let all = |value: f64| Point::from_elem(value, q.len());
+        Self {
+            bounds: Bounds::from_ranges(q.iter().map(|q| (*q, *q))),
+            velocity: all(0.0),
+            floor: all(f64::NEG_INFINITY),
+            ceiling: all(f64::INFINITY),
+        }
     }
 }
 
 impl Limits {
     /// The velocity limit of joint `j` that holds for the tick from `from` to `to` (s).
     pub fn velocity_over(&self, j: usize, from: f64, to: f64, at: LimitAt) -> f64 {
-        match at {
-            LimitAt::Interval => self.velocity[j].smallest(from, to).1,
-            LimitAt::Start => self.velocity[j].at(from),
-        }
+        at.of(&self.velocity[j], from, to)
     }
 
     /// Writes the velocity limits that hold for the tick from `from` to `to` (s).
     pub fn write_velocities_over(&self, [from, to]: [f64; 2], at: LimitAt, velocity: &mut [f64]) {
-        for j in 0..velocity.len() {
-            velocity[j] = match &self.velocity[j] {
-                Profile::Constant(limit) => *limit,
+        let mut last: Option<(&Profile, f64)> = None;
+        for (velocity, limit) in velocity.iter_mut().zip(&self.velocity) {
+            *velocity = match (limit, last) {
+                (Profile::Constant(limit), _) => *limit,
                 // Joints mostly share one limit, and two are compared more quickly than an extreme is found.
-                varying if j > 0 && *varying == self.velocity[j - 1] => velocity[j - 1],
-                _ => self.velocity_over(j, from, to, at),
+                (varying, Some((same, value))) if varying == same => value,
+                _ => at.of(limit, from, to),
             };
+            last = Some((limit, *velocity));
         }
     }
 
@@ -65,34 +84,42 @@ impl Limits {
     /// `dt`: `to - from` is rounded, the more so the later, and the reach must not depend on that. Returns whether every joint
     /// can be within its position limits then; one that cannot is sent towards them as fast as it may go.
     pub fn narrow(&self, q: &[f64], [from, to]: [f64; 2], dt: f64, at: LimitAt, tick: &mut TickBox) -> bool {
-        let TickBox { bounds, velocity } = tick;
-        let (lower, upper) = bounds.parts_mut();
+        let TickBox { bounds, velocity, floor, ceiling } = tick;
         self.write_velocities_over([from, to], at, velocity);
-        let mut feasible = true;
-        for j in 0..q.len() {
+        floor.iter_mut().zip(&self.lower).for_each(|(floor, lower)| *floor = lower.largest(from, to).1);
+        ceiling.iter_mut().zip(&self.upper).for_each(|(ceiling, upper)| *ceiling = upper.smallest(from, to).1);
+        let n = q.len();
+        let (lower, upper) = bounds.parts_mut();
+        let (lower, upper) = (&mut lower[..n], &mut upper[..n]);
+        let (velocity, floor, ceiling) = (&velocity[..n], &floor[..n], &ceiling[..n]);
+        for j in 0..n {
             // A limit that varies may fall below zero at a time that could not be checked beforehand: then the joint stands still.
             let reach = larger(velocity[j] * dt, 0.0);
             let (slowest, fastest) = (reachable(q[j], -reach), reachable(q[j], reach));
-            let [floor, ceiling] = self.position_range(j, from, to);
-            lower[j] = smaller(larger(slowest, floor), fastest);
+            lower[j] = smaller(larger(slowest, floor[j]), fastest);
             // Limits that cross later than could be checked leave a point between them, not an empty box.
-            upper[j] = larger(larger(smaller(fastest, ceiling), slowest), lower[j]);
-            feasible &= floor <= fastest && slowest <= ceiling && floor <= ceiling;
+            upper[j] = larger(larger(smaller(fastest, ceiling[j]), slowest), lower[j]);
         }
-        feasible
+        (0..n).all(|j| floor[j] <= lower[j] && upper[j] <= ceiling[j])
+    }
+
+    /// Whether every tick has the same box, wherever it begins: nothing varies, and no velocity is limited.
+    pub fn leave_one_box(&self) -> bool {
+        let ranges = self.lower.iter().chain(&self.upper);
+        ranges.into_iter().all(|limit| matches!(limit, Profile::Constant(_))) && !self.is_finite(Field::Velocity)
     }
 }
 
 /// q + reach, rounded so that the displacement does not exceed `reach` by the last bit.
+#[inline(always)]
 fn reachable(q: f64, reach: f64) -> f64 {
     let end = q + reach;
-    if reach > 0.0 && end - q > reach {
-        end.next_down()
-    } else if reach < 0.0 && end - q < reach {
-        end.next_up()
-    } else {
-        end
-    }
+    // Half of all ends are rounded too far, at random: a branch would be guessed wrong as often. The number next to `end` on
+    // the side of q has bits that are lower by one where `end` and `reach` have the same sign, else higher.
+    let bits = end.to_bits() as i64;
+    let towards_q = -(1 | ((bits ^ reach.to_bits() as i64) >> 63));
+    let too_far = i64::from((end - q).abs() > reach.abs());
+    f64::from_bits((bits + too_far * towards_q) as u64)
 }
 
 #[cfg(test)]

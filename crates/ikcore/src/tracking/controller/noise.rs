@@ -9,6 +9,7 @@ pub const ABOVE_NOISE: f64 = 3.0;
 pub struct Noise {
     repeats: [f64; 3],
     noted: usize,
+    level: f64,
 }
 
 impl Noise {
@@ -16,12 +17,13 @@ impl Noise {
     pub fn note(&mut self, repeat: f64) {
         self.repeats[self.noted % 3] = repeat;
         self.noted += 1;
+        let [a, b, c] = self.repeats;
+        self.level = median(a, b, c) * std::f64::consts::FRAC_1_SQRT_2;
     }
 
     /// The noise of one measurement (m); zero until there is evidence.
     pub fn level(&self) -> f64 {
-        let [a, b, c] = self.repeats;
-        median(a, b, c) * std::f64::consts::FRAC_1_SQRT_2
+        self.level
     }
 
     /// How much of a surprise to learn from a step that moves the tip by `motion` (m).
