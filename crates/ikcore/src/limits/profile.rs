@@ -1,10 +1,11 @@
 //! A limit as a function of time, with its extremes over an interval.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require_finite, require_positive};
+use crate::math::ordered::larger;
 
 /// mean + amplitude sin(angular_frequency t + phase): eq. (7) of Cheng et al. (2020), its sign mended.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -28,17 +29,19 @@ impl Sinusoid {
     /// (time, value) of its largest (`sign` 1) or smallest value (-1) over \[`from`, `to`\] (s).
     fn extreme(&self, sign: f64, from: f64, to: f64) -> (f64, f64) {
         let Self { mean, amplitude, angular_frequency, phase } = *self;
-        if angular_frequency == 0.0 {
-            return (from, self.at(from));
-        }
-        let period = TAU / angular_frequency.abs();
-        let peak = (sign * amplitude.signum() * FRAC_PI_2 - phase) / angular_frequency;
-        let next = peak + ((from - peak) / period).ceil() * period;
-        if next <= to {
-            return (next.max(from), mean + sign * amplitude.abs());
+        // Whole turns are peaks. In turns, so that nothing is divided: this runs in every tick.
+        let quarter = 0.25 * sign * amplitude.signum();
+        let turns = |t: f64| (angular_frequency * t + phase) * (1.0 / TAU) - quarter;
+        let (begin, end) = (turns(from), turns(to));
+        let (low, high) = if begin <= end { (begin, end) } else { (end, begin) };
+        let peak = low.ceil();
+        if peak <= high {
+            let time = (TAU * (peak + quarter) - phase) / angular_frequency;
+            return (larger(time, from).min(to), mean + sign * amplitude.abs());
         }
         // From peak to peak there is but one valley: the end that is nearer to its peak is the higher one.
-        let higher = if from - (next - period) < next - to { from } else { to };
+        let low_is_higher = low - (peak - 1.0) < peak - high;
+        let higher = if low_is_higher == (begin <= end) { from } else { to };
         (higher, self.at(higher))
     }
 }
@@ -152,6 +155,8 @@ mod tests {
             let (time, value) = profile.smallest(from, from + length);
             let dense = dense_minimum(&profile, from, from + length);
             prop_assert!(value <= dense + 1e-12 && dense - value < 1e-5, "{value} {dense}");
+            let mirrored = Profile::Sinusoid(Sinusoid { mean: -mean, amplitude: -amplitude, angular_frequency, phase });
+            prop_assert!((mirrored.largest(from, from + length).1 + value).abs() < 1e-12);
             prop_assert!((from..=from + length).contains(&time));
             prop_assert!((profile.at(time) - value).abs() < 1e-9);
         }

@@ -29,7 +29,7 @@ impl LimitAt {
     }
 }
 
-/// Where one tick may end, and the velocity limits that it came from.
+/// Where one tick may end, and the limits that it came from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TickBox {
     /// The box of the joints (rad, m).
@@ -40,18 +40,54 @@ pub struct TickBox {
     pub floor: Point,
     /// The upper ones.
     pub ceiling: Point,
+    varying: [Varying; 3],
+    /// Every tick has this box, wherever it begins.
+    lasting: bool,
+}
+
+/// What of one kind of limits has to be found anew for every tick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Varying {
+    /// Nothing: numbers.
+    Not,
+    /// One value, which all joints share.
+    Together,
+    /// The value of each joint.
+    Apart,
+}
+
+impl Varying {
+    fn of(limits: &[Profile]) -> Self {
+        match limits {
+            _ if limits.iter().all(|limit| matches!(limit, Profile::Constant(_))) => Self::Not,
+            [first, rest @ ..] if rest.iter().all(|limit| limit == first) => Self::Together,
+            _ => Self::Apart,
+        }
+    }
+
+    /// Writes what varies.
+    #[inline]
+    fn update(self, values: &mut [f64], limits: &[Profile], value: impl Fn(&Profile) -> f64) {
+        match self {
+            Self::Not => {}
+            Self::Together => values.fill(value(&limits[0])),
+            Self::Apart => values.iter_mut().zip(limits).for_each(|(out, limit)| *out = value(limit)),
+        }
+    }
 }
 
 impl TickBox {
-    /// The box of an arm that stands still at `q`.
-    pub fn around(q: &[f64]) -> Self {
-        let all = |value: f64| Point::from_elem(value, q.len());
-        Self {
-            bounds: Bounds::from_ranges(q.iter().map(|q| (*q, *q))),
-            velocity: all(0.0),
-            floor: all(f64::NEG_INFINITY),
-            ceiling: all(f64::INFINITY),
-        }
+    /// The box of an arm that begins to move at `q`, to be narrowed for every tick by the same limits.
+    pub fn around(q: &[f64], limits: &Limits) -> Self {
+        let Limits { lower, upper, velocity, acceleration, .. } = limits;
+        let fields = [velocity, lower, upper];
+        let [velocity, floor, ceiling] = fields.map(|field| field.iter().map(|limit| limit.at(0.0)).collect::<Point>());
+        let varying = fields.map(|field| Varying::of(field));
+        let limited_steps = limits.is_finite(Field::Velocity) || acceleration.is_some();
+        let lasting = varying == [Varying::Not; 3] && !limited_steps;
+        let ranges = q.iter().zip(floor.iter().zip(&ceiling));
+        let bounds = ranges.map(|(q, (floor, ceiling))| if lasting { (*floor, *ceiling) } else { (*q, *q) });
+        Self { bounds: Bounds::from_ranges(bounds), velocity, floor, ceiling, varying, lasting }
     }
 }
 
@@ -63,16 +99,8 @@ impl Limits {
 
     /// Writes the velocity limits that hold for the tick from `from` to `to` (s).
     pub fn write_velocities_over(&self, [from, to]: [f64; 2], at: LimitAt, velocity: &mut [f64]) {
-        let mut last: Option<(&Profile, f64)> = None;
-        for (velocity, limit) in velocity.iter_mut().zip(&self.velocity) {
-            *velocity = match (limit, last) {
-                (Profile::Constant(limit), _) => *limit,
-                // Joints mostly share one limit, and two are compared more quickly than an extreme is found.
-                (varying, Some((same, value))) if varying == same => value,
-                _ => at.of(limit, from, to),
-            };
-            last = Some((limit, *velocity));
-        }
+        let how = if Varying::of(&self.velocity) == Varying::Together { Varying::Together } else { Varying::Apart };
+        how.update(velocity, &self.velocity, |limit| at.of(limit, from, to));
     }
 
     /// The position range of joint `j` that holds at every instant from `from` to `to` (s).
@@ -84,10 +112,13 @@ impl Limits {
     /// `dt`: `to - from` is rounded, the more so the later, and the reach must not depend on that. Returns whether every joint
     /// can be within its position limits then; one that cannot is sent towards them as fast as it may go.
     pub fn narrow(&self, q: &[f64], [from, to]: [f64; 2], dt: f64, at: LimitAt, tick: &mut TickBox) -> bool {
-        let TickBox { bounds, velocity, floor, ceiling } = tick;
-        self.write_velocities_over([from, to], at, velocity);
-        floor.iter_mut().zip(&self.lower).for_each(|(floor, lower)| *floor = lower.largest(from, to).1);
-        ceiling.iter_mut().zip(&self.upper).for_each(|(ceiling, upper)| *ceiling = upper.smallest(from, to).1);
+        if tick.lasting {
+            return true;
+        }
+        let TickBox { bounds, velocity, floor, ceiling, varying, .. } = tick;
+        varying[0].update(velocity, &self.velocity, |limit| at.of(limit, from, to));
+        varying[1].update(floor, &self.lower, |limit| limit.largest(from, to).1);
+        varying[2].update(ceiling, &self.upper, |limit| limit.smallest(from, to).1);
         let n = q.len();
         let (lower, upper) = bounds.parts_mut();
         let (lower, upper) = (&mut lower[..n], &mut upper[..n]);
@@ -101,12 +132,6 @@ impl Limits {
             upper[j] = larger(larger(smaller(fastest, ceiling[j]), slowest), lower[j]);
         }
         (0..n).all(|j| floor[j] <= lower[j] && upper[j] <= ceiling[j])
-    }
-
-    /// Whether every tick has the same box, wherever it begins: nothing varies, and no velocity is limited.
-    pub fn leave_one_box(&self) -> bool {
-        let ranges = self.lower.iter().chain(&self.upper);
-        ranges.into_iter().all(|limit| matches!(limit, Profile::Constant(_))) && !self.is_finite(Field::Velocity)
     }
 }
 
@@ -125,7 +150,7 @@ fn reachable(q: f64, reach: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limits::Field;
+    use crate::limits::{Field, Sinusoid};
     use crate::math::pose;
     use crate::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
     use nalgebra::Vector3;
@@ -142,7 +167,7 @@ mod tests {
     }
 
     fn tick(limits: &Limits, q: f64, dt: f64) -> (bool, f64, f64) {
-        let mut tick = TickBox::around(&[q]);
+        let mut tick = TickBox::around(&[q], limits);
         let feasible = limits.narrow(&[q], [0.0, dt], dt, LimitAt::Interval, &mut tick);
         (feasible, tick.bounds.lower()[0], tick.bounds.upper()[0])
     }
@@ -182,14 +207,64 @@ mod tests {
         let limits = Limits::of(&slider(-9.0, 9.0, 2.0));
         let dt = 0.0005;
         for i in (0..60_000).step_by(7) {
-            let mut tick = TickBox::around(&[0.1]);
+            let mut tick = TickBox::around(&[0.1], &limits);
             let ends = [f64::from(i) * dt, f64::from(i + 1) * dt];
             limits.narrow(&[0.1], ends, dt, LimitAt::Interval, &mut tick);
             assert!(tick.bounds.upper()[0] - 0.1 <= 2.0 * dt && 0.1 - tick.bounds.lower()[0] <= 2.0 * dt, "{ends:?}");
         }
     }
 
+    #[test]
+    fn whatever_varies_is_found_anew_for_every_tick() {
+        let wave =
+            |phase: f64| Profile::Sinusoid(Sinusoid { mean: 2.0, amplitude: 0.5, angular_frequency: 3.0, phase });
+        let numbers = vec![Profile::Constant(1.0), Profile::Constant(2.0), Profile::Constant(3.0)];
+        let alike = vec![wave(0.0), wave(0.0), wave(0.0)];
+        let apart = vec![wave(0.0), Profile::Constant(2.0), wave(1.0)];
+        for (velocity, upper) in [(&alike, &numbers), (&apart, &alike), (&numbers, &apart)] {
+            let limits = Limits::none_for(3).replace(Field::Velocity, velocity.clone());
+            let limits = limits.and_then(|limits| limits.replace(Field::Upper, upper.clone())).unwrap();
+            let mut tick = TickBox::around(&[0.0; 3], &limits);
+            for i in 0..20 {
+                let [from, to] = [i, i + 1].map(|i| f64::from(i) * 0.1);
+                limits.narrow(&[0.0; 3], [from, to], 0.1, LimitAt::Interval, &mut tick);
+                let mut written = [0.0; 3];
+                limits.write_velocities_over([from, to], LimitAt::Interval, &mut written);
+                for j in 0..3 {
+                    let expected = limits.velocity_over(j, from, to, LimitAt::Interval);
+                    assert_eq!([tick.velocity[j], written[j]], [expected; 2], "joint {j} at {from} s");
+                    assert_eq!([tick.floor[j], tick.ceiling[j]], limits.position_range(j, from, to));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn without_velocity_limits_every_box_is_that_of_the_positions() {
+        let limits = Limits::of(&slider(-1.0, 2.0, f64::INFINITY));
+        let mut tick = TickBox::around(&[0.3], &limits);
+        for q in [0.3, -1.0, 2.0] {
+            assert!(limits.narrow(&[q], [0.0, 0.1], 0.1, LimitAt::Interval, &mut tick));
+            assert_eq!((tick.bounds.lower()[0], tick.bounds.upper()[0]), (-1.0, 2.0));
+        }
+        // Where accelerations are limited a tick's box is narrowed further, and the next one must not inherit that.
+        let limits = limits.replace(Field::Acceleration, vec![Profile::Constant(1.0)]).unwrap();
+        let mut tick = TickBox::around(&[0.3], &limits);
+        limits.narrow(&[0.3], [0.0, 0.1], 0.1, LimitAt::Interval, &mut tick);
+        limits.brake(&[0.3], &[0.0], [0.0, 0.1], 0.1, &mut tick);
+        assert!(tick.bounds.upper()[0] < 0.32);
+        limits.narrow(&[0.3], [0.1, 0.2], 0.1, LimitAt::Interval, &mut tick);
+        assert_eq!(tick.bounds.upper()[0], 2.0);
+    }
+
     proptest! {
+        #[test]
+        fn the_reach_is_used_to_the_last_bit(q in -3.0..3.0, reach in -1.0..1.0) {
+            let end: f64 = reachable(q, reach);
+            let beyond = if reach > 0.0 { end.next_up() } else { end.next_down() };
+            prop_assert!((end - q).abs() <= reach.abs() && (beyond - q).abs() >= reach.abs());
+        }
+
         #[test]
         fn no_displacement_exceeds_the_reach(q in -3.0..3.0, velocity in 0.0..2.0, dt in 1e-4..0.5) {
             let limits = Limits::of(&slider(-9.0, 9.0, velocity));

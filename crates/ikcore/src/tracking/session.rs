@@ -70,6 +70,7 @@ impl Session {
         let goals = Goals::new(&options.goals, &robot, &ranges);
         Ok(Self {
             robot,
+            tick_box: TickBox::around(start, &limits),
             limits,
             limit_at: options.limit_at,
             rule: options.rule.clone(),
@@ -83,7 +84,6 @@ impl Session {
             before: Point::from_slice(start),
             last_value: None,
             last_target: None,
-            tick_box: TickBox::around(start),
             seed: options.seed,
             rng: rng::stream(options.seed, 0),
         })

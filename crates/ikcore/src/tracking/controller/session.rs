@@ -28,8 +28,6 @@ pub struct Session {
     /// The one accepted at the start of the tick before.
     before: Point,
     tick_box: TickBox,
-    /// The box has been narrowed, and will not change.
-    settled: bool,
     inside_limits: bool,
     stage: Stage,
     /// Error at the end of the tick before (m).
@@ -79,14 +77,13 @@ impl Session {
         limits.require_inside("start", 0.0, start)?;
         Ok(Self {
             running: controller.start(start, dt, tolerance),
+            tick_box: TickBox::around(start, &limits),
             limits,
             tolerance,
             dt,
             ticks: 0,
             q: start.into(),
             before: start.into(),
-            tick_box: TickBox::around(start),
-            settled: false,
             inside_limits: true,
             stage: Stage::Start,
             last_error: f64::INFINITY,
@@ -144,7 +141,8 @@ impl Session {
             }
             Stage::Start => true,
             Stage::Ready => {
-                self.narrow();
+                let ends = [self.time(), (self.ticks + 1) as f64 * self.dt];
+                self.inside_limits = self.limits.narrow(&self.q, ends, self.dt, LimitAt::Interval, &mut self.tick_box);
                 false
             }
             Stage::Within => false,
@@ -155,16 +153,6 @@ impl Session {
         }
         self.stage = Stage::Sent { target, first };
         Ok(self.running.sent())
-    }
-
-    /// The box of the tick that begins.
-    fn narrow(&mut self) {
-        if self.settled {
-            return;
-        }
-        let ends = [self.time(), (self.ticks + 1) as f64 * self.dt];
-        self.inside_limits = self.limits.narrow(&self.q, ends, self.dt, LimitAt::Interval, &mut self.tick_box);
-        self.settled = self.limits.leave_one_box();
     }
 
     /// The tip was at `position` (m) at the last command. Returns what became of the tick; None where it goes on.
@@ -222,7 +210,7 @@ impl Session {
     /// By how much (rad, m) the last command broke a limit at its worst, with the joint and where it was sent; None where it
     /// broke none: the tick's box is within the limits, unless they cannot be kept.
     pub(in crate::tracking) fn excess(&self) -> Option<(f64, usize, f64)> {
-        let TickBox { bounds, velocity, floor, ceiling } = &self.tick_box;
+        let TickBox { bounds, velocity, floor, ceiling, .. } = &self.tick_box;
         let sent = self.running.sent();
         if self.inside_limits && bounds.contains(sent) {
             return None;
