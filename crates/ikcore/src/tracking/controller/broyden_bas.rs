@@ -3,10 +3,11 @@
 //! A sensor may be noisy, and now and then wrong altogether, so a step that came out quite otherwise than predicted is sent
 //! again before it is believed. If the second measurement agrees with the first, the Jacobian is to blame: it learns, and if
 //! that does not help antennae are put out again. If it agrees with the prediction, the first was an outlier. If it
-//! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there. How
-//! noisy the sensor is to begin with, three measurements of the start tell.
+//! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there. From
+//! other steps only that is learned which noise does not explain, and an error that it explains is no reason to put out
+//! antennae. How noisy the sensor is to begin with, three measurements of the start tell.
 
-use super::noise::{ABOVE_NOISE, Noise, median};
+use super::noise::{Noise, median};
 use super::{Tick, Verdict};
 use crate::math::secant::{LEAST_DAMPING, Secant, antenna};
 use crate::math::vector::{distance, norm, squared_distance};
@@ -202,9 +203,7 @@ impl Memory {
     /// Where the start is, and how noisy the sensor: one of the three measurements may be an outlier.
     fn know_start(&mut self, [a, b, c]: [[f64; 3]; 3]) {
         self.position = std::array::from_fn(|k| median(a[k], b[k], c[k]));
-        let nearest = distance(&a, &b).min(distance(&b, &c)).min(distance(&a, &c));
-        self.noise.note(nearest);
-        self.noise.note(nearest);
+        self.noise.note_three([a, b, c]);
         self.next = Purpose::Antenna { joint: 0 };
     }
 
@@ -225,7 +224,7 @@ impl Memory {
         let (motion, miss) = (norm(&predicted), norm(&surprise));
         let surprising = miss > SURPRISING * motion;
         self.next = Purpose::Step;
-        let mut noisy = motion < ABOVE_NOISE * self.noise.level();
+        let mut noisy = self.noise.explains(motion);
         match first {
             None if surprising && !noisy => {
                 self.next = Purpose::Again { first: position };
@@ -238,7 +237,7 @@ impl Memory {
             _ => {}
         }
         if !noisy {
-            jacobian.learn(dq(), &surprise, self.noise.share(motion));
+            jacobian.learn(dq(), &surprise, self.noise.share(miss));
         }
         self.judge(tick, position, noisy)
     }
@@ -252,7 +251,8 @@ impl Memory {
             self.position = position;
             self.damping = (self.damping * 0.1).max(LEAST_DAMPING);
             (self.fresh, self.failed) = (false, 0);
-            self.slow = if after > 0.25 * before && !noisy { self.slow + 1 } else { 0 };
+            let slow = after > 0.25 * before && !noisy && !self.noise.explains(after.sqrt());
+            self.slow = if slow { self.slow + 1 } else { 0 };
             if self.slow >= SLOW_STEPS {
                 self.next = Purpose::Stand;
             }
