@@ -18,6 +18,9 @@ use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
 /// A measurement that misses the prediction by more than this share of the predicted motion is sent for again.
 const SURPRISING: f64 = 1.0;
 
+/// An error of so many noise levels is hardly told from none: another step would follow the noise.
+const NEAR_ENOUGH: f64 = 1.25;
+
 /// Steps in a row that came no nearer, before antennae are put out again: they shake the tool.
 const FAILED_STEPS: usize = 2;
 
@@ -195,7 +198,7 @@ impl Memory {
             Purpose::Step => self.believe(tick, position, None),
             Purpose::Again { first } => self.believe(tick, position, Some(first)),
         };
-        let near_enough = self.tolerance.max(2.0 * self.noise.level());
+        let near_enough = self.tolerance.max(NEAR_ENOUGH * self.noise.level());
         let arrived = self.next == Purpose::Step && distance(&self.position, &tick.target) <= near_enough;
         if arrived { Verdict::TickOver } else { verdict }
     }
