@@ -1,7 +1,9 @@
 //! Batches: the same bits however they are run, wrong rows, interruption and progress.
 
 use std::thread::{self, ThreadId};
+use std::time::Duration;
 
+use crate::common::chains::RandomChain;
 use crate::common::{bits, message, robot};
 use ikcore::batch::{Batch, BatchOptions, OnInvalid, Targets, solve_batch};
 use ikcore::ik::{Solution, SolveOptions, solve};
@@ -80,6 +82,45 @@ fn the_first_item_is_what_solve_finds() {
         let alone =
             solve(&robot, &Target::from(&pose::from_matrix("target", &matrix).unwrap()), &each, &mut Unattended);
         assert_eq!(facts(&solved(&robot, &[*target], &options).solution(0).unwrap()), facts(&alone.unwrap()));
+    }
+}
+
+/// With a time limit, however long, every target is solved alone.
+fn alone(each: &SolveOptions) -> SolveOptions {
+    let stop = Stop { max_time: Some(Duration::from_secs(3600)), ..each.stop };
+    SolveOptions { stop, ..each.clone() }
+}
+
+/// Solves, misses, restarts and budgets that run out in mid-attempt, on arms with joints of all kinds.
+#[test]
+fn side_by_side_a_target_gets_the_bits_that_it_gets_alone() {
+    let arms = ["panda", "ur5e", "kr210"].map(robot).into_iter();
+    let chains = (0..12).map(|seed| RandomChain::new(seed, 1 + seed as usize % 9, 12).robot);
+    let stops = [
+        Stop::default(),
+        Stop { max_evaluations: 23, ..Stop::default() },
+        Stop { max_iterations: 9, min_iterations: 2, ..Stop::default() },
+        Stop { value_below: Some(1e-3), ..Stop::default() },
+    ];
+    for robot in arms.chain(chains) {
+        let mut targets = poses(&robot, 40);
+        targets[3][3] += 0.2; // most likely where the arm does not reach
+        targets[5][3] += 50.0;
+        let starts = robot.random_configurations(40, &mut rng::stream(6, 0)).unwrap();
+        let positions: Vec<[f64; 3]> = targets.iter().map(|pose| [pose[3], pose[7], pose[11]]).collect();
+        for (stop, targets) in
+            stops.iter().flat_map(|stop| [(stop, Targets::Poses(&targets)), (stop, Targets::Positions(&positions))])
+        {
+            let stop = Stop { max_evaluations: stop.max_evaluations.min(3000), ..*stop };
+            for starts in [None, Some(&starts[..])] {
+                let each = SolveOptions { stop, ..SolveOptions::default() };
+                let facts = |each: SolveOptions| {
+                    let options = BatchOptions { each, starts, ..on_threads(1) };
+                    all_facts(&solve_batch(&robot, targets, &options, &mut Unattended).unwrap())
+                };
+                assert_eq!(facts(each.clone()), facts(alone(&each)), "{} {stop:?}", robot.name());
+            }
+        }
     }
 }
 

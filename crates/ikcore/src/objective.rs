@@ -5,6 +5,7 @@ use smallvec::SmallVec;
 use crate::error::{Error, Result};
 use crate::math::box_step::ROWS;
 use crate::math::ordered::{larger, smaller};
+use crate::math::quad::Quad;
 use crate::math::{MAX_DOF, interval};
 use crate::rng::LazyRng;
 
@@ -95,6 +96,27 @@ pub trait Residual: Objective {
 pub trait LeastSquares: Residual {
     /// Residual and Jacobian at `x` in one pass, and the score.
     fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score;
+}
+
+/// Four linearizations side by side: each number for all four in one register.
+#[derive(Debug, Clone)]
+pub struct FourLinearizations {
+    /// As [`Linearization::residual`].
+    pub residual: [Quad; ROWS],
+    /// As [`Linearization::columns`].
+    pub columns: [[Quad; ROWS]; MAX_DOF],
+}
+
+impl Default for FourLinearizations {
+    fn default() -> Self {
+        Self { residual: [Quad::ZERO; ROWS], columns: [[Quad::ZERO; ROWS]; MAX_DOF] }
+    }
+}
+
+/// Objectives that are linearized faster four at a time than one after another.
+pub trait SideBySide: LeastSquares + Sized {
+    /// [`linearize`](LeastSquares::linearize) of each objective at its lane of `xs`, to the same bits.
+    fn linearize_four(objectives: [&Self; 4], xs: &[Quad], out: &mut FourLinearizations) -> [Score; 4];
 }
 
 impl Linearization {

@@ -1,7 +1,11 @@
 //! A robot and a target as something to minimise.
 
 use crate::math::box_step::ROWS;
-use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore};
+use crate::math::quad::Quad;
+use crate::objective::{
+    Bounds, FourLinearizations, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SideBySide,
+    SmoothScore,
+};
 use crate::rng::LazyRng;
 use crate::robot::{Robot, Seeds};
 use crate::task::{Assessment, Criterion, Target, entrywise};
@@ -131,5 +135,15 @@ impl LeastSquares for Problem<'_> {
     #[inline]
     fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> Score {
         self.target.linearize(self.robot, q, &self.criterion, out).score
+    }
+}
+
+impl SideBySide for Problem<'_> {
+    /// The problems are of one robot and one criterion, their targets of one kind that
+    /// [goes side by side](Target::goes_side_by_side).
+    #[inline]
+    fn linearize_four(problems: [&Self; 4], qs: &[Quad], out: &mut FourLinearizations) -> [Score; 4] {
+        let Problem { robot, criterion, .. } = problems[0];
+        Target::linearize_four(problems.map(|problem| problem.target), robot, qs, criterion, out)
     }
 }

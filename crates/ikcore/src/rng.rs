@@ -12,7 +12,7 @@ const BUFFER: usize = 64;
 pub struct LazyRng {
     seed: u64,
     stream: u64,
-    source: Option<Source>,
+    source: Option<Box<Source>>,
 }
 
 #[derive(Debug, Clone)]
@@ -57,7 +57,7 @@ impl LazyRng {
         let source = self.source.get_or_insert_with(|| {
             let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
             generator.set_stream(self.stream);
-            Source { generator, uniforms: [0.0; BUFFER], next: BUFFER }
+            Box::new(Source { generator, uniforms: [0.0; BUFFER], next: BUFFER })
         });
         let mut bytes = [0; 8 * BUFFER];
         source.generator.fill_bytes(&mut bytes);

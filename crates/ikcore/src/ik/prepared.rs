@@ -6,10 +6,9 @@ use super::solution::Solution;
 use super::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
-use crate::math::MAX_DOF;
-use crate::objective::{Bounds, Objective};
+use crate::objective::{Bounds, Objective, Point};
 use crate::problem::Problem;
-use crate::rng;
+use crate::rng::{self, LazyRng};
 use crate::robot::{Beyond, Robot};
 use crate::solver::{Monitor, Status};
 use crate::task::{Criterion, Goals, Target, Task};
@@ -62,6 +61,10 @@ impl<'a> Prepared<'a> {
 
     pub(super) fn goals(&self) -> &Goals {
         &self.goals
+    }
+
+    pub(super) fn criterion(&self) -> &Criterion {
+        &self.criterion
     }
 
     pub(super) fn options(&self) -> &SolveOptions {
@@ -134,14 +137,9 @@ impl<'a> Prepared<'a> {
             return self.run_best(target, start, &mut rng, monitor);
         }
         let mut problem = self.problem(target);
-        let mut buffer = [0.0; MAX_DOF];
-        let x0 = &mut buffer[..self.robot().dof()];
-        match start {
-            Some(q) => x0.copy_from_slice(q),
-            None => problem.propose_start(0, &self.bounds, &mut rng, x0),
-        }
+        let x0 = self.first_start(&mut problem, start, &mut rng);
         let mut run = Run::new(self.options.stop);
-        let mut solution = run.attempt(self, &mut problem, x0, &mut rng, monitor);
+        let mut solution = run.attempt(self, &mut problem, &x0, &mut rng, monitor);
         if solution.status == Status::Solved && !self.goals.is_empty() {
             let q = &mut solution.q;
             if let Some(start) = start {
@@ -151,6 +149,16 @@ impl<'a> Prepared<'a> {
             return run.solution(Status::Solved, solution.q, &problem);
         }
         solution
+    }
+
+    /// Where the first attempt begins: at the caller's start, or at the best that is known of.
+    pub(super) fn first_start(&self, problem: &mut Problem<'_>, start: Option<&[f64]>, rng: &mut LazyRng) -> Point {
+        let Some(start) = start else {
+            let mut x0 = Point::from_elem(0.0, self.robot().dof());
+            problem.propose_start(0, &self.bounds, rng, &mut x0);
+            return x0;
+        };
+        Point::from_slice(start)
     }
 
     /// How far the target is out of reach, where it is beyond doubt.

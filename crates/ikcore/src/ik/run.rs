@@ -7,7 +7,7 @@ use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::solver::stop::Stopwatch;
-use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, Status, Stop, run};
+use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, Outcome, Status, Stop, run};
 
 /// Evaluations kept back for going on from the best miss: attempts are abandoned long before they are as near as they get.
 const RESERVE: usize = 200;
@@ -19,6 +19,8 @@ const APPROACHES: usize = 8;
 pub(super) struct Run {
     stop: Stop,
     stopwatch: Stopwatch,
+    /// Runs that share the time.
+    abreast: u32,
     iterations: usize,
     restarts: usize,
     evaluations: usize,
@@ -27,7 +29,12 @@ pub(super) struct Run {
 impl Run {
     /// Nothing spent yet.
     pub fn new(stop: Stop) -> Self {
-        Self { stop, stopwatch: Stopwatch::start(), iterations: 0, restarts: 0, evaluations: 0 }
+        Self { stop, stopwatch: Stopwatch::start(), abreast: 1, iterations: 0, restarts: 0, evaluations: 0 }
+    }
+
+    /// Nothing spent yet, by one of four that share the time.
+    pub fn one_of_four(stop: Stop) -> Self {
+        Self { abreast: 4, ..Self::new(stop) }
     }
 
     /// Evaluations that may still be made.
@@ -58,16 +65,33 @@ impl Run {
         monitor: &mut dyn Monitor,
     ) -> Solution {
         let bounds = prepared.bounds();
-        let Some(descent) = prepared.options().solver.restarted_descent() else {
+        let Some(MultiStart { solver: descent, .. }) = prepared.options().solver.restarted_descent() else {
             let (status, q) = self.search(prepared, problem, bounds, x0, 0, rng, monitor);
             return self.explained(status, q, prepared, problem);
         };
-        let reserve = if self.left() > 10 * RESERVE { RESERVE } else { 0 };
         if prepared.beyond_reach(problem.target()).is_some() {
-            let q = self.approach(prepared, problem, descent, x0, rng, monitor);
+            let q = self.approach(prepared, problem, &descent, x0, rng, monitor);
             return self.explained(Status::OutOfReach, q, prepared, problem);
         }
-        let (status, q) = self.search(prepared, problem, bounds, x0, reserve, rng, monitor);
+        let (status, q) = self.search(prepared, problem, bounds, x0, self.reserve(), rng, monitor);
+        self.concluded(prepared, problem, &descent, (status, q), rng, monitor)
+    }
+
+    /// Evaluations to keep back from the search.
+    pub fn reserve(&self) -> usize {
+        if self.left() > 10 * RESERVE { RESERVE } else { 0 }
+    }
+
+    /// What a search came to; where it missed, on from its best point.
+    pub fn concluded(
+        &mut self,
+        prepared: &Prepared<'_>,
+        problem: &mut Problem<'_>,
+        descent: &LevenbergMarquardt,
+        (status, q): (Status, Point),
+        rng: &mut LazyRng,
+        monitor: &mut dyn Monitor,
+    ) -> Solution {
         if !matches!(status, Status::BudgetSpent | Status::Stalled) {
             return self.explained(status, q, prepared, problem);
         }
@@ -91,6 +115,11 @@ impl Run {
         let objective: &mut dyn Differentiable = problem;
         let mut evaluator = Evaluator::new(objective, bounds, stop, rng, monitor);
         let outcome = prepared.options().solver.run(&mut evaluator, x0);
+        self.found(&evaluator, outcome)
+    }
+
+    /// Counts a search that ended; how it ended, and its best point.
+    pub fn found<O: Objective + ?Sized>(&mut self, evaluator: &Evaluator<'_, O>, outcome: Outcome) -> (Status, Point) {
         self.evaluations += evaluator.evaluations();
         self.restarts += evaluator.attempts() - 1;
         self.iterations += outcome.iterations;
@@ -145,7 +174,7 @@ impl Run {
     }
 
     /// What is left of the budgets, less `reserve` evaluations.
-    fn rest(&self, reserve: usize) -> Stop {
+    pub fn rest(&self, reserve: usize) -> Stop {
         Stop {
             max_evaluations: self.left() - reserve,
             max_iterations: self.stop.max_iterations.saturating_sub(self.iterations),
@@ -173,7 +202,7 @@ impl Run {
             iterations: self.iterations,
             restarts: self.restarts,
             evaluations: self.evaluations,
-            elapsed: self.stopwatch.elapsed(),
+            elapsed: self.stopwatch.elapsed() / self.abreast,
             q,
         }
     }

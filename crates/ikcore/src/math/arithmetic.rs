@@ -6,7 +6,7 @@
 use super::quad::Quad;
 
 /// The operations in which the two compilations of a kernel differ.
-pub trait Arithmetic {
+pub trait Arithmetic: Copy {
     /// a * b + c.
     fn mul_add(a: f64, b: f64, c: f64) -> f64;
 
@@ -32,6 +32,30 @@ pub trait Arithmetic {
     #[inline(always)]
     fn sub_quad(a: Quad, b: Quad) -> Quad {
         Quad(std::array::from_fn(|k| a.0[k] - b.0[k]))
+    }
+
+    /// a / b, lane by lane.
+    #[inline(always)]
+    fn div_quad(a: Quad, b: Quad) -> Quad {
+        Quad(std::array::from_fn(|k| a.0[k] / b.0[k]))
+    }
+
+    /// The square root, lane by lane.
+    #[inline(always)]
+    fn sqrt_quad(a: Quad) -> Quad {
+        Quad(a.0.map(f64::sqrt))
+    }
+
+    /// `then` where a < b, and `otherwise` elsewhere, NaN included, lane by lane.
+    #[inline(always)]
+    fn choose_below_quad(a: Quad, b: Quad, then: Quad, otherwise: Quad) -> Quad {
+        Quad(std::array::from_fn(|k| if a.0[k] < b.0[k] { then.0[k] } else { otherwise.0[k] }))
+    }
+
+    /// `then` where a = b, and `otherwise` elsewhere, NaN included, lane by lane.
+    #[inline(always)]
+    fn choose_equal_quad(a: Quad, b: Quad, then: Quad, otherwise: Quad) -> Quad {
+        Quad(std::array::from_fn(|k| if a.0[k] == b.0[k] { then.0[k] } else { otherwise.0[k] }))
     }
 }
 
@@ -68,7 +92,7 @@ impl Arithmetic for Fused {
 
     #[inline(always)]
     fn mul_add_quad(a: Quad, b: Quad, c: Quad) -> Quad {
-        // SAFETY (all four): what is generic over `Fused` is reached only where `has_fused` found the instructions.
+        // SAFETY (all eight): what is generic over `Fused` is reached only where `has_fused` found the instructions.
         from_register(unsafe { x86::_mm256_fmadd_pd(register(a), register(b), register(c)) })
     }
 
@@ -85,6 +109,32 @@ impl Arithmetic for Fused {
     #[inline(always)]
     fn sub_quad(a: Quad, b: Quad) -> Quad {
         from_register(unsafe { x86::_mm256_sub_pd(register(a), register(b)) })
+    }
+
+    #[inline(always)]
+    fn div_quad(a: Quad, b: Quad) -> Quad {
+        from_register(unsafe { x86::_mm256_div_pd(register(a), register(b)) })
+    }
+
+    #[inline(always)]
+    fn sqrt_quad(a: Quad) -> Quad {
+        from_register(unsafe { x86::_mm256_sqrt_pd(register(a)) })
+    }
+
+    #[inline(always)]
+    fn choose_below_quad(a: Quad, b: Quad, then: Quad, otherwise: Quad) -> Quad {
+        from_register(unsafe {
+            let smaller = x86::_mm256_cmp_pd::<{ x86::_CMP_LT_OQ }>(register(a), register(b));
+            x86::_mm256_blendv_pd(register(otherwise), register(then), smaller)
+        })
+    }
+
+    #[inline(always)]
+    fn choose_equal_quad(a: Quad, b: Quad, then: Quad, otherwise: Quad) -> Quad {
+        from_register(unsafe {
+            let equal = x86::_mm256_cmp_pd::<{ x86::_CMP_EQ_OQ }>(register(a), register(b));
+            x86::_mm256_blendv_pd(register(otherwise), register(then), equal)
+        })
     }
 }
 

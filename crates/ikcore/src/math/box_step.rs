@@ -3,22 +3,22 @@
 use super::arithmetic::{Arithmetic, Baseline};
 #[cfg(target_arch = "x86_64")]
 use super::arithmetic::{Fused, has_fused};
+use super::ldl;
+use super::ordered::{larger, smaller};
 use super::quad::Quad;
+use super::real::{One, Real};
 
 /// Task rows of every least-squares problem here; unused rows are zero.
 pub const ROWS: usize = 6;
 
 /// Rows that a position takes: the first ones.
-const POSITION_ROWS: usize = 3;
-
-/// Pivots below this share of the matrix's trace count as zero: no step in that direction.
-const SINGULAR: f64 = 1e-15;
+pub(super) const POSITION_ROWS: usize = 3;
 
 /// [`least_damping`] over the squared size of the Jacobian.
 const LEAST: f64 = 1e-10;
 
 /// Joints can stick one after another; after so many rounds the rest is cut off at the box.
-const ROUNDS: usize = 4;
+pub(super) const ROUNDS: usize = 4;
 
 /// Writes into `out` the point x + dx inside the box \[`lower`, `upper`\] that (nearly) minimises
 /// |residual + J dx|^2 + lambda |dx|^2, J given by its columns.
@@ -95,8 +95,8 @@ fn step_of_rows_in_use<A: Arithmetic>(
     upper: &[f64],
     out: &mut [f64],
 ) {
-    let is_position = |rows: &[f64; ROWS]| rows[POSITION_ROWS..] == [0.0; ROWS - POSITION_ROWS];
-    if is_position(residual) && columns[..x.len()].iter().all(is_position) {
+    let moves_position_alone = |column: &[f64; ROWS]| column[POSITION_ROWS..] == [0.0; ROWS - POSITION_ROWS];
+    if columns[..x.len()].iter().all(moves_position_alone) {
         step::<A, POSITION_ROWS>(columns, residual, lambda, x, lower, upper, out);
     } else {
         step::<A, ROWS>(columns, residual, lambda, x, lower, upper, out);
@@ -119,11 +119,13 @@ fn step<A: Arithmetic, const R: usize>(
     // Bit j: joint j sits at a bound.
     let mut fixed = 0_u64;
     for _ in 0..ROUNDS {
-        let z = solve::<A, R>(gram::<A, R>(columns, lambda, n, fixed), &remaining);
+        let mut right = [One::of(0.0); R];
+        right.iter_mut().zip(remaining).for_each(|(entry, rest)| *entry = One::of(rest));
+        let z = ldl::solve(gram::<A, R>(columns, lambda, n, fixed), right);
         let fixed_before = fixed;
         for j in (0..n).filter(|j| fixed_before & (1 << j) == 0) {
-            let wanted = x[j] - dot::<A, R>(&columns[j], &z);
-            let bounded = wanted.max(lower[j]).min(upper[j]);
+            let wanted = x[j] - dot(&columns[j], &z).stored();
+            let bounded = smaller(larger(wanted, lower[j]), upper[j]);
             out[j] = bounded;
             if bounded != wanted {
                 fixed |= 1 << j;
@@ -140,7 +142,7 @@ fn step<A: Arithmetic, const R: usize>(
 
 /// J J' + lambda I over the joints that are not fixed.
 #[inline(always)]
-fn gram<A: Arithmetic, const R: usize>(columns: &[[f64; ROWS]], lambda: f64, n: usize, fixed: u64) -> [[f64; R]; R] {
+fn gram<A: Arithmetic, const R: usize>(columns: &[[f64; ROWS]], lambda: f64, n: usize, fixed: u64) -> [[One<A>; R]; R] {
     // Four entries of a row, and then the rest: with three rows nothing asks for the rest, and it is not computed.
     let mut sum = [[Quad::ZERO; 2]; R];
     for column in (0..n).filter(|j| fixed & (1 << j) == 0).map(|j| &columns[j]) {
@@ -152,39 +154,24 @@ fn gram<A: Arithmetic, const R: usize>(columns: &[[f64; ROWS]], lambda: f64, n: 
             }
         }
     }
-    std::array::from_fn(|i| std::array::from_fn(|k| sum[i][k / 4].0[k % 4] + if i == k { lambda } else { 0.0 }))
-}
-
-/// Solves A z = b by LDL', A symmetric positive semi-definite in its lower triangle.
-#[inline(always)]
-fn solve<A: Arithmetic, const R: usize>(mut l: [[f64; R]; R], b: &[f64; ROWS]) -> [f64; R] {
-    let smallest = SINGULAR * (0..R).map(|i| l[i][i]).sum::<f64>();
-    let mut inverse_pivot = [0.0; R];
-    let mut z: [f64; R] = std::array::from_fn(|i| b[i]);
-    // Column by column: what a pivot settles is taken off everything behind it, the right-hand side included.
-    for j in 0..R {
-        inverse_pivot[j] = if l[j][j] > smallest { 1.0 / l[j][j] } else { 0.0 };
-        for i in j + 1..R {
-            let factor = l[i][j] * inverse_pivot[j];
-            for k in j + 1..=i {
-                l[i][k] = A::mul_add(-factor, l[k][j], l[i][k]);
-            }
-            z[i] = A::mul_add(-factor, z[j], z[i]);
+    // Loops, where closures would be shorter: those the compiler may leave apart, without the instructions of this kernel.
+    let mut entries = [[One::of(0.0); R]; R];
+    for (i, row) in entries.iter_mut().enumerate() {
+        for (k, entry) in row.iter_mut().enumerate() {
+            *entry = One::of(sum[i][k / 4].0[k % 4] + if i == k { lambda } else { 0.0 });
         }
     }
-    for i in (0..R).rev() {
-        for k in i + 1..R {
-            z[i] = A::mul_add(-l[k][i], z[k], z[i]);
-        }
-        z[i] *= inverse_pivot[i];
-    }
-    z
+    entries
 }
 
+/// a'b, in pairs.
 #[inline(always)]
-fn dot<A: Arithmetic, const R: usize>(a: &[f64; ROWS], b: &[f64; R]) -> f64 {
-    let pairs = a.chunks_exact(2).zip(b.chunks(2));
-    pairs.map(|(a, b)| if let [x, y] = *b { A::mul_add(a[0], x, a[1] * y) } else { a[0] * b[0] }).sum()
+pub(super) fn dot<R: Real, const N: usize>(a: &[R::Stored; ROWS], b: &[R; N]) -> R {
+    let pair = |k: usize| {
+        let first = R::of(a[k]);
+        if k + 1 < N { first.mul_add(b[k], R::of(a[k + 1]) * b[k + 1]) } else { first * b[k] }
+    };
+    (2..N).step_by(2).fold(pair(0), |sum, k| sum + pair(k))
 }
 
 #[cfg(test)]

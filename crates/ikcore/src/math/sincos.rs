@@ -48,6 +48,29 @@ pub fn sincos<A: Arithmetic>(angles: &[f64], sines: &mut [f64], cosines: &mut [f
     }
 }
 
+/// [`sincos`] for W columns of angles side by side, to the bits that each column gets alone.
+#[inline(always)]
+pub fn sincos_by_column<A: Arithmetic, const W: usize>(
+    angles: &[[f64; W]],
+    sines: &mut [[f64; W]],
+    cosines: &mut [[f64; W]],
+) {
+    let mut all_small = true;
+    for i in 0..angles.len() {
+        for w in 0..W {
+            (sines[i][w], cosines[i][w]) = sincos_one::<A>(angles[i][w]);
+            all_small &= angles[i][w].abs() <= LARGEST;
+        }
+    }
+    if !all_small {
+        for w in (0..W).filter(|w| angles.iter().any(|row| !(row[*w].abs() <= LARGEST))) {
+            for i in 0..angles.len() {
+                (sines[i][w], cosines[i][w]) = angles[i][w].sin_cos();
+            }
+        }
+    }
+}
+
 #[inline(always)]
 fn sincos_one<A: Arithmetic>(x: f64) -> (f64, f64) {
     let shifted = A::mul_add(x, FRAC_2_PI, ROUNDER);
@@ -113,5 +136,16 @@ mod tests {
         let (s, c) = sincos_of::<Separate, 3>([1e9, 0.3, f64::NAN]);
         assert_eq!((s[0], c[0]), 1e9_f64.sin_cos());
         assert!(s[2].is_nan() && c[2].is_nan() && (s[1] - 0.3_f64.sin()).abs() < 1e-16);
+    }
+
+    #[test]
+    fn a_column_does_not_depend_on_its_neighbours() {
+        let angles = [[0.1, 1e9, -3.0, 2e5], [0.7, 0.2, 8e6, -1.0]];
+        let (mut sines, mut cosines) = ([[0.0; 4]; 2], [[0.0; 4]; 2]);
+        sincos_by_column::<Separate, 4>(&angles, &mut sines, &mut cosines);
+        for w in 0..4 {
+            let column = |rows: [[f64; 4]; 2]| rows.map(|row| row[w]);
+            assert_eq!((column(sines), column(cosines)), sincos_of::<Separate, 2>(column(angles)));
+        }
     }
 }

@@ -1,70 +1,95 @@
 //! Rotations: logarithm and the Jacobian that goes with it, safe at no turn and at half a turn.
 
 use super::Frame;
+use super::arctangent::angle_of;
+use super::arithmetic::Separate;
+use super::real::{One, Real};
+use super::triple::Triple;
 
 /// Below this angle (rad) series replace quotients that lose their digits.
 const SMALL: f64 = 1e-4;
+
+/// Below this cosine a turn counts as near half a turn.
+const NEAR_HALF_TURN: f64 = -0.9;
+
+/// The columns of rotations: their axes, seen from the base.
+pub type Axes<R> = [Triple<R>; 3];
+
+/// The axes of one frame as the kernels here take them.
+#[inline(always)]
+pub fn axes_of(frame: &Frame) -> Axes<One<Separate>> {
+    let [x, y, z] = &frame.axes;
+    [Triple::of(x), Triple::of(y), Triple::of(z)]
+}
 
 /// The rotation vector phi (rad) of R R_d', with R the axes of `frame` and R_d those of `target`: the turn that leads
 /// from the target to the frame, in base coordinates. Its length is the geodesic angle, at most pi.
 #[inline]
 pub fn rotation_between(target: &Frame, frame: &Frame) -> [f64; 3] {
-    Turn::between(target, frame).vector(target, frame)
+    let (target, frame) = (axes_of(target), axes_of(frame));
+    Turn::between(&target, &frame).vector(&target, &frame).stored()
 }
 
 /// [`rotation_between`], and how it changes when a small turn is put before.
-#[inline]
-pub fn rotation_and_jacobian(target: &Frame, frame: &Frame) -> ([f64; 3], InverseLeftJacobian) {
+#[inline(always)]
+pub fn rotation_and_jacobian<R: Real>(target: &Axes<R>, frame: &Axes<R>) -> (Triple<R>, InverseLeftJacobian<R>) {
     let turn = Turn::between(target, frame);
     let phi = turn.vector(target, frame);
-    (phi, InverseLeftJacobian::at(&phi, turn.half_cotangent()))
+    (phi, InverseLeftJacobian::at(phi, turn.half_cotangent()))
 }
 
 /// R R_d' by sine and cosine of its angle theta.
-struct Turn {
+struct Turn<R> {
     /// sin(theta), times the axis.
-    sine_axis: [f64; 3],
-    sine: f64,
-    cosine: f64,
+    sine_axis: Triple<R>,
+    sine: R,
+    cosine: R,
 }
 
-impl Turn {
+impl<R: Real> Turn<R> {
     #[inline(always)]
-    fn between(target: &Frame, frame: &Frame) -> Self {
+    fn between(target: &Axes<R>, frame: &Axes<R>) -> Self {
         // With R R_d' = sum of r_k d_k' over the columns: its trace is sum r_k . d_k, and the vector of its
         // antisymmetric part, sin(theta) axis, is half the sum of d_k x r_k.
-        let (mut trace, mut sine_axis) = (0.0, [0.0; 3]);
-        for (d, r) in target.axes.iter().zip(&frame.axes) {
-            trace += d[0] * r[0] + d[1] * r[1] + d[2] * r[2];
-            sine_axis[0] += 0.5 * (d[1] * r[2] - d[2] * r[1]);
-            sine_axis[1] += 0.5 * (d[2] * r[0] - d[0] * r[2]);
-            sine_axis[2] += 0.5 * (d[0] * r[1] - d[1] * r[0]);
-        }
-        Self { sine_axis, sine: norm(&sine_axis), cosine: 0.5 * (trace - 1.0) }
+        let half = R::splat(0.5);
+        let ([dx, dy, dz], [rx, ry, rz]) = (target, frame);
+        let trace = dx.dot(*rx) + dy.dot(*ry) + dz.dot(*rz);
+        let sine_axis = dx.cross(*rx) * half + dy.cross(*ry) * half + dz.cross(*rz) * half;
+        Self { sine_axis, sine: sine_axis.dot(sine_axis).sqrt(), cosine: half * (trace - R::splat(1.0)) }
     }
 
     #[inline(always)]
-    fn vector(&self, target: &Frame, frame: &Frame) -> [f64; 3] {
+    fn vector(&self, target: &Axes<R>, frame: &Axes<R>) -> Triple<R> {
         let Self { sine_axis, sine, cosine } = *self;
-        if cosine < -0.9 {
-            return near_half_turn(target, frame, sine.atan2(cosine), &sine_axis);
+        let angle = angle_of(sine, cosine);
+        let series = R::splat(1.0) + sine * sine / R::splat(6.0);
+        let mut vector = sine_axis * sine.choose_below(R::splat(SMALL), series, angle / sine);
+        for lane in 0..R::LANES {
+            if cosine.lane(lane) < NEAR_HALF_TURN {
+                let ([dx, dy, dz], [rx, ry, rz]) = (target, frame);
+                let target = [dx.lane(lane), dy.lane(lane), dz.lane(lane)];
+                let frame = [rx.lane(lane), ry.lane(lane), rz.lane(lane)];
+                let exact = near_half_turn(&target, &frame, angle.lane(lane), &sine_axis.lane(lane));
+                vector = vector.with_lane(lane, &exact);
+            }
         }
-        let factor = if sine < SMALL { 1.0 + sine * sine / 6.0 } else { sine.atan2(cosine) / sine };
-        sine_axis.map(|v| factor * v)
+        vector
     }
 
     /// cot(theta/2), by the quotient that keeps its digits; infinite without a turn.
     #[inline(always)]
-    fn half_cotangent(&self) -> f64 {
-        if self.cosine > 0.0 { (1.0 + self.cosine) / self.sine } else { self.sine / (1.0 - self.cosine) }
+    fn half_cotangent(&self) -> R {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let Self { sine, cosine, .. } = *self;
+        zero.choose_below(cosine, one + cosine, sine) / zero.choose_below(cosine, sine, one - cosine)
     }
 }
 
 /// Near half a turn the antisymmetric part vanishes: the axis comes from the symmetric part,
 /// (R R_d' + R_d R')/2 = cos I + (1 - cos) a a'.
 #[cold]
-fn near_half_turn(target: &Frame, frame: &Frame, angle: f64, sine_axis: &[f64; 3]) -> [f64; 3] {
-    let entry = |i: usize, j: usize| -> f64 { (0..3).map(|k| frame.axes[k][i] * target.axes[k][j]).sum() };
+fn near_half_turn(target: &[[f64; 3]; 3], frame: &[[f64; 3]; 3], angle: f64, sine_axis: &[f64; 3]) -> [f64; 3] {
+    let entry = |i: usize, j: usize| -> f64 { (0..3).map(|k| frame[k][i] * target[k][j]).sum() };
     let cosine = angle.cos();
     let largest = (0..3).max_by(|i, j| entry(*i, *i).total_cmp(&entry(*j, *j))).unwrap_or(0);
     let mut axis: [f64; 3] = std::array::from_fn(|i| {
@@ -80,40 +105,39 @@ fn near_half_turn(target: &Frame, frame: &Frame, angle: f64, sine_axis: &[f64; 3
 
 /// The inverse left Jacobian of SO(3) at a rotation vector: how the logarithm changes when a small turn is put before.
 #[derive(Debug, Clone, Copy)]
-pub struct InverseLeftJacobian {
-    columns: [[f64; 3]; 3],
+pub struct InverseLeftJacobian<R> {
+    columns: [Triple<R>; 3],
 }
 
-impl InverseLeftJacobian {
+impl<R: Real> InverseLeftJacobian<R> {
     /// I - [phi]/2 + quadratic * [phi]^2 at the rotation vector `phi` (rad), given the cotangent of half its length.
     #[inline(always)]
-    fn at(phi: &[f64; 3], half_cotangent: f64) -> Self {
-        let [x, y, z] = *phi;
-        let squared = x * x + y * y + z * z;
-        let quadratic = if squared < SMALL {
-            1.0 / 12.0 + squared * (1.0 / 720.0 + squared / 30240.0)
-        } else {
-            (1.0 - 0.5 * squared.sqrt() * half_cotangent) / squared
-        };
+    fn at(phi: Triple<R>, half_cotangent: R) -> Self {
+        let (half, one) = (R::splat(0.5), R::splat(1.0));
+        let Triple { x, y, z } = phi;
+        let squared = phi.dot(phi);
+        let series = R::splat(1.0 / 12.0) + squared * (R::splat(1.0 / 720.0) + squared / R::splat(30240.0));
+        let quotient = (one - half * squared.sqrt() * half_cotangent) / squared;
+        let quadratic = squared.choose_below(R::splat(SMALL), series, quotient);
         // [phi]^2 = phi phi' - |phi|^2 I
-        let diagonal = 1.0 - quadratic * squared;
+        let diagonal = one - quadratic * squared;
         let [qx, qy, qz] = [quadratic * x, quadratic * y, quadratic * z];
         let [xy, yz, zx] = [qx * y, qy * z, qz * x];
-        let [hx, hy, hz] = [0.5 * x, 0.5 * y, 0.5 * z];
+        let [hx, hy, hz] = [half * x, half * y, half * z];
         Self {
             columns: [
-                [diagonal + qx * x, xy - hz, zx + hy],
-                [xy + hz, diagonal + qy * y, yz - hx],
-                [zx - hy, yz + hx, diagonal + qz * z],
+                Triple { x: diagonal + qx * x, y: xy - hz, z: zx + hy },
+                Triple { x: xy + hz, y: diagonal + qy * y, z: yz - hx },
+                Triple { x: zx - hy, y: yz + hx, z: diagonal + qz * z },
             ],
         }
     }
 
     /// Its product with `w`.
     #[inline(always)]
-    pub fn apply(&self, w: [f64; 3]) -> [f64; 3] {
-        let [a, b, c] = &self.columns;
-        std::array::from_fn(|k| a[k] * w[0] + b[k] * w[1] + c[k] * w[2])
+    pub fn apply(&self, w: Triple<R>) -> Triple<R> {
+        let [a, b, c] = self.columns;
+        a * w.x + b * w.y + c * w.z
     }
 }
 
@@ -205,14 +229,15 @@ mod tests {
         for axis in directions() {
             for angle in [1e-6, 5e-3, 0.0101, 0.7, 2.5, 2.9] {
                 let phi = axis * angle;
-                let (_, jacobian) = rotation_and_jacobian(&Frame::IDENTITY, &frame(Rotation3::new(phi)));
+                let (_, jacobian) =
+                    rotation_and_jacobian(&axes_of(&Frame::IDENTITY), &axes_of(&frame(Rotation3::new(phi))));
                 for w in directions() {
                     let after = |s: f64| {
                         let turned = Rotation3::new(w * s) * Rotation3::new(phi);
                         Vector3::from(rotation_between(&Frame::IDENTITY, &frame(turned)))
                     };
                     let difference = (after(h) - after(-h)) / (2.0 * h);
-                    let predicted = Vector3::from(jacobian.apply(w.into()));
+                    let predicted = Vector3::from(jacobian.apply(Triple::of(&w.into())).stored());
                     assert!((difference - predicted).norm() < 1e-8, "{axis} {angle}: {difference} {predicted}");
                 }
             }

@@ -2,11 +2,14 @@
 //! ([`SIZES`](super::chain::SIZES)), for machines with and without AVX2 and FMA.
 
 use super::chain::Chain;
+use super::four_kinematics::{self, FourColumns};
 use super::kinematics::{self, Columns, StageFrames, Wrench};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 #[cfg(target_arch = "x86_64")]
 use crate::math::arithmetic::{Fused, has_fused};
+use crate::math::four_frames::FourFrames;
+use crate::math::quad::Quad;
 
 /// `$table!(N, L)` for the size that `$stages` is: N stages, their sines padded to L.
 macro_rules! for_each_size {
@@ -33,6 +36,7 @@ macro_rules! baseline {
             tip_pair: kinematics::side_by_side::<Baseline, $n, $l, 2>,
             tip_four: kinematics::side_by_side::<Baseline, $n, $n, 4>,
             jacobian: kinematics::jacobian::<Baseline, $n, $l>,
+            jacobian_four: four_kinematics::jacobian::<Baseline, $n>,
             torques: kinematics::torques::<Baseline, $n, $l>,
             stage_frames: kinematics::stage_frames::<Baseline, $n, $l>,
         }
@@ -43,13 +47,14 @@ macro_rules! baseline {
 #[cfg(target_arch = "x86_64")]
 macro_rules! fused {
     ($n:literal, $l:literal) => {
-        // SAFETY (all seven): the table is handed out only where `has_fused` found the instructions.
+        // SAFETY (all eight): the table is handed out only where `has_fused` found the instructions.
         Kernels {
             tip: |chain, q| unsafe { fused::tip::<$n, $l>(chain, q) },
             tip_position: |chain, q| unsafe { fused::tip_position::<$n, $l>(chain, q) },
             tip_pair: |chain, qs| unsafe { fused::side_by_side::<$n, $l, 2>(chain, qs) },
             tip_four: |chain, qs| unsafe { fused::side_by_side::<$n, $n, 4>(chain, qs) },
             jacobian: |chain, q, columns| unsafe { fused::jacobian::<$n, $l>(chain, q, columns) },
+            jacobian_four: |chain, qs, columns| unsafe { fused::jacobian_four::<$n>(chain, qs, columns) },
             torques: |chain, q, pull, torques| unsafe { fused::torques::<$n, $l>(chain, q, pull, torques) },
             stage_frames: |chain, q, reached| unsafe { fused::stage_frames::<$n, $l>(chain, q, reached) },
         }
@@ -67,6 +72,7 @@ pub(super) struct Kernels {
     pub tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
     pub tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
     pub jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
+    pub jacobian_four: fn(&Chain, &[Quad], &mut FourColumns) -> FourFrames,
     pub torques: Torques,
     pub stage_frames: fn(&Chain, &[f64], &mut StageFrames),
 }
@@ -90,7 +96,8 @@ impl Kernels {
 /// The kernels compiled for AVX2 and FMA.
 #[cfg(target_arch = "x86_64")]
 mod fused {
-    use super::{Chain, Columns, Frame, Fused, StageFrames, Wrench, kinematics};
+    use super::{Chain, Columns, FourColumns, FourFrames, Frame, Fused, Quad, StageFrames, Wrench};
+    use super::{four_kinematics, kinematics};
 
     #[target_feature(enable = "avx2,fma")]
     pub fn tip<const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> Frame {
@@ -110,6 +117,11 @@ mod fused {
     #[target_feature(enable = "avx2,fma")]
     pub fn jacobian<const N: usize, const L: usize>(chain: &Chain, q: &[f64], columns: &mut Columns) -> Frame {
         kinematics::jacobian::<Fused, N, L>(chain, q, columns)
+    }
+
+    #[target_feature(enable = "avx2,fma")]
+    pub fn jacobian_four<const N: usize>(chain: &Chain, qs: &[Quad], columns: &mut FourColumns) -> FourFrames {
+        four_kinematics::jacobian::<Fused, N>(chain, qs, columns)
     }
 
     #[target_feature(enable = "avx2,fma")]
@@ -147,6 +159,28 @@ mod tests {
             arm.moving(joint, kind, Vector3::new(x.sin(), 0.4, x.cos()), Drive { scale: 1.0, offset: 0.01 * x });
         }
         Chain::new(&arm.elements, &Pose::identity(), &pose::translation(0.0, 0.1, 0.2))
+    }
+
+    #[test]
+    fn four_side_by_side_are_what_each_is_alone_to_the_bit() {
+        for joints in SIZES {
+            let chain = arm(joints);
+            for kernels in [Kernels::for_stages(joints), Kernels::baseline_for(joints)] {
+                let angle = |joint: usize, lane: usize| (1.7 * joint as f64 + 0.9 * lane as f64).sin();
+                let qs: Vec<Quad> = (0..joints).map(|i| Quad(std::array::from_fn(|lane| angle(i, lane)))).collect();
+                let mut four = vec![[Quad::ZERO; 6]; joints];
+                let tips = (kernels.jacobian_four)(&chain, &qs, &mut four);
+                for lane in 0..4 {
+                    let q: Vec<f64> = qs.iter().map(|lanes| lanes.0[lane]).collect();
+                    let mut columns = [[0.0; 6]; MAX_DOF];
+                    let tip = (kernels.jacobian)(&chain, &q, &mut columns);
+                    assert_eq!(tips.axes.map(|axis| axis.map(|k| k.0[lane])), tip.axes, "{joints} joints");
+                    assert_eq!(tips.origin.map(|k| k.0[lane]), tip.origin, "{joints} joints");
+                    let column = |j: usize| four[j].map(|row| row.0[lane]);
+                    assert!((0..joints).all(|j| column(j) == columns[j]), "{joints} joints");
+                }
+            }
+        }
     }
 
     #[test]

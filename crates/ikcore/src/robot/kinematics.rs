@@ -5,10 +5,12 @@
 
 use super::MAX_DOF;
 use super::chain::Chain;
+use super::four_kinematics::FourColumns;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, Separate};
+use crate::math::four_frames::FourFrames;
 use crate::math::quad::Quad;
-use crate::math::sincos::sincos;
+use crate::math::sincos::{sincos, sincos_by_column};
 use crate::math::wide_frame::WideFrame;
 
 /// Columns of a 6 x n matrix, one per joint: linear rows (m per rad or m), then angular rows; the first n are in use.
@@ -55,6 +57,12 @@ impl Chain {
     #[inline]
     pub fn jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
         (self.kernels.jacobian)(self, q, columns)
+    }
+
+    /// [`jacobian`](Self::jacobian) of four configurations side by side, to the same bits; as many `columns` as joints.
+    #[inline]
+    pub fn jacobian_four(&self, qs: &[Quad], columns: &mut FourColumns) -> FourFrames {
+        (self.kernels.jacobian_four)(self, qs, columns)
     }
 
     /// The tip's frame, and into `torques` what each joint feels of the wrench that `pull` says of it.
@@ -145,7 +153,7 @@ pub(super) fn side_by_side<A: Arithmetic, const N: usize, const L: usize, const 
         }
     }
     let (mut sines, mut cosines) = ([[0.0; W]; L], [[0.0; W]; L]);
-    sincos::<A>(angles.as_flattened(), sines.as_flattened_mut(), cosines.as_flattened_mut());
+    sincos_by_column::<A, W>(&angles, &mut sines, &mut cosines);
     let mut point = chain.tip.origin.map(|coordinate| [coordinate; W]);
     for i in (0..N).rev() {
         let (sine, cosine, stage) = (&sines[i], &cosines[i], chain.stages.frame(i));

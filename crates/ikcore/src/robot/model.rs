@@ -10,8 +10,10 @@ use super::collision::CollisionModel;
 use super::directions::Directions;
 use super::joint::Joint;
 use super::seed_index::SeedIndex;
-use super::{Columns, MAX_DOF, Wrench};
+use super::{Columns, FourColumns, MAX_DOF, Wrench};
 use crate::error::{Error, Result, require_finite};
+use crate::math::four_frames::FourFrames;
+use crate::math::quad::Quad;
 use crate::math::{Frame, Pose, pose};
 use crate::rng::LazyRng;
 
@@ -210,6 +212,13 @@ impl Robot {
     #[inline]
     pub fn tip_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
         self.chain.jacobian(q, columns)
+    }
+
+    /// [`tip_and_jacobian`](Self::tip_and_jacobian) of four configurations side by side, to the same bits; `qs` and `columns` have one
+    /// entry per joint.
+    #[inline]
+    pub fn tips_and_jacobians(&self, qs: &[Quad], columns: &mut FourColumns) -> FourFrames {
+        self.chain.jacobian_four(qs, columns)
     }
 
     /// Tip and joint torques (N m, N for sliding joints) J'w in one pass, without a Jacobian; w is the `wrench` on the tip. `q`

@@ -80,9 +80,11 @@ impl AnySolver {
     }
 
     /// The descent that is begun again and again, where this is one.
-    pub fn restarted_descent(&self) -> Option<&LevenbergMarquardt> {
-        match self {
-            Self::MultiStart(MultiStart { solver: Algorithm::LevenbergMarquardt(descent), .. }) => Some(descent),
+    pub fn restarted_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
+        match *self {
+            Self::MultiStart(MultiStart { solver: Algorithm::LevenbergMarquardt(solver), rule }) => {
+                Some(MultiStart { solver, rule })
+            }
             _ => None,
         }
     }

@@ -67,6 +67,13 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// That of a run that was halted so.
+    pub(super) fn of<O: Objective + ?Sized>(evaluator: &Evaluator<'_, O>, halt: Halt, iterations: usize) -> Self {
+        // A budget that runs out in mid-step may have met a solution in that step.
+        let halt = if evaluator.best().solved { Halt::Solved } else { halt };
+        Self { halt, iterations }
+    }
+
     /// The status of a solve that ended so.
     pub fn status(&self) -> Status {
         match self.halt {
@@ -96,7 +103,5 @@ pub fn run<O: Objective + ?Sized, S: Solver<O>>(solver: &S, evaluator: &mut Eval
         }
     };
     let Err(halt) = until_halt();
-    // A budget that runs out in mid-step may have met a solution in that step.
-    let halt = if evaluator.best().solved { Halt::Solved } else { halt };
-    Outcome { halt, iterations }
+    Outcome::of(evaluator, halt, iterations)
 }

@@ -55,11 +55,79 @@ impl LevenbergMarquardt {
 #[derive(Debug, Clone)]
 pub struct State {
     x: Point,
-    value: f64,
-    damping: f64,
+    descent: Descent,
     /// One for the point, one for the trial; `here` says which is which.
     linearizations: [Linearization; 2],
     here: usize,
+}
+
+/// The value at the point that the descent has come to, and how carefully it goes on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Descent {
+    value: f64,
+    damping: f64,
+}
+
+/// What becomes of a trial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// It is where the descent goes on.
+    Kept,
+    /// It is where the descent ends: it gained next to nothing.
+    KeptAtLast,
+    /// The next trial is nearer.
+    Refused,
+    /// There is none nearer that makes a difference.
+    RefusedAtLast,
+}
+
+impl Verdict {
+    /// Whether the trial becomes the point.
+    pub fn keeps(self) -> bool {
+        matches!(self, Self::Kept | Self::KeptAtLast)
+    }
+
+    /// # Errors
+    /// [`Halt::Stalled`] where the descent is at its end.
+    pub fn goes_on(self) -> Result<(), Halt> {
+        match self {
+            Self::Kept | Self::Refused => Ok(()),
+            Self::KeptAtLast | Self::RefusedAtLast => Err(Halt::Stalled),
+        }
+    }
+}
+
+impl LevenbergMarquardt {
+    /// A descent from a point of this value.
+    #[inline]
+    pub(super) fn descent_from(&self, value: f64) -> Descent {
+        Descent { value, damping: self.initial_damping }
+    }
+
+    /// What becomes of a trial with `value`.
+    #[inline]
+    pub(super) fn judge(&self, descent: &mut Descent, value: f64) -> Verdict {
+        let Descent { value: before, damping } = descent;
+        if !(value < *before) {
+            *damping *= self.increase;
+            return if *damping > LARGEST_DAMPING { Verdict::RefusedAtLast } else { Verdict::Refused };
+        }
+        let gain = 1.0 - value / *before;
+        *damping = (*damping * self.decrease).max(SMALLEST_DAMPING);
+        *before = value;
+        if gain < self.min_gain { Verdict::KeptAtLast } else { Verdict::Kept }
+    }
+}
+
+impl Descent {
+    /// The damping of the next step.
+    ///
+    /// # Errors
+    /// [`Halt::Stalled`] where the value says nothing.
+    #[inline]
+    pub fn lambda(&self) -> Result<f64, Halt> {
+        if self.value.is_finite() { Ok(self.damping * self.value) } else { Err(Halt::Stalled) }
+    }
 }
 
 impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
@@ -69,40 +137,32 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
         let mut x = Point::from_slice(x0);
         let mut linearizations = [Linearization::default(), Linearization::default()];
         let value = evaluator.linearize(&mut x, &mut linearizations[0])?;
-        Ok(State { x, value, damping: self.initial_damping, linearizations, here: 0 })
+        Ok(State { x, descent: self.descent_from(value), linearizations, here: 0 })
     }
 
     fn restart(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Halt> {
-        let State { x, value, damping, linearizations, here } = state;
+        let State { x, descent, linearizations, here } = state;
         x.copy_from_slice(x0);
-        *value = evaluator.linearize(x, &mut linearizations[*here])?;
-        *damping = self.initial_damping;
+        *descent = self.descent_from(evaluator.linearize(x, &mut linearizations[*here])?);
         Ok(())
     }
 
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
-        let State { x, value, damping, linearizations, here } = state;
-        if !value.is_finite() {
-            return Err(Halt::Stalled);
-        }
-        let bounds = evaluator.bounds();
+        let State { x, descent, linearizations, here } = state;
+        let (bounds, lambda) = (evaluator.bounds(), descent.lambda()?);
         let mut trial = Point::from_slice(x);
-        let lambda = *damping * *value;
         let Linearization { columns, residual } = &linearizations[*here];
         box_step(columns, residual, lambda, x, bounds.lower(), bounds.upper(), &mut trial);
         if trial == *x {
             return Err(Halt::Stalled);
         }
-        let trial_value = evaluator.linearize(&mut trial, &mut linearizations[1 - *here])?;
-        if !(trial_value < *value) {
-            *damping *= self.increase;
-            return if *damping > LARGEST_DAMPING { Err(Halt::Stalled) } else { Ok(()) };
+        let value = evaluator.linearize(&mut trial, &mut linearizations[1 - *here])?;
+        let verdict = self.judge(descent, value);
+        if verdict.keeps() {
+            // Entries in use only: a point has room for many more.
+            x.copy_from_slice(&trial);
+            *here = 1 - *here;
         }
-        let gain = 1.0 - trial_value / *value;
-        *damping = (*damping * self.decrease).max(SMALLEST_DAMPING);
-        // Entries in use only: a point has room for many more.
-        x.copy_from_slice(&trial);
-        (*value, *here) = (trial_value, 1 - *here);
-        if gain < self.min_gain { Err(Halt::Stalled) } else { Ok(()) }
+        verdict.goes_on()
     }
 }

@@ -56,9 +56,66 @@ impl<S> MultiStart<S> {
 #[derive(Debug, Clone)]
 pub struct State<T> {
     inner: T,
+    attempt: Attempt,
+}
+
+/// How far an attempt has come.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Attempt {
     steps: usize,
-    /// Best value of the attempt when `steps` was last a multiple of the patience.
+    /// Its best value when `steps` was last a multiple of the patience.
     milestone: f64,
+}
+
+impl Attempt {
+    /// One that has begun at a point of this value.
+    pub fn begun_at(value: f64) -> Self {
+        Self { steps: 0, milestone: value }
+    }
+}
+
+impl RestartRule {
+    /// Counts a step of the attempt; whether it is to be abandoned, its best `value` being what it is now.
+    #[inline]
+    fn abandons(&self, attempt: &mut Attempt, value: f64) -> bool {
+        attempt.steps += 1;
+        if !attempt.steps.is_multiple_of(self.patience) {
+            return false;
+        }
+        let hopeless = value * self.min_reduction > attempt.milestone || value == f64::INFINITY;
+        attempt.milestone = value;
+        hopeless
+    }
+
+    /// Whether to begin again after a step that ended so.
+    ///
+    /// # Errors
+    /// The halt of a step that ended the run.
+    #[inline]
+    pub(super) fn begins_again(&self, step: Result<(), Halt>, attempt: &mut Attempt, value: f64) -> Result<bool, Halt> {
+        match step {
+            Ok(()) => Ok(self.abandons(attempt, value)),
+            Err(Halt::Stalled | Halt::OutsideBox) => Ok(true),
+            Err(halt) => Err(halt),
+        }
+    }
+
+    /// Where the next attempt begins.
+    ///
+    /// # Errors
+    /// [`Halt::Solved`] after an attempt that solved it, [`Halt::Stalled`] after the last one.
+    pub(super) fn next_start<O>(&self, evaluator: &mut Evaluator<'_, O>) -> Result<Point, Halt>
+    where
+        O: Objective + ?Sized,
+    {
+        evaluator.check_solved()?;
+        if evaluator.attempts() >= self.max_starts {
+            return Err(Halt::Stalled);
+        }
+        let mut x = Point::from_elem(0.0, evaluator.dimension());
+        evaluator.next_attempt(&mut x);
+        Ok(x)
+    }
 }
 
 impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for MultiStart<S> {
@@ -70,42 +127,16 @@ impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for MultiStart<S> {
 
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Halt> {
         let inner = self.solver.start(evaluator, x0)?;
-        Ok(State { inner, steps: 0, milestone: evaluator.attempt_value() })
+        Ok(State { inner, attempt: Attempt::begun_at(evaluator.attempt_value()) })
     }
 
     fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
-        match self.solver.step(&mut state.inner, evaluator) {
-            Ok(()) if !self.hopeless(state, evaluator.attempt_value()) => Ok(()),
-            Ok(()) | Err(Halt::Stalled | Halt::OutsideBox) => self.restart(state, evaluator),
-            halt => halt,
+        let step = self.solver.step(&mut state.inner, evaluator);
+        if self.rule.begins_again(step, &mut state.attempt, evaluator.attempt_value())? {
+            let x = self.rule.next_start(evaluator)?;
+            self.solver.restart(&mut state.inner, evaluator, &x)?;
+            state.attempt = Attempt::begun_at(evaluator.attempt_value());
         }
-    }
-}
-
-impl<S> MultiStart<S> {
-    fn hopeless<T>(&self, state: &mut State<T>, value: f64) -> bool {
-        state.steps += 1;
-        if !state.steps.is_multiple_of(self.rule.patience) {
-            return false;
-        }
-        let hopeless = value * self.rule.min_reduction > state.milestone || value == f64::INFINITY;
-        state.milestone = value;
-        hopeless
-    }
-
-    fn restart<O>(&self, state: &mut State<S::State>, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt>
-    where
-        O: Objective + ?Sized,
-        S: Solver<O>,
-    {
-        evaluator.check_solved()?;
-        if evaluator.attempts() >= self.rule.max_starts {
-            return Err(Halt::Stalled);
-        }
-        let mut x = Point::from_elem(0.0, evaluator.dimension());
-        evaluator.next_attempt(&mut x);
-        self.solver.restart(&mut state.inner, evaluator, &x)?;
-        (state.steps, state.milestone) = (0, evaluator.attempt_value());
         Ok(())
     }
 }

@@ -47,6 +47,12 @@ pub struct SquaredError {
 }
 
 impl SquaredError {
+    /// The sum of both.
+    #[inline(always)]
+    pub(super) fn sum(&self) -> f64 {
+        self.position.unwrap_or(0.0) + self.rotation.unwrap_or(0.0)
+    }
+
     /// Whether both errors are within `tolerance`. Since sqrt(x * x) is x, this is the comparison of the errors.
     #[inline]
     pub fn within(&self, tolerance: &Tolerance) -> bool {

@@ -3,6 +3,7 @@
 mod criterion;
 pub mod entrywise;
 mod error;
+mod four_targets;
 mod goal;
 mod kind;
 mod motion;

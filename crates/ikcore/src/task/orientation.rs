@@ -4,28 +4,31 @@
 //! exact at any distance from the target, not only near it.
 
 use crate::math::Frame;
-use crate::math::so3::{rotation_and_jacobian, rotation_between};
-use crate::objective::Linearization;
+use crate::math::box_step::ROWS;
+use crate::math::real::Real;
+use crate::math::so3::{Axes, rotation_and_jacobian, rotation_between};
+use crate::math::triple::Triple;
 
 /// The squared geodesic angle.
 #[inline(always)]
 pub fn error(target: &Frame, tip: &Frame) -> f64 {
-    squared(&rotation_between(target, tip))
+    let [x, y, z] = rotation_between(target, tip);
+    x * x + y * y + z * z
 }
 
-/// Angular rows of residual and derivative from the tip's geometric Jacobian, which stands in `out`; the squared angle.
+/// Angular rows of residual and derivative from the tip's geometric Jacobian, which stands in `columns`; the squared angle.
 #[inline(always)]
-pub fn linearize(target: &Frame, tip: &Frame, dof: usize, out: &mut Linearization) -> f64 {
+pub fn linearize<R: Real>(
+    target: &Axes<R>,
+    tip: &Axes<R>,
+    residual: &mut [R::Stored; ROWS],
+    columns: &mut [[R::Stored; ROWS]],
+) -> R {
     let (phi, inverse) = rotation_and_jacobian(target, tip);
-    for column in &mut out.columns[..dof] {
-        let turned = inverse.apply([column[3], column[4], column[5]]);
-        column[3..].copy_from_slice(&turned);
+    for column in columns {
+        let [.., x, y, z] = *column;
+        column[3..].copy_from_slice(&inverse.apply(Triple::of(&[x, y, z])).stored());
     }
-    out.residual[3..].copy_from_slice(&phi);
-    squared(&phi)
-}
-
-#[inline(always)]
-fn squared(phi: &[f64; 3]) -> f64 {
-    phi[0] * phi[0] + phi[1] * phi[1] + phi[2] * phi[2]
+    residual[3..].copy_from_slice(&phi.stored());
+    phi.dot(phi)
 }

@@ -2,6 +2,8 @@
 
 use super::{SquaredError, orientation, position};
 use crate::math::Frame;
+use crate::math::real::Real;
+use crate::math::so3::axes_of;
 use crate::objective::Linearization;
 
 /// Squared distance and squared angle.
@@ -17,6 +19,7 @@ pub fn error(target: &Frame, tip: &Frame) -> SquaredError {
 #[inline]
 pub fn linearize(target: &Frame, tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
     out.residual[..3].copy_from_slice(&position::residual(&target.origin, &tip.origin));
-    let rotation = orientation::linearize(target, tip, dof, out);
+    let Linearization { residual, columns } = out;
+    let rotation = orientation::linearize(&axes_of(target), &axes_of(tip), residual, &mut columns[..dof]).stored();
     SquaredError { position: Some(position::error(&target.origin, &tip.origin)), rotation: Some(rotation) }
 }

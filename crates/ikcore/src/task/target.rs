@@ -3,6 +3,8 @@
 use super::{Assessment, Criterion, SquaredError, orientation, pointing, pose, position};
 use crate::error::{Result, require_finite};
 use crate::math::box_step::ROWS;
+use crate::math::real::Real;
+use crate::math::so3::axes_of;
 use crate::math::{Frame, Pose};
 use crate::objective::Linearization;
 use crate::robot::Robot;
@@ -121,8 +123,10 @@ impl Target {
             Self::Orientation(target) => {
                 out.residual[..3].fill(0.0);
                 out.columns[..dof].iter_mut().for_each(|column| column[..3].fill(0.0));
-                let rotation = orientation::linearize(target, tip, dof, out);
-                summed(SquaredError { position: None, rotation: Some(rotation) })
+                let Linearization { residual, columns } = out;
+                let (target, tip) = (axes_of(target), axes_of(tip));
+                let rotation = orientation::linearize(&target, &tip, residual, &mut columns[..dof]);
+                summed(SquaredError { position: None, rotation: Some(rotation.stored()) })
             }
         }
     }
@@ -158,7 +162,7 @@ fn position_alone(target: &[f64; 3], tip: &[f64; 3], criterion: &Criterion) -> A
 /// Errors whose squares are those of the residual.
 #[inline(always)]
 fn summed(error: SquaredError) -> (SquaredError, f64) {
-    (error, error.position.unwrap_or(0.0) + error.rotation.unwrap_or(0.0))
+    (error, error.sum())
 }
 
 fn check_point(point: &[f64; 3]) -> Result<()> {

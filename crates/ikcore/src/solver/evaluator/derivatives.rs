@@ -2,8 +2,6 @@
 
 use std::mem;
 
-use smallvec::SmallVec;
-
 use super::{Evaluator, Halt};
 use crate::math::box_step::ROWS;
 use crate::objective::{Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, SmoothScore};
@@ -67,7 +65,7 @@ impl Evaluator<'_, dyn Differentiable + '_> {
             dimension: self.dimension,
             pattern: self.pattern,
             conduct: self.conduct,
-            periods: SmallVec::new(),
+            periods: Vec::new(),
             solved_outside: false,
         };
         let result = work(&mut narrowed);

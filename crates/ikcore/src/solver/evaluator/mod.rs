@@ -11,7 +11,6 @@ use smallvec::SmallVec;
 
 use super::conduct::{Conduct, Domain, Termination};
 use super::stop::{Monitor, Stop, Stopwatch};
-use crate::math::MAX_DOF;
 use crate::objective::{Bounds, CallPattern, Objective, Score};
 use crate::rng::LazyRng;
 
@@ -31,7 +30,7 @@ pub struct Evaluator<'a, O: ?Sized> {
     pattern: CallPattern,
     conduct: Conduct,
     /// The period of each entry; empty where everything is clipped.
-    periods: SmallVec<[Option<f64>; MAX_DOF]>,
+    periods: Vec<Option<f64>>,
     /// Whether the last point was solved, but outside the box.
     solved_outside: bool,
 }
@@ -74,7 +73,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             progress: Progress { next_poll: pattern.poll_interval, ..Progress::default() },
             pattern,
             conduct: Conduct::default(),
-            periods: SmallVec::new(),
+            periods: Vec::new(),
             solved_outside: false,
         }
     }
@@ -88,6 +87,16 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
             let period = |i| if locked(i) { None } else { self.objective.period(i) };
             self.periods = (0..self.dimension).map(period).collect();
         }
+    }
+
+    /// What is minimised.
+    pub(super) fn objective(&self) -> &O {
+        self.objective
+    }
+
+    /// What it was made of: the objective, the generator and the monitor.
+    pub fn into_parts(self) -> (&'a mut O, &'a mut LazyRng, &'a mut dyn Monitor) {
+        (self.objective, self.rng, self.monitor)
     }
 
     /// Number of entries of a point.
@@ -233,8 +242,12 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         }
     }
 
+    /// Counts evaluations, before they are made.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
     #[inline]
-    fn spend(&mut self, count: usize) -> Result<(), Halt> {
+    pub(super) fn spend(&mut self, count: usize) -> Result<(), Halt> {
         if self.progress.evaluations + count > self.stop.max_evaluations {
             return Err(Halt::Budget);
         }
@@ -257,9 +270,9 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         }
     }
 
-    /// Remembers the value, and the point where it is better than the best.
+    /// The value of a point that was evaluated; remembers it, and the point where it is better than the best.
     #[inline]
-    fn record(&mut self, x: &[f64], score: Score) -> f64 {
+    pub(super) fn record(&mut self, x: &[f64], score: Score) -> f64 {
         let value = if score.value.is_finite() { score.value } else { f64::INFINITY };
         self.progress.attempt_value = self.progress.attempt_value.min(value);
         let solved = score.solved && value.is_finite();

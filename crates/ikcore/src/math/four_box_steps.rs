@@ -1,0 +1,151 @@
+//! Four [bounded steps](super::box_step) side by side, lane by lane to the same bits.
+
+use super::MAX_DOF;
+use super::arithmetic::{Arithmetic, Baseline};
+#[cfg(target_arch = "x86_64")]
+use super::arithmetic::{Fused, has_fused};
+use super::box_step::{POSITION_ROWS, ROUNDS, ROWS, dot};
+use super::ldl;
+use super::quad::Quad;
+use super::real::{Four, Real};
+
+/// Four steps in one box.
+#[derive(Debug, Clone, Copy)]
+pub struct FourBoxSteps<'a> {
+    /// Of the Jacobians, one per entry of `x`.
+    pub columns: &'a [[Quad; ROWS]],
+    /// What the steps are to remove.
+    pub residual: &'a [Quad; ROWS],
+    /// The damping of each.
+    pub lambda: Quad,
+    /// Where they begin.
+    pub x: &'a [Quad],
+    /// The box of all four.
+    pub lower: &'a [f64],
+    /// See `lower`.
+    pub upper: &'a [f64],
+}
+
+impl FourBoxSteps<'_> {
+    /// Writes into `out` where each step leads: lane by lane what [`box_step`](super::box_step::box_step) writes. The Jacobians are
+    /// of one kind: their angular rows are zero in all lanes, or in none.
+    pub fn write(&self, out: &mut [Quad]) {
+        #[cfg(target_arch = "x86_64")]
+        if has_fused() {
+            // SAFETY: the instructions were found.
+            return unsafe { fused(self, out) };
+        }
+        self.write_rows_in_use::<Baseline>(out);
+    }
+
+    #[inline(always)]
+    fn write_rows_in_use<A: Arithmetic>(&self, out: &mut [Quad]) {
+        let moves_position_alone =
+            |column: &[Quad; ROWS]| column[POSITION_ROWS..] == [Quad::ZERO; ROWS - POSITION_ROWS];
+        if self.columns.iter().all(moves_position_alone) {
+            self.write_first_rows::<A, POSITION_ROWS>(out);
+        } else {
+            self.write_first_rows::<A, ROWS>(out);
+        }
+    }
+
+    /// On the first `R` rows.
+    #[inline(always)]
+    fn write_first_rows<A: Arithmetic, const R: usize>(&self, out: &mut [Quad]) {
+        let mut remaining = [Four::<A>::splat(0.0); R];
+        remaining.iter_mut().zip(self.residual).for_each(|(entry, residual)| *entry = Four::of(*residual));
+        // One where a joint is free, zero where it sits at a bound.
+        let mut free = [Four::<A>::splat(1.0); MAX_DOF];
+        for _ in 0..ROUNDS {
+            let z = ldl::solve(self.gram::<A, R>(&free), remaining);
+            let mut someone_got_stuck = false;
+            for j in 0..self.x.len() {
+                let (zero, x) = (Four::splat(0.0), Four::<A>::of(self.x[j]));
+                let wanted = x - dot(&self.columns[j], &z);
+                let bounded = wanted.larger(Four::splat(self.lower[j])).smaller(Four::splat(self.upper[j]));
+                let was_free = free[j];
+                out[j] = zero.choose_below(was_free, bounded, Four::of(out[j])).stored();
+                let stays_free = bounded.choose_equal(wanted, was_free, zero);
+                if stays_free.stored() == was_free.stored() {
+                    continue;
+                }
+                someone_got_stuck = true;
+                // What the joints that got stuck still move; zero for the others.
+                let moved = stays_free.choose_below(was_free, bounded - x, zero);
+                for (rest, entry) in remaining.iter_mut().zip(&self.columns[j]) {
+                    *rest = Four::of(*entry).mul_add(moved, *rest);
+                }
+                free[j] = stays_free;
+            }
+            if !someone_got_stuck {
+                return;
+            }
+        }
+    }
+
+    /// J J' + lambda I over the joints that are free, in the lower triangle.
+    #[inline(always)]
+    fn gram<A: Arithmetic, const R: usize>(&self, free: &[Four<A>; MAX_DOF]) -> [[Four<A>; R]; R] {
+        let mut sum = [[Four::<A>::splat(0.0); R]; R];
+        for (column, free) in self.columns.iter().zip(free) {
+            for i in 0..R {
+                let entry = Four::of(column[i]) * *free;
+                // Of a length that the compiler knows, so that it unrolls the loop.
+                for k in 0..R {
+                    if k > i {
+                        break;
+                    }
+                    sum[i][k] = entry.mul_add(Four::of(column[k]), sum[i][k]);
+                }
+            }
+        }
+        for (i, row) in sum.iter_mut().enumerate() {
+            row[i] = row[i] + Four::of(self.lambda);
+        }
+        sum
+    }
+}
+
+/// [`FourBoxSteps::write`] compiled for AVX2 and FMA.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn fused(steps: &FourBoxSteps<'_>, out: &mut [Quad]) {
+    steps.write_rows_in_use::<Fused>(out);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::box_step::box_step;
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Some of the joints hit their bounds in some of the lanes.
+        #[test]
+        fn each_is_what_it_is_alone_to_the_bit(
+            columns in prop::collection::vec(prop::array::uniform6(prop::array::uniform4(-1.0..1.0)), 1..10),
+            residual in prop::array::uniform6(prop::array::uniform4(-2.0..2.0)),
+            lambda in prop::array::uniform4(1e-6..1.0),
+            width in 0.0_f64..1.0,
+            rows in prop::sample::select(vec![3, 6]),
+        ) {
+            let cut = |all: [[f64; 4]; 6]| -> [Quad; 6] {
+                std::array::from_fn(|row| if row < rows { Quad(all[row]) } else { Quad::ZERO })
+            };
+            let columns: Vec<[Quad; 6]> = columns.into_iter().map(cut).collect();
+            let (residual, lambda, n) = (cut(residual), Quad(lambda), columns.len());
+            let (x, lower, upper) = (vec![Quad::splat(0.1 * width); n], vec![-width; n], vec![0.5 * width; n]);
+            let mut four = vec![Quad::ZERO; n];
+            let (columns, residual) = (&columns[..], &residual);
+            FourBoxSteps { columns, residual, lambda, x: &x, lower: &lower, upper: &upper }.write(&mut four);
+            for lane in 0..4 {
+                let alone = |lanes: &[Quad; 6]| lanes.map(|row| row.0[lane]);
+                let own: Vec<_> = columns.iter().map(alone).collect();
+                let mut out = vec![0.0; n];
+                box_step(&own, &alone(residual), lambda.0[lane], &vec![0.1 * width; n], &lower, &upper, &mut out);
+                let lane: Vec<f64> = four.iter().map(|lanes| lanes.0[lane]).collect();
+                prop_assert_eq!(lane, out);
+            }
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! One number, or four side by side: what a kernel computes with that is written once for both.
+//!
+//! Lane by lane the four go through the operations of the one, in the same order, so that both agree bit for bit.
+
+use std::marker::PhantomData;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::arithmetic::Arithmetic;
+use super::ordered::{larger, smaller};
+use super::quad::Quad;
+
+/// A real number, or several side by side.
+pub trait Real:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// How it is stored.
+    type Stored: Copy;
+
+    /// How many there are side by side.
+    const LANES: usize;
+
+    /// What is stored.
+    fn of(stored: Self::Stored) -> Self;
+
+    /// As it is stored.
+    fn stored(self) -> Self::Stored;
+
+    /// The same number in all lanes.
+    fn splat(value: f64) -> Self;
+
+    /// The number in lane `lane`.
+    fn lane(self, lane: usize) -> f64;
+
+    /// With another number in lane `lane`.
+    fn with_lane(self, lane: usize, value: f64) -> Self;
+
+    /// self * factor + addend.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+
+    /// The square root.
+    fn sqrt(self) -> Self;
+
+    /// `then` where self < limit, and `otherwise` elsewhere, NaN included.
+    fn choose_below(self, limit: Self, then: Self, otherwise: Self) -> Self;
+
+    /// `then` where self = other, and `otherwise` elsewhere, NaN included.
+    fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self;
+
+    /// The larger of the two; the other where one is NaN.
+    fn larger(self, other: Self) -> Self;
+
+    /// The smaller of the two; the other where one is NaN.
+    fn smaller(self, other: Self) -> Self;
+}
+
+/// One number, by arithmetic `A`.
+#[derive(Debug, Clone, Copy)]
+pub struct One<A>(f64, PhantomData<A>);
+
+/// Four numbers side by side, by arithmetic `A`.
+#[derive(Debug, Clone, Copy)]
+pub struct Four<A>(Quad, PhantomData<A>);
+
+impl<A: Arithmetic> Real for One<A> {
+    type Stored = f64;
+
+    const LANES: usize = 1;
+
+    #[inline(always)]
+    fn of(stored: f64) -> Self {
+        Self(stored, PhantomData)
+    }
+
+    #[inline(always)]
+    fn stored(self) -> f64 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self::of(value)
+    }
+
+    #[inline(always)]
+    fn lane(self, _lane: usize) -> f64 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn with_lane(self, _lane: usize, value: f64) -> Self {
+        Self::of(value)
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Self::of(A::mul_add(self.0, factor.0, addend.0))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::of(self.0.sqrt())
+    }
+
+    #[inline(always)]
+    fn choose_below(self, limit: Self, then: Self, otherwise: Self) -> Self {
+        if self.0 < limit.0 { then } else { otherwise }
+    }
+
+    #[inline(always)]
+    fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
+        if self.0 == other.0 { then } else { otherwise }
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self::of(larger(self.0, other.0))
+    }
+
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        Self::of(smaller(self.0, other.0))
+    }
+}
+
+impl<A: Arithmetic> Real for Four<A> {
+    type Stored = Quad;
+
+    const LANES: usize = 4;
+
+    #[inline(always)]
+    fn of(stored: Quad) -> Self {
+        Self(stored, PhantomData)
+    }
+
+    #[inline(always)]
+    fn stored(self) -> Quad {
+        self.0
+    }
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self::of(Quad::splat(value))
+    }
+
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        self.0.0[lane]
+    }
+
+    #[inline(always)]
+    fn with_lane(mut self, lane: usize, value: f64) -> Self {
+        self.0.0[lane] = value;
+        self
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Self::of(A::mul_add_quad(self.0, factor.0, addend.0))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::of(A::sqrt_quad(self.0))
+    }
+
+    #[inline(always)]
+    fn choose_below(self, limit: Self, then: Self, otherwise: Self) -> Self {
+        Self::of(A::choose_below_quad(self.0, limit.0, then.0, otherwise.0))
+    }
+
+    #[inline(always)]
+    fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
+        Self::of(A::choose_equal_quad(self.0, other.0, then.0, otherwise.0))
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        other.choose_below(self, self, other)
+    }
+
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        self.choose_below(other, self, other)
+    }
+}
+
+/// `$operator` of [`One`] by that of f64, and of [`Four`] by that of the arithmetic.
+macro_rules! operator {
+    ($operator:ident, $method:ident, $of_quads:ident) => {
+        impl<A: Arithmetic> $operator for One<A> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self::of(self.0.$method(other.0))
+            }
+        }
+
+        impl<A: Arithmetic> $operator for Four<A> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self::of(A::$of_quads(self.0, other.0))
+            }
+        }
+    };
+}
+
+operator!(Add, add, add_quad);
+operator!(Sub, sub, sub_quad);
+operator!(Mul, mul, mul_quad);
+operator!(Div, div, div_quad);
+
+impl<A: Arithmetic> Neg for One<A> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::of(-self.0)
+    }
+}
+
+impl<A: Arithmetic> Neg for Four<A> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::of(-self.0)
+    }
+}

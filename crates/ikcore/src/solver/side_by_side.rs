@@ -1,0 +1,227 @@
+//! Levenberg-Marquardt from many starts on many objectives: four descend side by side, and where one has ended the next begins.
+//!
+//! Each run takes the decisions that [`run`](super::driver::run) would take for it alone, on the same bits; only the arithmetic of a
+//! step is done for four at once.
+
+use super::driver::Outcome;
+use super::evaluator::{Evaluator, Halt};
+use super::levenberg_marquardt::{Descent, LevenbergMarquardt};
+use super::multi_start::{Attempt, MultiStart};
+use crate::math::MAX_DOF;
+use crate::math::four_box_steps::FourBoxSteps;
+use crate::math::quad::Quad;
+use crate::objective::{Bounds, FourLinearizations, Point, Score, SideBySide};
+
+/// Runs side by side.
+const LANES: usize = 4;
+
+/// Runs `solver` for each of `runs`: a label, a fresh evaluator and where it begins. `ended` is told label and outcome of each, in the
+/// order in which they end. The runs share one box.
+pub fn run_side_by_side<'a, L, O: SideBySide + 'a>(
+    solver: &MultiStart<LevenbergMarquardt>,
+    bounds: &Bounds,
+    mut runs: impl Iterator<Item = (L, Evaluator<'a, O>, Point)>,
+    ended: impl FnMut(L, Evaluator<'a, O>, Outcome),
+) {
+    let mut abreast = Lanes {
+        solver,
+        bounds,
+        ended,
+        lanes: std::array::from_fn(|_| None),
+        points: [[Quad::ZERO; MAX_DOF]; 2],
+        linearizations: [FourLinearizations::default(), FourLinearizations::default()],
+        here: 0,
+    };
+    loop {
+        abreast.take_up(&mut runs);
+        if abreast.lanes.iter().all(Option::is_none) {
+            return;
+        }
+        abreast.go_to_trials();
+        let scores = abreast.evaluate();
+        abreast.judge(&scores);
+    }
+}
+
+/// Four runs, each in a lane of the arrays.
+struct Lanes<'s, 'a, L, O, F> {
+    solver: &'s MultiStart<LevenbergMarquardt>,
+    bounds: &'s Bounds,
+    ended: F,
+    lanes: [Option<Lane<'a, L, O>>; LANES],
+    /// One for the points, one for the trials; `here` says which is which.
+    points: [[Quad; MAX_DOF]; 2],
+    linearizations: [FourLinearizations; 2],
+    here: usize,
+}
+
+/// What a run has apart from the others.
+struct Lane<'a, L, O> {
+    label: L,
+    evaluator: Evaluator<'a, O>,
+    next: Next,
+    descent: Descent,
+    attempt: Attempt,
+    iterations: usize,
+}
+
+/// What a run evaluates next.
+enum Next {
+    /// The point where it begins.
+    Start(Point),
+    /// The point where it begins again.
+    Restart(Point),
+    /// The trial of a step.
+    Trial,
+}
+
+impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Outcome)> Lanes<'_, 'a, L, O, F> {
+    /// Fills lanes that are empty.
+    fn take_up(&mut self, runs: &mut impl Iterator<Item = (L, Evaluator<'a, O>, Point)>) {
+        for lane in self.lanes.iter_mut().filter(|lane| lane.is_none()) {
+            let Some((label, evaluator, x0)) = runs.next() else { return };
+            *lane = Some(Lane {
+                label,
+                evaluator,
+                next: Next::Start(x0),
+                descent: self.solver.solver.descent_from(f64::INFINITY),
+                attempt: Attempt::begun_at(f64::INFINITY),
+                iterations: 0,
+            });
+        }
+    }
+
+    /// Writes the points that are evaluated next.
+    fn go_to_trials(&mut self) {
+        self.step();
+        let n = self.bounds.lower().len();
+        for l in 0..LANES {
+            let [first, second] = &self.points;
+            let stuck = first[..n].iter().zip(second).all(|(a, b)| a.0[l] == b.0[l]);
+            self.advance(l, |lane, solver| match lane.next {
+                Next::Trial if stuck || lane.descent.lambda().is_err() => lane.begin_again(solver),
+                _ => Ok(()),
+            });
+            let Some(Lane { next: Next::Start(x) | Next::Restart(x), .. }) = &mut self.lanes[l] else { continue };
+            self.bounds.clip(x);
+            for (trials, x) in self.points[1 - self.here].iter_mut().zip(x) {
+                trials.0[l] = *x;
+            }
+        }
+    }
+
+    /// One bounded step in every lane; what it writes into lanes that begin means nothing.
+    fn step(&mut self) {
+        let lambda =
+            |lane: &Option<Lane<'a, L, O>>| lane.as_ref().map_or(Ok(1.0), |lane| lane.descent.lambda()).unwrap_or(1.0);
+        let n = self.bounds.lower().len();
+        let FourLinearizations { residual, columns } = &self.linearizations[self.here];
+        let (x, trials) = here_and_there(&mut self.points, self.here);
+        let steps = FourBoxSteps {
+            columns: &columns[..n],
+            residual,
+            lambda: Quad(std::array::from_fn(|l| lambda(&self.lanes[l]))),
+            x: &x[..n],
+            lower: self.bounds.lower(),
+            upper: self.bounds.upper(),
+        };
+        steps.write(&mut trials[..n]);
+    }
+
+    /// Scores of the trials, as far as the budgets allow; those of empty lanes mean nothing.
+    fn evaluate(&mut self) -> [Score; LANES] {
+        for l in 0..LANES {
+            self.advance(l, |lane, _| lane.evaluator.spend(1));
+        }
+        let Some(someone) = self.lanes.iter().flatten().next() else {
+            return [Score { value: f64::INFINITY, solved: false }; LANES];
+        };
+        let objective = |l: usize| self.lanes[l].as_ref().unwrap_or(someone).evaluator.objective();
+        let there = 1 - self.here;
+        let trials = &self.points[there][..self.bounds.lower().len()];
+        O::linearize_four(std::array::from_fn(objective), trials, &mut self.linearizations[there])
+    }
+
+    /// Decides what becomes of the trials, and of the runs.
+    fn judge(&mut self, scores: &[Score; LANES]) {
+        let (n, there) = (self.bounds.lower().len(), 1 - self.here);
+        let mut x = [0.0; MAX_DOF];
+        for (l, score) in scores.iter().enumerate() {
+            for (x, trials) in x.iter_mut().zip(&self.points[there][..n]) {
+                *x = trials.0[l];
+            }
+            let mut keeps = true;
+            self.advance(l, |lane, solver| lane.judge(&x[..n], *score, solver, &mut keeps));
+            if !keeps {
+                self.carry_over(l);
+            }
+        }
+        self.here = there;
+    }
+
+    /// Takes point and linearization of a lane along where its trial was refused.
+    fn carry_over(&mut self, l: usize) {
+        let (n, here) = (self.bounds.lower().len(), self.here);
+        let (from, to) = here_and_there(&mut self.points, here);
+        from[..n].iter().zip(to).for_each(|(from, to)| to.0[l] = from.0[l]);
+        let (from, to) = here_and_there(&mut self.linearizations, here);
+        from.residual.iter().zip(&mut to.residual).for_each(|(from, to)| to.0[l] = from.0[l]);
+        let columns = from.columns[..n].as_flattened().iter().zip(to.columns.as_flattened_mut());
+        columns.for_each(|(from, to)| to.0[l] = from.0[l]);
+    }
+
+    /// Does `work` in lane `l`, if a run is there; the run ends where the work is halted.
+    fn advance(
+        &mut self,
+        l: usize,
+        work: impl FnOnce(&mut Lane<'a, L, O>, &MultiStart<LevenbergMarquardt>) -> Result<(), Halt>,
+    ) {
+        let Some(lane) = &mut self.lanes[l] else { return };
+        if let Err(halt) = work(lane, self.solver)
+            && let Some(Lane { label, evaluator, iterations, .. }) = self.lanes[l].take()
+        {
+            let outcome = Outcome::of(&evaluator, halt, iterations);
+            (self.ended)(label, evaluator, outcome);
+        }
+    }
+}
+
+/// The one numbered `here`, and the other.
+fn here_and_there<T>([first, second]: &mut [T; 2], here: usize) -> (&mut T, &mut T) {
+    if here == 0 { (first, second) } else { (second, first) }
+}
+
+impl<L, O: SideBySide> Lane<'_, L, O> {
+    /// Takes in the score of the point `x`; `keeps` becomes false where it is a trial that is refused.
+    fn judge(
+        &mut self,
+        x: &[f64],
+        score: Score,
+        MultiStart { solver, rule }: &MultiStart<LevenbergMarquardt>,
+        keeps: &mut bool,
+    ) -> Result<(), Halt> {
+        let value = self.evaluator.record(x, score);
+        if let Next::Trial = self.next {
+            let verdict = solver.judge(&mut self.descent, value);
+            *keeps = verdict.keeps();
+            if rule.begins_again(verdict.goes_on(), &mut self.attempt, self.evaluator.attempt_value())? {
+                self.next = Next::Restart(rule.next_start(&mut self.evaluator)?);
+                return Ok(());
+            }
+        } else {
+            self.descent = solver.descent_from(value);
+            self.attempt = Attempt::begun_at(self.evaluator.attempt_value());
+            if let Next::Start(_) = std::mem::replace(&mut self.next, Next::Trial) {
+                return self.evaluator.before_steps();
+            }
+        }
+        self.iterations += 1;
+        self.evaluator.after_step(self.iterations)
+    }
+
+    /// Gives an attempt up that came to its end.
+    fn begin_again(&mut self, solver: &MultiStart<LevenbergMarquardt>) -> Result<(), Halt> {
+        self.next = Next::Restart(solver.rule.next_start(&mut self.evaluator)?);
+        Ok(())
+    }
+}
