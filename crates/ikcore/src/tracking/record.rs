@@ -139,8 +139,7 @@ impl Record {
         }
     }
 
-    /// Which joints break a limit in the tick `from` - `to` (s), and by how much.
-    #[cold]
+    /// Which joints break a limit in the tick from `from` to `to` (s), and by how much.
     fn find_violations(&mut self, accepted: &Accepted<'_>, [from, to]: [f64; 2]) {
         let Accepted { q, tick_box: TickBox { velocity, floor, ceiling, .. } } = *accepted;
         for j in 0..q.len() {
