@@ -42,7 +42,7 @@ impl Approach {
             end.iter().zip(q).map(|(end, q)| end - q).collect()
         };
         let whole = to(tick.target);
-        let mut catch_up = to(&tick.motion.begin);
+        let mut catch_up = to(&tick.motion().begin);
         let mut keep_up: Point = whole.iter().zip(&catch_up).map(|(whole, catch_up)| whole - catch_up).collect();
         let takes = |share: f64| {
             keep_up.iter().zip(tick.velocity_limit).all(|(step, limit)| step.abs() <= share * limit * tick.dt)

@@ -114,7 +114,7 @@ pub struct Scratch {
 }
 
 pub fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, q: &[f64], mut tick: Tick<'_>) -> TickResult {
-    let mut found = TickResult::at(Point::from_slice(q));
+    let mut found = TickResult::at(q);
     let mut stage = |from: &[f64], share: f64| {
         found.evaluations += 1;
         displacement(rule, scratch, q, from, share, &mut tick)
@@ -231,7 +231,7 @@ impl ScaledEquations<'_> {
 
 /// Residual and Jacobian at `from` into the scratch; how the residual changes per second by the target's own motion.
 fn linearize(scratch: &mut Scratch, from: &[f64], share: f64, tick: &Tick<'_>) -> [f64; 6] {
-    let (target, twist) = tick.motion.at(share);
+    let (target, twist) = tick.motion().at(share);
     let n = from.len();
     let tip = tick.robot.tip_and_jacobian(from, &mut scratch.linearization.columns);
     for (neighbour, time) in scratch.neighbours.iter_mut().zip([tick.dt, -tick.dt]) {
