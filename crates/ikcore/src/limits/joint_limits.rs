@@ -143,7 +143,7 @@ impl Limits {
         self.field(field).unwrap_or_default().iter().map(constant).collect()
     }
 
-    fn is_finite(&self, field: Field) -> bool {
+    pub(super) fn is_finite(&self, field: Field) -> bool {
         self.field(field).unwrap_or_default().iter().any(|profile| *profile != Profile::Constant(f64::INFINITY))
     }
 
