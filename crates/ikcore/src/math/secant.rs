@@ -1,11 +1,8 @@
 //! A Jacobian that is known from differences alone: columns by antennae, then rank-one updates along every step made.
 
 use super::MAX_DOF;
-use super::box_step::{ROWS, box_step};
+use super::box_step::{BoxStep, ROWS};
 use super::vector::squared_size;
-
-/// Damping over the squared size of the Jacobian: enough to keep a singular system solvable.
-pub const LEAST_DAMPING: f64 = 1e-10;
 
 /// Steps shorter than this teach nothing but rounding.
 const SHORTEST: f64 = 1e-12;
@@ -61,7 +58,8 @@ impl<const R: usize> Secant<R> {
     pub fn step(&self, residual: &[f64; R], damping: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
         let mut rows = [0.0; ROWS];
         rows[..R].copy_from_slice(residual);
-        box_step(&self.columns, &rows, damping * self.size(x.len()), x, lower, upper, out);
+        let lambda = damping * self.size(x.len());
+        BoxStep { columns: &self.columns, residual: &rows, lambda, x, lower, upper }.write(out);
     }
 }
 

@@ -9,7 +9,8 @@
 
 use super::noise::{Noise, median};
 use super::{Tick, Verdict};
-use crate::math::secant::{LEAST_DAMPING, Secant, antenna};
+use crate::math::box_step::LEAST_DAMPING;
+use crate::math::secant::{Secant, antenna};
 use crate::math::vector::{distance, norm, squared_distance};
 use crate::objective::Point;
 use crate::solver::BroydenBas;

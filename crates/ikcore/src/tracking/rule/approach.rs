@@ -6,7 +6,7 @@
 //! still stop before its displacement ends. A target that moves is caught up with on top of its own motion.
 
 use super::Tick;
-use crate::math::box_step::{box_step, least_damping};
+use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::{Frame, MAX_DOF};
 use crate::objective::{Linearization, Point};
 use crate::robot::Columns;
@@ -105,8 +105,9 @@ fn destination(target: &Target, q: &[f64], tip: &Frame, columns: &Columns, tick:
     for j in 0..n {
         [lower[j], upper[j]] = tick.limits.position_range(j, tick.time, tick.time + tick.dt);
     }
-    let damping = least_damping(&at.columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
+    let lambda = least_damping(&at.columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
     let mut end = Point::from_slice(q);
-    box_step(&at.columns, &at.residual, damping, q, &lower[..n], &upper[..n], &mut end);
+    let Linearization { columns, residual } = &at;
+    BoxStep { columns, residual, lambda, x: q, lower: &lower[..n], upper: &upper[..n] }.write(&mut end);
     end
 }

@@ -11,9 +11,7 @@ use super::{Tick, TickResult};
 use crate::limits::Field;
 use crate::math::{
     Frame, MAX_DOF,
-    box_step::{box_step, box_step_near},
-    secant::LEAST_DAMPING,
-    vector::squared_size,
+    box_step::{BoxStep, least_damping},
 };
 use crate::objective::{Differentiable, Linearization, Point};
 use crate::problem::Problem;
@@ -185,12 +183,13 @@ impl Memory {
         tick.target.linearize_tip(&current.tip, n, tick.criterion, &mut self.linearization);
         let Linearization { columns, residual } = &*self.linearization;
         let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
-        let damping = LEAST_DAMPING * squared_size(&columns[..n]);
-        let (from, to) = (&found.q, &mut self.trial.q);
+        let lambda = least_damping(&columns[..n]);
+        let step = BoxStep { columns, residual, lambda, x: &found.q, lower, upper };
+        let to = &mut self.trial.q;
         to.resize(n, 0.0);
         match preferred {
-            None => box_step(columns, residual, damping, from, lower, upper, to),
-            Some(preferred) => box_step_near(columns, residual, damping, from, preferred, lower, upper, to),
+            None => step.write(to),
+            Some(preferred) => step.write_near(preferred, to),
         }
         self.trial.update(tick.robot);
         found.evaluations += 1;

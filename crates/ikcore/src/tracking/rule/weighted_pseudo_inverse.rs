@@ -12,7 +12,7 @@ use std::sync::Arc;
 use super::{Tick, TickResult};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::MAX_DOF;
-use crate::math::box_step::box_step;
+use crate::math::box_step::BoxStep;
 use crate::math::vector::norm;
 use crate::objective::{Linearization, Point};
 use crate::robot::Robot;
@@ -215,7 +215,9 @@ impl ScaledEquations<'_> {
         let begin: Point =
             moved.map(|((y, step), (lower, upper))| (y + share * step).max(*lower).min(*upper)).collect();
         let mut there = begin.clone();
-        box_step(self.columns, &self.residual_at(&begin), self.lambda, &begin, &self.lower, &self.upper, &mut there);
+        let (columns, residual, lambda) = (self.columns, &self.residual_at(&begin), self.lambda);
+        let (lower, upper) = (&self.lower, &self.upper);
+        BoxStep { columns, residual, lambda, x: &begin, lower, upper }.write(&mut there);
         (norm(&self.residual_at(&there)), there)
     }
 
