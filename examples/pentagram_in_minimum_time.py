@@ -4,7 +4,7 @@ A pentagram in minimum time
 
 A planar arm with three links has one degree of freedom more than its tip needs. ``plan_along_path`` finds redundancy
 and timing together, and keeps the tip within the accuracy asked for all along the star: it stops at the corners.
-A motion that takes no longer than it must meets a limit all the time.
+In the fastest motion some joint is at one of its limits at every moment.
 """
 
 import matplotlib.pyplot as plt

@@ -8,7 +8,7 @@ Every result says whether it succeeded (`success`, `status`) and, in a sentence,
 
     robot = bik.Robot.named("iiwa14")
     circle = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
-    result = bik.track(robot, circle, dt=0.2, solver=bik.BAS())
+    result = bik.track(robot, circle, dt=0.02)
     result.trajectory.to_csv("trajectory.csv")
 """
 

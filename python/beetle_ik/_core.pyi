@@ -675,7 +675,7 @@ def solve(
     target: _Pose,  # (4, 4) pose or (3,) position
     *,
     task: Task | None = None,
-    start: _Pose | None = None,
+    start: ArrayLike | None = None,  # (n,)
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
@@ -703,7 +703,7 @@ def solve_all(
     robot: Robot,
     target: _Pose,  # (4, 4) pose or (3,) position
     *,
-    start: _Pose | None = None,
+    start: ArrayLike | None = None,  # (n,)
     limit: int = 16,
     separation: float = 0.1,  # rad, m
     task: Task | None = None,
@@ -786,7 +786,7 @@ def minimize(
     upper: ArrayLike,
     *,
     solver: _DerivativeFree | MultiStart,
-    start: _Pose | None = None,
+    start: ArrayLike | None = None,  # (n,)
     stop: Stop | None = None,
     seed: int = 0,
     vectorized: bool = False,
@@ -961,6 +961,7 @@ class TrackResult(_Outcome):
     @property
     def trajectory(self) -> Trajectory: ...  # straight lines between the ticks: its velocities are exactly qd
     def plot(self) -> Figure: ...
+    def __len__(self) -> int: ...
 
 @final
 class Tracker:
@@ -1085,7 +1086,7 @@ def plan_point_to_point(
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,  # m
     elbows: Sequence[int] | None = None,
-    solver: _Solver | None = None,
+    solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     progress: _Progress = None,
@@ -1095,7 +1096,7 @@ def time_optimal(
     limits: Limits,
     *,
     knots: ArrayLike | None = None,  # (k,), None: uniform in [0, 1]
-    spline: str = "natural",  # or "not-a-knot", "clamped", "polyline"
+    spline: Literal["natural", "not-a-knot", "clamped", "polyline"] = "natural",
     blend: float | None = None,
     gridpoints: int | None = None,
     start_speed: float = 0.0,
@@ -1112,7 +1113,7 @@ def plan_along_path(
     objective: Literal["time", "joint_travel"] = "time",
     elbow: int | None = None,
     accuracy: float | None = None,  # m
-    solver: _Solver | None = None,
+    solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     progress: _Progress = None,

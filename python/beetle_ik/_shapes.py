@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._core import Capsule
+from ._style import ORANGE, SKY
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from ._core import Obstacle, Robot
 
-_IN_SPACE = "#E69F00"
-_FROM_ABOVE = "#F3D58C"
-_LINKS = "#56B4E9"
+_FROM_ABOVE = "#F3D58C"  # orange on white, without showing what is below
 _SEEN_BEYOND = 0.3  # of the arm's extent, round it
 
 
@@ -44,7 +43,7 @@ def draw_in_space(axes: Any, points: NDArray[np.float64], obstacles: Sequence[Ob
         surface = [inside(triangle, middle - reach, middle + reach) for triangle in obstacle.triangles]
         seen = [polygon for polygon in surface if len(polygon)]
         if seen:
-            axes.add_collection3d(Poly3DCollection(seen, facecolor=_IN_SPACE, alpha=0.35, linewidth=0))
+            axes.add_collection3d(Poly3DCollection(seen, facecolor=ORANGE, alpha=0.35, linewidth=0))
 
 
 def _surroundings(points: NDArray[np.float64], obstacles: Sequence[Obstacle]) -> NDArray[np.float64]:
@@ -86,4 +85,4 @@ def draw_capsules(axes: Any, robot: Robot, q: ArrayLike) -> None:
         if radius > 0.0:
             rotation, origin = poses[link][:3, :3], poses[link][:3, 3]
             surface = Capsule(rotation @ a + origin, rotation @ b + origin, radius).triangles
-            axes.add_collection3d(Poly3DCollection(surface, facecolor=_LINKS, alpha=0.12, linewidth=0))
+            axes.add_collection3d(Poly3DCollection(surface, facecolor=SKY, alpha=0.12, linewidth=0))

@@ -48,18 +48,28 @@ def from_csv(file: str | os.PathLike[str]) -> Trajectory:
         InvalidInputError: a column is missing or an entry is no number: names line and column.
     """
     table = read_table(file, ["time"])
-    joints = [column.removeprefix("q:") for column in table if column.startswith("q:")]
-    positions = [f"q:{joint}" for joint in joints]
-    if not joints:
-        joints = positions = [column for column in table if column != "time" and not column.startswith(_PREFIXES)]
-    if not joints:
+    joints, q = joint_positions(file, table)
+    qd, qdd = (_joint_columns(file, table, derivative, joints) for derivative in _DERIVATIVES[1:])
+    return Trajectory.from_samples(table["time"], q, qd=qd, qdd=qdd, joint_names=joints)
+
+
+def joint_positions(
+    file: str | os.PathLike[str], table: dict[str, NDArray[np.float64]]
+) -> tuple[list[str], NDArray[np.float64]]:
+    """Joints and their positions (k, n) in the columns `q:joint`, or without any, in those named by the joint alone.
+
+    Raises:
+        InvalidInputError: there are neither.
+    """
+    columns = {column.removeprefix("q:"): column for column in table if column.startswith("q:")}
+    if not columns:
+        columns = {column: column for column in table if column != "time" and not column.startswith(_PREFIXES)}
+    if not columns:
         raise InvalidInputError(
             f"{os.fspath(file)}, line 1: no joint positions: expected a column for each joint, "
             f"named 'q:joint' or by the joint alone; columns found: {', '.join(table)}"
         )
-    q = np.column_stack([table[column] for column in positions])
-    qd, qdd = (_joint_columns(file, table, derivative, joints) for derivative in _DERIVATIVES[1:])
-    return Trajectory.from_samples(table["time"], q, qd=qd, qdd=qdd, joint_names=joints)
+    return list(columns), np.column_stack([table[column] for column in columns.values()])
 
 
 def _joint_columns(

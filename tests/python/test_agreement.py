@@ -5,27 +5,26 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from iiwa_circle import IIWA, START
 
 import beetle_ik as bik
 
-ARM = bik.Robot.named("iiwa14")
 PLANAR = bik.Robot.planar([1, 1, 1])
-Q = np.array([0.6449, 0.2037, 0.1969, -0.7714, 0.2028, 0.7179, 0.1])
 LINE = bik.paths.polyline([(0.3, 0.3, 1.0), (0.3, 0.31, 1.0)], duration=0.2)
 LIMITS = bik.Limits(velocity=1.0, acceleration=2.0)
 TARGET = (0.3, 0.3, 1.0)
-SESSION = bik.ZNNBAS().session(Q, dt=0.1)
+SESSION = bik.ZNNBAS().session(START, dt=0.1)
 SESSION.command(TARGET)
 RESULTS = [
-    bik.solve(ARM, TARGET),
-    bik.solve_all(ARM, TARGET, limit=2),
-    bik.solve_batch(ARM, [TARGET], threads=1),
+    bik.solve(IIWA, TARGET),
+    bik.solve_all(IIWA, TARGET, limit=2),
+    bik.solve_batch(IIWA, [TARGET], threads=1),
     bik.minimize(np.sum, [-1], [1], solver=bik.BAS(), stop=bik.Stop(max_evaluations=100)),
-    bik.track(ARM, LINE, Q, dt=0.1),
-    bik.Tracker(ARM, Q, dt=0.1).step(TARGET),
+    bik.track(IIWA, LINE, START, dt=0.1),
+    bik.Tracker(IIWA, START, dt=0.1).step(TARGET),
     SESSION.observe(TARGET),
-    bik.track_model_free(bik.KinematicPlant(ARM), LINE, Q, dt=0.1),
-    bik.plan_point_to_point(ARM, start_q=Q, end_q=Q + 0.1, limits=LIMITS),
+    bik.track_model_free(bik.KinematicPlant(IIWA), LINE, START, dt=0.1),
+    bik.plan_point_to_point(IIWA, start_q=START, end_q=START + 0.1, limits=LIMITS),
     bik.planar_posture(PLANAR, (1, 1, 0)),
 ]
 IN_COMMON = ("success", "status", "message", "evaluations", "elapsed", "limits")
@@ -63,7 +62,7 @@ def test_defaults_are_told_where_the_signature_cannot(solver: object) -> None:
 
 
 def test_every_public_name_is_documented() -> None:
-    for module in (bik, bik.goals, bik.obstacles, bik.paths, bik.plot, bik.tasks):
+    for module in (bik, bik.goals, bik.interop, bik.obstacles, bik.paths, bik.plot, bik.tasks, bik.vision):
         for name in module.__all__:
             thing = getattr(module, name)
             assert name == "__version__" or inspect.getdoc(thing), name
@@ -82,7 +81,7 @@ def test_limits_compare_by_value() -> None:
         assert bik.Limits(velocity=limit) != bik.Limits(velocity=3.0)
         assert bik.Limits(velocity=limit) != limit
     assert bik.Limits() == bik.Limits()
-    assert bik.solve(ARM, TARGET).limits == ARM.limits
+    assert bik.solve(IIWA, TARGET).limits == IIWA.limits
 
 
 @pytest.mark.parametrize("angles", [0, 6, 14])
@@ -90,19 +89,19 @@ def test_clearance_takes_one_configuration_or_rows_of_them(angles: int) -> None:
     with pytest.raises(
         bik.InvalidInputError, match=rf"^joint angles of robot 'iiwa14': expected 7 joints, got {angles}$"
     ):
-        bik.obstacles.clearance(ARM.with_capsules(radius=0.05), np.zeros(angles))
+        bik.obstacles.clearance(IIWA.with_capsules(radius=0.05), np.zeros(angles))
 
 
 def test_options_that_would_be_ignored_are_refused() -> None:
     with pytest.raises(bik.InvalidInputError, match=r'^method="minmax" has a search of its own: leave solver out'):
-        bik.plan_point_to_point(ARM, start_q=Q, end_q=Q + 0.1, limits=LIMITS, solver=bik.PSO())
+        bik.plan_point_to_point(IIWA, start_q=START, end_q=START + 0.1, limits=LIMITS, solver=bik.PSO())
     with pytest.raises(bik.InvalidInputError, match=r"^margin must be zero or more and finite, got NaN$"):
-        bik.plan_point_to_point(ARM, start_q=Q, end_q=Q + 0.1, limits=LIMITS, margin=np.nan)
+        bik.plan_point_to_point(IIWA, start_q=START, end_q=START + 0.1, limits=LIMITS, margin=np.nan)
 
 
 def test_a_track_tells_the_tolerance_that_was_asked_for() -> None:
     with pytest.raises(bik.InvalidInputError, match=r"^position_tolerance must be positive, got -1$"):
-        bik.track(ARM, LINE, dt=0.1, position_tolerance=-1.0)
+        bik.track(IIWA, LINE, dt=0.1, position_tolerance=-1.0)
 
 
 @pytest.mark.parametrize(

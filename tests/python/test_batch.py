@@ -156,6 +156,7 @@ def test_starts_are_one_for_each_or_one_for_all() -> None:
 @pytest.mark.parametrize("threads", [1, 2])
 def test_no_targets_give_no_solutions(targets: object, threads: int) -> None:
     batch = bik.solve_batch(PANDA, targets, threads=threads)
+    assert batch.message == "no targets"
     assert (len(batch), batch.q.shape, batch.success.shape, list(batch)) == (0, (0, 7), (0,), [])
 
 

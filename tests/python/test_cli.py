@@ -270,6 +270,16 @@ def test_a_failure_half_way_keeps_what_was_in_the_folder(tmp_path: Path) -> None
     assert [file.name for file in tmp_path.iterdir()] == ["mine.txt"]
 
 
+def test_ctrl_c_is_told_and_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("beetle_ik.cli.track.track_path", interrupt)
+    result = run(*TRACK, "--out", str(tmp_path / "new"))
+    assert (result.exit_code, result.stdout, result.stderr) == (130, "", "Interrupted: nothing was written.\n")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_the_module_runs_and_a_pipe_gets_no_progress_bar() -> None:
     command = [sys.executable, "-m", "beetle_ik", *TRACK]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
@@ -277,7 +287,7 @@ def test_the_module_runs_and_a_pipe_gets_no_progress_bar() -> None:
     assert "mean position error [m]" in done.stdout
 
 
-@pytest.mark.parametrize("command", ["", "robots", "fk", "solve", "track", "reproduce"])
+@pytest.mark.parametrize("command", ["", "robots", "fk", "solve", "track", "plan", "reproduce"])
 def test_help(command: str) -> None:
     result = run(*command.split(), "--help")
     assert result.exit_code == 0

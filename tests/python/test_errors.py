@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from iiwa_circle import IIWA, START
 from mistakes import Invalid, Limit, Unknown, Urdf, assert_told, told, with_entry
 
 import beetle_ik as bik
@@ -13,8 +14,6 @@ SOLVERS = (
     "solver must be BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO, APPS, "
     "BroydenBAS, JacobianTranspose, LevenbergMarquardt, NewtonRaphson or MultiStart of one of them"
 )
-IIWA = bik.Robot.named("iiwa14")
-START = np.array([0.6449, 0.2037, 0.1969, -0.7714, 0.2028, 0.7179, 0.1])
 CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=3.0)
 TURN = "2.9670597283903604"  # 170 degrees
 
@@ -144,7 +143,11 @@ def test_solvers_and_budgets(call: Callable[[], object], error: type[Exception],
             "dt must be at least 0.0000003 s to cover 3 s in 10 million ticks, got 0.000000000001",
         ),
         (lambda: track(START[:6]), Invalid, "start of robot 'iiwa14': expected 7 joints, got 6"),
-        (lambda: track(START + 9), Limit, f"start: joint 'joint_1' at 9.6449 is outside its limits [-{TURN}, {TURN}]"),
+        (
+            lambda: track(START + 9),
+            Limit,
+            f"start: joint 'joint_1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}]",
+        ),
         (lambda: track("home"), Invalid, "start must be an array of numbers, got 'home'"),
         (lambda: track(solver="bas"), Invalid, f"{SOLVERS} or WeightedPseudoInverse, got 'bas'"),
         (lambda: track(position_tolerance=-1.0), Invalid, "position_tolerance must be positive, got -1"),

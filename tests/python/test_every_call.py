@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from iiwa_circle import IIWA, START
 
 import beetle_ik as bik
 
@@ -53,18 +54,17 @@ WORDS = {
 
 URDF = """<robot name="r"><link name="base"/><link name="tip"/><joint name="turn" type="continuous">
 <parent link="base"/><child link="tip"/></joint></robot>"""
-ARM = bik.Robot.named("iiwa14").with_capsules(radius=0.05)
+ARM = IIWA.with_capsules(radius=0.05)
 PLANAR = bik.Robot.planar([1, 1, 1])
-Q = np.array([0.6449, 0.2037, 0.1969, -0.7714, 0.2028, 0.7179, 0.1])
 LINE = bik.paths.polyline([(0.3, 0.3, 1.0), (0.3, 0.31, 1.0)], duration=0.2)
 MOTION = bik.Trajectory.from_samples([0.0, 1.0], [[0.0, 0.0], [1.0, 1.0]])
 LIMITS = bik.Limits(velocity=1.0, acceleration=2.0)
 QUICK = {"stop": bik.Stop(max_evaluations=100)}
 PLACED = {"center": (0, 0, 0), "duration": 1.0}
-TICKS = {"start": Q, "dt": 0.1}
+TICKS = {"start": START, "dt": 0.1}
 PLAN = bik.plan_point_to_point(PLANAR, start_q=[0, 0, 0], end_q=[0.1, 0.1, 0.1], limits=LIMITS)
-TRACK = bik.track(ARM, LINE, Q, dt=0.1)
-MODEL_FREE = bik.track_model_free(bik.KinematicPlant(ARM), LINE, Q, dt=0.1)
+TRACK = bik.track(ARM, LINE, START, dt=0.1)
+MODEL_FREE = bik.track_model_free(bik.KinematicPlant(ARM), LINE, START, dt=0.1)
 ASKED, IDLE = (bik.ZNNBAS().session(**TICKS) for _ in range(2))
 ASKED.command((0.3, 0.3, 1.0))
 
@@ -74,7 +74,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "ControlSession.observe": {".": ASKED, "position": (0.3, 0.3, 1.0)},
     "BroydenBAS.session": {".": bik.BroydenBAS(), **TICKS},
     "KinematicPlant": {"robot": ARM},
-    "KinematicPlant.move": {".": bik.KinematicPlant(ARM), "q": Q},
+    "KinematicPlant.move": {".": bik.KinematicPlant(ARM), "q": START},
     "ModelFreeResult.": {".": MODEL_FREE},
     "MultiStart": {"solver": bik.BAS()},
     "Path.": {".": LINE},
@@ -84,7 +84,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Path.velocity": {"t": 0.0},
     "Path.with_orientation": {"orientation": np.eye(3)},
     "Plan.": {".": PLAN},
-    "Robot.": {".": ARM, "q": Q},
+    "Robot.": {".": ARM, "q": START},
     "Robot.from_dh": {"a": [0, 1], "alpha": [0, 0], "d": [0, 0]},
     "Robot.from_urdf": {"path_or_xml": URDF},
     "Robot.named": {"name": "iiwa14"},
@@ -96,7 +96,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Sinusoid": {"mean": 1.0, "amplitude": 0.1, "angular_frequency": 1.0},
     "TrackResult.": {".": TRACK},
     "Tracker": {"robot": ARM, **TICKS},
-    "Tracker.reset": {".": bik.Tracker(ARM, **TICKS), "q": Q},
+    "Tracker.reset": {".": bik.Tracker(ARM, **TICKS), "q": START},
     "Tracker.step": {".": bik.Tracker(ARM, **TICKS), "target": (0.3, 0.3, 1.0)},
     "Trajectory": {"time": [0, 1], "coefficients": np.zeros((1, 2, 2))},
     "Trajectory.": {".": MOTION},
@@ -109,7 +109,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Trajectory.to_csv": {"file": "written.csv"},
     "Trajectory.to_npz": {"file": "written.npz"},
     "ZNNBAS.session": {".": bik.ZNNBAS(), **TICKS},
-    "goals.Posture": {"posture": Q},
+    "goals.Posture": {"posture": START},
     "minimize": {"function": np.sum, "lower": [-1, -1], "upper": [1, 1], "solver": bik.BAS(), **QUICK},
     "obstacles.Box": {"center": (0, 0, 0), "size": (1, 1, 1)},
     "obstacles.Capsule": {"a": (0, 0, 0), "b": (1, 0, 0), "radius": 0.1},
@@ -117,7 +117,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "obstacles.Ellipse": {"center": (0, 0), "semi_axes": (1, 1)},
     "obstacles.Ellipsoid": {"center": (0, 0, 0), "semi_axes": (1, 1, 1)},
     "obstacles.Sphere": {"center": (0, 0, 0), "radius": 0.1},
-    "obstacles.clearance": {"robot": ARM, "q": Q},
+    "obstacles.clearance": {"robot": ARM, "q": START},
     "paths.circle": {**PLACED, "diameter": 0.1},
     "paths.from_function": {"function": lambda t: (t, 0, 0), "duration": 1.0},
     "paths.from_samples": {"time": [0, 1], "positions_or_poses": [(0, 0, 0), (1, 0, 0)]},
@@ -132,7 +132,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "plot.animation": {"result": PLAN},
     "plot.model_free": {"result": MODEL_FREE},
     "plot.plan": {"plan": PLAN},
-    "plot.robot": {"robot": ARM, "q": Q},
+    "plot.robot": {"robot": ARM, "q": START},
     "plot.saturation": {"trajectory": MOTION, "limits": LIMITS},
     "plot.track": {"result": TRACK},
     "plot.trajectory": {"trajectory": MOTION},

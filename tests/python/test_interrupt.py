@@ -9,13 +9,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import pytest
+from iiwa_circle import IIWA, START
 
 import beetle_ik as bik
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no process can send itself Ctrl-C on Windows")
 
-IIWA = bik.Robot.named("iiwa14")
-START = [0.6449, 0.2037, 0.1969, -0.7714, 0.2028, 0.7179, 0.1]
 # Out of reach, so that every step spends all of its passes: minutes of work.
 FAR = bik.paths.circle((5.0, 5.0, 5.0), diameter=0.2, duration=3600.0)
 

@@ -4,24 +4,21 @@ import pickle
 from collections.abc import Callable
 from typing import Any
 
-import matplotlib.figure
 import numpy as np
 import pytest
+from iiwa_circle import CIRCLE, IIWA, ON_CIRCLE
 from numpy.typing import NDArray
 
 import beetle_ik as bik
 
 Array = NDArray[np.float64]
 
-ARM = bik.Robot.named("iiwa14")
-START = [0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.6179441060, 0.0]
-CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
 SHORT = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=2.0)
-LIMITS = bik.Limits(lower=ARM.lower, upper=ARM.upper, velocity=2.0)
+LIMITS = bik.Limits(lower=IIWA.lower, upper=IIWA.upper, velocity=2.0)
 
 
 def tip(q: Array) -> Array:
-    return np.asarray(ARM.fk(q)[:3, 3])
+    return np.asarray(IIWA.fk(q)[:3, 3])
 
 
 class Mover:
@@ -34,13 +31,13 @@ class Mover:
         return float(x), float(y), float(z)
 
 
-def track(plant: Any = tip, path: bik.Path = CIRCLE, start: Any = START, **options: Any) -> bik.ModelFreeResult:
+def track(plant: Any = tip, path: bik.Path = CIRCLE, start: Any = ON_CIRCLE, **options: Any) -> bik.ModelFreeResult:
     return bik.track_model_free(plant, path, start, **{"dt": 0.2, **options})
 
 
 def test_all_kinds_of_plants_give_the_same_track() -> None:
     mover = Mover()
-    native = track(bik.KinematicPlant(ARM), limits=LIMITS)
+    native = track(bik.KinematicPlant(IIWA), limits=LIMITS)
     assert native.success, native.message
     assert len(native) == 151
     assert native.evaluations <= 700
@@ -55,14 +52,14 @@ def test_all_kinds_of_plants_give_the_same_track() -> None:
 
 
 def test_a_wrong_model_and_a_noisy_sensor() -> None:
-    wrong = ARM.with_errors(length=0.02, angle=np.radians(2.0), seed=4)
-    assert np.linalg.norm(wrong.fk(START)[:3, 3] - tip(np.array(START))) > 1e-3
+    wrong = IIWA.with_errors(length=0.02, angle=np.radians(2.0), seed=4)
+    assert np.linalg.norm(wrong.fk(ON_CIRCLE)[:3, 3] - tip(ON_CIRCLE)) > 1e-3
     plant = bik.KinematicPlant(wrong, noise=1e-4, seed=2)
     result = track(plant, limits=LIMITS)
     error = np.linalg.norm(wrong.fk(result.q)[20:150, :3, 3] - result.reference[20:150], axis=1)
     assert np.sqrt((error**2).mean()) <= 3e-4 * np.sqrt(3.0)
     np.testing.assert_array_equal(track(plant, limits=LIMITS).q, result.q)  # every run begins the noise anew
-    assert not np.array_equal(plant.move(START), plant.move(START))
+    assert not np.array_equal(plant.move(ON_CIRCLE), plant.move(ON_CIRCLE))
 
 
 def test_a_late_sensor_is_named_and_told_to_the_controller() -> None:
@@ -85,11 +82,11 @@ def test_a_late_sensor_is_named_and_told_to_the_controller() -> None:
 
 def test_znnbas_measures_once_a_step() -> None:
     controller = bik.ZNNBAS(gain=10, antenna_length=0.1, delay_steps=10)
-    result = track(bik.KinematicPlant(ARM), SHORT, dt=1e-3, controller=controller, position_tolerance=0.3, seed=3)
+    result = track(bik.KinematicPlant(IIWA), SHORT, dt=1e-3, controller=controller, position_tolerance=0.3, seed=3)
     assert set(result.step_evaluations.tolist()) == {1}
     assert result.success, result.message
     assert 1e-3 < np.abs(result.command - result.q).max() <= 0.1 + 0.01
-    again = track(bik.KinematicPlant(ARM), SHORT, dt=1e-3, controller=controller, position_tolerance=0.3, seed=3)
+    again = track(bik.KinematicPlant(IIWA), SHORT, dt=1e-3, controller=controller, position_tolerance=0.3, seed=3)
     np.testing.assert_array_equal(again.command, result.command)
 
 
@@ -102,7 +99,7 @@ def test_dt_that_does_not_divide_the_duration_ends_at_the_paths_end() -> None:
 @pytest.mark.parametrize("controller", [bik.BroydenBAS(), bik.ZNNBAS(), bik.BroydenBAS(max_evaluations_per_step=1)])
 def test_a_session_gives_the_same_commands(controller: bik.BroydenBAS | bik.ZNNBAS) -> None:
     result = track(path=SHORT, controller=controller, limits=LIMITS, seed=7)
-    session = controller.session(START, dt=0.2, limits=LIMITS, seed=7)
+    session = controller.session(ON_CIRCLE, dt=0.2, limits=LIMITS, seed=7)
     np.testing.assert_array_equal(session.limits.velocity, 2.0)
     for row, target in enumerate(result.reference):
         step = None
@@ -211,7 +208,7 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
             "leave it out",
         ),
         (
-            lambda: bik.ZNNBAS().session(START, dt=0.1, limits=bik.Limits(velocity=lambda t: t)),
+            lambda: bik.ZNNBAS().session(ON_CIRCLE, dt=0.1, limits=bik.Limits(velocity=lambda t: t)),
             bik.UnsupportedLimit,
             "session cannot honour callable velocity limits: it has no end to be sampled to; give numbers or a "
             "Sinusoid, or use track_model_free",
@@ -219,7 +216,7 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
         (lambda: track(dt=0.0), bik.InvalidInputError, "dt must be positive and finite, got 0"),
         (lambda: track(start=[]), bik.InvalidInputError, "start: expected 1 to 32 joints, got 0"),
         (
-            lambda: track(bik.KinematicPlant(ARM), start=[0.0]),
+            lambda: track(bik.KinematicPlant(IIWA), start=[0.0]),
             bik.InvalidInputError,
             "start of robot 'iiwa14': expected 7 joints, got 1",
         ),
@@ -239,17 +236,17 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
             "path: it has orientations, which track_model_free does not follow; give positions alone",
         ),
         (
-            lambda: bik.KinematicPlant(ARM, noise=-1.0),
+            lambda: bik.KinematicPlant(IIWA, noise=-1.0),
             bik.InvalidInputError,
             "noise must be zero or more and finite, got -1",
         ),
         (
-            lambda: ARM.with_errors(length=np.nan),
+            lambda: IIWA.with_errors(length=np.nan),
             bik.InvalidInputError,
             "length must be zero or more and finite, got NaN",
         ),
         (
-            lambda: bik.BroydenBAS().session(START, dt=0.1).observe((0.0, 0.0, 0.0)),
+            lambda: bik.BroydenBAS().session(ON_CIRCLE, dt=0.1).observe((0.0, 0.0, 0.0)),
             bik.InvalidInputError,
             "observe: there is no command to answer; call command(target) first",
         ),
@@ -276,24 +273,22 @@ def test_controllers_are_values(value: Any) -> None:
 
 
 def test_plants_are_values_too() -> None:
-    plant = bik.KinematicPlant(ARM, noise=1e-4, seed=3)
+    plant = bik.KinematicPlant(IIWA, noise=1e-4, seed=3)
     assert pickle.loads(pickle.dumps(plant)) == plant
-    assert plant != bik.KinematicPlant(ARM)
+    assert plant != bik.KinematicPlant(IIWA)
     assert repr(plant) == "<KinematicPlant of 'iiwa14': noise=0.0001, seed=3>"
 
 
 def test_broyden_solves_and_tracks() -> None:
-    solution = bik.solve(ARM, ARM.fk(START), solver=bik.BroydenBAS(), start=np.array(START) + 0.1)
+    solution = bik.solve(IIWA, IIWA.fk(ON_CIRCLE), solver=bik.BroydenBAS(), start=ON_CIRCLE + 0.1)
     assert solution.success, solution.message
-    result = bik.track(ARM, SHORT, START, dt=0.2, solver=bik.BroydenBAS(), position_tolerance=1e-9)
+    result = bik.track(IIWA, SHORT, ON_CIRCLE, dt=0.2, solver=bik.BroydenBAS(), position_tolerance=1e-9)
     assert result.success, result.message
     many = bik.MultiStart(bik.BroydenBAS())
     assert many.solver == bik.BroydenBAS()
-    assert bik.solve(ARM, (0.4, 0.3, 0.8), solver=many).success
+    assert bik.solve(IIWA, (0.4, 0.3, 0.8), solver=many).success
 
 
 def test_a_run_is_drawn() -> None:
-    result = track(path=SHORT)
-    figure = result.plot()
-    assert isinstance(figure, matplotlib.figure.Figure)
-    matplotlib.pyplot.close(figure)
+    labels = [axes.get_ylabel() for axes in track(path=SHORT).plot().axes]
+    assert labels == ["y [m]", "measured error [m]", "joint position [rad, m]", "measurements per step"]

@@ -71,7 +71,10 @@ def test_configurations_are_kept() -> None:
 
 @pytest.mark.parametrize("solver", [bik.PSO(), bik.Genetic(), bik.DifferentialEvolution(), bik.BAS()])
 def test_other_searches_serve(solver: Any) -> None:
-    assert between(solver=solver).evaluations <= 3000
+    plan = between(solver=solver)
+    assert plan.evaluations <= 3000
+    ends = plan.trajectory.at([0.0, plan.trajectory.duration])[0]
+    np.testing.assert_allclose(ARM.fk(ends)[:, :3, 3], [START, END], atol=1e-9)
 
 
 def test_a_path_is_followed_within_the_accuracy() -> None:
@@ -246,6 +249,11 @@ def test_command_line_along_a_path() -> None:
     [
         (["point-to-point", "planar5", "--start", "9,0,0", "--end", "2,2,0"], "start cannot be reached"),
         (["point-to-point", "planar5", "--start", "3,0", "--end", "2,2,0"], "--start: expected 3 numbers"),
+        (["point-to-point", "planar5", "--start", "3,0,0"], "no end was given: use --end X,Y,Z or --end-q Q1,Q2,..."),
+        (
+            ["point-to-point", "planar5", "--start", "3,0,0", "--start-q", "0,0,0,0,0", "--end", "2,2,0"],
+            "both --start and --start-q were given: give one of them",
+        ),
         (["along-path", "planar5"], "give one of --path FILE and --curve with one of circle"),
     ],
 )

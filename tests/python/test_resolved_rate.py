@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+from iiwa_circle import CIRCLE, IIWA
 
 import beetle_ik as bik
 
@@ -72,9 +73,15 @@ def test_accelerations_are_kept() -> None:
 
 
 def test_goals_go_with_it() -> None:
-    rule = bik.WeightedPseudoInverse(gain=50)
-    q = bik.track(ARM, PATH, wanted(0.0), dt=0.01, solver=rule, goals=bik.goals.Centring(weight=1 / 3)).q
-    assert np.ptp(q[:, 2]) > 0.0
+    middle, half = (ARM.lower + ARM.upper) / 2, (ARM.upper - ARM.lower) / 2
+
+    def off_centre(**goals: object) -> float:
+        rule = bik.WeightedPseudoInverse(gain=50)
+        result = bik.track(ARM, PATH, wanted(0.0), dt=0.01, solver=rule, **goals)
+        assert result.position_error.max() < 2e-4
+        return np.mean(((result.q - middle) / half) ** 2)
+
+    assert off_centre(goals=bik.goals.Centring(weight=1 / 3)) < 0.97 * off_centre()
 
 
 def test_it_is_a_value() -> None:
@@ -106,7 +113,8 @@ def test_wrong_options_are_named(options: dict[str, object], message: str) -> No
 
 
 def test_the_gain_of_a_posture_matters_where_there_is_one() -> None:
-    iiwa = bik.Robot.named("iiwa14")
-    circle = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=20.0)
-    result = bik.track(iiwa, circle, dt=0.2, solver=bik.WeightedPseudoInverse(), position_tolerance=0.02)
-    assert result.success, result.message
+    slow = bik.WeightedPseudoInverse()  # posture_gain 20, more than 2 / dt
+    assert bik.track(IIWA, CIRCLE, dt=0.2, solver=slow, position_tolerance=0.02).success
+    stretched = bik.Trajectory.from_samples([0.0, 30.0], [[0.0] * 7] * 2, joint_names=IIWA.joint_names)
+    with pytest.raises(bik.InvalidInputError, match=r"^posture_gain must be below 2 / dt = 10, .*, got 20$"):
+        bik.track(IIWA, CIRCLE, dt=0.2, solver=bik.WeightedPseudoInverse(posture=stretched))

@@ -7,13 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from iiwa_circle import CIRCLE, IIWA, ON_CIRCLE
 
 import beetle_ik as bik
 from beetle_ik.sim import MujocoPlant
-
-ARM = bik.Robot.named("iiwa14")
-START = [0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.6179441060, 0.0]
-CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
 
 SLIDER = """
 <robot name="slider">
@@ -33,7 +30,7 @@ SLIDER = """
 def test_without_mujoco_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(bik.BeetleIkError) as raised:
-        MujocoPlant(ARM)
+        MujocoPlant(IIWA)
     assert str(raised.value) == "simulation needs mujoco: pip install 'beetle-ik[sim]'"
 
 
@@ -44,13 +41,13 @@ def mujoco() -> None:
 
 @pytest.mark.usefixtures("mujoco")
 def test_the_simulated_arm_is_the_robot_with_servos_that_give_way() -> None:
-    plant = MujocoPlant(ARM, gravity=0.0)
-    plant.reset(START)
-    np.testing.assert_allclose(plant.q, START, atol=1e-6)
-    np.testing.assert_allclose(plant.tip, ARM.fk(START)[:3, 3], atol=1e-6)
-    heavy = MujocoPlant(ARM)
-    heavy.reset(START)
-    sag = ARM.fk(START)[2, 3] - heavy.tip[2]
+    plant = MujocoPlant(IIWA, gravity=0.0)
+    plant.reset(ON_CIRCLE)
+    np.testing.assert_allclose(plant.q, ON_CIRCLE, atol=1e-6)
+    np.testing.assert_allclose(plant.tip, IIWA.fk(ON_CIRCLE)[:3, 3], atol=1e-6)
+    heavy = MujocoPlant(IIWA)
+    heavy.reset(ON_CIRCLE)
+    sag = IIWA.fk(ON_CIRCLE)[2, 3] - heavy.tip[2]
     assert 1e-4 < sag < 1e-2
 
 
@@ -67,16 +64,16 @@ def test_descriptions_without_meshes_and_masses_will_do() -> None:
 
 @pytest.mark.usefixtures("mujoco")
 def test_without_a_model_a_wrongly_built_arm_follows_to_under_a_millimetre() -> None:
-    built = ARM.with_errors(length=0.02, angle=np.radians(2.0), seed=1)
+    built = IIWA.with_errors(length=0.02, angle=np.radians(2.0), seed=1)
     plant = MujocoPlant(built, noise=5e-5)
-    resolved = bik.track(ARM, CIRCLE, START, dt=0.2)
-    plant.reset(START)
+    resolved = bik.track(IIWA, CIRCLE, ON_CIRCLE, dt=0.2)
+    plant.reset(ON_CIRCLE)
     misses = []
     for q, target in zip(resolved.q[1:40], resolved.reference[1:40], strict=True):
         plant.move(q)
         misses.append(np.linalg.norm(plant.tip - target))
     assert min(misses) > 5e-3
-    plant.reset(START)
+    plant.reset(ON_CIRCLE)
     tips = []
 
     def move(q: np.ndarray[Any, Any]) -> Any:
@@ -85,7 +82,7 @@ def test_without_a_model_a_wrongly_built_arm_follows_to_under_a_millimetre() -> 
         return measured
 
     result = bik.track_model_free(
-        move, CIRCLE, START, dt=plant.dt, controller=bik.BroydenBAS(max_evaluations_per_step=1)
+        move, CIRCLE, ON_CIRCLE, dt=plant.dt, controller=bik.BroydenBAS(max_evaluations_per_step=1)
     )
     error = np.linalg.norm(np.array(tips) - result.reference, axis=1)[30:]
     assert error.max() < 1e-3, error.max()
@@ -95,9 +92,9 @@ def test_without_a_model_a_wrongly_built_arm_follows_to_under_a_millimetre() -> 
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: MujocoPlant(ARM, dt=0.0), "dt must be positive and finite, got 0.0"),
-        (lambda: MujocoPlant(ARM, noise=-1.0), "noise must be zero or more and finite, got -1.0"),
-        (lambda: MujocoPlant(ARM).move([0.0]), "q of the plant: expected shape (7,), got (1,)"),
+        (lambda: MujocoPlant(IIWA, dt=0.0), "dt must be positive and finite, got 0.0"),
+        (lambda: MujocoPlant(IIWA, noise=-1.0), "noise must be zero or more and finite, got -1.0"),
+        (lambda: MujocoPlant(IIWA).move([0.0]), "q of the plant: expected shape (7,), got (1,)"),
     ],
 )
 def test_wrong_input_is_named(make: Any, message: str) -> None:
@@ -109,7 +106,7 @@ def test_wrong_input_is_named(make: Any, message: str) -> None:
 @pytest.mark.usefixtures("mujoco")
 @pytest.mark.skipif(os.environ.get("MUJOCO_GL") != "egl", reason="pictures need EGL")
 def test_a_picture_is_drawn_without_a_screen() -> None:
-    plant = MujocoPlant(ARM)
+    plant = MujocoPlant(IIWA)
     bare = plant.picture(width=160, height=120)
     drawn = plant.picture(width=160, height=120, target=[[0.0, 0.4, 1.0]])
     assert bare.shape == (120, 160, 3)

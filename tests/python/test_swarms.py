@@ -8,13 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from iiwa_circle import CIRCLE, IIWA, LIMITS, ON_CIRCLE
 
 import beetle_ik as bik
 
-IIWA = bik.Robot.named("iiwa14")
-ON_CIRCLE = [0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.6179441060, 0.0]
-LIMITS = bik.Limits(velocity=bik.Sinusoid(mean=2.0, amplitude=0.004, angular_frequency=1.0))
-CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
 BEETLE = bik.BAS(variant="chain", explorations=5)
 RIVALS = [
     bik.PSO(population=6, form="inertia", inertia=0.6, c1=1.7, c2=1.7),
@@ -54,6 +51,7 @@ def test_swarms_keep_the_limits_of_a_path_they_cannot_follow(solver: Any) -> Non
 def test_swarms_solve_for_positions(swarm: Any) -> None:
     found = bik.solve(IIWA, [0.4, 0.3, 0.8], solver=bik.MultiStart(swarm), position_tolerance=1e-4)
     assert found.success, found.message
+    assert np.linalg.norm(IIWA.fk(found.q)[:3, 3] - [0.4, 0.3, 0.8]) <= 1e-4
 
 
 def test_a_solve_may_stop_at_a_value() -> None:

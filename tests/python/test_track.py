@@ -7,18 +7,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from iiwa_circle import CIRCLE, IIWA, LIMITS, START
 
 import beetle_ik as bik
 
-IIWA = bik.Robot.named("iiwa14")
-PAPER_CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
-PAPER_LIMITS = bik.Limits(velocity=bik.Sinusoid(mean=2.0, amplitude=0.004, angular_frequency=1.0))
-PAPER_START = np.array([0.6449219327, 0.2036664288, 0.1969337234, -0.7713896072, 0.2027968992, 0.7179441060, 0.1])
-PAPER_DT = 0.2
+DT = 0.2
 
 
 def follow_paper(**options: object) -> bik.TrackResult:
-    return bik.track(IIWA, PAPER_CIRCLE, PAPER_START, dt=PAPER_DT, limits=PAPER_LIMITS, **options)
+    return bik.track(IIWA, CIRCLE, START, dt=DT, limits=LIMITS, **options)
 
 
 @pytest.mark.parametrize(
@@ -75,11 +72,11 @@ def test_shapes(followed: bik.TrackResult) -> None:
 
 
 def test_rows_mean_what_they_say(followed: bik.TrackResult) -> None:
-    np.testing.assert_array_equal(followed.time, PAPER_DT * np.arange(151))
-    np.testing.assert_array_equal(followed.q[0], PAPER_START)
+    np.testing.assert_array_equal(followed.time, DT * np.arange(151))
+    np.testing.assert_array_equal(followed.q[0], START)
     np.testing.assert_array_equal(followed.qd[0], np.zeros(7))
-    np.testing.assert_array_equal(followed.qd[1:], np.diff(followed.q, axis=0) / PAPER_DT)
-    np.testing.assert_array_equal(followed.reference, PAPER_CIRCLE.position(followed.time))
+    np.testing.assert_array_equal(followed.qd[1:], np.diff(followed.q, axis=0) / DT)
+    np.testing.assert_array_equal(followed.reference, CIRCLE.position(followed.time))
     np.testing.assert_allclose(followed.position, IIWA.fk(followed.q)[:, :3, 3], rtol=0, atol=1e-15)
     distance = np.linalg.norm(followed.position - followed.reference, axis=1)
     np.testing.assert_allclose(followed.position_error, distance, rtol=0, atol=1e-15)
@@ -101,7 +98,7 @@ def test_sums(followed: bik.TrackResult) -> None:
     assert (followed.step_evaluations[0], followed.step_iterations[0]) == (1, 0)
     margin = (followed.velocity_limit[1:] - np.abs(followed.qd[1:])).min()
     assert followed.limit_margin == pytest.approx(margin, abs=1e-12)
-    assert followed.limits.velocity == PAPER_LIMITS.velocity
+    assert followed.limits.velocity == LIMITS.velocity
     assert followed.robot == IIWA
     assert 0.0 < followed.elapsed < 60.0
     joined = followed.time[np.argmax(followed.step_status == bik.Status.SOLVED)]
@@ -113,7 +110,7 @@ def test_the_trajectory_has_the_velocities_of_the_track(followed: bik.TrackResul
     trajectory = followed.trajectory
     assert trajectory.joint_names == IIWA.joint_names
     np.testing.assert_array_equal(trajectory.q, followed.q)
-    middles = trajectory.at(followed.time[:-1] + 0.5 * PAPER_DT)
+    middles = trajectory.at(followed.time[:-1] + 0.5 * DT)
     np.testing.assert_allclose(middles[1], followed.qd[1:], rtol=0, atol=1e-12)
     np.testing.assert_allclose(trajectory.max_velocity(), np.abs(followed.qd).max(axis=0), rtol=0, atol=1e-12)
 
@@ -134,24 +131,24 @@ def test_limits_hold_where_the_path_is_out_of_reach(solver: object) -> None:
 
 
 def test_limits_too_small_to_follow_end_in_a_status() -> None:
-    result = bik.track(IIWA, PAPER_CIRCLE, PAPER_START, dt=PAPER_DT, limits=bik.Limits(velocity=1e-4))
+    result = bik.track(IIWA, CIRCLE, START, dt=DT, limits=bik.Limits(velocity=1e-4))
     assert result.status in (bik.Status.IMPROVED, bik.Status.CAPPED)
     assert result.message.startswith("never came within 1.000e-6 m (nearest ")
     assert np.abs(result.qd).max() <= 1e-4 + 1e-12
 
 
 def test_without_a_start_the_first_point_is_solved_for() -> None:
-    result = bik.track(IIWA, PAPER_CIRCLE, dt=PAPER_DT, limits=PAPER_LIMITS)
+    result = bik.track(IIWA, CIRCLE, dt=DT, limits=LIMITS)
     assert result.success, result.message
     assert result.position_error[0] <= 1e-6
     assert result.step_status[0] == bik.Status.SOLVED
 
 
 def test_a_start_outside_its_limits_is_refused() -> None:
-    start = PAPER_START.copy()
+    start = START.copy()
     start[3] = -2.5
     with pytest.raises(bik.LimitError) as caught:
-        bik.track(IIWA, PAPER_CIRCLE, start, dt=PAPER_DT)
+        bik.track(IIWA, CIRCLE, start, dt=DT)
     assert str(caught.value) == (
         "start: joint 'joint_4' at -2.5 is outside its limits [-2.0943951023931953, 2.0943951023931953]"
     )

@@ -4,23 +4,15 @@ import itertools
 
 import numpy as np
 import pytest
+from iiwa_circle import CIRCLE, IIWA, LIMITS, ON_CIRCLE
 
 import beetle_ik as bik
 
-CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
-ON_CIRCLE = [0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.6179441060, 0.0]
-LIMITS = bik.Limits(velocity=bik.Sinusoid(mean=2.0, amplitude=0.004, angular_frequency=1.0))
-
-
-@pytest.fixture
-def iiwa() -> bik.Robot:
-    return bik.Robot.named("iiwa14")
-
 
 @pytest.mark.parametrize("solver", [None, bik.LevenbergMarquardt(), bik.BAS(variant="chain")])
-def test_steps_give_the_bits_of_a_track(iiwa: bik.Robot, solver: bik.BAS | bik.LevenbergMarquardt | None) -> None:
-    result = bik.track(iiwa, CIRCLE, ON_CIRCLE, dt=0.2, solver=solver, limits=LIMITS, position_tolerance=1e-5, seed=3)
-    tracker = bik.Tracker(iiwa, ON_CIRCLE, dt=0.2, solver=solver, limits=LIMITS, position_tolerance=1e-5, seed=3)
+def test_steps_give_the_bits_of_a_track(solver: bik.BAS | bik.LevenbergMarquardt | None) -> None:
+    result = bik.track(IIWA, CIRCLE, ON_CIRCLE, dt=0.2, solver=solver, limits=LIMITS, position_tolerance=1e-5, seed=3)
+    tracker = bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, solver=solver, limits=LIMITS, position_tolerance=1e-5, seed=3)
     for i in range(1, len(result.time)):
         step = tracker.step(result.reference[i])
         # The first step of `track` also knows the error at the start, which a random search has to beat.
@@ -32,15 +24,15 @@ def test_steps_give_the_bits_of_a_track(iiwa: bik.Robot, solver: bik.BAS | bik.L
     assert tracker.time == result.time[-1]
 
 
-def test_the_model_based_rule_needs_two_evaluations_a_step(iiwa: bik.Robot) -> None:
-    result = bik.track(iiwa, CIRCLE, ON_CIRCLE, dt=0.2, position_tolerance=1e-9)
+def test_the_model_based_rule_needs_two_evaluations_a_step() -> None:
+    result = bik.track(IIWA, CIRCLE, ON_CIRCLE, dt=0.2, position_tolerance=1e-9)
     assert result.evaluations <= 310
     assert result.position_error[5:].max() < 1e-11
     assert result.max_violation == 0.0
 
 
-def test_far_targets_are_approached_at_the_allowed_speed(iiwa: bik.Robot) -> None:
-    tracker = bik.Tracker(iiwa, np.zeros(7), dt=0.01, limits=bik.Limits(velocity=0.5))
+def test_far_targets_are_approached_at_the_allowed_speed() -> None:
+    tracker = bik.Tracker(IIWA, np.zeros(7), dt=0.01, limits=bik.Limits(velocity=0.5))
     step = tracker.step([0.4, 0.3, 0.8])
     assert step.status == bik.Status.IMPROVED
     assert np.abs(step.qd).max() == pytest.approx(0.5, abs=1e-12)
@@ -50,8 +42,8 @@ def test_far_targets_are_approached_at_the_allowed_speed(iiwa: bik.Robot) -> Non
     assert step.message.startswith("within the tolerances, ")
 
 
-def test_a_target_out_of_reach_keeps_the_best(iiwa: bik.Robot) -> None:
-    tracker = bik.Tracker(iiwa, ON_CIRCLE, dt=0.1)
+def test_a_target_out_of_reach_keeps_the_best() -> None:
+    tracker = bik.Tracker(IIWA, ON_CIRCLE, dt=0.1)
     errors = [tracker.step([3.0, 0.0, 0.5]).position_error for _ in range(60)]
     assert all(after <= before for before, after in itertools.pairwise(errors))
     last = tracker.step([3.0, 0.0, 0.5])
@@ -59,8 +51,8 @@ def test_a_target_out_of_reach_keeps_the_best(iiwa: bik.Robot) -> None:
     assert "no nearer than in the tick before" in last.message
 
 
-def test_reset_begins_again_with_the_same_bits(iiwa: bik.Robot) -> None:
-    tracker = bik.Tracker(iiwa, ON_CIRCLE, dt=0.2, solver=bik.BAS(), position_tolerance=1e-4)
+def test_reset_begins_again_with_the_same_bits() -> None:
+    tracker = bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, solver=bik.BAS(), position_tolerance=1e-4)
     first = [tracker.step(p).q for p in CIRCLE.sample(0.2)[1][1:20]]
     tracker.reset(ON_CIRCLE)
     assert tracker.time == 0.0
@@ -69,23 +61,23 @@ def test_reset_begins_again_with_the_same_bits(iiwa: bik.Robot) -> None:
     assert np.array_equal(first, again)
 
 
-def test_poses_are_followed_too(iiwa: bik.Robot) -> None:
-    path = CIRCLE.with_orientation(iiwa.fk(ON_CIRCLE)[:3, :3])
-    tracker = bik.Tracker(iiwa, ON_CIRCLE, dt=0.2, position_tolerance=1e-8, rotation_tolerance=1e-8)
+def test_poses_are_followed_too() -> None:
+    path = CIRCLE.with_orientation(IIWA.fk(ON_CIRCLE)[:3, :3])
+    tracker = bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, position_tolerance=1e-8, rotation_tolerance=1e-8)
     for t in np.arange(1, 151) * 0.2:
         step = tracker.step(path.pose(t))
         assert step.success
         assert step.rotation_error <= 1e-8
 
 
-def test_wrong_input_is_named(iiwa: bik.Robot) -> None:
-    tracker = bik.Tracker(iiwa, ON_CIRCLE, dt=0.2)
+def test_wrong_input_is_named() -> None:
+    tracker = bik.Tracker(IIWA, ON_CIRCLE, dt=0.2)
     with pytest.raises(bik.InvalidInputError, match="target must be finite, but coordinate y is NaN"):
         tracker.step([0.0, np.nan, 0.0])
     assert tracker.time == 0.0
     with pytest.raises(bik.LimitError, match="q: joint 'joint_1' at 9 is outside its limits"):
         tracker.reset([9, 0, 0, 0, 0, 0, 0])
     with pytest.raises(bik.UnsupportedLimit, match="Tracker cannot honour callable velocity limits: it has no end"):
-        bik.Tracker(iiwa, ON_CIRCLE, dt=0.2, limits=bik.Limits(velocity=lambda t: 1.0 + t))
+        bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, limits=bik.Limits(velocity=lambda t: 1.0 + t))
     with pytest.raises(bik.UnsupportedLimit, match="track cannot honour jerk limits"):
-        bik.Tracker(iiwa, ON_CIRCLE, dt=0.2, limits=bik.Limits(jerk=1.0))
+        bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, limits=bik.Limits(jerk=1.0))

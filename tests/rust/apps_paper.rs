@@ -172,7 +172,7 @@ fn a_threshold_ends_the_search_and_tolerances_judge_it() {
     assert_eq!(solution.status, Status::BelowThreshold);
     let message = solution.message();
     assert!(
-        message.starts_with("error_threshold met ")
+        message.starts_with("error_threshold met, ")
             && message.ends_with(" rad away: lower error_threshold, or leave it out and let the tolerances decide"),
         "{message}"
     );

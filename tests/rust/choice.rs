@@ -164,7 +164,7 @@ fn the_limit_cuts_the_farthest_and_no_solution_is_told_with_the_best_miss() {
     let far = Target::from(&pose::translation(3.0, 0.0, 0.5));
     let found = solve_all(&robot, &far, &options, &mut Unattended).unwrap();
     assert!(found.solutions.is_empty() && found.miss.is_some());
-    assert!(found.message().starts_with("none found; the best miss: as near as it gets "), "{}", found.message());
+    assert!(found.message().starts_with("none found; the best miss: as near as it gets, "), "{}", found.message());
     let zero = AllOptions { limit: 0, ..options.clone() };
     assert_eq!(message(solve_all(&robot, &far, &zero, &mut Unattended)), "limit must be at least 1, got 0");
     let negative = AllOptions { separation: -1.0, ..options };
@@ -215,7 +215,7 @@ fn a_target_out_of_reach_is_approached_and_told() {
     assert!((solution.error.position - 0.21).abs() < 0.01 * 0.21, "{}", solution.message());
     let end = ": move or turn the target into reach, or move the base";
     let message = solution.message();
-    assert!(message.starts_with("as near as it gets 0.21") && message.ends_with(end), "{message}");
+    assert!(message.starts_with("as near as it gets, 0.21") && message.ends_with(end), "{message}");
     assert!(message.contains(" m away (out of reach by at least 0.2100 m"), "{message}");
     assert!(solution.evaluations < 2000, "{}", solution.evaluations);
 }

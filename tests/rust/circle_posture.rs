@@ -3,12 +3,12 @@
 use std::f64::consts::PI;
 
 use crate::common::{StopAt, message, robot};
-use ikcore::posture::{CircleSwarm, Measure, Posture, Region, SearchOptions, best_posture};
+use ikcore::posture::{CircleSwarm, Measure, Posture, Rectangle, SearchOptions, best_posture};
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
 
 const E: [f64; 3] = [0.5, 0.5, 0.0];
-const FIRST_QUADRANT: Region = Region { lower: [0.0; 2], upper: [f64::INFINITY; 2] };
+const FIRST_QUADRANT: Rectangle = Rectangle { lower: [0.0; 2], upper: [f64::INFINITY; 2] };
 
 /// Length of the links, and the optima of SM_3 and SM anywhere and in the first quadrant, by a scan of 4e6 points (numpy).
 const OPTIMA: [(f64, [f64; 2], [f64; 2]); 3] = [
@@ -26,7 +26,7 @@ fn index(posture: &Posture, measure: Measure) -> f64 {
     if measure == Measure::Tip { PI * posture.index } else { posture.index }
 }
 
-fn cases() -> impl Iterator<Item = (f64, Measure, Option<Region>, f64)> {
+fn cases() -> impl Iterator<Item = (f64, Measure, Option<Rectangle>, f64)> {
     OPTIMA.into_iter().flat_map(|(length, tip, overall)| {
         [(Measure::Tip, tip), (Measure::Overall, overall)].into_iter().flat_map(move |(measure, optima)| {
             [(None, optima[0]), (Some(FIRST_QUADRANT), optima[1])]
@@ -49,7 +49,7 @@ fn our_own_search_finds_the_optima_anywhere_and_in_the_first_quadrant() {
 }
 
 /// Gaps to the optimum of the published swarm for many seeds.
-fn gaps(swarm: CircleSwarm, seeds: u64, region: Option<Region>, measure: Measure, optimum: f64) -> Vec<f64> {
+fn gaps(swarm: CircleSwarm, seeds: u64, region: Option<Rectangle>, measure: Measure, optimum: f64) -> Vec<f64> {
     let arm = Robot::planar(&[0.5; 3]).unwrap();
     let gap = |seed| {
         let found = search(&arm, SearchOptions { measure, region, swarm: Some(swarm), seed });
@@ -98,7 +98,7 @@ fn what_cannot_be_has_a_status() {
         assert_eq!(found.message(), says);
         assert!(found.index.is_nan() && (found.error.position - (0.5_f64.sqrt() - 0.6)).abs() < 1e-3);
     }
-    let narrow = Region { lower: [0.0; 2], upper: [0.01; 2] };
+    let narrow = Rectangle { lower: [0.0; 2], upper: [0.01; 2] };
     let arm = Robot::planar(&[0.5; 3]).unwrap();
     let found = search(&arm, SearchOptions { region: Some(narrow), ..SearchOptions::default() });
     assert_eq!(found.message(), "no posture found inside the region and the joint limits: widen them");

@@ -1,23 +1,22 @@
 //! `solve_all` and `SolutionSet`.
 
-use ikcore::ik::{self, AllOptions, SolveOptions};
-use ikcore::solver::{AnySolver, Stop};
+use ikcore::ik::{self, AllOptions};
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::Tolerance;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PyList};
 
-use crate::convert::{Picked, count, items, picked, table, vector};
+use crate::convert::{count, table, vector};
 use crate::error::raise;
 use crate::ik::{PySolution, read_target};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::outcome::outcome;
+use crate::picked::{Picked, items, picked};
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, any_solver};
+use crate::solve_arguments::SolveArguments;
+use crate::solver::PyStop;
 use crate::stored::{self, Reduced};
-use crate::task::read_task;
 
 /// Distinct solutions of one target: a sequence of `Solution`.
 #[pyclass(name = "SolutionSet", module = "beetle_ik", frozen, sequence)]
@@ -140,16 +139,9 @@ pub fn solve_all(
 ) -> PyResult<PySolutionSet> {
     let target = read_target("target", target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let each = SolveOptions {
-        solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
-        task: read_task(task)?,
-        start: start.map(|start| vector("start", start)).transpose()?,
-        tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
-        limits: resolved,
-        stop: stop.map_or(Stop::default(), PyStop::core),
-        seed: count("seed", seed)?,
-        ..SolveOptions::default()
-    };
+    let asked =
+        SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals: None, prefer: "any", stop, seed };
+    let each = asked.read(start.map(|start| vector("start", start)).transpose()?, resolved)?;
     let options = AllOptions { each, limit: count("limit", limit)?, separation };
     let core = watched(py, None, |watcher| ik::solve_all(&robot.core, &target, &options, watcher))?;
     PySolutionSet::new(py, core, robot.core.dof(), in_force)

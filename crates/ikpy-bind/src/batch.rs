@@ -3,26 +3,22 @@
 use std::time::Duration;
 
 use ikcore::batch::{self, Batch, BatchOptions, Item, OnInvalid, Targets};
-use ikcore::ik::SolveOptions;
-use ikcore::solver::{AnySolver, Status, Stop};
+use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::Tolerance;
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyIterator;
 
-use crate::convert::{
-    Numbers, Picked, Rows, array, count, items, optional_count, picked, row, rows, shape_text, table,
-};
+use crate::convert::{Numbers, Rows, array, optional_count, row, rows, shape_text, table};
 use crate::error::{invalid, raise};
-use crate::goal::read_goals;
 use crate::ik::PySolution;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
+use crate::picked::{Picked, items, picked};
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, any_solver};
+use crate::solve_arguments::SolveArguments;
+use crate::solver::PyStop;
 use crate::stored::{self, Reduced};
-use crate::task::read_task;
 
 /// Solutions in the order of the targets, as columns; `b[i]` is one of them as a `Solution`, `b[10:20]` and
 /// `b[~b.success]` are batches of some of them.
@@ -158,10 +154,11 @@ fn column<T: Element>(py: Python<'_>, items: &[Item], of: impl Fn(&Item) -> T) -
 ///     on_invalid: what to do about a target or start that is wrong: "raise" names its row; "skip" solves the others
 ///         and marks the row `Status.INVALID`, its q NaN.
 ///     progress: True for a bar on the terminal, or a callable of (done, total).
-///     task, goals, prefer: as for `solve`.
+///     task: as for `solve`.
 ///     solver: None: Levenberg-Marquardt from many starts.
 ///     position_tolerance: m.
 ///     rotation_tolerance: rad, geodesic angle.
+///     goals, prefer: as for `solve`.
 ///     limits: position limits to keep; None keeps the robot's.
 ///     stop: budgets of each target; None: as for `solve`.
 ///     seed: of the random draws: the same seed, the same bits.
@@ -205,19 +202,9 @@ pub fn solve_batch(
         None => (None, None),
     };
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let each = SolveOptions {
-        solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
-        task: read_task(task)?,
-        goals: read_goals(goals)?,
-        prefer: prefer.parse().map_err(raise)?,
-        start: start_of_all,
-        tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
-        limits: resolved,
-        stop: stop.map_or(Stop::default(), PyStop::core),
-        seed: count("seed", seed)?,
-    };
+    let asked = SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals, prefer, stop, seed };
     let options = BatchOptions {
-        each,
+        each: asked.read(start_of_all, resolved)?,
         starts: start_of_each,
         threads: optional_count("threads", threads)?,
         on_invalid: on_invalid.parse::<OnInvalid>().map_err(raise)?,

@@ -1,23 +1,21 @@
 //! `solve` and `Solution`.
 
-use ikcore::ik::{self, SolveOptions};
+use ikcore::ik;
 use ikcore::math::Frame;
-use ikcore::solver::{AnySolver, Stop};
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::{Target, Tolerance};
+use ikcore::task::Target;
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::convert::{array, copied, count, point, rigid_rows, shape_text, vector};
+use crate::convert::{array, copied, point, rigid_rows, shape_text, vector};
 use crate::error::{invalid, raise};
-use crate::goal::read_goals;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::Watcher;
 use crate::outcome::outcome;
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, any_solver};
+use crate::solve_arguments::SolveArguments;
+use crate::solver::PyStop;
 use crate::stored::{self, Reduced};
-use crate::task::read_task;
 
 /// The best configuration found, and what became of the search.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
@@ -138,17 +136,8 @@ pub fn solve(
 ) -> PyResult<PySolution> {
     let target = read_target("target", target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let options = SolveOptions {
-        solver: solver.map_or(Ok(AnySolver::default()), any_solver)?,
-        task: read_task(task)?,
-        goals: read_goals(goals)?,
-        prefer: prefer.parse().map_err(raise)?,
-        start: start.map(|start| vector("start", start)).transpose()?,
-        tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
-        limits: resolved,
-        stop: stop.map_or(Stop::default(), PyStop::core),
-        seed: count("seed", seed)?,
-    };
+    let asked = SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals, prefer, stop, seed };
+    let options = asked.read(start.map(|start| vector("start", start)).transpose()?, resolved)?;
     let mut watcher = Watcher::new();
     let core = py.detach(|| ik::solve(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;
     watcher.finish()?;

@@ -1,6 +1,6 @@
 //! `planar_posture`, `PlanarPosture` and `CircleSwarm`.
 
-use ikcore::posture::{CircleSwarm, Posture, Region, SearchOptions, best_posture};
+use ikcore::posture::{CircleSwarm, Posture, Rectangle, SearchOptions, best_posture};
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -160,10 +160,10 @@ pub fn planar_posture(
 }
 
 /// Least and largest coordinates, (2, 2).
-fn read_region(value: &Bound<'_, PyAny>) -> PyResult<Region> {
+fn read_region(value: &Bound<'_, PyAny>) -> PyResult<Rectangle> {
     let numbers = array("region", value)?;
     match (numbers.shape(), numbers.as_slice()?) {
-        ([2, 2], &[x, y, to_x, to_y]) => Ok(Region { lower: [x, y], upper: [to_x, to_y] }),
+        ([2, 2], &[x, y, to_x, to_y]) => Ok(Rectangle { lower: [x, y], upper: [to_x, to_y] }),
         (shape, _) => Err(invalid(format!("region: expected shape (2, 2), got {}", shape_text(shape)))),
     }
 }

@@ -94,21 +94,21 @@ impl PyTask {
     }
 }
 
-/// What an argument was given.
-type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+/// An argument that may be left out.
+type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// A task of a class that adds nothing to what all of them take besides their kind: weights, tolerance,
 /// tool and region.
 fn made<C>(
     kind: Kind,
-    [weights, tolerance, tool, region]: [Given<'_, '_>; 4],
+    [weights, tolerance, tool, region]: [Argument<'_, '_>; 4],
     class: C,
 ) -> PyResult<PyClassInitializer<C>>
 where
     C: PyClass<BaseType = PyTask>,
 {
     // One number is one too few: the core says how many there should be.
-    let entries = |what, value: Given<'_, '_>| value.map(|value| scalar_or_vector(what, value)).transpose();
+    let entries = |what, value: Argument<'_, '_>| value.map(|value| scalar_or_vector(what, value)).transpose();
     let weights = entries("weights", weights)?.map(|(weights, _)| weights);
     let tolerance = entries("tolerance", tolerance)?.map(|(tolerance, _)| tolerance);
     let tool = tool.map(|value| rigid("tool", value)).transpose()?;
@@ -138,10 +138,10 @@ macro_rules! task {
             #[new]
             #[pyo3(signature = (*, weights=None, tolerance=None, tool=None, region=None))]
             fn new(
-                weights: Given<'_, '_>,
-                tolerance: Given<'_, '_>,
-                tool: Given<'_, '_>,
-                region: Given<'_, '_>,
+                weights: Argument<'_, '_>,
+                tolerance: Argument<'_, '_>,
+                tool: Argument<'_, '_>,
+                region: Argument<'_, '_>,
             ) -> PyResult<PyClassInitializer<Self>> {
                 made($kind, [weights, tolerance, tool, region], Self)
             }
@@ -195,11 +195,11 @@ impl PyPointing {
     #[new]
     #[pyo3(signature = (*, axis=None, weights=None, tolerance=None, tool=None, region=None))]
     fn new(
-        axis: Given<'_, '_>,
-        weights: Given<'_, '_>,
-        tolerance: Given<'_, '_>,
-        tool: Given<'_, '_>,
-        region: Given<'_, '_>,
+        axis: Argument<'_, '_>,
+        weights: Argument<'_, '_>,
+        tolerance: Argument<'_, '_>,
+        tool: Argument<'_, '_>,
+        region: Argument<'_, '_>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let axis = axis.map_or(Ok([0.0, 0.0, 1.0]), |axis| point("axis", axis))?;
         made(Kind::Pointing { axis }, [weights, tolerance, tool, region], Self)

@@ -14,6 +14,7 @@ from .solve import solve
 from .track import track
 
 _WRONG_INPUT = 2
+_INTERRUPTED = 130  # as shells have it: 128 + SIGINT
 
 
 class _Commands(TyperGroup):
@@ -35,6 +36,10 @@ class _Commands(TyperGroup):
             where = "" if error.filename is None else f"'{error.filename}': "
             typer.echo(f"Error: {where}{error.strerror or error}", err=True)
             raise typer.Exit(_WRONG_INPUT) from error
+        except KeyboardInterrupt as interrupt:
+            # True of every command: files appear when all of them are complete.
+            typer.echo("Interrupted: nothing was written.", err=True)
+            raise typer.Exit(_INTERRUPTED) from interrupt
 
 
 app = typer.Typer(
@@ -43,7 +48,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
     help="Inverse kinematics, path tracking and planning for robot manipulators. SI units and radians.",
-    epilog="Exit status: 0 reached, 1 computed but not reached, 2 wrong input.",
+    epilog="Exit status: 0 reached, 1 computed but not reached, 2 wrong input, 130 interrupted.",
 )
 
 

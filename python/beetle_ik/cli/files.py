@@ -1,6 +1,7 @@
 """The files that a command leaves: a motion, what there is to say of it, and pictures."""
 
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -8,11 +9,16 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from .. import Trajectory
-from .._files import whole_file
+from .._files import whole_file, whole_folder
 from .show import to_json
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+def results_folder(out: Path | None) -> AbstractContextManager[Path | None]:
+    """Where to write for `--out`, whole or not at all; None without it."""
+    return nullcontext() if out is None else whole_folder(out, option="--out")
 
 
 def write_files(

@@ -23,6 +23,14 @@ TipLink = Annotated[str | None, typer.Option("--tip", help="The link that is to 
 BaseLink = Annotated[str | None, typer.Option("--base", help="The link that stands still.", rich_help_panel=_ROBOT)]
 Start = Annotated[str | None, typer.Option(help="Joint positions to start from: q1,q2,...")]
 StartQ = Annotated[str | None, typer.Option("--start-q", help="Joint positions to start from: q1,q2,...")]
+Velocity = Annotated[
+    str | None,
+    typer.Option("--velocity-limit", help="In rad/s: a number, or one a joint: v1,v2,...; else the robot's."),
+]
+Acceleration = Annotated[
+    str | None,
+    typer.Option("--acceleration-limit", help="In rad/s^2: a number, or one a joint: a1,a2,...; else there is none."),
+]
 Seed = Annotated[int, typer.Option(help="Seed of all random draws: the same seed gives the same bits.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for machines instead of tables.")]
 

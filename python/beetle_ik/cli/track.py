@@ -1,6 +1,5 @@
 """`beetle-ik track`: follow a path."""
 
-from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,10 +8,10 @@ import typer
 from .. import InvalidInputError, Limits, Robot
 from .. import Path as ReferencePath
 from .. import track as track_path
-from .._files import whole_folder
 from .curves import CurveName, make_curve, read_points
-from .files import write_files
+from .files import results_folder, write_files
 from .options import (
+    Acceleration,
     AsJson,
     BaseLink,
     RobotName,
@@ -21,6 +20,7 @@ from .options import (
     Start,
     TipLink,
     UrdfFile,
+    Velocity,
     limit,
     load_robot,
     make_solver,
@@ -63,10 +63,7 @@ def track(
     k: Annotated[int | None, typer.Option("--k", help="Of the rose radius cos(k u).", rich_help_panel=_CURVE)] = None,
     a: Direction = None,
     b: Direction = None,
-    velocity: Annotated[
-        str | None,
-        typer.Option("--velocity-limit", help="In rad/s: a number, or one a joint: v1,v2,...; else the robot's."),
-    ] = None,
+    velocity: Velocity = None,
     velocity_sinusoid: Annotated[
         str | None,
         typer.Option(
@@ -74,9 +71,7 @@ def track(
             help="Or a limit that varies, the same for all joints: mean + amplitude sin(omega t), in rad/s.",
         ),
     ] = None,
-    acceleration: Annotated[
-        str | None, typer.Option("--acceleration-limit", help="The same in rad/s^2; else there is none.")
-    ] = None,
+    acceleration: Acceleration = None,
     solver: Annotated[
         SolverName | None,
         typer.Option(help="Without it the library's model-based rule; bas, chain and greedy are beetles."),
@@ -110,7 +105,7 @@ def track(
     given |= {name: value for name, value in others.items() if value is not None}
     path = _reference(arm, curve, points, duration, given)
     limits, limits_from = _limits(velocity, velocity_sinusoid, acceleration)
-    with nullcontext() if out is None else whole_folder(out, option="--out") as folder:
+    with results_folder(out) as folder:
         result = track_path(
             arm,
             path,

@@ -15,12 +15,14 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._core import BeetleIkError, InvalidInputError, Robot
+from .._core import InvalidInputError, Robot
 from .._needs import library
 from .camera import Camera, check_planar, distance_to_links
 from .render import evenly, outline
 
 _SMOOTHING = 2.0  # pixels, standard deviation
+_SMALLEST = 8  # pixels: a picture with a shorter side shows nothing
+_FLAT = 1e-9  # brightness: a picture that varies by less shows nothing
 _CONTRAST = 0.2  # least difference of the two brightnesses over their spread together, for anything to be seen
 _POINTS = 300  # of the contour
 _RELIABLE_RMS = 0.8  # pixels
@@ -99,7 +101,7 @@ def locate_arm(
         InvalidInputError: a robot that is not planar, an image or a guess of a wrong shape.
         BeetleIkError: scikit-image is not installed.
     """
-    _require_scikit_image()
+    library("skimage", "scikit-image", "locate_arm", extra="vision")
     began = time.perf_counter()
     check_planar(robot)
     camera = camera or Camera()
@@ -129,13 +131,6 @@ def locate_arm(
     return located(Sight.FOUND if reliable else Sight.UNRELIABLE, q, contour, **numbers)
 
 
-def _require_scikit_image() -> None:
-    from importlib.util import find_spec
-
-    if find_spec("skimage") is None:
-        raise BeetleIkError("locate_arm needs scikit-image, which is not installed: pip install 'beetle-ik[vision]'")
-
-
 def _grey(image: ArrayLike) -> NDArray[np.float64]:
     """The image as brightness between 0 and about 1."""
     picture = np.asarray(image)
@@ -161,14 +156,13 @@ def _checked_guess(guess: ArrayLike, robot: Robot) -> NDArray[np.float64]:
 
 def _arm_mask(grey: NDArray[np.float64]) -> tuple[NDArray[np.bool_] | None, float, NDArray[np.float64]]:
     """What is arm, the largest piece that stands out; the brightness at its edge; the smooth picture, arm bright."""
-    library("skimage", "scikit-image", "a picture", extra="vision")
     from skimage.filters import gaussian, threshold_otsu
     from skimage.measure import label
 
-    smooth = grey
-    if min(grey.shape, default=0) >= 8:
-        smooth = gaussian(grey, _SMOOTHING)
-    if min(grey.shape, default=0) < 8 or np.ptp(smooth) < 1e-9:
+    if min(grey.shape) < _SMALLEST:
+        return None, 0.0, grey
+    smooth = gaussian(grey, _SMOOTHING)
+    if np.ptp(smooth) < _FLAT:
         return None, 0.0, grey
     level = float(threshold_otsu(smooth))
     bright = smooth > level

@@ -82,6 +82,9 @@ impl Batch {
     pub fn message(&self) -> String {
         let count = |status| self.items.iter().filter(|item| item.status == status).count();
         let (solved, total) = (count(Status::Solved), self.items.len());
+        if total == 0 {
+            return "no targets".into();
+        }
         if solved == total {
             return format!("all {total} solved");
         }

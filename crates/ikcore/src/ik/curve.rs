@@ -6,7 +6,7 @@
 
 use super::self_motion::difference;
 use crate::math::MAX_DOF;
-use crate::math::box_step::{box_step, box_step_near, least_damping};
+use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::vector::{distance, dot, norm};
 use crate::objective::{LeastSquares, Linearization, Point};
 use crate::problem::Problem;
@@ -152,19 +152,22 @@ const ANYWHERE: [f64; MAX_DOF] = [f64::INFINITY; MAX_DOF];
 
 /// What of `direction` the linearised task leaves free.
 fn tangent(at: &Linearization, q: &[f64], direction: &[f64]) -> Point {
-    let n = q.len();
-    let wished: Point = q.iter().zip(direction).map(|(q, along)| q + along).collect();
-    let mut out = Point::from_slice(&wished);
-    let damping = least_damping(&at.columns[..n]);
-    box_step_near(&at.columns, &[0.0; 6], damping, q, &wished, &NOWHERE[..n], &ANYWHERE[..n], &mut out);
+    let preferred: Point = q.iter().zip(direction).map(|(q, along)| q + along).collect();
+    let mut out = Point::from_slice(&preferred);
+    BoxStep { residual: &[0.0; 6], ..unbounded(at, q) }.write_near(&preferred, &mut out);
     difference(&out, q)
 }
 
 /// A Gauss-Newton step.
 fn back_to_task(at: &Linearization, from: &[f64], q: &mut [f64]) {
-    let n = from.len();
-    let damping = least_damping(&at.columns[..n]);
-    box_step(&at.columns, &at.residual, damping, from, &NOWHERE[..n], &ANYWHERE[..n], q);
+    unbounded(at, from).write(q);
+}
+
+/// The step from `x` without limits.
+fn unbounded<'a>(at: &'a Linearization, x: &'a [f64]) -> BoxStep<'a> {
+    let (n, Linearization { columns, residual }) = (x.len(), at);
+    let lambda = least_damping(&columns[..n]);
+    BoxStep { columns, residual, lambda, x, lower: &NOWHERE[..n], upper: &ANYWHERE[..n] }
 }
 
 fn normalized(vector: Point) -> Point {

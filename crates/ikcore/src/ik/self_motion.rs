@@ -4,7 +4,7 @@
 //! is brought back to the task by Gauss-Newton; its length follows Barzilai and Borwein (1988), which on the one-dimensional
 //! self-motion of a 7-joint arm is the secant method.
 
-use crate::math::box_step::{box_step, box_step_near, least_damping};
+use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::vector::dot;
 use crate::objective::{Bounds, LeastSquares, Linearization, Point};
 use crate::problem::Problem;
@@ -116,9 +116,7 @@ impl SelfMotion<'_, '_> {
             }
             was_solved = is_solved;
             let from = q.clone();
-            let Linearization { columns, residual } = &linearization;
-            let damping = least_damping(&columns[..from.len()]);
-            box_step(columns, residual, damping, &from, self.bounds.lower(), self.bounds.upper(), q);
+            self.box_step(&linearization, &from).write(q);
         }
         false
     }
@@ -134,13 +132,18 @@ impl SelfMotion<'_, '_> {
 
     /// The point of the linearised task that is nearest to a step of `rate` down `slope`.
     fn near(&self, at: &Linearization, here: &Place, slope: &[f64], rate: f64) -> Point {
-        let mut wished: Point = here.q.iter().zip(slope).map(|(q, slope)| q - rate * slope).collect();
-        self.bounds.clip(&mut wished);
-        let mut out = wished.clone();
-        let (Linearization { columns, residual }, Place { q, .. }) = (at, here);
-        let damping = least_damping(&columns[..q.len()]);
-        box_step_near(columns, residual, damping, q, &wished, self.bounds.lower(), self.bounds.upper(), &mut out);
+        let mut preferred: Point = here.q.iter().zip(slope).map(|(q, slope)| q - rate * slope).collect();
+        self.bounds.clip(&mut preferred);
+        let mut out = preferred.clone();
+        self.box_step(at, &here.q).write_near(&preferred, &mut out);
         out
+    }
+
+    /// The step from `x` within the limits.
+    fn box_step<'b>(&'b self, at: &'b Linearization, x: &'b [f64]) -> BoxStep<'b> {
+        let Linearization { columns, residual } = at;
+        let lambda = least_damping(&columns[..x.len()]);
+        BoxStep { columns, residual, lambda, x, lower: self.bounds.lower(), upper: self.bounds.upper() }
     }
 
     /// Residual and Jacobian at `q`; whether it solves the task.

@@ -39,14 +39,14 @@ impl Solution {
         let ended = match status {
             Status::Solved => return format!("solved to {error}"),
             Status::Improved => return format!("below the value asked for, {error} away"),
-            Status::OutOfReach => "as near as it gets",
-            Status::BelowThreshold => "error_threshold met",
+            Status::OutOfReach => "as near as it gets,",
+            Status::BelowThreshold => "error_threshold met,",
             Status::HeldInRegion => "as near as its region allows,",
             Status::OutsideLimits => "reached outside the limits only, inside them",
-            Status::Stalled => "no further progress",
-            Status::BudgetSpent => "budget spent",
-            Status::TimeUp => "time limit over",
-            _ => "stopped",
+            Status::Stalled => "no further progress,",
+            Status::BudgetSpent => "budget spent,",
+            Status::TimeUp => "time limit over,",
+            _ => "stopped,",
         };
         let why = if obstruction.is_empty() { String::new() } else { format!(" ({obstruction})") };
         format!("{ended} {error} away{why}: {}", status.advice())

@@ -1,10 +1,11 @@
 //! A limit as a function of time, with its extremes over an interval.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require_finite, require_positive};
+use crate::math::ordered::larger;
 
 /// mean + amplitude sin(angular_frequency t + phase): eq. (7) of Cheng et al. (2020), its sign mended.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -25,15 +26,23 @@ impl Sinusoid {
         self.mean + self.amplitude * (self.angular_frequency * t + self.phase).sin()
     }
 
-    /// The first time in \[`from`, `to`\] at which the sine is `sign` (1 or -1).
-    fn time_of_peak(&self, sign: f64, from: f64, to: f64) -> Option<f64> {
-        if self.angular_frequency == 0.0 {
-            return None;
+    /// (time, value) of its largest (`sign` 1) or smallest value (-1) over \[`from`, `to`\] (s).
+    fn extreme(&self, sign: f64, from: f64, to: f64) -> (f64, f64) {
+        let Self { mean, amplitude, angular_frequency, phase } = *self;
+        // Whole turns are peaks. In turns, so that nothing is divided: this runs in every tick.
+        let quarter = 0.25 * sign * amplitude.signum();
+        let turns = |t: f64| (angular_frequency * t + phase) * (1.0 / TAU) - quarter;
+        let (begin, end) = (turns(from), turns(to));
+        let (low, high) = if begin <= end { (begin, end) } else { (end, begin) };
+        let peak = low.ceil();
+        if peak <= high {
+            let time = (TAU * (peak + quarter) - phase) / angular_frequency;
+            return (larger(time, from).min(to), mean + sign * amplitude.abs());
         }
-        let period = TAU / self.angular_frequency.abs();
-        let peak = (sign * FRAC_PI_2 - self.phase) / self.angular_frequency;
-        let first = peak + ((from - peak) / period).ceil() * period;
-        (first <= to).then_some(first.max(from))
+        // From peak to peak there is but one valley: the end that is nearer to its peak is the higher one.
+        let low_is_higher = low - (peak - 1.0) < peak - high;
+        let higher = if low_is_higher == (begin <= end) { from } else { to };
+        (higher, self.at(higher))
     }
 }
 
@@ -87,30 +96,20 @@ impl Profile {
         }
     }
 
-    /// The largest (`sign` 1) or smallest (-1): at an end of the interval, a peak, or a sample between.
+    /// The largest (`sign` 1) or smallest (-1): of samples at one of them, or at an end of the interval.
     fn extreme(&self, sign: f64, from: f64, to: f64) -> (f64, f64) {
-        let mut best = (from, self.at(from));
-        let mut offer = |t: f64, value: f64| {
-            if sign * value > sign * best.1 {
-                best = (t, value);
-            }
-        };
         match self {
-            Self::Constant(_) => {}
-            Self::Sinusoid(sinusoid) => {
-                offer(to, self.at(to));
-                if let Some(t) = sinusoid.time_of_peak(sign * sinusoid.amplitude.signum(), from, to) {
-                    offer(t, sinusoid.mean + sign * sinusoid.amplitude.abs());
-                }
-            }
+            Self::Constant(value) => (from, *value),
+            Self::Sinusoid(sinusoid) => sinusoid.extreme(sign, from, to),
             Self::Sampled { step, values } => {
-                offer(to, self.at(to));
                 let first = (from / step).ceil().max(0.0) as usize;
                 let last = ((to / step).floor() as usize).min(values.len() - 1);
-                (first..=last).for_each(|i| offer(i as f64 * step, values[i]));
+                let samples = (first..=last).map(|i| (i as f64 * step, values[i]));
+                let higher =
+                    |best: (f64, f64), (t, value)| if sign * value > sign * best.1 { (t, value) } else { best };
+                std::iter::once((to, self.at(to))).chain(samples).fold((from, self.at(from)), higher)
             }
         }
-        best
     }
 
     /// Err unless it is a number at every time; `what` names it, as in "velocity limit of joint 'elbow'".
@@ -156,6 +155,8 @@ mod tests {
             let (time, value) = profile.smallest(from, from + length);
             let dense = dense_minimum(&profile, from, from + length);
             prop_assert!(value <= dense + 1e-12 && dense - value < 1e-5, "{value} {dense}");
+            let mirrored = Profile::Sinusoid(Sinusoid { mean: -mean, amplitude: -amplitude, angular_frequency, phase });
+            prop_assert!((mirrored.largest(from, from + length).1 + value).abs() < 1e-12);
             prop_assert!((from..=from + length).contains(&time));
             prop_assert!((profile.at(time) - value).abs() < 1e-9);
         }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Limits, Profile};
+use super::{Field, Limits, Profile};
 use crate::math::ordered::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::wording::words;
@@ -19,41 +19,88 @@ pub enum LimitAt {
 
 words!("limit_at": LimitAt { Interval => "interval", Start => "start" });
 
-/// Where one tick may end, and the velocity limits that it came from.
+impl LimitAt {
+    /// The `limit` that holds for the tick from `from` to `to` (s).
+    fn of(self, limit: &Profile, from: f64, to: f64) -> f64 {
+        match self {
+            Self::Interval => limit.smallest(from, to).1,
+            Self::Start => limit.at(from),
+        }
+    }
+}
+
+/// Where one tick may end, and the limits that it came from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TickBox {
     /// The box of the joints (rad, m).
     pub bounds: Bounds,
     /// The velocity limit of each joint for this tick (rad/s, m/s).
     pub velocity: Point,
+    /// The lower position limits over the tick (rad, m).
+    pub floor: Point,
+    /// The upper ones.
+    pub ceiling: Point,
+    varying: [Varying; 3],
+    /// Every tick has this box, wherever it begins.
+    lasting: bool,
+}
+
+/// What of one kind of limits has to be found anew for every tick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Varying {
+    /// Nothing: numbers.
+    Not,
+    /// One value, which all joints share.
+    Together,
+    /// The value of each joint.
+    Apart,
+}
+
+impl Varying {
+    fn of(limits: &[Profile]) -> Self {
+        match limits {
+            _ if limits.iter().all(|limit| matches!(limit, Profile::Constant(_))) => Self::Not,
+            [first, rest @ ..] if rest.iter().all(|limit| limit == first) => Self::Together,
+            _ => Self::Apart,
+        }
+    }
+
+    /// Writes what varies.
+    #[inline]
+    fn update(self, values: &mut [f64], limits: &[Profile], value: impl Fn(&Profile) -> f64) {
+        match self {
+            Self::Not => {}
+            Self::Together => values.fill(value(&limits[0])),
+            Self::Apart => values.iter_mut().zip(limits).for_each(|(out, limit)| *out = value(limit)),
+        }
+    }
 }
 
 impl TickBox {
-    /// The box of an arm that stands still at `q`.
-    pub fn around(q: &[f64]) -> Self {
-        Self { bounds: Bounds::from_ranges(q.iter().map(|q| (*q, *q))), velocity: Point::from_elem(0.0, q.len()) }
+    /// The box of an arm that begins to move at `q`, to be narrowed for every tick by the same limits.
+    pub fn around(q: &[f64], limits: &Limits) -> Self {
+        let Limits { lower, upper, velocity, acceleration, .. } = limits;
+        let fields = [velocity, lower, upper];
+        let [velocity, floor, ceiling] = fields.map(|field| field.iter().map(|limit| limit.at(0.0)).collect::<Point>());
+        let varying = fields.map(|field| Varying::of(field));
+        let limited_steps = limits.is_finite(Field::Velocity) || acceleration.is_some();
+        let lasting = varying == [Varying::Not; 3] && !limited_steps;
+        let ranges = q.iter().zip(floor.iter().zip(&ceiling));
+        let bounds = ranges.map(|(q, (floor, ceiling))| if lasting { (*floor, *ceiling) } else { (*q, *q) });
+        Self { bounds: Bounds::from_ranges(bounds), velocity, floor, ceiling, varying, lasting }
     }
 }
 
 impl Limits {
     /// The velocity limit of joint `j` that holds for the tick from `from` to `to` (s).
     pub fn velocity_over(&self, j: usize, from: f64, to: f64, at: LimitAt) -> f64 {
-        match at {
-            LimitAt::Interval => self.velocity[j].smallest(from, to).1,
-            LimitAt::Start => self.velocity[j].at(from),
-        }
+        at.of(&self.velocity[j], from, to)
     }
 
     /// Writes the velocity limits that hold for the tick from `from` to `to` (s).
     pub fn write_velocities_over(&self, [from, to]: [f64; 2], at: LimitAt, velocity: &mut [f64]) {
-        for j in 0..velocity.len() {
-            velocity[j] = match &self.velocity[j] {
-                Profile::Constant(limit) => *limit,
-                // Joints mostly share one limit, and two are compared more quickly than an extreme is found.
-                varying if j > 0 && *varying == self.velocity[j - 1] => velocity[j - 1],
-                _ => self.velocity_over(j, from, to, at),
-            };
-        }
+        let how = if Varying::of(&self.velocity) == Varying::Together { Varying::Together } else { Varying::Apart };
+        how.update(velocity, &self.velocity, |limit| at.of(limit, from, to));
     }
 
     /// The position range of joint `j` that holds at every instant from `from` to `to` (s).
@@ -65,40 +112,45 @@ impl Limits {
     /// `dt`: `to - from` is rounded, the more so the later, and the reach must not depend on that. Returns whether every joint
     /// can be within its position limits then; one that cannot is sent towards them as fast as it may go.
     pub fn narrow(&self, q: &[f64], [from, to]: [f64; 2], dt: f64, at: LimitAt, tick: &mut TickBox) -> bool {
-        let TickBox { bounds, velocity } = tick;
+        if tick.lasting {
+            return true;
+        }
+        let TickBox { bounds, velocity, floor, ceiling, varying, .. } = tick;
+        varying[0].update(velocity, &self.velocity, |limit| at.of(limit, from, to));
+        varying[1].update(floor, &self.lower, |limit| limit.largest(from, to).1);
+        varying[2].update(ceiling, &self.upper, |limit| limit.smallest(from, to).1);
+        let n = q.len();
         let (lower, upper) = bounds.parts_mut();
-        self.write_velocities_over([from, to], at, velocity);
-        let mut feasible = true;
-        for j in 0..q.len() {
+        let (lower, upper) = (&mut lower[..n], &mut upper[..n]);
+        let (velocity, floor, ceiling) = (&velocity[..n], &floor[..n], &ceiling[..n]);
+        for j in 0..n {
             // A limit that varies may fall below zero at a time that could not be checked beforehand: then the joint stands still.
             let reach = larger(velocity[j] * dt, 0.0);
             let (slowest, fastest) = (reachable(q[j], -reach), reachable(q[j], reach));
-            let [floor, ceiling] = self.position_range(j, from, to);
-            lower[j] = smaller(larger(slowest, floor), fastest);
+            lower[j] = smaller(larger(slowest, floor[j]), fastest);
             // Limits that cross later than could be checked leave a point between them, not an empty box.
-            upper[j] = larger(larger(smaller(fastest, ceiling), slowest), lower[j]);
-            feasible &= floor <= fastest && slowest <= ceiling && floor <= ceiling;
+            upper[j] = larger(larger(smaller(fastest, ceiling[j]), slowest), lower[j]);
         }
-        feasible
+        (0..n).all(|j| floor[j] <= lower[j] && upper[j] <= ceiling[j])
     }
 }
 
 /// q + reach, rounded so that the displacement does not exceed `reach` by the last bit.
+#[inline(always)]
 fn reachable(q: f64, reach: f64) -> f64 {
     let end = q + reach;
-    if reach > 0.0 && end - q > reach {
-        end.next_down()
-    } else if reach < 0.0 && end - q < reach {
-        end.next_up()
-    } else {
-        end
-    }
+    // Half of all ends are rounded too far, at random: a branch would be guessed wrong as often. The number next to `end` on
+    // the side of q has bits that are lower by one where `end` and `reach` have the same sign, else higher.
+    let bits = end.to_bits() as i64;
+    let towards_q = -(1 | ((bits ^ reach.to_bits() as i64) >> 63));
+    let too_far = i64::from((end - q).abs() > reach.abs());
+    f64::from_bits((bits + too_far * towards_q) as u64)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limits::Field;
+    use crate::limits::{Field, Sinusoid};
     use crate::math::pose;
     use crate::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
     use nalgebra::Vector3;
@@ -115,7 +167,7 @@ mod tests {
     }
 
     fn tick(limits: &Limits, q: f64, dt: f64) -> (bool, f64, f64) {
-        let mut tick = TickBox::around(&[q]);
+        let mut tick = TickBox::around(&[q], limits);
         let feasible = limits.narrow(&[q], [0.0, dt], dt, LimitAt::Interval, &mut tick);
         (feasible, tick.bounds.lower()[0], tick.bounds.upper()[0])
     }
@@ -155,14 +207,64 @@ mod tests {
         let limits = Limits::of(&slider(-9.0, 9.0, 2.0));
         let dt = 0.0005;
         for i in (0..60_000).step_by(7) {
-            let mut tick = TickBox::around(&[0.1]);
+            let mut tick = TickBox::around(&[0.1], &limits);
             let ends = [f64::from(i) * dt, f64::from(i + 1) * dt];
             limits.narrow(&[0.1], ends, dt, LimitAt::Interval, &mut tick);
             assert!(tick.bounds.upper()[0] - 0.1 <= 2.0 * dt && 0.1 - tick.bounds.lower()[0] <= 2.0 * dt, "{ends:?}");
         }
     }
 
+    #[test]
+    fn whatever_varies_is_found_anew_for_every_tick() {
+        let wave =
+            |phase: f64| Profile::Sinusoid(Sinusoid { mean: 2.0, amplitude: 0.5, angular_frequency: 3.0, phase });
+        let numbers = vec![Profile::Constant(1.0), Profile::Constant(2.0), Profile::Constant(3.0)];
+        let alike = vec![wave(0.0), wave(0.0), wave(0.0)];
+        let apart = vec![wave(0.0), Profile::Constant(2.0), wave(1.0)];
+        for (velocity, upper) in [(&alike, &numbers), (&apart, &alike), (&numbers, &apart)] {
+            let limits = Limits::none_for(3).replace(Field::Velocity, velocity.clone());
+            let limits = limits.and_then(|limits| limits.replace(Field::Upper, upper.clone())).unwrap();
+            let mut tick = TickBox::around(&[0.0; 3], &limits);
+            for i in 0..20 {
+                let [from, to] = [i, i + 1].map(|i| f64::from(i) * 0.1);
+                limits.narrow(&[0.0; 3], [from, to], 0.1, LimitAt::Interval, &mut tick);
+                let mut written = [0.0; 3];
+                limits.write_velocities_over([from, to], LimitAt::Interval, &mut written);
+                for j in 0..3 {
+                    let expected = limits.velocity_over(j, from, to, LimitAt::Interval);
+                    assert_eq!([tick.velocity[j], written[j]], [expected; 2], "joint {j} at {from} s");
+                    assert_eq!([tick.floor[j], tick.ceiling[j]], limits.position_range(j, from, to));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn without_velocity_limits_every_box_is_that_of_the_positions() {
+        let limits = Limits::of(&slider(-1.0, 2.0, f64::INFINITY));
+        let mut tick = TickBox::around(&[0.3], &limits);
+        for q in [0.3, -1.0, 2.0] {
+            assert!(limits.narrow(&[q], [0.0, 0.1], 0.1, LimitAt::Interval, &mut tick));
+            assert_eq!((tick.bounds.lower()[0], tick.bounds.upper()[0]), (-1.0, 2.0));
+        }
+        // Where accelerations are limited a tick's box is narrowed further, and the next one must not inherit that.
+        let limits = limits.replace(Field::Acceleration, vec![Profile::Constant(1.0)]).unwrap();
+        let mut tick = TickBox::around(&[0.3], &limits);
+        limits.narrow(&[0.3], [0.0, 0.1], 0.1, LimitAt::Interval, &mut tick);
+        limits.brake(&[0.3], &[0.0], [0.0, 0.1], 0.1, &mut tick);
+        assert!(tick.bounds.upper()[0] < 0.32);
+        limits.narrow(&[0.3], [0.1, 0.2], 0.1, LimitAt::Interval, &mut tick);
+        assert_eq!(tick.bounds.upper()[0], 2.0);
+    }
+
     proptest! {
+        #[test]
+        fn the_reach_is_used_to_the_last_bit(q in -3.0..3.0, reach in -1.0..1.0) {
+            let end: f64 = reachable(q, reach);
+            let beyond = if reach > 0.0 { end.next_up() } else { end.next_down() };
+            prop_assert!((end - q).abs() <= reach.abs() && (beyond - q).abs() >= reach.abs());
+        }
+
         #[test]
         fn no_displacement_exceeds_the_reach(q in -3.0..3.0, velocity in 0.0..2.0, dt in 1e-4..0.5) {
             let limits = Limits::of(&slider(-9.0, 9.0, velocity));

@@ -7,6 +7,7 @@ use super::ldl;
 use super::ordered::{larger, smaller};
 use super::quad::Quad;
 use super::real::{One, Real};
+use super::vector::squared_size;
 
 /// Task rows of every least-squares problem here; unused rows are zero.
 pub const ROWS: usize = 6;
@@ -14,129 +15,109 @@ pub const ROWS: usize = 6;
 /// Rows that a position takes: the first ones.
 pub(super) const POSITION_ROWS: usize = 3;
 
-/// [`least_damping`] over the squared size of the Jacobian.
-const LEAST: f64 = 1e-10;
+/// A damping over the squared size of the Jacobian that makes no difference but where a direction is lost: a singular system stays
+/// solvable.
+pub const LEAST_DAMPING: f64 = 1e-10;
 
 /// Joints can stick one after another; after so many rounds the rest is cut off at the box.
 pub(super) const ROUNDS: usize = 4;
 
-/// Writes into `out` the point x + dx inside the box \[`lower`, `upper`\] that (nearly) minimises
-/// |residual + J dx|^2 + lambda |dx|^2, J given by its columns.
+/// A step of damped least squares in a box: to the point x + dx in \[`lower`, `upper`\] that (nearly) minimises
+/// |residual + J dx|^2 + lambda |dx|^2.
 ///
 /// dx = -J' (J J' + lambda I)^-1 residual over the free joints. A joint that would leave the box is fixed at its bound,
 /// what it still moves is taken off the residual, and the others are solved again.
-pub fn box_step(
-    columns: &[[f64; ROWS]],
-    residual: &[f64; ROWS],
-    lambda: f64,
-    x: &[f64],
-    lower: &[f64],
-    upper: &[f64],
-    out: &mut [f64],
-) {
-    #[cfg(target_arch = "x86_64")]
-    if has_fused() {
-        // SAFETY: the instructions were found.
-        return unsafe { fused(columns, residual, lambda, x, lower, upper, out) };
-    }
-    step_of_rows_in_use::<Baseline>(columns, residual, lambda, x, lower, upper, out);
+#[derive(Debug, Clone, Copy)]
+pub struct BoxStep<'a> {
+    /// Columns of J, at least one per entry of `x`.
+    pub columns: &'a [[f64; ROWS]],
+    /// What the step is to remove.
+    pub residual: &'a [f64; ROWS],
+    /// The damping.
+    pub lambda: f64,
+    /// Where it begins.
+    pub x: &'a [f64],
+    /// The box, one entry per entry of `x`.
+    pub lower: &'a [f64],
+    /// See `lower`.
+    pub upper: &'a [f64],
 }
 
-/// A damping that makes no difference but where a direction is lost: a singular system stays solvable.
+/// [`LEAST_DAMPING`] of the Jacobian with these columns.
 pub fn least_damping(columns: &[[f64; ROWS]]) -> f64 {
-    LEAST * columns.as_flattened().iter().map(|entry| entry * entry).sum::<f64>()
+    LEAST_DAMPING * squared_size(columns)
 }
 
-/// [`box_step`] with a wish: of the points that (nearly) solve residual + J (out - x) = 0, the one in the box that is nearest to
-/// `wished`, itself in the box. What the task leaves free goes where it is wished.
-#[allow(clippy::too_many_arguments)]
-pub fn box_step_near(
-    columns: &[[f64; ROWS]],
-    residual: &[f64; ROWS],
-    lambda: f64,
-    x: &[f64],
-    wished: &[f64],
-    lower: &[f64],
-    upper: &[f64],
-    out: &mut [f64],
-) {
-    let mut there = *residual;
-    for ((column, x), wished) in columns.iter().zip(x).zip(wished) {
-        for (entry, slope) in there.iter_mut().zip(column) {
-            *entry += slope * (wished - x);
+impl BoxStep<'_> {
+    /// Writes into `out` where the step leads.
+    pub fn write(&self, out: &mut [f64]) {
+        #[cfg(target_arch = "x86_64")]
+        if has_fused() {
+            // SAFETY: the instructions were found.
+            return unsafe { fused(self, out) };
         }
+        self.write_rows_in_use::<Baseline>(out);
     }
-    box_step(columns, &there, lambda, wished, lower, upper, out);
-}
 
-/// [`step`] compiled for AVX2 and FMA.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn fused(
-    columns: &[[f64; ROWS]],
-    residual: &[f64; ROWS],
-    lambda: f64,
-    x: &[f64],
-    lower: &[f64],
-    upper: &[f64],
-    out: &mut [f64],
-) {
-    step_of_rows_in_use::<Fused>(columns, residual, lambda, x, lower, upper, out);
-}
-
-/// Half the rows take less than half the time.
-#[inline(always)]
-fn step_of_rows_in_use<A: Arithmetic>(
-    columns: &[[f64; ROWS]],
-    residual: &[f64; ROWS],
-    lambda: f64,
-    x: &[f64],
-    lower: &[f64],
-    upper: &[f64],
-    out: &mut [f64],
-) {
-    let moves_position_alone = |column: &[f64; ROWS]| column[POSITION_ROWS..] == [0.0; ROWS - POSITION_ROWS];
-    if columns[..x.len()].iter().all(moves_position_alone) {
-        step::<A, POSITION_ROWS>(columns, residual, lambda, x, lower, upper, out);
-    } else {
-        step::<A, ROWS>(columns, residual, lambda, x, lower, upper, out);
-    }
-}
-
-/// On the first `R` rows.
-#[inline(always)]
-fn step<A: Arithmetic, const R: usize>(
-    columns: &[[f64; ROWS]],
-    residual: &[f64; ROWS],
-    lambda: f64,
-    x: &[f64],
-    lower: &[f64],
-    upper: &[f64],
-    out: &mut [f64],
-) {
-    let n = x.len();
-    let mut remaining = *residual;
-    // Bit j: joint j sits at a bound.
-    let mut fixed = 0_u64;
-    for _ in 0..ROUNDS {
-        let right: [One<A>; R] = std::array::from_fn(|i| One::of(remaining[i]));
-        let z = ldl::solve(gram::<A, R>(columns, lambda, n, fixed), right);
-        let fixed_before = fixed;
-        for j in (0..n).filter(|j| fixed_before & (1 << j) == 0) {
-            let wanted = x[j] - dot(&columns[j], &z).stored();
-            let bounded = smaller(larger(wanted, lower[j]), upper[j]);
-            out[j] = bounded;
-            if bounded != wanted {
-                fixed |= 1 << j;
-                for (rest, column) in remaining.iter_mut().zip(&columns[j]) {
-                    *rest = A::mul_add(*column, bounded - x[j], *rest);
-                }
+    /// Writes into `out`, of the points that (nearly) solve residual + J (out - x) = 0, the one in the box that is nearest to
+    /// `preferred`, itself in the box. What the task leaves free goes there.
+    pub fn write_near(&self, preferred: &[f64], out: &mut [f64]) {
+        let mut there = *self.residual;
+        for ((column, x), preferred) in self.columns.iter().zip(self.x).zip(preferred) {
+            for (entry, slope) in there.iter_mut().zip(column) {
+                *entry += slope * (preferred - x);
             }
         }
-        if fixed == fixed_before {
-            return;
+        BoxStep { residual: &there, x: preferred, ..*self }.write(out);
+    }
+
+    /// Half the rows take less than half the time.
+    #[inline(always)]
+    fn write_rows_in_use<A: Arithmetic>(&self, out: &mut [f64]) {
+        let moves_position_alone = |column: &[f64; ROWS]| column[POSITION_ROWS..] == [0.0; ROWS - POSITION_ROWS];
+        if self.columns[..self.x.len()].iter().all(moves_position_alone) {
+            self.write_first_rows::<A, POSITION_ROWS>(out);
+        } else {
+            self.write_first_rows::<A, ROWS>(out);
         }
     }
+
+    /// On the first `R` rows.
+    #[inline(always)]
+    fn write_first_rows<A: Arithmetic, const R: usize>(&self, out: &mut [f64]) {
+        let Self { columns, lambda, x, lower, upper, .. } = *self;
+        let n = x.len();
+        let mut remaining = *self.residual;
+        // Bit j: joint j sits at a bound.
+        let mut fixed = 0_u64;
+        for _ in 0..ROUNDS {
+            let mut right = [One::of(0.0); R];
+            right.iter_mut().zip(remaining).for_each(|(entry, rest)| *entry = One::of(rest));
+            let z = ldl::solve(gram::<A, R>(columns, lambda, n, fixed), right);
+            let fixed_before = fixed;
+            for j in (0..n).filter(|j| fixed_before & (1 << j) == 0) {
+                let wanted = x[j] - dot(&columns[j], &z).stored();
+                let bounded = smaller(larger(wanted, lower[j]), upper[j]);
+                out[j] = bounded;
+                if bounded != wanted {
+                    fixed |= 1 << j;
+                    for (rest, column) in remaining.iter_mut().zip(&columns[j]) {
+                        *rest = A::mul_add(*column, bounded - x[j], *rest);
+                    }
+                }
+            }
+            if fixed == fixed_before {
+                return;
+            }
+        }
+    }
+}
+
+/// [`BoxStep::write`] compiled for AVX2 and FMA.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn fused(step: &BoxStep<'_>, out: &mut [f64]) {
+    step.write_rows_in_use::<Fused>(out);
 }
 
 /// J J' + lambda I over the joints that are not fixed.
@@ -153,8 +134,14 @@ fn gram<A: Arithmetic, const R: usize>(columns: &[[f64; ROWS]], lambda: f64, n: 
             }
         }
     }
-    let entry = |i: usize, k: usize| sum[i][k / 4].0[k % 4] + if i == k { lambda } else { 0.0 };
-    std::array::from_fn(|i| std::array::from_fn(|k| One::of(entry(i, k))))
+    // Loops, where closures would be shorter: those the compiler may leave apart, without the instructions of this kernel.
+    let mut entries = [[One::of(0.0); R]; R];
+    for (i, row) in entries.iter_mut().enumerate() {
+        for (k, entry) in row.iter_mut().enumerate() {
+            *entry = One::of(sum[i][k / 4].0[k % 4] + if i == k { lambda } else { 0.0 });
+        }
+    }
+    entries
 }
 
 /// a'b, in pairs.
@@ -175,6 +162,14 @@ mod tests {
 
     const FREE: f64 = f64::INFINITY;
 
+    fn step_in<'a>(
+        [lower, upper]: [&'a [f64]; 2],
+        (columns, residual, lambda): (&'a [[f64; 6]], &'a [f64; 6], f64),
+        x: &'a [f64],
+    ) -> BoxStep<'a> {
+        BoxStep { columns, residual, lambda, x, lower, upper }
+    }
+
     fn damped_step(columns: &[[f64; 6]], residual: &[f64; 6], lambda: f64) -> DVector<f64> {
         let j = DMatrix::from_fn(6, columns.len(), |i, k| columns[k][i]);
         let normal = &j * j.transpose() + DMatrix::identity(6, 6) * lambda;
@@ -190,7 +185,8 @@ mod tests {
         ) {
             let n = columns.len();
             let mut out = vec![0.0; n];
-            box_step(&columns, &residual, lambda, &vec![0.0; n], &vec![-FREE; n], &vec![FREE; n], &mut out);
+            let (x, lower, upper) = (vec![0.0; n], vec![-FREE; n], vec![FREE; n]);
+            step_in([&lower, &upper], (&columns, &residual, lambda), &x).write(&mut out);
             let expected = damped_step(&columns, &residual, lambda);
             prop_assert!((DVector::from_vec(out) - expected).norm() < 1e-10);
         }
@@ -204,7 +200,7 @@ mod tests {
             let n = columns.len();
             let (lower, upper) = (vec![-width; n], vec![0.5 * width; n]);
             let mut out = vec![0.0; n];
-            box_step(&columns, &residual, 1e-6, &vec![0.0; n], &lower, &upper, &mut out);
+            step_in([&lower, &upper], (&columns, &residual, 1e-6), &vec![0.0; n]).write(&mut out);
             prop_assert!(out.iter().zip(&lower).zip(&upper).all(|((x, l), u)| l <= x && x <= u));
         }
     }
@@ -215,19 +211,20 @@ mod tests {
         let columns = [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 2];
         let residual = [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let mut out = [0.0; 2];
-        box_step(&columns, &residual, 1e-12, &[0.0; 2], &[-0.1, -FREE], &[0.1, FREE], &mut out);
+        step_in([&[-0.1, -FREE], &[0.1, FREE]], (&columns, &residual, 1e-12), &[0.0; 2]).write(&mut out);
         assert!((out[0] - 0.1).abs() < 1e-15 && (out[1] - 0.9).abs() < 1e-9, "{out:?}");
     }
 
     #[test]
-    fn what_the_task_leaves_free_goes_where_it_is_wished() {
+    fn what_the_task_leaves_free_goes_where_it_is_preferred() {
         // x + y is to become 1; of all such points, the nearest to (0.8, 0.6) is (0.6, 0.4); with x <= 0.4, (0.4, 0.6).
         let columns = [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 2];
         let residual = [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let near = |upper: f64| {
             let mut out = [0.0; 2];
-            let wished = [0.8_f64.min(upper), 0.6];
-            box_step_near(&columns, &residual, 1e-12, &[0.0; 2], &wished, &[-FREE; 2], &[upper, FREE], &mut out);
+            let preferred = [0.8_f64.min(upper), 0.6];
+            step_in([&[-FREE; 2], &[upper, FREE]], (&columns, &residual, 1e-12), &[0.0; 2])
+                .write_near(&preferred, &mut out);
             out
         };
         assert!(near(FREE).iter().zip([0.6, 0.4]).all(|(x, e)| (x - e).abs() < 1e-9), "{:?}", near(FREE));
@@ -237,7 +234,8 @@ mod tests {
     #[test]
     fn a_direction_that_no_joint_moves_gets_no_step() {
         let mut out = [0.0];
-        box_step(&[[0.0, 2.0, 0.0, 0.0, 0.0, 0.0]], &[1.0; 6], 0.0, &[0.0], &[-FREE], &[FREE], &mut out);
+        let column = [0.0, 2.0, 0.0, 0.0, 0.0, 0.0];
+        step_in([&[-FREE], &[FREE]], (&[column], &[1.0; 6], 0.0), &[0.0]).write(&mut out);
         assert!((out[0] + 0.5).abs() < 1e-15, "{out:?}");
     }
 }

@@ -27,7 +27,7 @@ pub struct FourBoxSteps<'a> {
 }
 
 impl FourBoxSteps<'_> {
-    /// Writes into `out` where each step leads: lane by lane what [`box_step`](super::box_step::box_step) writes. The Jacobians are
+    /// Writes into `out` where each step leads: lane by lane what [`BoxStep::write`](super::box_step::BoxStep::write) writes. The Jacobians are
     /// of one kind: their angular rows are zero in all lanes, or in none.
     pub fn write(&self, out: &mut [Quad]) {
         #[cfg(target_arch = "x86_64")]
@@ -52,7 +52,8 @@ impl FourBoxSteps<'_> {
     /// On the first `R` rows.
     #[inline(always)]
     fn write_first_rows<A: Arithmetic, const R: usize>(&self, out: &mut [Quad]) {
-        let mut remaining: [Four<A>; R] = std::array::from_fn(|i| Four::of(self.residual[i]));
+        let mut remaining = [Four::<A>::splat(0.0); R];
+        remaining.iter_mut().zip(self.residual).for_each(|(entry, residual)| *entry = Four::of(*residual));
         // One where a joint is free, zero where it sits at a bound.
         let mut free = [Four::<A>::splat(1.0); MAX_DOF];
         for _ in 0..ROUNDS {
@@ -114,7 +115,7 @@ fn fused(steps: &FourBoxSteps<'_>, out: &mut [Quad]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::box_step::box_step;
+    use super::super::box_step::BoxStep;
     use super::*;
     use proptest::prelude::*;
 
@@ -141,7 +142,8 @@ mod tests {
                 let alone = |lanes: &[Quad; 6]| lanes.map(|row| row.0[lane]);
                 let own: Vec<_> = columns.iter().map(alone).collect();
                 let mut out = vec![0.0; n];
-                box_step(&own, &alone(residual), lambda.0[lane], &vec![0.1 * width; n], &lower, &upper, &mut out);
+                let (residual, lambda, x) = (&alone(residual), lambda.0[lane], &vec![0.1 * width; n]);
+                BoxStep { columns: &own, residual, lambda, x, lower: &lower, upper: &upper }.write(&mut out);
                 let lane: Vec<f64> = four.iter().map(|lanes| lanes.0[lane]).collect();
                 prop_assert_eq!(lane, out);
             }

@@ -16,10 +16,15 @@ impl FourFrames {
     /// These frames, in order.
     #[inline(always)]
     pub fn of(frames: [&Frame; 4]) -> Self {
-        let lanes = |number: &dyn Fn(&Frame) -> f64| Quad(frames.map(number));
-        Self {
-            axes: std::array::from_fn(|axis| std::array::from_fn(|k| lanes(&|frame| frame.axes[axis][k]))),
-            origin: std::array::from_fn(|k| lanes(&|frame| frame.origin[k])),
+        let mut all = Self { axes: [[Quad::ZERO; 3]; 3], origin: [Quad::ZERO; 3] };
+        for (lane, frame) in frames.into_iter().enumerate() {
+            for k in 0..3 {
+                all.origin[k].0[lane] = frame.origin[k];
+                for axis in 0..3 {
+                    all.axes[axis][k].0[lane] = frame.axes[axis][k];
+                }
+            }
         }
+        all
     }
 }

@@ -1,5 +1,8 @@
-//! Rotations, rigid transforms, fast sines, singular values, polynomials, cubics between two ends, splines, knots in time and the one bounded step.
-//! Plain arrays where it is hot, nalgebra elsewhere.
+//! Rotations, rigid transforms, fast sines and arctangents, singular values, small systems, polynomials, cubics between two ends, splines,
+//! knots in time and the one bounded step. Plain arrays where it is hot, nalgebra elsewhere.
+//!
+//! What is computed for four at once keeps each number of all four in one register, a [`quad::Quad`]; kernels that are the same for one and
+//! for four are written over [`real::Real`].
 
 pub mod arctangent;
 pub mod arithmetic;

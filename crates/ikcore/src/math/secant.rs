@@ -1,62 +1,65 @@
 //! A Jacobian that is known from differences alone: columns by antennae, then rank-one updates along every step made.
 
 use super::MAX_DOF;
-use super::box_step::{ROWS, box_step};
-
-/// Damping over the squared size of the Jacobian: enough to keep a singular system solvable.
-pub const LEAST_DAMPING: f64 = 1e-10;
+use super::box_step::{BoxStep, ROWS};
+use super::vector::squared_size;
 
 /// Steps shorter than this teach nothing but rounding.
 const SHORTEST: f64 = 1e-12;
 
-/// An estimate of dr/dx, by columns.
+/// An estimate of dr/dx for `R` entries of r, by columns.
 #[derive(Debug, Clone)]
-pub struct Secant {
+pub struct Secant<const R: usize = ROWS> {
+    /// Rows beyond `R` are zero.
     columns: [[f64; ROWS]; MAX_DOF],
 }
 
-impl Default for Secant {
+impl<const R: usize> Default for Secant<R> {
     fn default() -> Self {
         Self { columns: [[0.0; ROWS]; MAX_DOF] }
     }
 }
 
-impl Secant {
+impl<const R: usize> Secant<R> {
     /// Column `j` from one antenna: entry j of x was moved by `length`, and r changed by `difference`.
-    pub fn set_column(&mut self, j: usize, length: f64, difference: &[f64; ROWS]) {
-        self.columns[j] = difference.map(|change| change / length);
+    pub fn set_column(&mut self, j: usize, length: f64, difference: &[f64; R]) {
+        self.columns[j][..R].copy_from_slice(&difference.map(|change| change / length));
     }
 
     /// The change of r that a step dx would make: J dx.
-    pub fn predict(&self, dx: impl Iterator<Item = f64>) -> [f64; ROWS] {
-        let mut sum = [0.0; ROWS];
+    pub fn predict(&self, dx: impl Iterator<Item = f64>) -> [f64; R] {
+        let mut sum = [0.0; R];
         for (column, dx) in self.columns.iter().zip(dx) {
-            (0..ROWS).for_each(|k| sum[k] += column[k] * dx);
+            (0..R).for_each(|k| sum[k] += column[k] * dx);
         }
         sum
     }
 
     /// Learns from a step `dx` that changed r by `surprise` more than predicted: J + share surprise dx' / |dx|^2, the
     /// least change of J that explains it (Broyden 1965, eq. 4.5), or a share of it where r is noisy.
-    pub fn learn(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; ROWS], share: f64) {
+    pub fn learn(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; R], share: f64) {
         let squared: f64 = dx.clone().map(|dx| dx * dx).sum();
         if squared < SHORTEST * SHORTEST {
             return;
         }
+        let scale = share / squared;
         for (column, dx) in self.columns.iter_mut().zip(dx) {
-            let weight = share * dx / squared;
-            (0..ROWS).for_each(|k| column[k] += weight * surprise[k]);
+            let weight = scale * dx;
+            (0..R).for_each(|k| column[k] += weight * surprise[k]);
         }
     }
 
     /// The squared size of the first `n` columns.
     pub fn size(&self, n: usize) -> f64 {
-        self.columns[..n].as_flattened().iter().map(|entry| entry * entry).sum()
+        squared_size(&self.columns[..n])
     }
 
     /// Writes into `out` the bounded step from `x`; `damping` is relative to the squared size of the Jacobian.
-    pub fn step(&self, residual: &[f64; ROWS], damping: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
-        box_step(&self.columns, residual, damping * self.size(x.len()), x, lower, upper, out);
+    pub fn step(&self, residual: &[f64; R], damping: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
+        let mut rows = [0.0; ROWS];
+        rows[..R].copy_from_slice(residual);
+        let lambda = damping * self.size(x.len());
+        BoxStep { columns: &self.columns, residual: &rows, lambda, x, lower, upper }.write(out);
     }
 }
 

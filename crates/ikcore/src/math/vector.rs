@@ -23,3 +23,13 @@ pub fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     squared_distance(a, b).sqrt()
 }
+
+/// The sum of the squared entries of all columns: a sum for every row, so that they do not wait for one another.
+#[inline]
+pub fn squared_size<const R: usize>(columns: &[[f64; R]]) -> f64 {
+    let mut rows = [0.0; R];
+    for column in columns {
+        (0..R).for_each(|k| rows[k] += column[k] * column[k]);
+    }
+    rows.iter().sum()
+}

@@ -26,4 +26,4 @@ mod tangent;
 
 pub use scene::{Body, Contact, Scene};
 pub use shape::{Obstacle, Shape};
-pub use sweep::{Edge, Motion, Sweep};
+pub use sweep::{Edge, JointMotion, Sweep};

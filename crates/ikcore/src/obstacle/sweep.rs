@@ -9,7 +9,7 @@ use crate::math::MAX_DOF;
 use crate::objective::Point;
 
 /// A joint motion over an interval of its parameter (time, or a share of a straight line).
-pub trait Motion {
+pub trait JointMotion {
     /// Writes the configuration in the middle of \[`from`, `to`\], and by how much each joint differs from it in there
     /// at most (rad, m).
     fn around(&self, from: f64, to: f64, middle: &mut [f64], reach: &mut [f64]);
@@ -24,7 +24,7 @@ pub struct Edge<'a> {
     pub to: &'a [f64],
 }
 
-impl Motion for Edge<'_> {
+impl JointMotion for Edge<'_> {
     fn around(&self, from: f64, to: f64, middle: &mut [f64], reach: &mut [f64]) {
         let (share, half) = (0.5 * (from + to), 0.5 * (to - from));
         for j in 0..middle.len() {
@@ -70,13 +70,13 @@ impl<'a> Sweep<'a> {
 
     /// Ok if all pairs stay at least `margin` (m) apart on the motion over \[`from`, `to`\], proven between samples too. Err where
     /// one does not, or exceeds the margin by less than a hundredth of a millimetre.
-    pub fn check(&mut self, motion: &impl Motion, [from, to]: [f64; 2], margin: f64) -> Result<(), Box<TooNear>> {
+    pub fn check(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2], margin: f64) -> Result<(), Box<TooNear>> {
         self.check_pending(motion, [from, to], margin, self.pending.len())
     }
 
     fn check_pending(
         &mut self,
-        motion: &impl Motion,
+        motion: &impl JointMotion,
         [from, to]: [f64; 2],
         margin: f64,
         count: usize,
@@ -106,7 +106,7 @@ impl<'a> Sweep<'a> {
 
     /// The smallest distance (m) on the motion over \[`from`, `to`\], and where it occurs: a proven lower bound, at most 0.1 mm or
     /// 1 % below the true value. None where nothing can touch.
-    pub fn smallest(&mut self, motion: &impl Motion, [from, to]: [f64; 2]) -> Option<TooNear> {
+    pub fn smallest(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2]) -> Option<TooNear> {
         let first = self.pending.first().copied()?;
         let mut best = Best { seen: f64::INFINITY, proven: f64::INFINITY, at: from, pair: first };
         // A good first guess makes most of the motion quick to rule out.
@@ -123,7 +123,7 @@ impl<'a> Sweep<'a> {
         Some(TooNear { at: best.at, contact })
     }
 
-    fn narrow(&mut self, motion: &impl Motion, [from, to]: [f64; 2], best: &mut Best, count: usize) {
+    fn narrow(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2], best: &mut Best, count: usize) {
         let reach = self.place(motion, from, to);
         let middle = 0.5 * (from + to);
         let mut left = 0;
@@ -147,7 +147,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Places everything in the middle of an interval; returns how far each joint is from there at most.
-    fn place(&mut self, motion: &impl Motion, from: f64, to: f64) -> Point {
+    fn place(&mut self, motion: &impl JointMotion, from: f64, to: f64) -> Point {
         let n = self.scene.robot().dof();
         let (mut middle, mut reach) = ([0.0; MAX_DOF], Point::from_elem(0.0, n));
         motion.around(from, to, &mut middle[..n], &mut reach);

@@ -1,6 +1,7 @@
 //! Along a given path.
 
 use super::cost::Cost;
+use super::motion_limits::MotionLimits;
 use super::plan::Plan;
 use super::planar_arm::Elbow;
 use super::tip_path::TipPath;
@@ -44,6 +45,19 @@ pub struct AlongPathOptions {
     pub stop: Option<Stop>,
     /// Seed of the random draws: the same seed, the same bits.
     pub seed: u64,
+}
+
+impl AlongPathOptions {
+    /// The configuration to start from, within the limits; None: the planner's choice.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::OutsideLimits`].
+    pub(super) fn start_within(&self, robot: &Robot, limits: &MotionLimits) -> Result<Option<&[f64]>> {
+        let Some(q) = &self.start else { return Ok(None) };
+        robot.check("start_q", q)?;
+        robot.require_within("start_q", q, &limits.lower, &limits.upper)?;
+        Ok(Some(q))
+    }
 }
 
 /// Plans a motion of `robot` whose tip follows `path`.

@@ -5,7 +5,7 @@ use super::plan::Violation;
 use super::planar_arm::PlanarArm;
 use crate::error::{Error, Result};
 use crate::math::polynomial::evaluate;
-use crate::obstacle::{Contact, Motion, Obstacle, Scene};
+use crate::obstacle::{Contact, JointMotion, Obstacle, Scene};
 use crate::robot::Robot;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
 use crate::wording::number;
@@ -69,7 +69,7 @@ pub(super) fn too_near(contact: &Contact, margin: f64) -> Violation {
 /// A trajectory as a motion that can be certified; its parameter is time (s).
 pub(super) struct TimedMotion<'a>(pub &'a Trajectory);
 
-impl Motion for TimedMotion<'_> {
+impl JointMotion for TimedMotion<'_> {
     fn around(&self, from: f64, to: f64, middle: &mut [f64], reach: &mut [f64]) {
         let (knots, polynomials) = (self.0.knots(), self.0.coefficients());
         let n = middle.len();

@@ -1,4 +1,9 @@
 //! Arms that move in a plane: their inverse kinematics in closed form, the redundancy left open.
+//!
+//! The unknowns are orientations of links, and the first two links close the gap; in
+//! [`Linkage`](crate::posture::Linkage) the tip is held, the unknowns are joint points on circles, and the last two links
+//! close it. Each measures the links for itself: lengths that differ in the last bit would lead the swarms of the
+//! reproduced papers to other plans and postures.
 
 use std::f64::consts::{PI, TAU};
 

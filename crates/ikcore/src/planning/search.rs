@@ -10,9 +10,9 @@ use crate::solver::reporting::Reporting;
 use crate::solver::{AnySolver, DerivativeFree, Evaluator, Monitor, Outcome, Status, Stop};
 
 /// What searches, and for how long.
-pub struct Search<'a> {
+pub struct Search {
     /// The algorithm.
-    pub solver: &'a AnySolver<DerivativeFree>,
+    pub solver: AnySolver<DerivativeFree>,
     /// Its budgets.
     pub stop: Stop,
     /// Of the random draws.
@@ -41,24 +41,24 @@ impl Found {
     }
 }
 
-impl Search<'_> {
+impl Search {
     /// Minimises `cost` within `bounds`.
     ///
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for wrong options of the solver or a budget of zero.
     pub fn run(&self, cost: &mut dyn Objective, bounds: &Bounds, monitor: &mut dyn Monitor) -> Result<Found> {
-        let Self { solver, stop, seed } = *self;
+        let Self { solver, stop, seed } = self;
         solver.validate()?;
         stop.validate()?;
         let done = Cell::new(0);
         let mut recorded = Recorded { cost, history: vec![], done: &done };
         let mut reporting = Reporting { monitor, done: &done, total: stop.max_evaluations };
         // Stream 0 and those after it belong to the inverse kinematics of the ends.
-        let mut rng = rng::stream(seed, u64::MAX);
+        let mut rng = rng::stream(*seed, u64::MAX);
         let mut x0 = Point::from_elem(0.0, recorded.dimension());
         bounds.sample(&mut rng, &mut x0);
         let objective: &mut dyn Objective = &mut recorded;
-        let mut evaluator = Evaluator::new(objective, bounds, stop, &mut rng, &mut reporting);
+        let mut evaluator = Evaluator::new(objective, bounds, *stop, &mut rng, &mut reporting);
         let outcome = solver.run(&mut evaluator, &x0);
         let (x, evaluations) = (evaluator.best().x.clone(), evaluator.evaluations());
         let history = recorded.history;

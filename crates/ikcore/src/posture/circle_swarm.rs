@@ -161,7 +161,8 @@ impl Swarm<'_> {
                 point[k] += velocity[k];
             }
         }
-        let index = if self.linkage.repair(&mut particle.points) { self.evaluate(&particle.points) } else { None };
+        let repaired = self.linkage.repair(&mut particle.points);
+        let index = repaired.and_then(|()| self.evaluate(&particle.points));
         match index {
             Some(index) if index > particle.best.0 => particle.best = (index, particle.points.clone()),
             Some(_) => {}

@@ -1,4 +1,5 @@
-//! A planar arm with its tip held in place: joint points on circles.
+//! A planar arm with its tip held in place: joint points on circles. [`planar_arm`](crate::planning::planar_arm) has the
+//! same arm with orientations of links as unknowns, and says why each measures the links for itself.
 
 use std::f64::consts::TAU;
 
@@ -24,7 +25,7 @@ words!("measure": Measure { Tip => "tip", Overall => "overall" });
 
 /// A rectangle that no joint point may leave.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Region {
+pub struct Rectangle {
     /// Least x and y (m).
     pub lower: Point2,
     /// Largest x and y (m).
@@ -34,7 +35,7 @@ pub struct Region {
 /// Points count as inside a region up to this distance (m): optima often lie on its edge.
 const ON_EDGE: f64 = 1e-12;
 
-impl Region {
+impl Rectangle {
     fn contains(&self, point: &Point2) -> bool {
         (0..2).all(|k| self.lower[k] - ON_EDGE <= point[k] && point[k] <= self.upper[k] + ON_EDGE)
     }
@@ -48,9 +49,9 @@ pub struct Linkage {
     target: Point2,
     lengths: Vec<f64>,
     /// Headings of the links at q = 0 (rad).
-    phases: Vec<f64>,
+    directions: Vec<f64>,
     measure: Measure,
-    region: Option<Region>,
+    region: Option<Rectangle>,
     manipulability: Manipulability,
 }
 
@@ -60,7 +61,7 @@ impl Linkage {
     /// # Errors
     /// [`Error::InvalidRobot`] unless the robot has at least three joints, all turning about z in one plane;
     /// [`Error::OutOfRange`] for a target out of that plane.
-    pub fn new(robot: &Robot, target: &[f64; 3], measure: Measure, region: Option<Region>) -> Result<Self> {
+    pub fn new(robot: &Robot, target: &[f64; 3], measure: Measure, region: Option<Rectangle>) -> Result<Self> {
         let screws = robot.screws(&vec![0.0; robot.dof()]);
         let invalid = |problem: String| Error::InvalidRobot { robot: robot.name().into(), problem };
         let height = screws[0].origin[2];
@@ -89,7 +90,7 @@ impl Linkage {
             base: [screws[0].origin[0], screws[0].origin[1]],
             target: [target[0], target[1]],
             lengths: links.clone().map(|[x, y]| x.hypot(y)).collect(),
-            phases: links.map(|[x, y]| y.atan2(x)).collect(),
+            directions: links.map(|[x, y]| y.atan2(x)).collect(),
             measure,
             region,
             manipulability: Manipulability::of(robot, Motion::Position),
@@ -122,8 +123,8 @@ impl Linkage {
     }
 
     /// `points` moved onto their circles: each in the direction in which it was seen from the one before, the last where the
-    /// circles of the last two links meet, the nearer of the two places. False where they do not meet.
-    pub fn repair(&self, points: &mut [Point2]) -> bool {
+    /// circles of the last two links meet, the nearer of the two places. None where they do not meet.
+    pub fn repair(&self, points: &mut [Point2]) -> Option<()> {
         let mut end = self.base;
         let last = points.len() - 1;
         for (point, length) in points[..last].iter_mut().zip(&self.lengths) {
@@ -134,9 +135,8 @@ impl Linkage {
         }
         let (near, target) = (points[last], self.target);
         let side = (target[0] - end[0]) * (near[1] - end[1]) - (target[1] - end[1]) * (near[0] - end[0]);
-        let meeting = self.last_point(&end, side);
-        points[last] = meeting.unwrap_or(near);
-        meeting.is_some()
+        points[last] = self.last_point(&end, side)?;
+        Some(())
     }
 
     /// Where the circle about `from` meets the circle about the target, on the left or on the right of the line between.
@@ -162,7 +162,7 @@ impl Linkage {
         let mut from = self.base;
         let mut before = 0.0;
         for (j, to) in points.iter().chain([&self.target]).enumerate() {
-            let turned = (to[1] - from[1]).atan2(to[0] - from[0]) - self.phases[j];
+            let turned = (to[1] - from[1]).atan2(to[0] - from[0]) - self.directions[j];
             q[j] = self.within_limits(j, turned - before)?;
             (from, before) = (*to, turned);
         }

@@ -15,5 +15,5 @@ pub mod linkage;
 pub mod search;
 
 pub use circle_swarm::CircleSwarm;
-pub use linkage::{Linkage, Measure, Region};
+pub use linkage::{Linkage, Measure, Rectangle};
 pub use search::{Posture, SearchOptions, best_posture};

@@ -7,7 +7,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::circle_swarm::{CircleSwarm, FoundPosture};
-use super::linkage::{Linkage, Measure, Region};
+use super::linkage::{Linkage, Measure, Rectangle};
 use crate::error::Result;
 use crate::ik::{SolveOptions, solve};
 use crate::math::vector::distance;
@@ -24,7 +24,7 @@ pub struct SearchOptions {
     /// What makes a posture good.
     pub measure: Measure,
     /// Where joint points may be; None: anywhere.
-    pub region: Option<Region>,
+    pub region: Option<Rectangle>,
     /// The published swarm, in place of our own search.
     pub swarm: Option<CircleSwarm>,
     /// Seed of the random draws: the same seed, the same bits.

@@ -195,7 +195,9 @@ impl Distance for ToFrame<'_> {
     fn of(&self, block: &[Row]) -> Row {
         let mut squared = [0.0; LANES];
         for (row, feature) in block.iter().zip(self.features) {
-            squared = std::array::from_fn(|i| squared[i] + (row[i] - feature) * (row[i] - feature));
+            for (squared, entry) in squared.iter_mut().zip(row) {
+                *squared += (entry - feature) * (entry - feature);
+            }
         }
         squared
     }
@@ -212,18 +214,27 @@ impl Distance for ToPoint {
     #[inline(always)]
     fn of(&self, block: &[Row]) -> Row {
         let [x, y, z] = self.place;
-        let along = |origin: &Row, axis: &Row| -> Row { std::array::from_fn(|i| origin[i] + self.reach * axis[i]) };
-        let sum_of_squares = |a: &Row, b: &Row| -> Row { std::array::from_fn(|i| a[i] * a[i] + b[i] * b[i]) };
+        let mut squared = [0.0; LANES];
         if self.azimuth_free {
             // Stored positions have no y.
-            let across = sum_of_squares(&along(&block[0], &block[2]), &along(&[0.0; LANES], &block[3]));
+            let (px, pz, zx, zy, zz) = (&block[0], &block[1], &block[2], &block[3], &block[4]);
             let radius = (x * x + y * y).sqrt();
-            let outward = across.map(|squared| squared.sqrt() - radius);
-            return sum_of_squares(&outward, &along(&block[1], &block[4]).map(|height| height - z));
+            for (i, squared) in squared.iter_mut().enumerate() {
+                let (across_x, across_y) = (px[i] + self.reach * zx[i], self.reach * zy[i]);
+                let outward = (across_x * across_x + across_y * across_y).sqrt() - radius;
+                let upward = pz[i] + self.reach * zz[i] - z;
+                *squared = outward * outward + upward * upward;
+            }
+            return squared;
         }
-        let [dx, dy, dz] = std::array::from_fn(|k| along(&block[k], &block[3 + k]).map(|p| p - self.place[k]));
-        let across = sum_of_squares(&dx, &dy);
-        std::array::from_fn(|i| across[i] + dz[i] * dz[i])
+        for (k, coordinate) in self.place.iter().enumerate() {
+            let (origin, axis) = (&block[k], &block[3 + k]);
+            for (i, squared) in squared.iter_mut().enumerate() {
+                let missed = origin[i] + self.reach * axis[i] - coordinate;
+                *squared += missed * missed;
+            }
+        }
+        squared
     }
 }
 

@@ -7,8 +7,8 @@
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result, require_positive};
-use crate::math::box_step::ROWS;
-use crate::math::secant::{LEAST_DAMPING, Secant, antenna};
+use crate::math::box_step::{LEAST_DAMPING, ROWS};
+use crate::math::secant::{Secant, antenna};
 use crate::objective::{Point, Residual};
 
 /// Broyden's method on antenna differences.

@@ -4,7 +4,7 @@
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result, require_positive};
-use crate::math::box_step::box_step;
+use crate::math::box_step::BoxStep;
 use crate::objective::{LeastSquares, Linearization, Point};
 
 /// Levenberg-Marquardt.
@@ -152,7 +152,8 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
         let (bounds, lambda) = (evaluator.bounds(), descent.lambda()?);
         let mut trial = Point::from_slice(x);
         let Linearization { columns, residual } = &linearizations[*here];
-        box_step(columns, residual, lambda, x, bounds.lower(), bounds.upper(), &mut trial);
+        let (lower, upper) = (bounds.lower(), bounds.upper());
+        BoxStep { columns, residual, lambda, x, lower, upper }.write(&mut trial);
         if trial == *x {
             return Err(Halt::Stalled);
         }

@@ -3,6 +3,7 @@
 //! A solver is an immutable value of named options; its progress is another value, its `State`. The
 //! [driver](mod@driver) owns the loop, the [`Evaluator`] counts, clips, checks for finite values and keeps the best. So
 //! exact budgets, "never outside the box" and "the best so far is never lost" hold for every algorithm by construction.
+//! [Side by side](side_by_side) run four of the default solver's descents, for batches.
 //! [`algorithm`] lists all algorithms, [`any_solver`] is what a caller chooses: one of them, from one start or from many.
 //!
 //! | file | algorithm | needs |

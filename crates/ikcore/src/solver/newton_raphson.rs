@@ -4,7 +4,7 @@
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result};
-use crate::math::box_step::box_step;
+use crate::math::box_step::BoxStep;
 use crate::objective::{LeastSquares, Linearization, Point};
 
 /// Newton-Raphson by the pseudo-inverse.
@@ -59,7 +59,8 @@ impl<O: LeastSquares + ?Sized> Solver<O> for NewtonRaphson {
         let bounds = evaluator.bounds();
         let aim = linearization.residual.map(|r| self.step_fraction * r);
         let mut next = x.clone();
-        box_step(&linearization.columns, &aim, 0.0, x, bounds.lower(), bounds.upper(), &mut next);
+        let (columns, lower, upper) = (&linearization.columns, bounds.lower(), bounds.upper());
+        BoxStep { columns, residual: &aim, lambda: 0.0, x, lower, upper }.write(&mut next);
         if next == *x {
             return Err(Halt::Stalled);
         }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::controller::{self, Controller};
 use super::plant::{Fault, Plant, check};
-use super::record::{Accepted, Record};
+use super::record::Record;
 use super::step::Step;
 use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
@@ -131,8 +131,7 @@ fn tick(
 
 impl ModelFreeRecord {
     fn push(&mut self, session: &controller::Session, reference: [f64; 3], step: &Step) {
-        let accepted = Accepted { q: session.q(), velocity_limit: session.velocity_limit() };
-        self.track.push(&accepted, reference, step);
+        self.track.push(&session.accepted(), reference, step);
         self.command.extend_from_slice(session.measured_command());
     }
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::step::Step;
-use crate::limits::{Field, LimitAt, Limits};
+use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::math::ordered::larger;
 use crate::robot::Beyond;
 use crate::solver::Status;
@@ -62,8 +62,8 @@ pub struct Record {
 pub(super) struct Accepted<'a> {
     /// Configuration (n,).
     pub q: &'a [f64],
-    /// The velocity limit that this one was held against (n,).
-    pub velocity_limit: &'a [f64],
+    /// The limits that it was held against.
+    pub tick_box: &'a TickBox,
 }
 
 impl Record {
@@ -119,27 +119,36 @@ impl Record {
 
     /// What the tick that has just ended breaks of its limits.
     fn note_violations(&mut self, accepted: &Accepted<'_>) {
-        let Accepted { q, velocity_limit } = *accepted;
         let rows = self.rows();
         if rows == 0 {
             return;
         }
-        let [from, to] = self.ends(rows);
-        let limited_acceleration = self.limits.field(Field::Acceleration).is_some();
-        let mut fastest = f64::NEG_INFINITY;
-        for (j, (q, velocity_limit)) in q.iter().zip(velocity_limit).enumerate() {
-            let step = q - self.q[self.q.len() - self.dof + j];
-            let [lower, upper] = self.limits.position_range(j, from, to);
-            let too_fast = step.abs() - velocity_limit * self.dt;
-            fastest = larger(too_fast, fastest);
-            let mut excess = larger(too_fast, larger(lower - q, q - upper));
-            if limited_acceleration {
-                excess = excess.max(self.too_sudden(j, step, [from, to]));
-            }
-            self.note_excess(excess, j, *q, to);
+        let Accepted { q, tick_box: TickBox { velocity, floor, ceiling, .. } } = *accepted;
+        let before = &self.q[self.q.len() - q.len()..];
+        let (mut fastest, mut farthest) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        let limits = velocity.iter().zip(floor.iter().zip(ceiling));
+        for ((q, before), (velocity, (floor, ceiling))) in q.iter().zip(before).zip(limits) {
+            fastest = larger((q - before).abs() - velocity * self.dt, fastest);
+            farthest = larger(larger(floor - q, q - ceiling), farthest);
         }
         // From displacements, which keep the limit to the last bit; velocities round once more.
         self.limit_margin = self.limit_margin.min(0.0 - fastest / self.dt);
+        let limited_acceleration = self.limits.field(Field::Acceleration).is_some();
+        if limited_acceleration || larger(fastest, farthest) > self.max_violation {
+            self.find_violations(accepted, self.ends(rows));
+        }
+    }
+
+    /// Which joints break a limit in the tick from `from` to `to` (s), and by how much.
+    fn find_violations(&mut self, accepted: &Accepted<'_>, [from, to]: [f64; 2]) {
+        let Accepted { q, tick_box: TickBox { velocity, floor, ceiling, .. } } = *accepted;
+        for j in 0..q.len() {
+            let step = q[j] - self.q[self.q.len() - self.dof + j];
+            let too_fast = step.abs() - velocity[j] * self.dt;
+            let outside = larger(floor[j] - q[j], q[j] - ceiling[j]);
+            let excess = larger(too_fast, outside).max(self.too_sudden(j, step, [from, to]));
+            self.note_excess(excess, j, q[j], to);
+        }
     }
 
     /// Remembers the worst `excess` (rad, m) over a limit of joint `j`, at `q` and `when` (s), unless it is rounding.

@@ -1,5 +1,7 @@
 //! One control loop: the accepted configuration, the clock, the box of the tick and the rule that moves within it.
 
+use std::borrow::Cow;
+
 use super::TrackOptions;
 use super::record::Accepted;
 use super::rule::{Running, Tick, TickResult, TickRule};
@@ -10,7 +12,7 @@ use crate::objective::{Bounds, Point, Score};
 use crate::rng::{self, LazyRng};
 use crate::robot::{Beyond, Robot};
 use crate::solver::{Monitor, Status};
-use crate::task::{Assessment, Criterion, Goals, Target, TargetMotion, Task, Twist};
+use crate::task::{Assessment, Criterion, Goals, Target, Task};
 
 /// Bisections of a tick that would leave the region: they find how much of it may be kept to a thousandth.
 const BISECTIONS: usize = 10;
@@ -29,7 +31,8 @@ pub struct Session {
     dt: f64,
     ticks: usize,
     q: Point,
-    qd: Point,
+    /// Where the last tick began.
+    before: Point,
     /// The value accepted in the tick before: what a random search has to beat.
     last_value: Option<f64>,
     /// Where the target was at the end of that tick, and its velocity (m/s) if known.
@@ -67,6 +70,7 @@ impl Session {
         let goals = Goals::new(&options.goals, &robot, &ranges);
         Ok(Self {
             robot,
+            tick_box: TickBox::around(start, &limits),
             limits,
             limit_at: options.limit_at,
             rule: options.rule.clone(),
@@ -77,10 +81,9 @@ impl Session {
             dt,
             ticks: 0,
             q: Point::from_slice(start),
-            qd: Point::from_elem(0.0, start.len()),
+            before: Point::from_slice(start),
             last_value: None,
             last_target: None,
-            tick_box: TickBox::around(start),
             seed: options.seed,
             rng: rng::stream(options.seed, 0),
         })
@@ -92,8 +95,8 @@ impl Session {
     }
 
     /// The velocity of the last tick (n,) (rad/s, m/s); zero before the first.
-    pub fn qd(&self) -> &[f64] {
-        &self.qd
+    pub fn qd(&self) -> Point {
+        self.q.iter().zip(&self.before).map(|(q, before)| (q - before) / self.dt).collect()
     }
 
     /// Time of the accepted configuration (s).
@@ -121,9 +124,9 @@ impl Session {
     }
 
     /// What of `wanted` the task asks for, checked.
-    fn read(&self, wanted: &Target) -> Result<Target> {
+    fn read<'a>(&self, wanted: &'a Target) -> Result<Cow<'a, Target>> {
         wanted.validate()?;
-        self.task.map_or(Ok(*wanted), |task| task.target(wanted))
+        self.task.map_or(Ok(Cow::Borrowed(wanted)), |task| task.target(wanted).map(Cow::Owned))
     }
 
     /// How far `wanted` is out of reach within `bounds`, where it is beyond doubt.
@@ -131,12 +134,13 @@ impl Session {
     /// # Errors
     /// As [`step`](Self::step).
     pub(super) fn beyond_reach(&self, wanted: &Target, bounds: &Bounds) -> Result<Option<Beyond>> {
-        Ok(self.criterion.beyond_reach(&self.read(wanted)?, &self.robot, bounds))
+        let target = self.read(wanted)?;
+        Ok(self.criterion.beyond_reach(&target, &self.robot, bounds))
     }
 
     /// What the last tick has accepted.
     pub(super) fn accepted(&self) -> Accepted<'_> {
-        Accepted { q: &self.q, velocity_limit: self.velocity_limit() }
+        Accepted { q: &self.q, tick_box: &self.tick_box }
     }
 
     /// The robot that is moved.
@@ -150,7 +154,7 @@ impl Session {
     /// As [`step`](Self::step).
     pub fn begin(&mut self, target: &Target, velocity: Option<[f64; 3]>) -> Result<Step> {
         let target = self.read(target)?;
-        self.last_target = Some((target, velocity));
+        self.last_target = Some((*target, velocity));
         let Assessment { score, error } = target.assess(&self.robot, &self.q, &self.criterion);
         self.last_value = Some(score.value);
         let status = match score.solved {
@@ -186,16 +190,17 @@ impl Session {
         if let Some(velocity) = &velocity {
             require_finite("velocity of the target", velocity, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
         }
-        let motion = self.motion(&target, velocity);
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
         let within = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
-        let slow_enough = self.limits.brake(&self.q, &self.qd, [from, to], self.dt, &mut self.tick_box);
+        let slow_enough = self.limits.field(Field::Acceleration).is_none()
+            || self.limits.brake(&self.q, &self.qd(), [from, to], self.dt, &mut self.tick_box);
         let tick = Tick {
             robot: &self.robot,
             target: &target,
             criterion: &self.criterion,
             goals: &mut self.goals,
-            motion,
+            velocity,
+            before: self.last_target.as_ref(),
             time: from,
             dt: self.dt,
             limits: &self.limits,
@@ -215,12 +220,10 @@ impl Session {
             _ => Status::Improved,
         };
         if !found.interrupted {
-            for (j, q) in found.q.iter().enumerate() {
-                self.qd[j] = (q - self.q[j]) / self.dt;
-            }
+            self.before.copy_from_slice(&self.q);
             self.q.copy_from_slice(&found.q);
             (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
-            self.last_target = Some((target, velocity));
+            self.last_target = Some((*target, velocity));
         }
         let TickResult { position, evaluations, iterations, interrupted, .. } = found;
         let inside_limits = within && slow_enough;
@@ -230,7 +233,8 @@ impl Session {
     /// Takes back as much of a tick as would bring the tip out of its region. Where the tick began the tip is inside, and the box
     /// is convex, so that any part of the tick ends in it.
     fn keep_in_region(&mut self, target: &Target, found: &mut TickResult) {
-        let Some(region) = self.criterion.region.filter(|region| !region.contains(&found.position)) else { return };
+        let region = self.criterion.region.as_ref().filter(|region| !region.contains(&found.position));
+        let Some(region) = region else { return };
         let (mut kept, mut past) = (0.0, 1.0);
         let end = found.q.clone();
         for _ in 0..BISECTIONS {
@@ -245,23 +249,6 @@ impl Session {
         self.running.forget();
     }
 
-    /// How `target`, which has this `velocity` at the end of the tick, comes there. Where nothing is known of the tick
-    /// before, it has moved with that velocity, or stood still.
-    fn motion(&self, target: &Target, velocity: Option<[f64; 3]>) -> TargetMotion {
-        let dt = self.dt;
-        match (self.last_target, velocity) {
-            (Some((begin, before)), _) => {
-                let velocities = before.zip(velocity).map(|(before, velocity)| [before, velocity]);
-                TargetMotion { begin, end: *target, velocities, dt }
-            }
-            (None, None) => TargetMotion { begin: *target, end: *target, velocities: None, dt },
-            (None, Some(linear)) => {
-                let begin = target.moved(&Twist { linear, angular: [0.0; 3] }, -dt);
-                TargetMotion { begin, end: *target, velocities: Some([linear; 2]), dt }
-            }
-        }
-    }
-
     /// Back to rest in `start` (n,), at t = 0.
     ///
     /// # Errors
@@ -270,7 +257,7 @@ impl Session {
         self.robot.check("q", q)?;
         require_inside(&self.robot, &self.limits, &self.criterion, "q", q)?;
         self.q.copy_from_slice(q);
-        self.qd.fill(0.0);
+        self.before.copy_from_slice(q);
         (self.ticks, self.last_value, self.last_target, self.running) = (0, None, None, self.rule.start());
         self.rng = rng::stream(self.seed, 0);
         Ok(())

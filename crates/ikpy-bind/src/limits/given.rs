@@ -10,13 +10,13 @@ use crate::convert::summary;
 use crate::hash::content_hash;
 
 /// Numbers, a sinusoid, or a function of time.
-pub enum Given {
+pub enum GivenLimit {
     Numbers(PerJoint),
     Sinusoid(PySinusoid),
     Function(Py<PyAny>),
 }
 
-impl Given {
+impl GivenLimit {
     pub fn read(field: Field, value: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(sinusoid) = value.cast::<PySinusoid>() {
             return Ok(Self::Sinusoid(sinusoid.get().clone()));

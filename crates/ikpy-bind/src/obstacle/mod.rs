@@ -1,20 +1,15 @@
 //! `bik.obstacles`.
 
+mod argument;
+mod body;
 mod clearance;
 mod shapes;
 
-use ikcore::math::Pose;
-use ikcore::nalgebra::Matrix3;
-use ikcore::obstacle::{Obstacle, Shape};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
+pub use argument::Obstacles;
+use body::PyObstacle;
 use shapes::{PyBox, PyCapsule, PyConvexMesh, PyEllipse, PyEllipsoid, PySphere};
-
-use crate::convert::{Array, summary, table};
-use crate::error::invalid;
-use crate::hash::content_hash;
-use crate::options::NewArguments;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyObstacle>()?;
@@ -25,105 +20,4 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyEllipse>()?;
     module.add_class::<PyConvexMesh>()?;
     module.add_function(wrap_pyfunction!(clearance::clearance, module)?)
-}
-
-/// A convex body that stands still in the frame of the robot's base: what all obstacles have in common.
-#[pyclass(name = "Obstacle", module = "beetle_ik.obstacles", frozen, eq, subclass)]
-#[derive(Debug, Clone, PartialEq)]
-pub struct PyObstacle {
-    core: Obstacle,
-}
-
-#[pymethods]
-impl PyObstacle {
-    /// Corners (t, 3, 3) (m) of triangles that show its surface, for drawing; those of round shapes touch it with their
-    /// corners.
-    #[getter]
-    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let triangles = self.core.triangles();
-        let count = triangles.len();
-        table(py, triangles.as_flattened().as_flattened().to_vec(), &[count, 3, 3])
-    }
-
-    fn __repr__(&self) -> String {
-        let arguments = match self.core.shape() {
-            Shape::Sphere { center, radius } => format!("{center:?}, {radius:?}"),
-            Shape::Box { pose, size } => {
-                format!("{:?}, {size:?}{}", point_of(pose), rotation_text(pose))
-            }
-            Shape::Capsule { a, b, radius } => format!("{a:?}, {b:?}, {radius:?}"),
-            Shape::Ellipsoid { pose, semi_axes } => {
-                format!("{:?}, {semi_axes:?}{}", point_of(pose), rotation_text(pose))
-            }
-            Shape::Ellipse { center, semi_axes, angle } => format!("{center:?}, {semi_axes:?}, angle={angle:?}"),
-            Shape::ConvexMesh(hull) => format!("{:?}", hull.points()),
-        };
-        format!("obstacles.{}({arguments})", self.core.name())
-    }
-
-    fn __hash__(&self) -> u64 {
-        content_hash(self)
-    }
-
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
-        let none = PyDict::new(py);
-        let turned = |pose: &Pose| rotation_rows(pose).map(|rows| [("rotation", rows)].into_py_dict(py)).transpose();
-        Ok(match self.core.shape() {
-            Shape::Sphere { center, radius } => ((*center, *radius).into_pyobject(py)?, none),
-            Shape::Box { pose, size } => ((point_of(pose), *size).into_pyobject(py)?, turned(pose)?.unwrap_or(none)),
-            Shape::Capsule { a, b, radius } => ((*a, *b, *radius).into_pyobject(py)?, none),
-            Shape::Ellipsoid { pose, semi_axes } => {
-                ((point_of(pose), *semi_axes).into_pyobject(py)?, turned(pose)?.unwrap_or(none))
-            }
-            Shape::Ellipse { center, semi_axes, angle } => {
-                ((*center, *semi_axes).into_pyobject(py)?, [("angle", *angle)].into_py_dict(py)?)
-            }
-            Shape::ConvexMesh(hull) => ((hull.points().to_vec(),).into_pyobject(py)?, none),
-        })
-    }
-}
-
-fn point_of(pose: &Pose) -> [f64; 3] {
-    pose.translation.vector.into()
-}
-
-/// The rotation row after row; None where there is none.
-fn rotation_rows(pose: &Pose) -> Option<[[f64; 3]; 3]> {
-    let rotation = pose.rotation.matrix();
-    let turned = *rotation != Matrix3::identity();
-    turned.then(|| rotation.transpose().into())
-}
-
-fn rotation_text(pose: &Pose) -> String {
-    rotation_rows(pose).map_or(String::new(), |rows| format!(", rotation={rows:?}"))
-}
-
-/// Obstacles as a caller gave them.
-pub struct Given {
-    /// For the core.
-    pub core: Vec<Obstacle>,
-    /// For results that carry them along.
-    pub tuple: Py<PyTuple>,
-}
-
-impl Given {
-    /// Any sequence of obstacles; None is none.
-    pub fn read(py: Python<'_>, value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
-        let wrong = |place: &str, got: &Bound<'_, PyAny>| {
-            let got = summary(got);
-            invalid(format!("{place} must be made by bik.obstacles, such as Sphere or Box, got {got}"))
-        };
-        let items: Vec<Bound<'_, PyAny>> = match value {
-            None => vec![],
-            Some(one) if one.cast::<PyObstacle>().is_ok() => {
-                return Err(invalid(format!("obstacles must be a list, got a single one: [{}]", summary(one))));
-            }
-            Some(value) => value.try_iter().map_err(|_| wrong("obstacles", value))?.collect::<PyResult<_>>()?,
-        };
-        let core = items.iter().enumerate().map(|(i, item)| match item.cast::<PyObstacle>() {
-            Ok(obstacle) => Ok(obstacle.get().core.clone()),
-            Err(_) => Err(wrong(&format!("obstacle {i}"), item)),
-        });
-        Ok(Self { core: core.collect::<PyResult<_>>()?, tuple: PyTuple::new(py, items)?.unbind() })
-    }
 }

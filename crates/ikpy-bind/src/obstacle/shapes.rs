@@ -8,7 +8,7 @@ use numpy::{PyArray1, PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::PyClass;
 use pyo3::prelude::*;
 
-use super::PyObstacle;
+use super::body::PyObstacle;
 use crate::convert::{Array, array, copied, entries, matrix3, point, shape_text, table};
 use crate::error::{invalid, raise};
 

@@ -6,7 +6,7 @@ use ikcore::path::Reference;
 use ikcore::planning::TipPath;
 use pyo3::prelude::*;
 
-use super::{Curve, Orientation, PyPath};
+use super::reference::{Curve, Orientation, PyPath};
 use crate::error::raise;
 use crate::limits::CALLS_BETWEEN_SIGNAL_CHECKS;
 

@@ -10,7 +10,7 @@ use crate::error::{invalid, raise};
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
-use crate::obstacle::Given;
+use crate::obstacle::Obstacles;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
 
@@ -20,12 +20,12 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     robot: the arm.
 ///     start, end: position (3,) (m) or pose (4, 4) of the tip; the configuration is the planner's choice.
 ///     start_q, end_q: instead of them, joint angles (n,).
-///     obstacles: what the robot may not touch, from `bik.obstacles`; it may never touch itself if it has capsules.
-///     margin: distance to keep from obstacles and between links (m); None: 1 mm.
 ///     limits: positions, velocities and accelerations to keep; None: the robot's.
 ///     method: "minmax": the ends' configurations that are nearest in time, joined at the limits' pace; "tpbso":
 ///         polynomials through a via point, searched by a beetle swarm (Wang et al. 2019).
 ///     objective: what to minimise: "time", "joint_travel" or "tip_travel".
+///     obstacles: what the robot may not touch, from `bik.obstacles`; it may never touch itself if it has capsules.
+///     margin: distance to keep from obstacles and between links (m); None: 1 mm.
 ///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1; None: (1, 1).
 ///     solver: what searches; None: the method's own.
 ///     stop: budgets; None: the method's own.
@@ -65,7 +65,7 @@ pub fn plan_point_to_point(
     let arm = robot.get().core.clone();
     let (start, end) = (read_end("start", start, start_q)?, read_end("end", end, end_q)?);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
-    let obstacles = Given::read(py, obstacles)?;
+    let obstacles = Obstacles::read(py, obstacles)?;
     let given = obstacles.tuple;
     let options = PointToPointOptions {
         method: method.parse().map_err(raise)?,

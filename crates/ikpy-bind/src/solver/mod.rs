@@ -1,5 +1,6 @@
 //! Solvers, one family a file, budgets and statuses.
 
+mod any_solver;
 mod apps;
 mod bas;
 mod broyden_bas;
@@ -13,95 +14,17 @@ mod schedule;
 mod stop;
 mod swarm;
 
-use ikcore::solver::{Algorithm, AnySolver, DerivativeFree};
-use pyo3::PyClass;
 use pyo3::prelude::*;
 
-use apps::PyApps;
-use bas::PyBas;
+use any_solver::add_classes;
+pub use any_solver::{any_solver, derivative_free_solver, known_solver, solver_names};
 pub use broyden_bas::PyBroydenBas;
-use jacobian_transpose::PyJacobianTranspose;
-use levenberg_marquardt::PyLevenbergMarquardt;
 use multi_start::PyMultiStart;
-use newton_raphson::PyNewtonRaphson;
-use pso::PyPso;
 pub use stop::{PyStop, status};
-use swarm::{PyBeeColony, PyBeetleSwarm, PyDifferentialEvolution, PyFirefly, PyGenetic, PyQpso};
-
-use crate::convert::summary;
-use crate::error::invalid;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     add_classes(module)?;
     module.add_class::<PyMultiStart>()?;
     module.add_class::<PyStop>()?;
     module.add("Status", stop::status_class(module.py())?)
-}
-
-/// The one list of solver classes, by the names that the core has for what they hold.
-macro_rules! solvers {
-    (derivative_free: $($simple:ident = $simple_class:ident),+; with_more: $($richer:ident = $richer_class:ident),+ $(;)?) => {
-        /// The names of those that need values alone, for messages.
-        const DERIVATIVE_FREE: &[&str] = &[$(<$simple_class as PyClass>::NAME),+];
-        /// The names of those that need more.
-        const WITH_MORE: &[&str] = &[$(<$richer_class as PyClass>::NAME),+];
-
-        fn add_classes(module: &Bound<'_, PyModule>) -> PyResult<()> {
-            $(module.add_class::<$simple_class>()?;)+
-            $(module.add_class::<$richer_class>()?;)+
-            Ok(())
-        }
-
-        /// The algorithm that a Python value holds; None for anything else.
-        fn algorithm(value: &Bound<'_, PyAny>) -> Option<Algorithm> {
-            $(if let Ok(solver) = value.cast::<$simple_class>() {
-                return Some(solver.get().0.clone().into());
-            })+
-            $(if let Ok(solver) = value.cast::<$richer_class>() {
-                return Some(solver.get().0.clone().into());
-            })+
-            None
-        }
-
-        /// The Python value of an algorithm.
-        fn to_python<'py>(py: Python<'py>, algorithm: &Algorithm) -> PyResult<Bound<'py, PyAny>> {
-            Ok(match algorithm {
-                $(Algorithm::DerivativeFree(DerivativeFree::$simple(solver)) => {
-                    Bound::new(py, $simple_class(*solver))?.into_any()
-                })+
-                $(Algorithm::$richer(solver) => Bound::new(py, $richer_class(*solver))?.into_any(),)+
-            })
-        }
-    };
-}
-
-solvers! {
-    derivative_free: Bas = PyBas, BeeColony = PyBeeColony, BeetleSwarm = PyBeetleSwarm,
-        DifferentialEvolution = PyDifferentialEvolution, Firefly = PyFirefly, Genetic = PyGenetic, Pso = PyPso, Qpso = PyQpso;
-    with_more: Apps = PyApps, BroydenBas = PyBroydenBas, JacobianTranspose = PyJacobianTranspose,
-        LevenbergMarquardt = PyLevenbergMarquardt, NewtonRaphson = PyNewtonRaphson;
-}
-
-/// A solver argument.
-pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
-    known_solver(solver).ok_or_else(|| invalid(format!("solver must be {}, got {}", solver_names(), summary(solver))))
-}
-
-/// The solver that a Python value is; None for anything else.
-pub fn known_solver(value: &Bound<'_, PyAny>) -> Option<AnySolver> {
-    let multi_start = || value.cast::<PyMultiStart>().ok().map(|solver| AnySolver::MultiStart(solver.get().0.clone()));
-    algorithm(value).map(AnySolver::Single).or_else(multi_start)
-}
-
-/// What an argument may be that takes any solver, for messages.
-pub fn solver_names() -> String {
-    format!("{} or MultiStart of one of them", [DERIVATIVE_FREE, WITH_MORE].concat().join(", "))
-}
-
-/// A solver argument of a method that knows values alone.
-pub fn derivative_free_solver(method: &str, solver: &Bound<'_, PyAny>) -> PyResult<AnySolver<DerivativeFree>> {
-    any_solver(solver)?.into_derivative_free().ok_or_else(|| {
-        let (names, got) = (DERIVATIVE_FREE.join(", "), summary(solver));
-        invalid(format!("{method} knows no derivative: solver must be {names} or MultiStart of one of them, got {got}"))
-    })
 }

@@ -4,7 +4,7 @@ use ikcore::solver::{Algorithm, AnySolver, MultiStart};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyTuple};
 
-use super::{any_solver, to_python};
+use super::any_solver::{any_solver, to_python};
 use crate::convert::count;
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;

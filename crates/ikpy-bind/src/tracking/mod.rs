@@ -1,5 +1,6 @@
 //! Following a path: with a robot's model, and without one.
 
+mod arguments;
 mod control;
 mod model_free;
 mod plant;

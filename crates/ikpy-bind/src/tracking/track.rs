@@ -1,26 +1,21 @@
 //! `track` and `TrackResult`.
 
-use ikcore::limits::LimitAt;
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::task::Tolerance;
-use ikcore::tracking::{self, Record, TickRule, TrackOptions};
+use ikcore::tracking::{self, Record};
 use ikcore::trajectory::Trajectory;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 
+use super::arguments::{TrackArguments, tick_rule};
 use super::record::{Columns, counts, record};
-use super::weighted_pseudo_inverse::PyWeightedPseudoInverse;
-use crate::convert::{count, row, summary, table, vector};
-use crate::error::{invalid, raise};
-use crate::goal::read_goals;
+use crate::convert::{row, table, vector};
+use crate::error::raise;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::outcome::outcome;
 use crate::path::PyPath;
 use crate::robot::PyRobot;
-use crate::solver::{known_solver, solver_names};
 use crate::stored::{self, Reduced};
-use crate::task::read_task;
 use crate::trajectory::PyTrajectory;
 use crate::upward;
 
@@ -187,28 +182,9 @@ pub fn track(
     let sampling = Sampling::of_ticks(dt, reference.len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
-    let options = TrackOptions {
-        rule,
-        task: read_task(task)?,
-        goals: read_goals(goals)?,
-        tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
-        limits: resolved,
-        limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
-        seed: count("seed", seed)?,
-    };
+    let asked = TrackArguments { rule, task, goals, position_tolerance, rotation_tolerance, seed, limit_at };
+    let options = asked.read(resolved)?;
     let record =
         watched(py, progress, |watcher| tracking::track(&arm, &reference, start.as_deref(), &options, watcher))?;
     PyTrackResult::new(py, record, robot.clone().unbind(), in_force)
-}
-
-/// A rule, a solver, or the library's own rule.
-pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
-    let Some(solver) = solver else { return Ok(TickRule::default()) };
-    if let Ok(rule) = solver.cast::<PyWeightedPseudoInverse>() {
-        return Ok(rule.get().rule());
-    }
-    known_solver(solver).map(TickRule::Solver).ok_or_else(|| {
-        let (names, got) = (solver_names(), summary(solver));
-        invalid(format!("solver must be {names} or WeightedPseudoInverse, got {got}"))
-    })
 }

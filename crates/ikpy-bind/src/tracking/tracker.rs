@@ -2,23 +2,19 @@
 
 use std::sync::Mutex;
 
-use ikcore::limits::LimitAt;
 use ikcore::solver::Unattended;
 use ikcore::solver::stop::Stopwatch;
-use ikcore::task::Tolerance;
-use ikcore::tracking::{Session, TrackOptions};
+use ikcore::tracking::Session;
 use pyo3::prelude::*;
 
+use super::arguments::{TrackArguments, tick_rule};
 use super::session::in_progress;
 use super::step::PyStep;
-use super::track::tick_rule;
-use crate::convert::{count, point, vector};
+use crate::convert::{point, vector};
 use crate::error::raise;
-use crate::goal::read_goals;
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::robot::PyRobot;
-use crate::task::read_task;
 
 /// One control loop, one call a tick: the same as `track`, for targets that come one at a time.
 ///
@@ -29,9 +25,10 @@ use crate::task::read_task;
 ///     robot: the arm.
 ///     start: (n,), configuration at t = 0.
 ///     dt: time step (s).
-///     task, goals: as in `track`.
+///     task: as in `track`.
 ///     solver: what runs in every step: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule.
 ///     limits: None: the robot's. Numbers and `Sinusoid`s; a callable has no end to be sampled to.
+///     goals: as in `track`.
 ///     position_tolerance: m.
 ///     rotation_tolerance: rad.
 ///     seed: of the random draws.
@@ -71,15 +68,9 @@ impl PyTracker {
         let (py, arm) = (robot.py(), &robot.get().core);
         limits.map_or(Ok(()), |limits| limits.require_no_functions("Tracker", "track"))?;
         let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
-        let options = TrackOptions {
-            rule: tick_rule(solver)?,
-            task: read_task(task)?,
-            goals: read_goals(goals)?,
-            tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
-            limits: resolved,
-            limit_at: limit_at.parse::<LimitAt>().map_err(raise)?,
-            seed: count("seed", seed)?,
-        };
+        let rule = tick_rule(solver)?;
+        let asked = TrackArguments { rule, task, goals, position_tolerance, rotation_tolerance, seed, limit_at };
+        let options = asked.read(resolved)?;
         let session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
         Ok(Self { session: Mutex::new(session), robot: robot.clone().unbind(), limits: in_force })
     }

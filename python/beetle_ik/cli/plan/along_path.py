@@ -9,8 +9,20 @@ import typer
 from ... import InvalidInputError, Robot, plan_along_path
 from ... import Path as ReferencePath
 from ..curves import CurveName, make_curve, read_points
-from ..options import AsJson, BaseLink, RobotName, Seed, StartQ, TipLink, UrdfFile, load_robot, numbers
-from .planned import Acceleration, Animated, Budget, Out, Solver, Velocity, options, report
+from ..options import (
+    Acceleration,
+    AsJson,
+    BaseLink,
+    RobotName,
+    Seed,
+    StartQ,
+    TipLink,
+    UrdfFile,
+    Velocity,
+    load_robot,
+    numbers,
+)
+from .planned import Animated, Budget, Out, Solver, options, report
 
 _DURATION = 1.0  # s; the planner does not look at it
 

@@ -1,7 +1,7 @@
 """What a planned motion is reported by: options, figures, files."""
 
+import math
 from collections.abc import Callable
-from contextlib import nullcontext
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,18 +9,10 @@ from typing import Annotated, Any
 import typer
 
 from ... import InvalidInputError, Limits, Plan, Stop, plot
-from ..._files import whole_folder
-from ..files import can_draw, print_files, write_files
+from ..files import can_draw, print_files, results_folder, write_files
 from ..options import SolverName, limit, make_solver
 from ..show import print_json, print_pairs
 
-Velocity = Annotated[
-    str | None,
-    typer.Option("--velocity-limit", help="In rad/s: a number, or one a joint: v1,v2,...; else the robot's."),
-]
-Acceleration = Annotated[
-    str | None, typer.Option("--acceleration-limit", help="The same in rad/s^2; else there is none.")
-]
 Budget = Annotated[
     int | None, typer.Option("--max-evaluations", min=1, help="Budget of the search; else the method's own.")
 ]
@@ -63,7 +55,7 @@ def report(make: Callable[[], Plan], method: str, seed: int, out: Path | None, a
     """Plan, write the files, print, and leave with the exit status of the plan."""
     if animated and out is None:
         raise InvalidInputError("--animation writes a file: use --out DIR too")
-    with nullcontext() if out is None else whole_folder(out, option="--out") as folder:
+    with results_folder(out) as folder:
         plan = make()
         summary = _summarize(plan, method, seed)
         if folder is not None:
@@ -102,9 +94,9 @@ def _summarize(plan: Plan, method: str, seed: int) -> dict[str, Any]:
 
 def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
     rows = [("duration [s]", f"{summary['duration']:.6g}")]
-    if plan.accuracy == plan.accuracy:  # NaN from end to end
+    if not math.isnan(plan.accuracy):  # planned along a path
         rows.append(("distance from the path, at most [m]", f"{plan.accuracy:.3g}"))
-    if plan.clearance == plan.clearance:
+    if not math.isnan(plan.clearance):  # planned among obstacles
         rows.append(("smallest clearance [m]", f"{plan.clearance:.3g}"))
     rows += [("breaks", violation) for violation in summary["violations"]]
     rows += [("evaluations", str(plan.evaluations)), ("time [ms]", f"{1e3 * plan.elapsed:.3g}")]

@@ -5,10 +5,21 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import plan_point_to_point
+from ... import InvalidInputError, plan_point_to_point
 from ...obstacles import Ellipse
-from ..options import AsJson, BaseLink, RobotName, Seed, TipLink, UrdfFile, load_robot, numbers
-from .planned import Acceleration, Animated, Budget, Out, Solver, Velocity, options, report
+from ..options import (
+    Acceleration,
+    AsJson,
+    BaseLink,
+    RobotName,
+    Seed,
+    TipLink,
+    UrdfFile,
+    Velocity,
+    load_robot,
+    numbers,
+)
+from .planned import Animated, Budget, Out, Solver, options, report
 
 
 class Method(StrEnum):
@@ -61,12 +72,7 @@ def point_to_point(
 ) -> None:
     """Plan a motion from one place to another, at rest at both."""
     arm = load_robot(robot, urdf, base, tip)
-    texts = {"start": start, "start_q": start_q, "end": end, "end_q": end_q}
-    ends: dict[str, Any] = {
-        name: numbers(f"--{name.replace('_', '-')}", text, None if name.endswith("_q") else 3)
-        for name, text in texts.items()
-        if text is not None
-    }
+    ends = _end("start", start, start_q) | _end("end", end, end_q)
     chosen = options(velocity, acceleration, solver, max_evaluations)
     obstacles = [_ellipse(text) for text in ellipses or ()]
     report(
@@ -86,6 +92,18 @@ def point_to_point(
         animation,
         as_json,
     )
+
+
+def _end(name: str, place: str | None, configuration: str | None) -> dict[str, Any]:
+    """An end of the motion as `plan_point_to_point` takes it: a place of the tip, or joint positions."""
+    match place, configuration:
+        case str(), None:
+            return {name: numbers(f"--{name}", place, 3)}
+        case None, str():
+            return {f"{name}_q": numbers(f"--{name}-q", configuration)}
+        case None, None:
+            raise InvalidInputError(f"no {name} was given: use --{name} X,Y,Z or --{name}-q Q1,Q2,...")
+    raise InvalidInputError(f"both --{name} and --{name}-q were given: give one of them")
 
 
 def _ellipse(text: str) -> Any:

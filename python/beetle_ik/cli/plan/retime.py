@@ -8,15 +8,13 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from ... import InvalidInputError, Limits, Trajectory, plot, time_optimal
+from ... import Limits, Trajectory, plot, time_optimal
 from ..._csv import read_table
-from ..._files import whole_folder
 from ..._text import counted
-from ..files import print_files, write_files
+from ...export import joint_positions
+from ..files import print_files, results_folder, write_files
 from ..options import AsJson, limit
 from ..show import listed, print_json, print_pairs
-
-_OTHER_COLUMNS = ("qd:", "qdd:")
 
 
 class SplineName(StrEnum):
@@ -56,44 +54,31 @@ def retime(
     as_json: AsJson = False,
 ) -> None:
     """Time the joint path through the rows of FILE as fast as the limits allow."""
-    joints, waypoints, time = _read(file)
+    table = read_table(file, [])
+    joints, waypoints = joint_positions(file, table)
+    time = table.get("time")
     limits = Limits(
         acceleration=limit("--acceleration-limit", acceleration),
         velocity=limit("--velocity-limit", velocity),
         jerk=limit("--jerk-limit", jerk),
     )
-    trajectory = time_optimal(
-        waypoints,
-        limits,
-        knots=None if spline == SplineName.POLYLINE else time,
-        spline=spline.value,
-        blend=blend,
-        gridpoints=gridpoints,
-        joint_names=joints,
-    )
-    summary = _summarize(file, trajectory, limits, waypoints, time)
-    if out is not None:
-        with whole_folder(out) as folder:
+    with results_folder(out) as folder:
+        trajectory = time_optimal(
+            waypoints,
+            limits,
+            knots=None if spline == SplineName.POLYLINE else time,
+            spline=spline.value,
+            blend=blend,
+            gridpoints=gridpoints,
+            joint_names=joints,
+        )
+        summary = _summarize(file, trajectory, limits, waypoints, time)
+        if folder is not None:
             write_files(folder, trajectory, summary, {"limits.png": lambda: plot.saturation(trajectory, limits)})
     if as_json:
         print_json(summary)
     else:
         _print(summary, out)
-
-
-def _read(file: Path) -> tuple[list[str], NDArray[np.float64], NDArray[np.float64] | None]:
-    """Joint names, their positions row by row, and the times, if the file has any."""
-    table = read_table(file, [])
-    columns = [column for column in table if column.startswith("q:")]
-    if not columns:
-        columns = [column for column in table if column != "time" and not column.startswith(_OTHER_COLUMNS)]
-    if not columns:
-        raise InvalidInputError(
-            f"{file}, line 1: no joint positions: expected a column for each joint, named 'q:joint' or by the joint "
-            f"alone; columns found: {', '.join(table)}"
-        )
-    waypoints = np.column_stack([table[column] for column in columns])
-    return [column.removeprefix("q:") for column in columns], waypoints, table.get("time")
 
 
 def _summarize(

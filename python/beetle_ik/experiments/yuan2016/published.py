@@ -11,11 +11,10 @@ Array = NDArray[np.float64]
 MOTIONS = ("I-1", "1-2", "2-3", "3-4", "4-5", "5-6", "6-I")
 START = np.array([0.01, -78.33, 183.51, 0.16, -44.87, -179.93])  # degrees, motion 0 of Table 3
 
-# Table 1: a, alpha, d of each row (m, rad, m), and the ranges (degrees).
+# Table 1: a, alpha, d of each row (m, rad, m).
 DH_A = np.array([0.0, 0.35, 1.15, 0.041, 0.0, 0.0])
 DH_ALPHA = np.array([np.pi, np.pi / 2, 0.0, -np.pi / 2, np.pi / 2, -np.pi / 2])
 DH_D = np.array([-0.675, 0.0, 0.0, -1.2, 0.0, -0.215])
-RANGES = np.array([[-185, 185], [-95, 50], [-30, 245], [-350, 350], [-125, 125], [-350, 350]], dtype=float)
 
 # Rows "T" of Table 4: the targets' positions (m). Table 2 has 1.9845 for the first and the last but one x.
 TARGETS = np.array(

@@ -1,10 +1,10 @@
 //! Plans among obstacles: collision-free configurations for both ends, a collision-free path between them, and a timing whose
 //! whole motion is certified.
 
-use super::ends::{NAMES, Pair, Search};
-use super::line_timing::Polyline;
+use super::ends::{NAMES, Pair, PairSearch};
+use super::line_timing::JointPolyline;
 use super::rrt_connect::{Connection, TreeSearch};
-use super::{PAIRS, no_pair, straight};
+use super::straight::{PAIRS, no_pair, straight};
 use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::obstacle::{Scene, Sweep};
@@ -28,7 +28,7 @@ const PATHS: u64 = 4;
 const NARROWINGS: usize = 12;
 
 /// Plans for ends and options that are in order.
-pub(super) fn plan(search: &mut Search, options: &PointToPointOptions, monitor: &mut dyn Monitor) -> Result<Plan> {
+pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monitor: &mut dyn Monitor) -> Result<Plan> {
     let margin = options.kept_margin()?;
     let lines = as_lines(search.robot)?;
     let scene = scene(search.robot, lines.as_ref(), &options.obstacles)?;
@@ -49,14 +49,14 @@ pub(super) fn plan(search: &mut Search, options: &PointToPointOptions, monitor: 
     let limits = search.limits;
     let mut trees =
         TreeSearch::new(&scene, limits, margin + RESERVE, options.stop.map_or(BUDGET, |stop| stop.max_evaluations));
-    let found = match open.is_empty() {
-        true => Found::Nothing(Status::Stalled),
+    let certified = match open.is_empty() {
+        true => Certified::Nothing(Status::Stalled),
         false => best_path(&mut trees, limits, &open, options.seed, margin, monitor)?,
     };
     search.evaluations += trees.sweep.examined();
-    let (trajectory, ended) = match found {
-        Found::Clear(trajectory) => (trajectory, Status::Solved),
-        Found::Nothing(status) => {
+    let (trajectory, ended) = match certified {
+        Certified::Motion(trajectory) => (trajectory, Status::Solved),
+        Certified::Nothing(status) => {
             let tried = if open.is_empty() { &pairs } else { &open };
             (straight(least_penetrating(&scene, tried).unwrap_or(first), limits)?, status)
         }
@@ -77,9 +77,9 @@ fn least_penetrating<'p>(scene: &Scene, pairs: &'p [Pair]) -> Option<&'p Pair> {
     pairs.iter().max_by(|one, other| distance(one).total_cmp(&distance(other)))
 }
 
-/// The result of the search for a path.
-enum Found {
-    Clear(Trajectory),
+/// The motion certified to be free of collisions, or why there is none.
+enum Certified {
+    Motion(Trajectory),
     Nothing(Status),
 }
 
@@ -91,12 +91,12 @@ fn best_path(
     seed: u64,
     margin: f64,
     monitor: &mut dyn Monitor,
-) -> Result<Found> {
+) -> Result<Certified> {
     for pair in open {
         if trees.is_clear(&pair.start, &pair.end) {
             let trajectory = straight(pair, limits)?;
             if keeps_clear(trees, &trajectory, margin) {
-                return Ok(Found::Clear(trajectory));
+                return Ok(Certified::Motion(trajectory));
             }
         }
     }
@@ -109,18 +109,20 @@ fn best_path(
         let path = match trees.connect(start, &ends, &mut rng, monitor) {
             Connection::Found(path) => trees.shorten(path, &mut rng, monitor),
             Connection::NotFound => break,
-            Connection::Interrupted => return Ok(best.map_or(Found::Nothing(Status::Interrupted), Found::Clear)),
+            Connection::Interrupted => {
+                return Ok(best.map_or(Certified::Nothing(Status::Interrupted), Certified::Motion));
+            }
         };
         let trajectory = timed(trees, &path, limits, margin)?;
         if best.as_ref().is_none_or(|best| trajectory.duration() < best.duration()) {
             best = Some(trajectory);
         }
     }
-    Ok(best.map_or(Found::Nothing(Status::BudgetSpent), Found::Clear))
+    Ok(best.map_or(Certified::Nothing(Status::BudgetSpent), Certified::Motion))
 }
 
 /// A smooth timing of a collision-free path: with blends as wide as can be certified, or else with a stop at each corner.
-fn timed(trees: &mut TreeSearch, path: &Polyline, limits: &MotionLimits, margin: f64) -> Result<Trajectory> {
+fn timed(trees: &mut TreeSearch, path: &JointPolyline, limits: &MotionLimits, margin: f64) -> Result<Trajectory> {
     let stopping = path.with_stops(limits)?;
     let mut shares = vec![1.0; path.0.len()];
     for _ in 0..NARROWINGS {
@@ -140,7 +142,7 @@ fn timed(trees: &mut TreeSearch, path: &Polyline, limits: &MotionLimits, margin:
 }
 
 /// The inner point of the path that the motion is nearest to at time `t` (s).
-fn nearest_corner(path: &Polyline, motion: &Trajectory, t: f64) -> Result<usize> {
+fn nearest_corner(path: &JointPolyline, motion: &Trajectory, t: f64) -> Result<usize> {
     let n = motion.joints().len();
     let (mut q, mut qd, mut qdd) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     motion.at(t, &mut q, &mut qd, &mut qdd)?;
@@ -156,7 +158,7 @@ fn keeps_clear(trees: &mut TreeSearch, trajectory: &Trajectory, margin: f64) -> 
 
 /// The plan with what its trajectory breaks, by the exact limits and the smallest certified distance.
 fn finish(
-    search: &Search,
+    search: &PairSearch,
     scene: &Scene,
     trajectory: Trajectory,
     ended: Status,

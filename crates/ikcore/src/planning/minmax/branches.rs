@@ -1,6 +1,6 @@
 //! Pairs over all branches of inverse kinematics of both ends, each at the whole turns nearest to the other end.
 
-use super::ends::{Pair, Search};
+use super::ends::{Pair, PairSearch};
 use crate::error::Result;
 use crate::ik::{AllOptions, SolveOptions, bring_near, solve_all};
 use crate::objective::{Bounds, Point};
@@ -10,7 +10,7 @@ use crate::solver::Monitor;
 /// Largest number of configurations of an end: all of them for a non-redundant arm, a sample for others.
 const BRANCHES: usize = 40;
 
-impl Search<'_> {
+impl PairSearch<'_> {
     /// The `count` quickest pairs of any configurations of both ends, the quickest first.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ pub(super) struct Pair {
 }
 
 /// What all searches for configurations share.
-pub(super) struct Search<'a> {
+pub(super) struct PairSearch<'a> {
     pub robot: &'a Robot,
     pub limits: &'a MotionLimits,
     pub ends: [&'a Endpoint; 2],
@@ -36,7 +36,7 @@ pub(super) struct Search<'a> {
 /// Names of the two ends in messages.
 pub(super) const NAMES: [&str; 2] = ["start", "end"];
 
-impl<'a> Search<'a> {
+impl<'a> PairSearch<'a> {
     /// # Errors
     /// [`Error::OutsideLimits`] for a configuration outside the limits.
     pub(super) fn new(

@@ -38,9 +38,9 @@ impl MotionLimits {
 
 /// Points (n each) joined by straight lines in joint space, consecutive ones different.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Polyline(pub Vec<Vec<f64>>);
+pub(super) struct JointPolyline(pub Vec<Vec<f64>>);
 
-impl Polyline {
+impl JointPolyline {
     /// From rest to rest along each line by a quintic: exactly on the lines, at rest in every point.
     pub(super) fn with_stops(&self, limits: &MotionLimits) -> Result<Trajectory> {
         let (mut knots, mut coefficients) = (vec![0.0], vec![]);

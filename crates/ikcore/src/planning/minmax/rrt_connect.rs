@@ -1,7 +1,7 @@
 //! A collision-free path through joint space: two trees that grow towards each other (RRT-Connect, Kuffner and LaValle,
 //! ICRA 2000), every edge certified between its ends.
 
-use super::line_timing::Polyline;
+use super::line_timing::JointPolyline;
 use crate::obstacle::{Edge, Scene, Sweep};
 use crate::planning::MotionLimits;
 use crate::rng::LazyRng;
@@ -11,7 +11,7 @@ use crate::solver::Monitor;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Connection {
     /// A path, clear on all its lines.
-    Found(Polyline),
+    Found(JointPolyline),
     /// The budget was spent before the trees met.
     NotFound,
     /// The caller's monitor asked to stop.
@@ -81,7 +81,7 @@ impl<'a> TreeSearch<'a> {
                     if !from_start {
                         path.reverse();
                     }
-                    return Connection::Found(Polyline(path));
+                    return Connection::Found(JointPolyline(path));
                 }
             }
             std::mem::swap(&mut growing, &mut other);
@@ -116,7 +116,12 @@ impl<'a> TreeSearch<'a> {
     }
 
     /// Straightens a path: leaves out points that are not needed, then tries random shortcuts.
-    pub(super) fn shorten(&mut self, path: Polyline, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Polyline {
+    pub(super) fn shorten(
+        &mut self,
+        path: JointPolyline,
+        rng: &mut LazyRng,
+        monitor: &mut dyn Monitor,
+    ) -> JointPolyline {
         let mut points = self.with_longest_lines(path.0);
         for _ in 0..SHORTCUTS {
             if points.len() < 3 || self.is_spent() || !monitor.keep_going() {
@@ -130,7 +135,7 @@ impl<'a> TreeSearch<'a> {
                 points.dedup();
             }
         }
-        Polyline(self.with_longest_lines(points))
+        JointPolyline(self.with_longest_lines(points))
     }
 
     /// From each point straight to the farthest one that can be reached so.

@@ -23,6 +23,23 @@ pub struct JointPath {
     coefficients: Vec<f64>,
 }
 
+/// One of the two ends of a path.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum PathEnd {
+    Start,
+    End,
+}
+
+impl PathEnd {
+    /// As messages and options call it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::End => "end",
+        }
+    }
+}
+
 impl JointPath {
     /// Pieces that are known to be in order.
     pub(super) fn from_parts(joints: Vec<String>, breaks: Vec<f64>, coefficients: Vec<f64>) -> Self {
@@ -90,20 +107,28 @@ impl JointPath {
         (piece, s.clamp(self.breaks[0], self.breaks[self.pieces()]) - self.breaks[piece])
     }
 
-    /// Euclidean length of dq/ds where a piece begins, or where it ends.
-    pub(super) fn slope(&self, piece: usize, at_end: bool) -> f64 {
-        let from = if at_end { self.length(piece) } else { 0.0 };
+    /// The piece at an end of the path, and how far in it the end lies.
+    fn place_of(&self, end: PathEnd) -> (usize, f64) {
+        match end {
+            PathEnd::Start => (0, 0.0),
+            PathEnd::End => (self.pieces() - 1, self.length(self.pieces() - 1)),
+        }
+    }
+
+    /// Euclidean length of dq/ds at an end of the path.
+    pub(super) fn slope(&self, end: PathEnd) -> f64 {
+        let (piece, from) = self.place_of(end);
         (0..self.joints.len()).map(|joint| self.joint_at(piece, from, joint)[1].powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Whether dq/ds vanishes at its beginning, or at its end, as that of a clamped spline does.
-    pub(super) fn has_no_direction(&self, at_end: bool) -> bool {
-        let piece = if at_end { self.pieces() - 1 } else { 0 };
+    /// Whether dq/ds vanishes at an end of the path, as that of a clamped spline does.
+    pub(super) fn has_no_direction(&self, end: PathEnd) -> bool {
+        let (piece, _) = self.place_of(end);
         let chord = (0..self.joints.len())
             .map(|joint| self.joint_at(piece, self.length(piece), joint)[0] - self.joint_at(piece, 0.0, joint)[0])
             .fold(0.0, |sum: f64, d| sum + d * d)
             .sqrt();
-        self.slope(piece, at_end) <= VANISHING * chord / self.length(piece)
+        self.slope(end) <= VANISHING * chord / self.length(piece)
     }
 
     /// Whether the direction jumps between this piece and the next, so that the joints must stop there.

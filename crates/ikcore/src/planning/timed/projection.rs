@@ -1,7 +1,7 @@
 //! The nearest configuration that reaches a target.
 
 use crate::math::MAX_DOF;
-use crate::math::box_step::box_step;
+use crate::math::box_step::BoxStep;
 use crate::objective::{Bounds, LeastSquares, Linearization};
 use crate::problem::Problem;
 use crate::robot::Robot;
@@ -27,7 +27,9 @@ pub fn project(robot: &Robot, target: &Target, bounds: &Bounds, q: &mut [f64], s
             return 0.0;
         }
         let next = &mut next[..q.len()];
-        box_step(&scratch.columns, &scratch.residual, DAMPING * value, q, bounds.lower(), bounds.upper(), next);
+        let Linearization { columns, residual } = &*scratch;
+        let (lower, upper) = (bounds.lower(), bounds.upper());
+        BoxStep { columns, residual, lambda: DAMPING * value, x: q, lower, upper }.write(next);
         q.copy_from_slice(next);
     }
     value.sqrt()

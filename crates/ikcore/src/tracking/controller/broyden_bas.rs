@@ -3,20 +3,24 @@
 //! A sensor may be noisy, and now and then wrong altogether, so a step that came out quite otherwise than predicted is sent
 //! again before it is believed. If the second measurement agrees with the first, the Jacobian is to blame: it learns, and if
 //! that does not help antennae are put out again. If it agrees with the prediction, the first was an outlier. If it
-//! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there. How
-//! noisy the sensor is to begin with, three measurements of the start tell.
+//! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there. From
+//! other steps only that is learned which noise does not explain, and an error that it explains is no reason to put out
+//! antennae. How noisy the sensor is to begin with, three measurements of the start tell.
 
-use super::noise::{ABOVE_NOISE, Noise, median};
+use super::noise::{Noise, median};
 use super::{Tick, Verdict};
-use crate::math::box_step::ROWS;
-use crate::math::secant::{LEAST_DAMPING, Secant, antenna};
-use crate::math::vector::{distance, norm};
+use crate::math::box_step::LEAST_DAMPING;
+use crate::math::secant::{Secant, antenna};
+use crate::math::vector::{distance, norm, squared_distance};
 use crate::objective::Point;
 use crate::solver::BroydenBas;
 use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
 
 /// A measurement that misses the prediction by more than this share of the predicted motion is sent for again.
 const SURPRISING: f64 = 1.0;
+
+/// An error of so many noise levels is hardly told from none: another step would follow the noise.
+const NEAR_ENOUGH: f64 = 1.25;
 
 /// Steps in a row that came no nearer, before antennae are put out again: they shake the tool.
 const FAILED_STEPS: usize = 2;
@@ -26,7 +30,7 @@ const FAILED_STEPS: usize = 2;
 pub(super) struct Memory {
     options: BroydenBas,
     tolerance: f64,
-    jacobian: Secant,
+    jacobian: Secant<3>,
     /// The accepted configuration, and the position measured there (m).
     q: Point,
     position: [f64; 3],
@@ -97,10 +101,14 @@ impl Memory {
         (&self.q, self.position)
     }
 
-    pub fn command(&mut self, tick: Tick<'_>) -> &[f64] {
+    pub fn sent(&self) -> &[f64] {
+        &self.sent
+    }
+
+    pub fn choose_command(&mut self, tick: Tick<'_>) {
         if self.due > 0 {
             tick.bounds.clip(&mut self.sent);
-            return &self.sent;
+            return;
         }
         self.due = 1 + self.options.sensor_delay;
         self.return_to_box(tick);
@@ -113,7 +121,6 @@ impl Memory {
             }
             measuring @ (Purpose::Repeat { .. } | Purpose::Stand) => measuring,
         };
-        &self.sent
     }
 
     /// A limit may close in on the accepted configuration: then the arm has to be measured where it may stand.
@@ -144,12 +151,18 @@ impl Memory {
     }
 
     fn step(&mut self, tick: Tick<'_>) {
-        let residual = rows(self.position, tick.target);
+        let residual = difference(self.position, tick.target);
         let bounds = [tick.bounds.lower(), tick.bounds.upper()];
-        // What noise has left of a column in the dark must not be taken for a way to move.
+        self.jacobian.step(&residual, self.damping(), &self.q, bounds, &mut self.sent);
+    }
+
+    /// What noise has left of a column in the dark must not be taken for a way to move.
+    fn damping(&self) -> f64 {
         let doubt = self.noise.level() / self.options.antenna_length;
-        let damping = self.damping + doubt * doubt / self.jacobian.size(self.q.len()).max(f64::MIN_POSITIVE);
-        self.jacobian.step(&residual, damping, &self.q, bounds, &mut self.sent);
+        if doubt == 0.0 {
+            return self.damping;
+        }
+        self.damping + doubt * doubt / self.jacobian.size(self.q.len()).max(f64::MIN_POSITIVE)
     }
 
     pub fn observe(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
@@ -186,7 +199,7 @@ impl Memory {
             Purpose::Step => self.believe(tick, position, None),
             Purpose::Again { first } => self.believe(tick, position, Some(first)),
         };
-        let near_enough = self.tolerance.max(2.0 * self.noise.level());
+        let near_enough = self.tolerance.max(NEAR_ENOUGH * self.noise.level());
         let arrived = self.next == Purpose::Step && distance(&self.position, &tick.target) <= near_enough;
         if arrived { Verdict::TickOver } else { verdict }
     }
@@ -194,14 +207,12 @@ impl Memory {
     /// Where the start is, and how noisy the sensor: one of the three measurements may be an outlier.
     fn know_start(&mut self, [a, b, c]: [[f64; 3]; 3]) {
         self.position = std::array::from_fn(|k| median(a[k], b[k], c[k]));
-        let nearest = distance(&a, &b).min(distance(&b, &c)).min(distance(&a, &c));
-        self.noise.note(nearest);
-        self.noise.note(nearest);
+        self.noise.note_three([a, b, c]);
         self.next = Purpose::Antenna { joint: 0 };
     }
 
     fn feel(&mut self, joint: usize, position: [f64; 3]) {
-        self.jacobian.set_column(joint, self.sent[joint] - self.q[joint], &rows(position, self.position));
+        self.jacobian.set_column(joint, self.sent[joint] - self.q[joint], &difference(position, self.position));
         self.next = Purpose::Antenna { joint: joint + 1 };
         if joint + 1 == self.q.len() {
             self.antennae_are_out();
@@ -213,12 +224,11 @@ impl Memory {
         let Self { q, sent, jacobian, .. } = self;
         let dq = || sent.iter().zip(q.iter()).map(|(to, from)| to - from);
         let predicted = jacobian.predict(dq());
-        let seen = rows(position, self.position);
-        let surprise: [f64; ROWS] = std::array::from_fn(|k| seen[k] - predicted[k]);
+        let surprise = difference(difference(position, self.position), predicted);
         let (motion, miss) = (norm(&predicted), norm(&surprise));
         let surprising = miss > SURPRISING * motion;
         self.next = Purpose::Step;
-        let mut noisy = motion < ABOVE_NOISE * self.noise.level();
+        let mut noisy = self.noise.explains(motion);
         match first {
             None if surprising && !noisy => {
                 self.next = Purpose::Again { first: position };
@@ -231,20 +241,22 @@ impl Memory {
             _ => {}
         }
         if !noisy {
-            jacobian.learn(dq(), &surprise, self.noise.share(motion));
+            jacobian.learn(dq(), &surprise, self.noise.share(miss));
         }
         self.judge(tick, position, noisy)
     }
 
     /// Keeps a step that came nearer; else does something about it, unless noise hides what.
     fn judge(&mut self, tick: Tick<'_>, position: [f64; 3], noisy: bool) -> Verdict {
-        let (before, after) = (distance(&self.position, &tick.target), distance(&position, &tick.target));
+        let squared_error = |position: [f64; 3]| squared_distance(&position, &tick.target);
+        let (before, after) = (squared_error(self.position), squared_error(position));
         if after < before {
             self.q.copy_from_slice(&self.sent);
             self.position = position;
             self.damping = (self.damping * 0.1).max(LEAST_DAMPING);
             (self.fresh, self.failed) = (false, 0);
-            self.slow = if after > 0.5 * before && !noisy { self.slow + 1 } else { 0 };
+            let slow = after > 0.25 * before && !noisy && !self.noise.explains(after.sqrt());
+            self.slow = if slow { self.slow + 1 } else { 0 };
             if self.slow >= SLOW_STEPS {
                 self.next = Purpose::Stand;
             }
@@ -271,7 +283,7 @@ impl Memory {
     }
 }
 
-/// a - b in the rows of a task.
-fn rows(a: [f64; 3], b: [f64; 3]) -> [f64; ROWS] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2], 0.0, 0.0, 0.0]
+/// a - b.
+fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| a[k] - b[k])
 }

@@ -80,11 +80,19 @@ enum Running {
 }
 
 impl Running {
-    /// The next command.
-    fn command(&mut self, tick: Tick<'_>, rng: &mut LazyRng) -> &[f64] {
+    /// Makes up its mind about the next command.
+    fn choose_command(&mut self, tick: Tick<'_>, rng: &mut LazyRng) {
         match self {
-            Self::BroydenBas(memory) => memory.command(tick),
-            Self::Znnbas(memory) => memory.command(tick, rng),
+            Self::BroydenBas(memory) => memory.choose_command(tick),
+            Self::Znnbas(memory) => memory.choose_command(tick, rng),
+        }
+    }
+
+    /// The last command; the start before there was one.
+    fn sent(&self) -> &[f64] {
+        match self {
+            Self::BroydenBas(memory) => memory.sent(),
+            Self::Znnbas(memory) => memory.sent(),
         }
     }
 

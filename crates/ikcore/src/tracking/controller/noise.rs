@@ -1,7 +1,12 @@
 //! How noisy a sensor is, as far as repeated measurements tell.
 
-/// Steps are believed from this many noise levels on.
-pub const ABOVE_NOISE: f64 = 3.0;
+use crate::math::vector::distance;
+
+/// What noise explains: distances up to this many noise levels.
+const EXPLAINED: f64 = 3.0;
+
+/// The root mean square distance of two measurements, over the mean one of the nearest two of three; noise is Gaussian.
+const TWO_OVER_NEAREST_OF_THREE: f64 = 1.62;
 
 /// How far apart two measurements of the same command lie (m): the median of the last three that could tell, so that an
 /// outlier counts for nothing.
@@ -9,6 +14,7 @@ pub const ABOVE_NOISE: f64 = 3.0;
 pub struct Noise {
     repeats: [f64; 3],
     noted: usize,
+    level: f64,
 }
 
 impl Noise {
@@ -16,18 +22,30 @@ impl Noise {
     pub fn note(&mut self, repeat: f64) {
         self.repeats[self.noted % 3] = repeat;
         self.noted += 1;
-    }
-
-    /// The noise of one measurement (m); zero until there is evidence.
-    pub fn level(&self) -> f64 {
         let [a, b, c] = self.repeats;
-        median(a, b, c) * std::f64::consts::FRAC_1_SQRT_2
+        self.level = median(a, b, c) * std::f64::consts::FRAC_1_SQRT_2;
     }
 
-    /// How much of a surprise to learn from a step that moves the tip by `motion` (m).
-    pub fn share(&self, motion: f64) -> f64 {
-        let noise = ABOVE_NOISE * self.level();
-        if noise == 0.0 { 1.0 } else { motion * motion / (motion * motion + noise * noise) }
+    /// Three measurements of one command (m). One of them may be an outlier, so the nearest two count.
+    pub fn note_three(&mut self, [a, b, c]: [[f64; 3]; 3]) {
+        let nearest = distance(&a, &b).min(distance(&b, &c)).min(distance(&a, &c));
+        (0..2).for_each(|_| self.note(TWO_OVER_NEAREST_OF_THREE * nearest));
+    }
+
+    /// The noise of one measurement (m), root mean square; zero until there is evidence.
+    pub fn level(&self) -> f64 {
+        self.level
+    }
+
+    /// Whether a motion or an error of this size (m) may be nothing but noise.
+    pub fn explains(&self, size: f64) -> bool {
+        size < EXPLAINED * self.level
+    }
+
+    /// How much to learn from a prediction that missed by `miss` (m): the part of it that noise does not explain. Learning all
+    /// carries the noise of every measurement into the Jacobian, until the steps go astray.
+    pub fn share(&self, miss: f64) -> f64 {
+        (1.0 - (EXPLAINED * self.level / miss).powi(2)).max(0.0)
     }
 }
 

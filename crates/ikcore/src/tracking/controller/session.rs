@@ -9,6 +9,7 @@ use crate::objective::Point;
 use crate::rng::{self, LazyRng};
 use crate::solver::Status;
 use crate::task::TipError;
+use crate::tracking::record::Accepted;
 use crate::tracking::step::Step;
 
 /// A controller in progress. [`command`](Self::command) says where to send the arm, [`observe`](Self::observe) is told where
@@ -24,10 +25,10 @@ pub struct Session {
     ticks: usize,
     /// The configuration accepted at the tick's start: the middle of its box.
     q: Point,
-    qd: Point,
+    /// The one accepted at the start of the tick before.
+    before: Point,
     tick_box: TickBox,
     inside_limits: bool,
-    command: Point,
     stage: Stage,
     /// Error at the end of the tick before (m).
     last_error: f64,
@@ -76,15 +77,14 @@ impl Session {
         limits.require_inside("start", 0.0, start)?;
         Ok(Self {
             running: controller.start(start, dt, tolerance),
+            tick_box: TickBox::around(start, &limits),
             limits,
             tolerance,
             dt,
             ticks: 0,
             q: start.into(),
-            qd: Point::from_elem(0.0, start.len()),
-            tick_box: TickBox::around(start),
+            before: start.into(),
             inside_limits: true,
-            command: start.into(),
             stage: Stage::Start,
             last_error: f64::INFINITY,
             measurements: 0,
@@ -98,8 +98,8 @@ impl Session {
     }
 
     /// The velocity of the last tick (n,) (rad/s, m/s).
-    pub fn qd(&self) -> &[f64] {
-        &self.qd
+    pub fn qd(&self) -> Point {
+        self.q.iter().zip(&self.before).map(|(q, before)| (q - before) / self.dt).collect()
     }
 
     /// Time of the accepted configuration (s).
@@ -149,10 +149,10 @@ impl Session {
         };
         if !first {
             let tick = Tick { target, bounds: &self.tick_box.bounds };
-            self.command.copy_from_slice(self.running.command(tick, &mut self.rng));
+            self.running.choose_command(tick, &mut self.rng);
         }
         self.stage = Stage::Sent { target, first };
-        Ok(&self.command)
+        Ok(self.running.sent())
     }
 
     /// The tip was at `position` (m) at the last command. Returns what became of the tick; None where it goes on.
@@ -175,9 +175,7 @@ impl Session {
             self.stage = Stage::Within;
             return Ok(None);
         }
-        for ((qd, from), to) in self.qd.iter_mut().zip(&self.q).zip(self.running.accepted()) {
-            *qd = (to - from) / self.dt;
-        }
+        self.before.copy_from_slice(&self.q);
         self.q.copy_from_slice(self.running.accepted());
         self.ticks += 1;
         Ok(Some(self.end_tick(target)))
@@ -204,17 +202,22 @@ impl Session {
         }
     }
 
+    /// What the last tick has accepted.
+    pub(in crate::tracking) fn accepted(&self) -> Accepted<'_> {
+        Accepted { q: &self.q, tick_box: &self.tick_box }
+    }
+
     /// By how much (rad, m) the last command broke a limit at its worst, with the joint and where it was sent; None where it
     /// broke none: the tick's box is within the limits, unless they cannot be kept.
     pub(in crate::tracking) fn excess(&self) -> Option<(f64, usize, f64)> {
-        if self.inside_limits && self.tick_box.bounds.contains(&self.command) {
+        let TickBox { bounds, velocity, floor, ceiling, .. } = &self.tick_box;
+        let sent = self.running.sent();
+        if self.inside_limits && bounds.contains(sent) {
             return None;
         }
-        let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
-        let excesses = self.command.iter().zip(&self.q).enumerate().map(|(j, (sent, q))| {
-            let [lower, upper] = self.limits.position_range(j, from, to);
-            let too_far = (sent - q).abs() - self.velocity_limit()[j] * self.dt;
-            (too_far.max(lower - sent).max(sent - upper), j, *sent)
+        let excesses = sent.iter().zip(&self.q).enumerate().map(|(j, (sent, q))| {
+            let too_far = (sent - q).abs() - velocity[j] * self.dt;
+            (too_far.max(floor[j] - sent).max(sent - ceiling[j]), j, *sent)
         });
         excesses.max_by(|a, b| a.0.total_cmp(&b.0))
     }

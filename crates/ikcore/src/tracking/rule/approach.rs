@@ -6,7 +6,7 @@
 //! still stop before its displacement ends. A target that moves is caught up with on top of its own motion.
 
 use super::Tick;
-use crate::math::box_step::{box_step, least_damping};
+use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::{Frame, MAX_DOF};
 use crate::objective::{Linearization, Point};
 use crate::robot::Columns;
@@ -42,7 +42,7 @@ impl Approach {
             end.iter().zip(q).map(|(end, q)| end - q).collect()
         };
         let whole = to(tick.target);
-        let mut catch_up = to(&tick.motion.begin);
+        let mut catch_up = to(&tick.motion().begin);
         let mut keep_up: Point = whole.iter().zip(&catch_up).map(|(whole, catch_up)| whole - catch_up).collect();
         let takes = |share: f64| {
             keep_up.iter().zip(tick.velocity_limit).all(|(step, limit)| step.abs() <= share * limit * tick.dt)
@@ -105,8 +105,9 @@ fn destination(target: &Target, q: &[f64], tip: &Frame, columns: &Columns, tick:
     for j in 0..n {
         [lower[j], upper[j]] = tick.limits.position_range(j, tick.time, tick.time + tick.dt);
     }
-    let damping = least_damping(&at.columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
+    let lambda = least_damping(&at.columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
     let mut end = Point::from_slice(q);
-    box_step(&at.columns, &at.residual, damping, q, &lower[..n], &upper[..n], &mut end);
+    let Linearization { columns, residual } = &at;
+    BoxStep { columns, residual, lambda, x: q, lower: &lower[..n], upper: &upper[..n] }.write(&mut end);
     end
 }

@@ -11,12 +11,13 @@ use super::{Tick, TickResult};
 use crate::limits::Field;
 use crate::math::{
     Frame, MAX_DOF,
-    box_step::{box_step, box_step_near, least_damping},
+    box_step::{BoxStep, least_damping},
 };
 use crate::objective::{Differentiable, Linearization, Point};
 use crate::problem::Problem;
 use crate::robot::{Columns, Robot};
 use crate::solver::{Evaluator, Halt, LevenbergMarquardt, Stop, run};
+use crate::task::Assessment;
 
 /// Steps by the model in one tick; they converge quadratically, so that more would not help.
 const MOST_STEPS: usize = 10;
@@ -49,29 +50,36 @@ enum Model {
 /// Tip and geometric Jacobian at a configuration.
 #[derive(Debug)]
 struct Kinematics {
+    q: Point,
     tip: Frame,
     columns: Columns,
 }
 
 impl Default for Kinematics {
     fn default() -> Self {
-        Self { tip: Frame::IDENTITY, columns: [[0.0; 6]; MAX_DOF] }
+        Self { q: Point::new(), tip: Frame::IDENTITY, columns: [[0.0; 6]; MAX_DOF] }
     }
 }
 
 impl Kinematics {
-    fn update(&mut self, robot: &Robot, q: &[f64]) {
-        self.tip = robot.tip_and_jacobian(q, &mut self.columns);
+    /// Goes to `q`; tip and Jacobian stay behind until they are updated.
+    fn place(&mut self, q: &[f64]) {
+        self.q.clear();
+        self.q.extend_from_slice(q);
+    }
+
+    fn update(&mut self, robot: &Robot) {
+        self.tip = robot.tip_and_jacobian(&self.q, &mut self.columns);
     }
 }
 
 pub fn advance(memory: &mut Memory, q: &[f64], mut tick: Tick<'_>) -> TickResult {
-    let mut x = Point::from_slice(q);
-    tick.tick_box.clip(&mut x);
-    let mut found = TickResult::at(x);
+    let mut found = TickResult::at(q);
+    tick.tick_box.clip(&mut found.q);
     if !memory.begin_known || *found.q != *q {
         // The first tick, or one that has to begin elsewhere because q is outside its limits.
-        memory.begin.update(tick.robot, &found.q);
+        memory.begin.place(&found.q);
+        memory.begin.update(tick.robot);
         memory.before_known = false;
         found.evaluations += 1;
     }
@@ -110,8 +118,8 @@ impl Memory {
         }
         tick.tick_box.clip(&mut preferred);
         self.step(&mut trial, tick, self.first_model(), Some(&preferred));
-        std::mem::swap(&mut self.here, &mut self.trial);
-        trial.set_tip(&self.here.tip, tick.target, tick.criterion);
+        let assessment = tick.target.assess_tip(&self.trial.tip, tick.criterion);
+        self.accept_trial(&mut trial, assessment);
         while !trial.is_solved() && trial.iterations < MOST_STEPS && self.lowers(&mut trial, tick, Model::Here) {}
         found.evaluations = trial.evaluations;
         if trial.is_solved() {
@@ -143,40 +151,47 @@ impl Memory {
 
     /// One step from where `found` is. It is kept if it lowers the error; whether it did.
     fn lowers(&mut self, found: &mut TickResult, tick: &Tick<'_>, model: Model) -> bool {
-        let from = Point::from_slice(&found.q);
         self.step(found, tick, model, None);
-        if tick.target.assess_tip(&self.trial.tip, tick.criterion).score.value < found.value() {
-            std::mem::swap(&mut self.here, &mut self.trial);
-            found.set_tip(&self.here.tip, tick.target, tick.criterion);
-            return true;
+        let assessment = tick.target.assess_tip(&self.trial.tip, tick.criterion);
+        let lower = assessment.score.value < found.value();
+        if lower {
+            self.accept_trial(found, assessment);
         }
-        found.q = from;
-        false
+        lower
     }
 
-    /// Moves `found.q` to where the target is met by the `model`, with the joints that it leaves free as near as possible to
-    /// `preferred`, and leaves the kinematics there in `trial`.
+    /// Brings `found` to the trial, which was assessed.
+    fn accept_trial(&mut self, found: &mut TickResult, assessment: Assessment) {
+        std::mem::swap(&mut self.here, &mut self.trial);
+        found.q.copy_from_slice(&self.here.q);
+        (found.assessment, found.position) = (assessment, self.here.tip.origin);
+    }
+
+    /// A trial from where `found` is: where the target is met by the `model`, with the joints that it leaves free as near as
+    /// possible to `preferred`.
     fn step(&mut self, found: &mut TickResult, tick: &Tick<'_>, model: Model, preferred: Option<&[f64]>) {
         let n = found.q.len();
         let current = match model {
             Model::Here => &self.here,
             Model::Begin | Model::MidTick => &self.begin,
         };
-        let Linearization { columns, .. } = &mut *self.linearization;
-        columns[..n].copy_from_slice(&current.columns[..n]);
-        if model == Model::MidTick {
-            towards_middle(&mut columns[..n], &self.before.columns);
+        let columns = &mut self.linearization.columns[..n];
+        match model {
+            Model::MidTick => at_middle(&current.columns, &self.before.columns, columns),
+            Model::Begin | Model::Here => columns.copy_from_slice(&current.columns[..n]),
         }
         tick.target.linearize_tip(&current.tip, n, tick.criterion, &mut self.linearization);
         let Linearization { columns, residual } = &*self.linearization;
         let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
-        let damping = least_damping(&columns[..n]);
-        let from = Point::from_slice(&found.q);
+        let lambda = least_damping(&columns[..n]);
+        let step = BoxStep { columns, residual, lambda, x: &found.q, lower, upper };
+        let to = &mut self.trial.q;
+        to.resize(n, 0.0);
         match preferred {
-            None => box_step(columns, residual, damping, &from, lower, upper, &mut found.q),
-            Some(preferred) => box_step_near(columns, residual, damping, &from, preferred, lower, upper, &mut found.q),
+            None => step.write(to),
+            Some(preferred) => step.write_near(preferred, to),
         }
-        self.trial.update(tick.robot, &found.q);
+        self.trial.update(tick.robot);
         found.evaluations += 1;
         found.iterations += 1;
     }
@@ -184,7 +199,7 @@ impl Memory {
     /// The approach to a target that the arm has not caught up with, where it has to brake in time to stop there.
     fn approach_with_braking(&self, q: &[f64], near: &[f64], tick: &Tick<'_>) -> Option<Approach> {
         let limited = tick.limits.field(Field::Acceleration).is_some();
-        if !limited || tick.motion.begin.assess_tip(&self.begin.tip, tick.criterion).score.solved {
+        if !limited || tick.motion().begin.assess_tip(&self.begin.tip, tick.criterion).score.solved {
             return None;
         }
         Some(self.approach(q, near, tick)).filter(Approach::needs_braking)
@@ -205,7 +220,6 @@ impl Memory {
         tick: &Tick<'_>,
     ) -> bool {
         let must_brake = braking.is_some();
-        let mut x = Point::from_slice(q);
         let approach = braking.unwrap_or_else(|| {
             let mut near = Point::from_slice(q);
             tick.tick_box.clip(&mut near);
@@ -214,18 +228,18 @@ impl Memory {
         if !must_brake && !approach.is_far() {
             return false;
         }
-        approach.advance(&mut x, tick);
-        self.trial.update(tick.robot, &x);
-        let mut ahead =
-            TickResult { q: x, evaluations: found.evaluations + 1, iterations: found.iterations + 1, ..*found };
-        ahead.set_tip(&self.trial.tip, tick.target, tick.criterion);
+        self.trial.place(q);
+        approach.advance(&mut self.trial.q, tick);
+        self.trial.update(tick.robot);
+        let assessment = tick.target.assess_tip(&self.trial.tip, tick.criterion);
         // An arm that has to brake may be carried away from its target.
-        if !must_brake && ahead.value() >= value_at_rest {
-            return false;
+        let accepted = must_brake || assessment.score.value < value_at_rest;
+        if accepted {
+            self.accept_trial(found, assessment);
+            found.evaluations += 1;
+            found.iterations += 1;
         }
-        std::mem::swap(&mut self.here, &mut self.trial);
-        *found = ahead;
-        true
+        accepted
     }
 
     /// Lowers the error as far as possible where the model's steps cannot.
@@ -236,7 +250,8 @@ impl Memory {
         let outcome = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
         let evaluations = evaluator.evaluations();
         found.q.copy_from_slice(&evaluator.best().x);
-        self.here.update(tick.robot, &found.q);
+        self.here.place(&found.q);
+        self.here.update(tick.robot);
         found.set_tip(&self.here.tip, tick.target, tick.criterion);
         found.evaluations += evaluations + 1;
         found.iterations += outcome.iterations;
@@ -253,11 +268,9 @@ impl Memory {
     }
 }
 
-/// From J_k to (3 J_k - J_{k-1}) / 2.
-fn towards_middle(columns: &mut [[f64; 6]], before: &Columns) {
-    for (column, old) in columns.iter_mut().zip(before) {
-        for k in 0..6 {
-            column[k] += 0.5 * (column[k] - old[k]);
-        }
+/// (3 J_k - J_{k-1}) / 2.
+fn at_middle(now: &Columns, before: &Columns, middle: &mut [[f64; 6]]) {
+    for (middle, (now, before)) in middle.iter_mut().zip(now.iter().zip(before)) {
+        (0..6).for_each(|k| middle[k] = now[k] + 0.5 * (now[k] - before[k]));
     }
 }

@@ -14,7 +14,7 @@ use crate::objective::{Bounds, Point, Score};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Monitor};
-use crate::task::{Assessment, Criterion, Goals, SquaredError, Target, TargetMotion};
+use crate::task::{Assessment, Criterion, Goals, SquaredError, Target, TargetMotion, Twist};
 
 /// What runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -35,8 +35,10 @@ pub(super) struct Tick<'a> {
     pub criterion: &'a Criterion,
     /// What to do with the freedom that the target leaves.
     pub goals: &'a mut Goals,
-    /// How the target moves during the tick, for rules that work with velocities.
-    pub motion: TargetMotion,
+    /// The velocity of the target at the end of the tick (m/s), if it is known.
+    pub velocity: Option<[f64; 3]>,
+    /// The target and its velocity at the end of the tick before, if there was one.
+    pub before: Option<&'a (Target, Option<[f64; 3]>)>,
     /// When the tick begins (s).
     pub time: f64,
     /// Length of the tick (s).
@@ -51,6 +53,25 @@ pub(super) struct Tick<'a> {
     pub last_value: Option<f64>,
     pub rng: &'a mut LazyRng,
     pub monitor: &'a mut dyn Monitor,
+}
+
+impl Tick<'_> {
+    /// How the target moves during the tick. Where nothing is known of the tick before, it has moved with its velocity, or
+    /// stood still.
+    fn motion(&self) -> TargetMotion {
+        let Self { target: end, dt, velocity, .. } = *self;
+        match (self.before, velocity) {
+            (Some((begin, before)), _) => {
+                let velocities = before.zip(velocity).map(|(before, velocity)| [before, velocity]);
+                TargetMotion { begin: *begin, end: *end, velocities, dt }
+            }
+            (None, None) => TargetMotion { begin: *end, end: *end, velocities: None, dt },
+            (None, Some(linear)) => {
+                let begin = end.moved(&Twist { linear, angular: [0.0; 3] }, -dt);
+                TargetMotion { begin, end: *end, velocities: Some([linear; 2]), dt }
+            }
+        }
+    }
 }
 
 /// Where a rule ends the tick, and what it took to get there.
@@ -68,10 +89,11 @@ pub(super) struct TickResult {
 
 impl TickResult {
     /// At `q`, with nothing known of it yet.
-    fn at(q: Point) -> Self {
+    fn at(q: &[f64]) -> Self {
         let score = Score { value: f64::INFINITY, solved: false };
         let assessment = Assessment { score, error: SquaredError { position: None, rotation: None } };
-        Self { q, assessment, position: [f64::NAN; 3], evaluations: 0, iterations: 0, interrupted: false }
+        let (q, position) = (Point::from_slice(q), [f64::NAN; 3]);
+        Self { q, assessment, position, evaluations: 0, iterations: 0, interrupted: false }
     }
 
     /// Takes over the tip at `q`.

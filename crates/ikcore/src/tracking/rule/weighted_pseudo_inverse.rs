@@ -12,7 +12,7 @@ use std::sync::Arc;
 use super::{Tick, TickResult};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::MAX_DOF;
-use crate::math::box_step::box_step;
+use crate::math::box_step::BoxStep;
 use crate::math::vector::norm;
 use crate::objective::{Linearization, Point};
 use crate::robot::Robot;
@@ -114,7 +114,7 @@ pub struct Scratch {
 }
 
 pub fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, q: &[f64], mut tick: Tick<'_>) -> TickResult {
-    let mut found = TickResult::at(Point::from_slice(q));
+    let mut found = TickResult::at(q);
     let mut stage = |from: &[f64], share: f64| {
         found.evaluations += 1;
         displacement(rule, scratch, q, from, share, &mut tick)
@@ -215,7 +215,9 @@ impl ScaledEquations<'_> {
         let begin: Point =
             moved.map(|((y, step), (lower, upper))| (y + share * step).max(*lower).min(*upper)).collect();
         let mut there = begin.clone();
-        box_step(self.columns, &self.residual_at(&begin), self.lambda, &begin, &self.lower, &self.upper, &mut there);
+        let (columns, residual, lambda) = (self.columns, &self.residual_at(&begin), self.lambda);
+        let (lower, upper) = (&self.lower, &self.upper);
+        BoxStep { columns, residual, lambda, x: &begin, lower, upper }.write(&mut there);
         (norm(&self.residual_at(&there)), there)
     }
 
@@ -231,7 +233,7 @@ impl ScaledEquations<'_> {
 
 /// Residual and Jacobian at `from` into the scratch; how the residual changes per second by the target's own motion.
 fn linearize(scratch: &mut Scratch, from: &[f64], share: f64, tick: &Tick<'_>) -> [f64; 6] {
-    let (target, twist) = tick.motion.at(share);
+    let (target, twist) = tick.motion().at(share);
     let n = from.len();
     let tip = tick.robot.tip_and_jacobian(from, &mut scratch.linearization.columns);
     for (neighbour, time) in scratch.neighbours.iter_mut().zip([tick.dt, -tick.dt]) {

@@ -85,7 +85,11 @@ impl Memory {
         (&self.answered, self.position)
     }
 
-    pub fn command(&mut self, tick: Tick<'_>, rng: &mut LazyRng) -> &[f64] {
+    pub fn sent(&self) -> &[f64] {
+        &self.sent
+    }
+
+    pub fn choose_command(&mut self, tick: Tick<'_>, rng: &mut LazyRng) {
         let Self { theta, sent, antenna, .. } = self;
         rng.symmetric(sent); // b, line 14
         let error = match self.accept {
@@ -100,7 +104,6 @@ impl Memory {
             *sent = *theta + lengths[if lengths.len() == 1 { 0 } else { j }] * *sent; // (10)
         }
         tick.bounds.clip(sent); // (11)
-        sent
     }
 
     pub fn observe(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {

@@ -1,4 +1,5 @@
-//! The polynomial of a segment of length h (s) that meets given values at both ends: Hermite interpolation.
+//! The polynomial of a segment of length h (s) that meets given values at both ends: Hermite interpolation in the time
+//! since its start, as trajectories store it. [`Cubic`](crate::math::hermite::Cubic) runs over the share of a way.
 
 use super::{Coefficients, polynomial};
 

@@ -1,0 +1,196 @@
+//! The limits in force, and what they must hold for.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Field, Profile};
+use crate::error::{Error, Result};
+use crate::objective::Bounds;
+use crate::robot::Robot;
+
+/// The limits in force: per joint and field a function of time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Limits {
+    joints: Vec<String>,
+    pub(super) lower: Vec<Profile>,
+    pub(super) upper: Vec<Profile>,
+    pub(super) velocity: Vec<Profile>,
+    pub(super) acceleration: Option<Vec<Profile>>,
+    jerk: Option<Vec<Profile>>,
+}
+
+impl Limits {
+    /// The robot's own limits: positions and velocities.
+    pub fn of(robot: &Robot) -> Self {
+        let joints = robot.joints();
+        Self {
+            joints: joints.iter().map(|joint| joint.name.clone()).collect(),
+            lower: joints.iter().map(|joint| Profile::Constant(joint.lower)).collect(),
+            upper: joints.iter().map(|joint| Profile::Constant(joint.upper)).collect(),
+            velocity: joints.iter().map(|joint| Profile::Constant(joint.velocity)).collect(),
+            acceleration: None,
+            jerk: None,
+        }
+    }
+
+    /// No limits, for `n` joints that are known by their numbers (from 0) alone.
+    pub fn none_for(n: usize) -> Self {
+        Self::none((0..n).map(|j| j.to_string()).collect())
+    }
+
+    /// No limits for joints of these names.
+    pub fn none(joints: Vec<String>) -> Self {
+        let all = |value: f64| vec![Profile::Constant(value); joints.len()];
+        let (lower, upper, velocity) = (all(f64::NEG_INFINITY), all(f64::INFINITY), all(f64::INFINITY));
+        Self { joints, lower, upper, velocity, acceleration: None, jerk: None }
+    }
+
+    /// Replaces one field for all joints; one profile per joint, or a single one for all of them.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] for another number of profiles or one without samples, [`Error::OutOfRange`] for NaN,
+    /// [`Error::NotFinite`] for a sinusoid of anything that is not finite.
+    pub fn replace(mut self, field: Field, mut profiles: Vec<Profile>) -> Result<Self> {
+        let n = self.joints.len();
+        if profiles.len() == 1 {
+            profiles = vec![profiles[0].clone(); n];
+        }
+        if profiles.len() != n {
+            let expected = format!("one number, or {n} (one per joint)");
+            return Err(Error::WrongLength { what: format!("{field} limit"), expected, got: profiles.len() });
+        }
+        for (profile, joint) in profiles.iter().zip(&self.joints) {
+            profile.validate(&format!("{field} limit of joint '{joint}'"))?;
+        }
+        match field {
+            Field::Lower => self.lower = profiles,
+            Field::Upper => self.upper = profiles,
+            Field::Velocity => self.velocity = profiles,
+            Field::Acceleration => self.acceleration = Some(profiles),
+            Field::Jerk => self.jerk = Some(profiles),
+        }
+        Ok(self)
+    }
+
+    /// The profiles of a field, one per joint; None where there is no such limit.
+    pub fn field(&self, field: Field) -> Option<&[Profile]> {
+        match field {
+            Field::Lower => Some(&self.lower),
+            Field::Upper => Some(&self.upper),
+            Field::Velocity => Some(&self.velocity),
+            Field::Acceleration => self.acceleration.as_deref(),
+            Field::Jerk => self.jerk.as_deref(),
+        }
+    }
+
+    /// Checks for `ticks` ticks of `dt` (s), or for t = 0 alone, that no velocity limit is negative and that every tick
+    /// leaves each joint a position.
+    ///
+    /// # Errors
+    /// [`Error::NegativeLimit`] and [`Error::EmptyRange`] say which joint and when.
+    pub fn validate(&self, dt: f64, ticks: usize) -> Result<()> {
+        for field in [Field::Velocity, Field::Acceleration, Field::Jerk] {
+            for (profile, joint) in self.field(field).unwrap_or_default().iter().zip(&self.joints) {
+                let (time, value) = profile.smallest(0.0, ticks as f64 * dt);
+                if value < 0.0 {
+                    return Err(Error::NegativeLimit { field: field.to_string(), joint: joint.clone(), value, time });
+                }
+            }
+        }
+        (0..self.joints.len()).try_for_each(|j| self.validate_range(j, dt, ticks))
+    }
+
+    fn validate_range(&self, j: usize, dt: f64, ticks: usize) -> Result<()> {
+        let constant = matches!((&self.lower[j], &self.upper[j]), (Profile::Constant(_), Profile::Constant(_)));
+        let last = if constant { 0 } else { ticks };
+        for i in 0..=last {
+            let (from, to) = (i.saturating_sub(1) as f64 * dt, i as f64 * dt);
+            let [lower, upper] = self.position_range(j, from, to);
+            if !(lower <= upper) || lower == f64::INFINITY || upper == f64::NEG_INFINITY {
+                let time = (!constant).then_some(from);
+                return Err(Error::EmptyRange { joint: self.joints[j].clone(), lower, upper, time });
+            }
+        }
+        Ok(())
+    }
+
+    /// Err if a field is set that `method` cannot keep.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`].
+    pub fn require_none(&self, fields: &[Field], method: &str, remedy: &str) -> Result<()> {
+        match fields.iter().find(|field| self.is_finite(**field)) {
+            None => Ok(()),
+            Some(field) => {
+                Err(Error::UnsupportedLimit { field: field.to_string(), method: method.into(), remedy: remedy.into() })
+            }
+        }
+    }
+
+    /// The values of a field, one per joint; empty where there is no such limit. Err where they vary in time, which `method`
+    /// cannot keep.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`].
+    pub fn constants(&self, field: Field, method: &str, remedy: &str) -> Result<Vec<f64>> {
+        let constant = |profile: &Profile| match profile {
+            Profile::Constant(value) => Ok(*value),
+            _ => Err(Error::UnsupportedLimit {
+                field: format!("time-varying {field}"),
+                method: method.into(),
+                remedy: remedy.into(),
+            }),
+        };
+        self.field(field).unwrap_or_default().iter().map(constant).collect()
+    }
+
+    pub(super) fn is_finite(&self, field: Field) -> bool {
+        self.field(field).unwrap_or_default().iter().any(|profile| *profile != Profile::Constant(f64::INFINITY))
+    }
+
+    /// The position limits as a box, for solving without time.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`] where they vary in time; [`Error::EmptyRange`].
+    pub fn position_box(&self) -> Result<Bounds> {
+        self.validate(0.0, 0)?;
+        let constants = |field: Field| self.constants(field, "solve", "one configuration has no time; give numbers");
+        Bounds::new(&constants(Field::Lower)?, &constants(Field::Upper)?)
+    }
+
+    /// Name of a joint.
+    pub(crate) fn joint_name(&self, joint: usize) -> &str {
+        &self.joints[joint]
+    }
+
+    /// Err unless these are limits for the joints of `robot`.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] for another number of joints.
+    pub fn require_for(&self, robot: &Robot) -> Result<()> {
+        if self.joints.len() == robot.dof() {
+            return Ok(());
+        }
+        let (what, expected) = (format!("limits for robot '{}'", robot.name()), format!("{} joints", robot.dof()));
+        Err(Error::WrongLength { what, expected, got: self.joints.len() })
+    }
+
+    /// Err unless `q` lies within the position limits at time `t` (s); `what` names it.
+    ///
+    /// # Errors
+    /// [`Error::OutsideLimits`] names the joint, its value and its limits.
+    pub fn require_inside(&self, what: &str, t: f64, q: &[f64]) -> Result<()> {
+        for (i, joint) in self.joints.iter().enumerate() {
+            let (lower, upper) = (self.lower[i].at(t), self.upper[i].at(t));
+            if !(lower <= q[i] && q[i] <= upper) {
+                return Err(Error::OutsideLimits {
+                    what: what.into(),
+                    joint: joint.clone(),
+                    value: q[i],
+                    lower,
+                    upper,
+                });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,95 @@
+//! The call: grid, speed profile, trajectory.
+
+use super::compose::compose;
+use super::grid::{check_gridpoints, cut};
+use super::jerk::smooth;
+use super::joint_path::{JointPath, PathEnd};
+use super::limits::TimingLimits;
+use super::reachability::{Range, SpeedProfile};
+use super::refine::refine;
+use crate::error::{Error, Result};
+use crate::trajectory::Trajectory;
+
+/// How to time a path. The default is rest to rest on a grid chosen by refinement.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TimingOptions {
+    /// Points at which the acceleration along the path may change, at least one for each piece of the path; None refines
+    /// the grid until it makes no difference.
+    pub gridpoints: Option<usize>,
+    /// Euclidean length of the joint velocity at the beginning (rad/s, m/s).
+    pub start_speed: f64,
+    /// The same at the end.
+    pub end_speed: f64,
+}
+
+/// Segments to begin refining with.
+const FIRST_SEGMENTS: usize = 100;
+
+/// Segments where the result is smoothed: that takes more from the speed than a coarse grid.
+const SEGMENTS_TO_SMOOTH: usize = 300;
+
+/// The fastest motion along `path` within `limits`.
+///
+/// # Errors
+/// [`Error::Infeasible`] for a path that leaves the position limits, a joint that must move but may not, or speeds at the
+/// ends that are too high; [`Error::OutOfRange`] for the options.
+pub fn time_optimal(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
+    limits.require_for(path)?;
+    time(path, limits, options)
+}
+
+/// [`time_optimal`] for callers that see to the position limits themselves.
+///
+/// # Errors
+/// The same, except for position limits.
+pub fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
+    let ends =
+        [end_range(path, options.start_speed, PathEnd::Start)?, end_range(path, options.end_speed, PathEnd::End)?];
+    let fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends);
+    let profile = match options.gridpoints {
+        Some(gridpoints) => {
+            check_gridpoints(gridpoints)?;
+            fastest(cut(path, gridpoints - 1))?
+        }
+        None if limits.jerk.is_some() => fastest(cut(path, SEGMENTS_TO_SMOOTH))?,
+        None => refine(cut(path, FIRST_SEGMENTS), fastest)?,
+    };
+    match &limits.jerk {
+        None => compose(path, &profile),
+        Some(_) if options.start_speed != 0.0 || options.end_speed != 0.0 => {
+            let problem =
+                "with jerk limits a motion begins and ends at rest: leave out start_speed and end_speed".into();
+            Err(Error::Infeasible { problem })
+        }
+        Some(jerk) => smooth(path, &profile, limits, jerk),
+    }
+}
+
+/// How long the fastest motion from rest to rest on a grid of about so many segments takes (s): quick, for comparing many
+/// paths. Position limits are left to the caller.
+///
+/// # Errors
+/// None in practice: from rest to rest there is always a way.
+pub fn coarse_duration(path: &JointPath, limits: &TimingLimits, segments: usize) -> Result<f64> {
+    let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
+    SpeedProfile::fastest(path, limits, cut(path, segments), ends).map(|profile| profile.duration())
+}
+
+/// The range of squared path speeds that give a joint speed at an end. Where dq/ds vanishes the joints are at rest at any
+/// path speed.
+fn end_range(path: &JointPath, speed: f64, end: PathEnd) -> Result<Range> {
+    let name = end.name();
+    if !(speed >= 0.0 && speed.is_finite()) {
+        return Err(Error::out_of_range(format!("{name}_speed"), "zero or more and finite", speed));
+    }
+    if !path.has_no_direction(end) {
+        let squared = (speed / path.slope(end)).powi(2);
+        return Ok([squared; 2]);
+    }
+    if speed == 0.0 {
+        return Ok([0.0, f64::INFINITY]);
+    }
+    let problem =
+        format!("{name}_speed is {speed}, but the path has no direction at its {name}: give the spline other ends");
+    Err(Error::Infeasible { problem })
+}

@@ -1,0 +1,17 @@
+//! Points that repeat the one before them.
+
+use crate::error::{Error, Result};
+use crate::path::Reference;
+
+/// Err where a point repeats the one before it: a spline needs points that differ.
+///
+/// # Errors
+/// [`Error::InvalidPath`].
+pub fn refuse_repetition(points: &Reference) -> Result<()> {
+    let repeats =
+        |i: &usize| points.position(*i) == points.position(i - 1) && points.rotation(*i) == points.rotation(i - 1);
+    match (1..points.len()).find(repeats) {
+        None => Ok(()),
+        Some(i) => Err(Error::InvalidPath { problem: format!("point {i} repeats point {}: leave it out", i - 1) }),
+    }
+}

@@ -1,0 +1,210 @@
+//! `Limits`: what was given, and what of it is in force.
+
+use ikcore::Error;
+use ikcore::limits::{Field, Limits};
+use ikcore::robot::Robot;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use super::given::GivenLimit;
+use super::per_joint::PerJoint;
+use super::sampling::Sampling;
+use crate::error::raise;
+use crate::options::NewArguments;
+
+/// Limits on joint motion. A field that is given replaces the robot's, a field left None is the robot's, np.inf
+/// switches one off.
+///
+/// Args:
+///     lower, upper: positions (rad, m).
+///     velocity: rad/s or m/s.
+///     acceleration, jerk: rad/s^2 or m/s^2, rad/s^3 or m/s^3.
+///
+/// Each is a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
+/// are sampled at the ends and in the middle of every tick. A method that cannot honour a field raises
+/// `UnsupportedLimit`; none ignores one.
+#[pyclass(name = "Limits", module = "beetle_ik", frozen)]
+pub struct PyLimits {
+    /// In the order of the fields.
+    given: [Option<GivenLimit>; 5],
+}
+
+const FIELDS: [Field; 5] = [Field::Lower, Field::Upper, Field::Velocity, Field::Acceleration, Field::Jerk];
+
+#[pymethods]
+impl PyLimits {
+    #[new]
+    #[pyo3(signature = (*, lower=None, upper=None, velocity=None, acceleration=None, jerk=None))]
+    fn new(
+        lower: Option<&Bound<'_, PyAny>>,
+        upper: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+        acceleration: Option<&Bound<'_, PyAny>>,
+        jerk: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let mut given = [const { None }; 5];
+        for ((slot, field), value) in given.iter_mut().zip(FIELDS).zip([lower, upper, velocity, acceleration, jerk]) {
+            *slot = value.map(|value| GivenLimit::read(field, value)).transpose()?;
+        }
+        Ok(Self { given })
+    }
+
+    /// Lower position limits (rad, m), as given.
+    #[getter]
+    fn lower<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show(py, Field::Lower)
+    }
+
+    /// Upper position limits (rad, m), as given.
+    #[getter]
+    fn upper<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show(py, Field::Upper)
+    }
+
+    /// Velocity limits (rad/s, m/s), as given.
+    #[getter]
+    fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show(py, Field::Velocity)
+    }
+
+    /// Acceleration limits (rad/s^2, m/s^2), as given.
+    #[getter]
+    fn acceleration<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show(py, Field::Acceleration)
+    }
+
+    /// Jerk limits (rad/s^3, m/s^3), as given.
+    #[getter]
+    fn jerk<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show(py, Field::Jerk)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let mut shown = vec![];
+        for (given, field) in self.given.iter().zip(FIELDS) {
+            if let Some(given) = given {
+                shown.push(format!("{field}={}", given.repr(py)));
+            }
+        }
+        Ok(format!("Limits({})", shown.join(", ")))
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<bool> {
+        let Ok(other) = other.cast::<Self>() else { return Ok(false) };
+        for pair in self.given.iter().zip(&other.get().given) {
+            let equal = match pair {
+                (Some(one), Some(another)) => one.equals(other.py(), another)?,
+                (one, another) => one.is_none() && another.is_none(),
+            };
+            if !equal {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        let fields = self.given.iter().map(|given| given.as_ref().map(|given| given.hash(py)).transpose());
+        PyTuple::new(py, fields.collect::<PyResult<Vec<_>>>()?)?.hash()
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
+        let options = PyDict::new(py);
+        for (given, field) in self.given.iter().zip(FIELDS) {
+            if let Some(given) = given {
+                options.set_item(field.to_string(), given.show(py)?)?;
+            }
+        }
+        Ok((PyTuple::empty(py), options))
+    }
+}
+
+impl PyLimits {
+    /// The robot's own limits.
+    pub fn of(robot: &Robot) -> Self {
+        let joints = robot.joints();
+        Self {
+            given: [
+                numbers(joints.iter().map(|joint| joint.lower).collect()),
+                numbers(joints.iter().map(|joint| joint.upper).collect()),
+                numbers(joints.iter().map(|joint| joint.velocity).collect()),
+                None,
+                None,
+            ],
+        }
+    }
+
+    /// A box.
+    pub fn of_box(lower: Vec<f64>, upper: Vec<f64>) -> Self {
+        Self { given: [numbers(lower), numbers(upper), None, None, None] }
+    }
+
+    /// No limits, for `n` joints.
+    pub(super) fn none(n: usize) -> Self {
+        let free = |limit: f64| numbers(vec![limit; n]);
+        Self { given: [free(f64::NEG_INFINITY), free(f64::INFINITY), free(f64::INFINITY), None, None] }
+    }
+
+    /// The limits in force for `robot`: these where given, else the robot's.
+    pub fn in_force(&self, py: Python<'_>, robot: &Robot) -> Self {
+        self.else_of(py, Self::of(robot))
+    }
+
+    /// These where given, else those of `other`.
+    pub(super) fn else_of(&self, py: Python<'_>, other: Self) -> Self {
+        let mut given = other.given;
+        for (slot, replacement) in given.iter_mut().zip(&self.given) {
+            if let Some(replacement) = replacement {
+                *slot = Some(replacement.clone_ref(py));
+            }
+        }
+        Self { given }
+    }
+
+    /// Err if a field is a callable of t, for motions without a known end.
+    pub fn require_no_functions(&self, method: &str, instead: &str) -> PyResult<()> {
+        let is_function = |given: &Option<GivenLimit>| matches!(given, Some(GivenLimit::Function(_)));
+        match self.given.iter().position(is_function) {
+            None => Ok(()),
+            Some(i) => Err(raise(Error::UnsupportedLimit {
+                field: format!("callable {}", FIELDS[i]),
+                method: method.into(),
+                remedy: format!("it has no end to be sampled to; give numbers or a Sinusoid, or use {instead}"),
+            })),
+        }
+    }
+
+    /// The same for the core, functions of time sampled.
+    pub fn resolve(&self, py: Python<'_>, robot: &Robot, sampling: &Sampling) -> PyResult<Limits> {
+        self.applied_to(py, Limits::of(robot), robot.dof(), sampling)
+    }
+
+    /// The same for joints that belong to no robot: none where no limit is given.
+    pub fn for_joints(&self, py: Python<'_>, joints: &[String]) -> PyResult<Limits> {
+        self.applied_to(py, Limits::none(joints.to_vec()), joints.len(), &Sampling::once())
+    }
+
+    pub(super) fn applied_to(
+        &self,
+        py: Python<'_>,
+        mut limits: Limits,
+        n: usize,
+        sampling: &Sampling,
+    ) -> PyResult<Limits> {
+        for (given, field) in self.given.iter().zip(FIELDS) {
+            if let Some(given) = given {
+                limits = limits.replace(field, given.profiles(py, field, sampling, n)?).map_err(raise)?;
+            }
+        }
+        Ok(limits)
+    }
+
+    fn show<'py>(&self, py: Python<'py>, field: Field) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.given[field as usize].as_ref().map(|given| given.show(py)).transpose()
+    }
+}
+
+/// A field that was given one number per joint.
+fn numbers(values: Vec<f64>) -> Option<GivenLimit> {
+    Some(GivenLimit::Numbers(PerJoint { values, single: false }))
+}

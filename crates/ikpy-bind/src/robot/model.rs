@@ -1,0 +1,138 @@
+//! `Robot`: what it is and what it has.
+
+use std::sync::Arc;
+
+use ikcore::robot::Robot;
+use numpy::PyArray1;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::convert::{copied, counted, row};
+use crate::error::raise;
+use crate::hash::content_hash;
+use crate::limits::PyLimits;
+use crate::stored::{self, Reduced};
+
+/// Link, a (3,), b (3,) and radius (m).
+type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);
+
+/// A robot arm: the chain of joints from a base link to a tip link. Immutable; make one with `from_urdf`, `from_dh`,
+/// `planar` or `named`.
+///
+/// Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow theirs. Poses are 4x4
+/// matrices in the frame of the robot's base.
+#[pyclass(name = "Robot", module = "beetle_ik", frozen, eq)]
+pub struct PyRobot {
+    pub core: Arc<Robot>,
+    /// Made when it is first asked for: most results only carry it along.
+    limits: PyOnceLock<Py<PyLimits>>,
+}
+
+impl PartialEq for PyRobot {
+    fn eq(&self, other: &Self) -> bool {
+        self.core == other.core
+    }
+}
+
+impl From<Robot> for PyRobot {
+    fn from(robot: Robot) -> Self {
+        Self { core: Arc::new(robot), limits: PyOnceLock::new() }
+    }
+}
+
+#[pymethods]
+impl PyRobot {
+    #[new]
+    #[pyo3(signature = (*_arguments, **_options))]
+    fn new(_arguments: &Bound<'_, PyTuple>, _options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let ways = "Robot.named(name), Robot.from_urdf(path), Robot.from_dh(...) or Robot.planar(lengths)";
+        Err(PyTypeError::new_err(format!("a robot is made by {ways}")))
+    }
+
+    /// The robot's name.
+    #[getter]
+    fn name(&self) -> &str {
+        self.core.name()
+    }
+
+    /// Degrees of freedom, n: the number of independent joints.
+    #[getter]
+    fn dof(&self) -> usize {
+        self.core.dof()
+    }
+
+    /// Names of the independent joints, in the order of q.
+    #[getter]
+    fn joint_names(&self) -> Vec<&str> {
+        self.core.joints().iter().map(|joint| joint.name.as_str()).collect()
+    }
+
+    /// "revolute", "continuous" or "prismatic" per independent joint.
+    #[getter]
+    fn joint_kinds(&self) -> Vec<&'static str> {
+        self.core.joints().iter().map(|joint| joint.kind.name()).collect()
+    }
+
+    /// Names of the links along the chain, base first, tip last.
+    #[getter]
+    fn link_names(&self) -> Vec<&str> {
+        self.core.link_names().collect()
+    }
+
+    /// Lower position limits (n,) (rad, m); -inf where there is none.
+    #[getter]
+    fn lower<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.core.joints().iter().map(|joint| joint.lower).collect())
+    }
+
+    /// Upper position limits (n,) (rad, m); inf where there is none.
+    #[getter]
+    fn upper<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.core.joints().iter().map(|joint| joint.upper).collect())
+    }
+
+    /// Velocity limits (n,) (rad/s, m/s); inf where unknown, 0 for a locked joint.
+    #[getter]
+    fn velocity_limit<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.core.joints().iter().map(|joint| joint.velocity).collect())
+    }
+
+    /// All limits of the robot.
+    #[getter]
+    pub fn limits(&self, py: Python<'_>) -> PyResult<Py<PyLimits>> {
+        let limits = self.limits.get_or_try_init(py, || Py::new(py, PyLimits::of(&self.core)))?;
+        Ok(limits.clone_ref(py))
+    }
+
+    /// The room that the links take up: (link, a, b, radius) each, all points within `radius` (m) of the segment from a
+    /// (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to a URDF's collision shapes.
+    #[getter]
+    fn capsules<'py>(&self, py: Python<'py>) -> Vec<Capsule<'py>> {
+        let capsules = self.core.capsules().iter();
+        capsules.map(|c| (c.link.clone(), copied(py, &c.a), copied(py, &c.b), c.radius)).collect()
+    }
+
+    /// Of what tells most robots apart: the name, the joints with their limits, the links.
+    fn __hash__(&self) -> u64 {
+        content_hash(&(self.core.name(), self.core.joints(), self.core.link_names().collect::<Vec<_>>()))
+    }
+
+    fn __repr__(&self) -> String {
+        let (name, joints) = (self.core.name(), counted(self.core.dof(), "joint"));
+        let mut links = self.core.link_names();
+        let base = links.next().unwrap_or_default();
+        format!("<Robot '{name}': {joints}, {base} to {}>", links.last().unwrap_or(base))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        stored::restored_from::<Self>(py, (stored::bytes(py, self.core.to_bytes())?,))
+    }
+
+    /// What pickle stored.
+    #[staticmethod]
+    fn _restore(bytes: &[u8]) -> PyResult<Self> {
+        Robot::from_bytes(bytes).map(Self::from).map_err(raise)
+    }
+}

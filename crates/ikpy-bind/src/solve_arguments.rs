@@ -1,0 +1,42 @@
+//! What `solve`, `solve_batch` and `solve_all` are asked: each argument is read here, for all of them.
+
+use ikcore::ik::SolveOptions;
+use ikcore::limits::Limits;
+use ikcore::solver::{AnySolver, Stop};
+use ikcore::task::Tolerance;
+use pyo3::prelude::*;
+
+use crate::convert::count;
+use crate::error::raise;
+use crate::goal::read_goals;
+use crate::solver::{PyStop, any_solver};
+use crate::task::read_task;
+
+/// The arguments as Python gives them.
+pub struct SolveArguments<'a, 'py> {
+    pub task: Option<&'a Bound<'py, PyAny>>,
+    pub solver: Option<&'a Bound<'py, PyAny>>,
+    pub position_tolerance: f64,
+    pub rotation_tolerance: f64,
+    pub goals: Option<&'a Bound<'py, PyAny>>,
+    pub prefer: &'a str,
+    pub stop: Option<&'a PyStop>,
+    pub seed: i128,
+}
+
+impl SolveArguments<'_, '_> {
+    /// The options of the core, with the `start` and the `limits` of the call.
+    pub fn read(&self, start: Option<Vec<f64>>, limits: Option<Limits>) -> PyResult<SolveOptions> {
+        Ok(SolveOptions {
+            solver: self.solver.map_or(Ok(AnySolver::default()), any_solver)?,
+            task: read_task(self.task)?,
+            goals: read_goals(self.goals)?,
+            prefer: self.prefer.parse().map_err(raise)?,
+            start,
+            tolerance: Tolerance { position: self.position_tolerance, rotation: self.rotation_tolerance },
+            limits,
+            stop: self.stop.map_or(Stop::default(), PyStop::core),
+            seed: count("seed", self.seed)?,
+        })
+    }
+}

@@ -1,0 +1,51 @@
+//! What `track` and `Tracker` are asked: each argument is read here, for both of them.
+
+use ikcore::limits::{LimitAt, Limits};
+use ikcore::task::Tolerance;
+use ikcore::tracking::{TickRule, TrackOptions};
+use pyo3::prelude::*;
+
+use super::weighted_pseudo_inverse::PyWeightedPseudoInverse;
+use crate::convert::{count, summary};
+use crate::error::{invalid, raise};
+use crate::goal::read_goals;
+use crate::solver::{known_solver, solver_names};
+use crate::task::read_task;
+
+/// The arguments as Python gives them; the rule is read first, since it decides how a path is sampled.
+pub struct TrackArguments<'a, 'py> {
+    pub rule: TickRule,
+    pub task: Option<&'a Bound<'py, PyAny>>,
+    pub goals: Option<&'a Bound<'py, PyAny>>,
+    pub position_tolerance: f64,
+    pub rotation_tolerance: f64,
+    pub seed: i128,
+    pub limit_at: &'a str,
+}
+
+impl TrackArguments<'_, '_> {
+    /// The options of the core, with the `limits` of the call.
+    pub fn read(self, limits: Option<Limits>) -> PyResult<TrackOptions> {
+        Ok(TrackOptions {
+            rule: self.rule,
+            task: read_task(self.task)?,
+            goals: read_goals(self.goals)?,
+            tolerance: Tolerance { position: self.position_tolerance, rotation: self.rotation_tolerance },
+            limits,
+            limit_at: self.limit_at.parse::<LimitAt>().map_err(raise)?,
+            seed: count("seed", self.seed)?,
+        })
+    }
+}
+
+/// A rule, a solver, or the library's own rule.
+pub fn tick_rule(solver: Option<&Bound<'_, PyAny>>) -> PyResult<TickRule> {
+    let Some(solver) = solver else { return Ok(TickRule::default()) };
+    if let Ok(rule) = solver.cast::<PyWeightedPseudoInverse>() {
+        return Ok(rule.get().rule());
+    }
+    known_solver(solver).map(TickRule::Solver).ok_or_else(|| {
+        let (names, got) = (solver_names(), summary(solver));
+        invalid(format!("solver must be {names} or WeightedPseudoInverse, got {got}"))
+    })
+}
