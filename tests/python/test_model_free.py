@@ -64,7 +64,7 @@ def test_a_wrong_model_and_a_noisy_sensor() -> None:
 
 def test_a_late_sensor_is_named_and_told_to_the_controller() -> None:
     def late() -> Callable[[np.ndarray], np.ndarray]:
-        sent = [np.array(START)]
+        sent = [np.array(ON_CIRCLE)]
 
         def measure(q: np.ndarray) -> np.ndarray:
             sent.append(q.copy())
