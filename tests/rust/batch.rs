@@ -11,7 +11,9 @@ use ikcore::math::pose;
 use ikcore::nalgebra::Matrix4;
 use ikcore::rng;
 use ikcore::robot::Robot;
-use ikcore::solver::{Algorithm, AnySolver, Bas, Monitor, Status, Stop, Unattended, Variant};
+use ikcore::solver::{
+    Algorithm, AnySolver, Bas, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop, Unattended, Variant,
+};
 use ikcore::task::Target;
 
 const NAN: f64 = f64::NAN;
@@ -121,6 +123,45 @@ fn side_by_side_a_target_gets_the_bits_that_it_gets_alone() {
                 assert_eq!(facts(each.clone()), facts(alone(&each)), "{} {stop:?}", robot.name());
             }
         }
+    }
+}
+
+/// More targets than a thread takes at once, wrong ones on both sides of where one group ends and the next begins, and one that takes
+/// its whole budget when all others have ended.
+#[test]
+fn groups_do_not_show() {
+    let robot = robot("panda");
+    let mut targets = poses(&robot, 600);
+    for wrong in [255, 256, 512] {
+        targets[wrong][0] = NAN;
+    }
+    targets[590][3] += 0.4;
+    let found = |each: &SolveOptions, threads| {
+        let options = BatchOptions { each: each.clone(), on_invalid: OnInvalid::Skip, ..on_threads(threads) };
+        all_facts(&solved(&robot, &targets, &options))
+    };
+    let solver = Algorithm::from(LevenbergMarquardt::default()).into_multi_start();
+    for max_starts in [3, usize::MAX] {
+        let rule = RestartRule { max_starts, ..solver.rule };
+        let solver = AnySolver::MultiStart(MultiStart { rule, ..solver.clone() });
+        let stop = Stop { max_evaluations: 2500, ..Stop::default() };
+        let each = SolveOptions { solver, stop, ..SolveOptions::default() };
+        let expected = found(&alone(&each), 1);
+        assert_eq!(expected.iter().filter(|facts| facts.1 == Status::Invalid).count(), 3);
+        for threads in [1, 2, 3] {
+            assert_eq!(found(&each, threads), expected, "{max_starts} starts, {threads} threads");
+        }
+    }
+}
+
+/// What targets share is counted once: together they take no longer than the batch.
+#[test]
+fn times_of_targets_add_up() {
+    let robot = robot("panda");
+    for count in [1, 7, 8, 300] {
+        let batch = solved(&robot, &poses(&robot, count), &on_threads(1));
+        let sum: Duration = batch.items.iter().map(|item| item.elapsed).sum();
+        assert!(sum <= batch.elapsed && batch.items.iter().all(|item| item.elapsed > Duration::ZERO), "{count}");
     }
 }
 

@@ -113,7 +113,8 @@ impl Default for FourLinearizations {
     }
 }
 
-/// Objectives that are linearized faster four at a time than one after another.
+/// Objectives that are linearized faster four at a time than one after another. They differ in what is asked of one and the same
+/// system: for a robot, in the targets, which are of one kind.
 pub trait SideBySide: LeastSquares + Sized {
     /// [`linearize`](LeastSquares::linearize) of each objective at its lane of `xs`, to the same bits.
     fn linearize_four(objectives: [&Self; 4], xs: &[Quad], out: &mut FourLinearizations) -> [Score; 4];

@@ -143,7 +143,8 @@ impl SideBySide for Problem<'_> {
     /// [goes side by side](Target::goes_side_by_side).
     #[inline]
     fn linearize_four(problems: [&Self; 4], qs: &[Quad], out: &mut FourLinearizations) -> [Score; 4] {
-        let Problem { robot, criterion, .. } = problems[0];
+        let Problem { robot, criterion, .. } = &problems[0];
+        debug_assert!(problems.iter().all(|problem| std::ptr::eq(problem.robot, *robot)), "one robot for all four");
         Target::linearize_four(problems.map(|problem| problem.target), robot, qs, criterion, out)
     }
 }

@@ -93,8 +93,12 @@ struct Job<'a> {
 /// Rows checked between two looks at the monitor: some 100 microseconds.
 const CHECKED_AT_ONCE: usize = 1024;
 
-/// Targets that are solved together, four side by side at any time: enough that lanes seldom stand empty at the end.
-const GROUP: usize = 256;
+/// The fewest and the most targets that a thread takes at once to solve them four side by side: few, and lanes stand empty at the end;
+/// many, and threads do.
+const GROUP: (usize, usize) = (8, 256);
+
+/// Groups for each thread, where there are targets enough: what makes threads end together.
+const GROUPS_A_THREAD: usize = 4;
 
 /// Time between two looks at the monitor while threads work.
 const INTERVAL: Duration = Duration::from_millis(20);
@@ -134,6 +138,13 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
+    /// How many targets a thread takes at once.
+    fn group(&self, threads: usize) -> usize {
+        let (fewest, most) = GROUP;
+        let together = self.prepared.descent_side_by_side().is_some();
+        if together { (self.targets.len() / (GROUPS_A_THREAD * threads)).clamp(fewest, most) } else { 1 }
+    }
+
     /// Solves the targets from number `first` on, as many as there are `items`; `done` is told of each.
     fn solve_rows<M: Monitor + Clone>(
         &self,
@@ -143,13 +154,16 @@ impl<'a> Job<'a> {
         monitor: &M,
         mut done: impl FnMut(),
     ) {
+        if !monitor.clone().keep_going() {
+            return;
+        }
         let mut rows = Vec::with_capacity(items.len());
-        let mut jobs = Vec::with_capacity(items.len());
+        let mut queries = Vec::with_capacity(items.len());
         for (row, item) in items.iter_mut().enumerate() {
             match self.read(first + row) {
                 Ok((target, start)) => {
                     rows.push(row);
-                    jobs.push(ik::Job { target, start, stream: (first + row) as u64 });
+                    queries.push(ik::Query { target, start, stream: (first + row) as u64 });
                 }
                 Err(_) => {
                     *item = Item::untouched(Status::Invalid);
@@ -157,9 +171,9 @@ impl<'a> Job<'a> {
                 }
             }
         }
-        self.prepared.run_all(&jobs, monitor, |job, solution| {
+        self.prepared.run_all(&queries, monitor, |query, solution| {
             let Solution { q, status, error, obstruction, iterations, restarts, evaluations, elapsed } = solution;
-            let row = rows[job];
+            let row = rows[query];
             qs[row * self.dof..(row + 1) * self.dof].copy_from_slice(&q);
             items[row] = Item { status, error, obstruction, iterations, restarts, evaluations, elapsed };
             done();
@@ -169,9 +183,10 @@ impl<'a> Job<'a> {
     fn run_here(&self, batch: &mut Batch, monitor: &mut dyn Monitor) {
         let (mut done, total) = (0, batch.items.len());
         let monitor = Shared(&RefCell::new(monitor));
-        let groups = batch.q.chunks_mut(GROUP * self.dof).zip(batch.items.chunks_mut(GROUP)).enumerate();
-        for (group, (qs, items)) in groups {
-            self.solve_rows(group * GROUP, qs, items, &monitor, || {
+        let group = self.group(1);
+        let groups = batch.q.chunks_mut(group * self.dof).zip(batch.items.chunks_mut(group)).enumerate();
+        for (i, (qs, items)) in groups {
+            self.solve_rows(i * group, qs, items, &monitor, || {
                 done += 1;
                 monitor.clone().progress(done, total);
             });
@@ -181,10 +196,11 @@ impl<'a> Job<'a> {
     fn run_on(&self, pool: &ThreadPool, batch: &mut Batch, monitor: &mut dyn Monitor) {
         let (done, total) = (AtomicUsize::new(0), batch.items.len());
         let stopped = AtomicBool::new(false);
-        let groups = batch.q.par_chunks_mut(GROUP * self.dof).zip(batch.items.par_chunks_mut(GROUP)).enumerate();
+        let group = self.group(pool.current_num_threads());
+        let groups = batch.q.par_chunks_mut(group * self.dof).zip(batch.items.par_chunks_mut(group)).enumerate();
         let work = || {
-            groups.for_each(|(group, (qs, items))| {
-                self.solve_rows(group * GROUP, qs, items, &UntilStopped(&stopped), || {
+            groups.for_each(|(i, (qs, items))| {
+                self.solve_rows(i * group, qs, items, &UntilStopped(&stopped), || {
                     done.fetch_add(1, Ordering::Relaxed);
                 });
             });

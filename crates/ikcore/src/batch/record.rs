@@ -24,7 +24,7 @@ pub struct Item {
     pub restarts: usize,
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
-    /// Time taken by this target; of one that was solved beside three others, a quarter of the time that it was under way.
+    /// Time taken by this target; its share of the time that it was solved side by side with others.
     pub elapsed: Duration,
 }
 

@@ -19,6 +19,6 @@ mod unreached;
 pub use all::{AllOptions, SolutionSet, solve_all};
 pub(crate) use nearest::bring_near;
 pub(crate) use prepared::Prepared;
-pub(crate) use side_by_side::Job;
+pub(crate) use side_by_side::Query;
 pub use solution::Solution;
 pub use solve::{Prefer, SolveOptions, solve};

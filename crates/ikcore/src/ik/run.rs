@@ -19,8 +19,6 @@ const APPROACHES: usize = 8;
 pub(super) struct Run {
     stop: Stop,
     stopwatch: Stopwatch,
-    /// Runs that share the time.
-    abreast: u32,
     iterations: usize,
     restarts: usize,
     evaluations: usize,
@@ -29,12 +27,7 @@ pub(super) struct Run {
 impl Run {
     /// Nothing spent yet.
     pub fn new(stop: Stop) -> Self {
-        Self { stop, stopwatch: Stopwatch::start(), abreast: 1, iterations: 0, restarts: 0, evaluations: 0 }
-    }
-
-    /// Nothing spent yet, by one of four that share the time.
-    pub fn one_of_four(stop: Stop) -> Self {
-        Self { abreast: 4, ..Self::new(stop) }
+        Self { stop, stopwatch: Stopwatch::start(), iterations: 0, restarts: 0, evaluations: 0 }
     }
 
     /// Evaluations that may still be made.
@@ -202,7 +195,7 @@ impl Run {
             iterations: self.iterations,
             restarts: self.restarts,
             evaluations: self.evaluations,
-            elapsed: self.stopwatch.elapsed() / self.abreast,
+            elapsed: self.stopwatch.elapsed(),
             q,
         }
     }

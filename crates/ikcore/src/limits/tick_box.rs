@@ -97,10 +97,17 @@ impl Limits {
         at.of(&self.velocity[j], from, to)
     }
 
-    /// Writes the velocity limits that hold for the tick from `from` to `to` (s).
-    pub fn write_velocities_over(&self, [from, to]: [f64; 2], at: LimitAt, velocity: &mut [f64]) {
-        let how = if Varying::of(&self.velocity) == Varying::Together { Varying::Together } else { Varying::Apart };
-        how.update(velocity, &self.velocity, |limit| at.of(limit, from, to));
+    /// Writes the velocity limits that hold for each of `ticks`, (from, to) (s), a row (n,) for each.
+    pub fn write_velocities(&self, ticks: impl Iterator<Item = [f64; 2]>, at: LimitAt, rows: &mut [f64]) {
+        // Once: to compare limits of many samples takes long.
+        let varying = match Varying::of(&self.velocity) {
+            Varying::Together => Varying::Together,
+            // Constant ones are written too: the rows are still empty.
+            Varying::Not | Varying::Apart => Varying::Apart,
+        };
+        for (row, [from, to]) in rows.chunks_exact_mut(self.velocity.len()).zip(ticks) {
+            varying.update(row, &self.velocity, |limit| at.of(limit, from, to));
+        }
     }
 
     /// The position range of joint `j` that holds at every instant from `from` to `to` (s).
@@ -229,7 +236,7 @@ mod tests {
                 let [from, to] = [i, i + 1].map(|i| f64::from(i) * 0.1);
                 limits.narrow(&[0.0; 3], [from, to], 0.1, LimitAt::Interval, &mut tick);
                 let mut written = [0.0; 3];
-                limits.write_velocities_over([from, to], LimitAt::Interval, &mut written);
+                limits.write_velocities([[from, to]].into_iter(), LimitAt::Interval, &mut written);
                 for j in 0..3 {
                     let expected = limits.velocity_over(j, from, to, LimitAt::Interval);
                     assert_eq!([tick.velocity[j], written[j]], [expected; 2], "joint {j} at {from} s");

@@ -92,7 +92,7 @@ impl Arithmetic for Fused {
 
     #[inline(always)]
     fn mul_add_quad(a: Quad, b: Quad, c: Quad) -> Quad {
-        // SAFETY (all eight): what is generic over `Fused` is reached only where `has_fused` found the instructions.
+        // SAFETY (all eight): kernels over `Fused` and quads are reached only where `has_fused` found the instructions.
         from_register(unsafe { x86::_mm256_fmadd_pd(register(a), register(b), register(c)) })
     }
 

@@ -46,10 +46,10 @@ pub trait Real:
     /// `then` where self = other, and `otherwise` elsewhere, NaN included.
     fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self;
 
-    /// The larger of the two; the other where one is NaN.
+    /// The larger of the two; `other` where either is NaN.
     fn larger(self, other: Self) -> Self;
 
-    /// The smaller of the two; the other where one is NaN.
+    /// The smaller of the two; `other` where either is NaN.
     fn smaller(self, other: Self) -> Self;
 }
 

@@ -1,7 +1,7 @@
 //! Vectors of three [`Real`]s for kernels: their operations are spelled out entry by entry, since closures over arrays are compiled
 //! without the instructions of the kernel that they stand in.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Mul, Sub};
 
 use super::real::Real;
 
@@ -111,14 +111,5 @@ impl<R: Real> Sub for Triple<R> {
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
-    }
-}
-
-impl<R: Real> Neg for Triple<R> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self { x: -self.x, y: -self.y, z: -self.z }
     }
 }

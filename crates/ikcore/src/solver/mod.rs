@@ -65,5 +65,5 @@ pub use newton_raphson::NewtonRaphson;
 pub use population::Schedule;
 pub use pso::Pso;
 pub use qpso::Qpso;
-pub use side_by_side::run_side_by_side;
+pub(crate) use side_by_side::run_side_by_side;
 pub use stop::{Monitor, Status, Stop, Unattended};

@@ -15,15 +15,19 @@ use crate::objective::{Bounds, FourLinearizations, Point, Score, SideBySide};
 /// Runs side by side.
 const LANES: usize = 4;
 
-/// Runs `solver` for each of `runs`: a label, a fresh evaluator and where it begins. `ended` is told label and outcome of each, in the
-/// order in which they end. The runs share one box.
-pub fn run_side_by_side<'a, L, O: SideBySide + 'a>(
+/// Rounds that the last run may be alone. Its lane does no more than a run by itself would, and takes twice the time.
+const ROUNDS_ALONE: usize = 64;
+
+/// Runs `solver` for each of `runs`: a label, a fresh evaluator and where it begins; all in the box `bounds`, their objectives such as
+/// [`linearize_four`](SideBySide::linearize_four) takes together. `ended` is told label and outcome of each, in the order in which
+/// they end; no outcome where the last one was left alone for long: it is to be begun again by itself.
+pub(crate) fn run_side_by_side<'a, L, O: SideBySide + 'a>(
     solver: &MultiStart<LevenbergMarquardt>,
     bounds: &Bounds,
     mut runs: impl Iterator<Item = (L, Evaluator<'a, O>, Point)>,
-    ended: impl FnMut(L, Evaluator<'a, O>, Outcome),
+    ended: impl FnMut(L, Evaluator<'a, O>, Option<Outcome>),
 ) {
-    let mut abreast = Lanes {
+    let mut lanes = Lanes {
         solver,
         bounds,
         ended,
@@ -32,15 +36,19 @@ pub fn run_side_by_side<'a, L, O: SideBySide + 'a>(
         linearizations: [FourLinearizations::default(), FourLinearizations::default()],
         here: 0,
     };
-    loop {
-        abreast.take_up(&mut runs);
-        if abreast.lanes.iter().all(Option::is_none) {
-            return;
+    let mut rounds_alone = 0;
+    while rounds_alone < ROUNDS_ALONE {
+        lanes.take_up(&mut runs);
+        match lanes.lanes.iter().flatten().count() {
+            0 => return,
+            1 => rounds_alone += 1,
+            _ => rounds_alone = 0,
         }
-        abreast.go_to_trials();
-        let scores = abreast.evaluate();
-        abreast.judge(&scores);
+        lanes.go_to_trials();
+        let scores = lanes.evaluate();
+        lanes.judge(&scores);
     }
+    lanes.let_go();
 }
 
 /// Four runs, each in a lane of the arrays.
@@ -75,7 +83,7 @@ enum Next {
     Trial,
 }
 
-impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Outcome)> Lanes<'_, 'a, L, O, F> {
+impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Option<Outcome>)> Lanes<'_, 'a, L, O, F> {
     /// Fills lanes that are empty.
     fn take_up(&mut self, runs: &mut impl Iterator<Item = (L, Evaluator<'a, O>, Point)>) {
         for lane in self.lanes.iter_mut().filter(|lane| lane.is_none()) {
@@ -133,10 +141,10 @@ impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Outcome)> Lanes<'_
         for l in 0..LANES {
             self.advance(l, |lane, _| lane.evaluator.spend(1));
         }
-        let Some(someone) = self.lanes.iter().flatten().next() else {
+        let Some(any) = self.lanes.iter().flatten().next() else {
             return [Score { value: f64::INFINITY, solved: false }; LANES];
         };
-        let objective = |l: usize| self.lanes[l].as_ref().unwrap_or(someone).evaluator.objective();
+        let objective = |l: usize| self.lanes[l].as_ref().unwrap_or(any).evaluator.objective();
         let there = 1 - self.here;
         let trials = &self.points[there][..self.bounds.lower().len()];
         O::linearize_four(std::array::from_fn(objective), trials, &mut self.linearizations[there])
@@ -181,7 +189,14 @@ impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Outcome)> Lanes<'_
             && let Some(Lane { label, evaluator, iterations, .. }) = self.lanes[l].take()
         {
             let outcome = Outcome::of(&evaluator, halt, iterations);
-            (self.ended)(label, evaluator, outcome);
+            (self.ended)(label, evaluator, Some(outcome));
+        }
+    }
+
+    /// Hands back the runs that have not ended.
+    fn let_go(&mut self) {
+        for Lane { label, evaluator, .. } in self.lanes.iter_mut().filter_map(Option::take) {
+            (self.ended)(label, evaluator, None);
         }
     }
 }

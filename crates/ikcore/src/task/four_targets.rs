@@ -83,6 +83,8 @@ impl Target {
         criterion: &Criterion,
         out: &mut FourLinearizations,
     ) -> [Score; 4] {
+        let kind = std::mem::discriminant(targets[0]);
+        debug_assert!(targets.iter().all(|target| std::mem::discriminant(*target) == kind), "targets of one kind");
         let FourLinearizations { residual, columns } = out;
         let columns = &mut columns[..qs.len()];
         let tips = robot.tips_and_jacobians(qs, columns);

@@ -208,9 +208,9 @@ impl Record {
     /// The velocity limit that each velocity was held against (k, n); NaN in row 0.
     pub fn velocity_limit(&self) -> Vec<f64> {
         let mut limits = vec![f64::NAN; self.q.len()];
-        for (i, row) in limits.chunks_exact_mut(self.dof).enumerate().skip(1) {
-            self.limits.write_velocities_over(self.ends(i), self.limit_at, row);
-        }
+        let ticks = (1..self.q.len() / self.dof).map(|i| self.ends(i));
+        let first = self.dof.min(limits.len());
+        self.limits.write_velocities(ticks, self.limit_at, &mut limits[first..]);
         limits
     }
 
