@@ -120,7 +120,10 @@ MISTAKES: list[tuple[Callable[[], Any], str]] = [
     (lambda: between(end=None), "no end was given: give end= a position or pose, or end_q="),
     (lambda: between(end_q=[0, 0, 0]), "both end and end_q were given: give one of them"),
     (lambda: between(end=(1, 1, np.nan)), "end must be finite, but coordinate z is NaN"),
-    (lambda: between(start=(1, 0)), "start: expected a pose (4, 4) or a position (3,), got shape (2,)"),
+    (
+        lambda: between(start=(1, 0)),
+        "start: expected a pose (4, 4) or a position (3,), got shape (2,); joint angles go to start_q",
+    ),
     (
         lambda: between(start=None, start_q=[0, 0, 4]),
         "start: joint 'joint_3' at 4 is outside its limits [-3.141592653589793, 3.141592653589793]",

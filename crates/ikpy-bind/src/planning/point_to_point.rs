@@ -1,11 +1,12 @@
 //! `plan_point_to_point`.
 
 use ikcore::planning::{self, Endpoint, PointToPointOptions};
+use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 
 use super::elbow::read_elbows;
 use super::plan::PyPlan;
-use crate::convert::{count, vector};
+use crate::convert::{array, count, vector};
 use crate::error::{invalid, raise};
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
@@ -85,7 +86,12 @@ pub fn plan_point_to_point(
 /// An end given as a target or as joint angles.
 fn read_end(name: &str, target: Option<&Bound<'_, PyAny>>, q: Option<&Bound<'_, PyAny>>) -> PyResult<Endpoint> {
     match (target, q) {
-        (Some(target), None) => read_target(name, target).map(Endpoint::Target),
+        (Some(target), None) => match array(name, target)?.shape() {
+            [n] if *n != 3 => Err(invalid(format!(
+                "{name}: expected a pose (4, 4) or a position (3,), got shape ({n},); joint angles go to {name}_q"
+            ))),
+            _ => read_target(name, target).map(Endpoint::Target),
+        },
         (None, Some(q)) => vector(&format!("{name}_q"), q).map(Endpoint::Configuration),
         (None, None) => Err(invalid(format!("no {name} was given: give {name}= a position or pose, or {name}_q="))),
         (Some(_), Some(_)) => Err(invalid(format!("both {name} and {name}_q were given: give one of them"))),
