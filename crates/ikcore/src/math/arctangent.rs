@@ -49,7 +49,7 @@ pub fn angle_of<R: Real>(sine: R, cosine: R) -> R {
 fn arctangent<R: Real>(x: R) -> R {
     let u = x * x;
     let (u2, u4) = (u * u, (u * u) * (u * u));
-    // Pairs, pairs of pairs and so on: a third of the latency of Horner's scheme.
+    // Pairs, pairs of pairs and so on: fewer operations that wait for one another than in Horner's scheme.
     let pair = |k: usize| R::splat(P[k]) + R::splat(P[k + 1]) * u;
     let four = |k: usize| pair(k) + pair(k + 2) * u2;
     let last = pair(8) + R::splat(P[10]) * u2;

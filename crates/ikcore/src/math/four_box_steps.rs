@@ -38,6 +38,7 @@ impl FourBoxSteps<'_> {
         self.write_rows_in_use::<Baseline>(out);
     }
 
+    /// Half the rows take less than half the time.
     #[inline(always)]
     fn write_rows_in_use<A: Arithmetic>(&self, out: &mut [Quad]) {
         let moves_position_alone =
