@@ -67,7 +67,7 @@ impl DhTable {
 
     /// Appends joints `joint_1` to `joint_n` and links `link_1` to `link_n`, each in its DH frame.
     pub(super) fn append_to(&self, chain: &mut ChainBuilder) -> Result<()> {
-        self.check(&chain.name)?;
+        self.check(chain.name())?;
         for i in 0..self.a.len() {
             let kind = self.kinds[i];
             let joint = Joint::new(format!("joint_{}", i + 1), kind).with_range(self.lower[i], self.upper[i]);

@@ -58,12 +58,12 @@ fn arctangent<R: Real>(x: R) -> R {
 
 #[cfg(test)]
 mod tests {
-    use super::super::arithmetic::Separate;
+    use super::super::arithmetic::NoFma;
     use super::super::real::One;
     use super::*;
 
     fn angle(sine: f64, cosine: f64) -> f64 {
-        angle_of(One::<Separate>::of(sine), One::of(cosine)).stored()
+        angle_of(One::<NoFma>::of(sine), One::of(cosine)).stored()
     }
 
     #[test]

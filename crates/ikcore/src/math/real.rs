@@ -6,8 +6,8 @@ use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::arithmetic::Arithmetic;
+use super::f64x4::F64x4;
 use super::ordered::{larger, smaller};
-use super::quad::Quad;
 
 /// A real number, or several side by side.
 pub trait Real:
@@ -59,7 +59,7 @@ pub struct One<A>(f64, PhantomData<A>);
 
 /// Four numbers side by side, by arithmetic `A`.
 #[derive(Debug, Clone, Copy)]
-pub struct Four<A>(Quad, PhantomData<A>);
+pub struct Four<A>(F64x4, PhantomData<A>);
 
 impl<A: Arithmetic> Real for One<A> {
     type Stored = f64;
@@ -123,23 +123,23 @@ impl<A: Arithmetic> Real for One<A> {
 }
 
 impl<A: Arithmetic> Real for Four<A> {
-    type Stored = Quad;
+    type Stored = F64x4;
 
     const LANES: usize = 4;
 
     #[inline(always)]
-    fn of(stored: Quad) -> Self {
+    fn of(stored: F64x4) -> Self {
         Self(stored, PhantomData)
     }
 
     #[inline(always)]
-    fn stored(self) -> Quad {
+    fn stored(self) -> F64x4 {
         self.0
     }
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
-        Self::of(Quad::splat(value))
+        Self::of(F64x4::splat(value))
     }
 
     #[inline(always)]
@@ -155,22 +155,22 @@ impl<A: Arithmetic> Real for Four<A> {
 
     #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        Self::of(A::mul_add_quad(self.0, factor.0, addend.0))
+        Self::of(A::mul_add_x4(self.0, factor.0, addend.0))
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self::of(A::sqrt_quad(self.0))
+        Self::of(A::sqrt_x4(self.0))
     }
 
     #[inline(always)]
     fn choose_below(self, limit: Self, then: Self, otherwise: Self) -> Self {
-        Self::of(A::choose_below_quad(self.0, limit.0, then.0, otherwise.0))
+        Self::of(A::choose_below_x4(self.0, limit.0, then.0, otherwise.0))
     }
 
     #[inline(always)]
     fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
-        Self::of(A::choose_equal_quad(self.0, other.0, then.0, otherwise.0))
+        Self::of(A::choose_equal_x4(self.0, other.0, then.0, otherwise.0))
     }
 
     #[inline(always)]
@@ -207,10 +207,10 @@ macro_rules! operator {
     };
 }
 
-operator!(Add, add, add_quad);
-operator!(Sub, sub, sub_quad);
-operator!(Mul, mul, mul_quad);
-operator!(Div, div, div_quad);
+operator!(Add, add, add_x4);
+operator!(Sub, sub, sub_x4);
+operator!(Mul, mul, mul_x4);
+operator!(Div, div, div_x4);
 
 impl<A: Arithmetic> Neg for One<A> {
     type Output = Self;

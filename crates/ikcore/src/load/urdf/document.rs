@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet};
 
 use roxmltree::Node;
 
-use super::link_capsules::{self, LinkCollision};
+use super::link_capsules::{self, LinkCapsules};
 use super::xml;
 use crate::error::{Error, Result, suggestion};
 
@@ -19,8 +19,8 @@ pub(super) struct Document {
     pub(super) model: urdf_rs::Robot,
     /// Line of each joint, in the order of the model.
     joint_lines: Vec<u32>,
-    /// What each link takes up, by name.
-    pub(super) collision: HashMap<String, LinkCollision>,
+    /// Collision shapes of each link, by name.
+    pub(super) capsules: HashMap<String, LinkCapsules>,
 }
 
 impl Document {
@@ -37,8 +37,8 @@ impl Document {
         let model = urdf_rs::read_from_string(&reduced(root)?)
             .map_err(|error| Error::Urdf { line: None, problem: error.to_string() })?;
         let links = xml::children(root, "link").filter_map(|link| Some((link.attribute("name")?, link)));
-        let collision = links.map(|(name, link)| (name.to_owned(), link_capsules::read(name, link))).collect();
-        Ok(Self { model, joint_lines, collision })
+        let capsules = links.map(|(name, link)| (name.to_owned(), link_capsules::read(name, link))).collect();
+        Ok(Self { model, joint_lines, capsules })
     }
 
     /// An error at a joint.

@@ -4,8 +4,7 @@ use urdf_rs::JointType;
 
 use super::document::Document;
 use crate::error::{Error, Result, suggestion};
-use crate::robot::Drive;
-use crate::robot::{Joint, JointKind};
+use crate::robot::{Drive, Joint, JointKind};
 
 /// The independent joint that drives a joint (itself, for most), and how far it drives it.
 pub(super) struct Coupling {

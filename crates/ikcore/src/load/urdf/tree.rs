@@ -15,7 +15,7 @@ pub(super) struct Tree<'a> {
 
 /// One joint on the way from base to tip.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step {
+pub(super) struct TreeStep {
     pub(super) joint: usize,
     /// Whether it is passed from child to parent.
     pub(super) reversed: bool,
@@ -75,7 +75,7 @@ impl<'a> Tree<'a> {
     }
 
     /// The joints from `base` to `tip`: up to where the two branches meet, then down.
-    pub(super) fn path(&self, base: &'a str, tip: &'a str) -> Result<Vec<Step>> {
+    pub(super) fn path(&self, base: &'a str, tip: &'a str) -> Result<Vec<TreeStep>> {
         if base == tip {
             let problem = format!("base and tip are both '{base}': a chain needs two links");
             return Err(Error::Urdf { line: None, problem });
@@ -88,8 +88,8 @@ impl<'a> Tree<'a> {
             up.pop();
             down.pop();
         }
-        let up = up.into_iter().map(|joint| Step { joint, reversed: true });
-        let down = down.into_iter().rev().map(|joint| Step { joint, reversed: false });
+        let up = up.into_iter().map(|joint| TreeStep { joint, reversed: true });
+        let down = down.into_iter().rev().map(|joint| TreeStep { joint, reversed: false });
         Ok(up.chain(down).collect())
     }
 
