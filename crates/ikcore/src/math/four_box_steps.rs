@@ -1,4 +1,4 @@
-//! Four [bounded steps](super::box_step) side by side, lane by lane to the same bits.
+//! Four [bounded steps](super::box_step) at once, lane by lane to the same bits.
 
 use super::MAX_DOF;
 use super::arithmetic::{Arithmetic, by_instructions};
@@ -10,13 +10,13 @@ use super::real::{Four, Real};
 /// Four steps in one box.
 #[derive(Debug, Clone, Copy)]
 pub struct FourBoxSteps<'a> {
-    /// Of the Jacobians, one per entry of `x`.
+    /// Columns of the Jacobians, one per entry of `x`.
     pub columns: &'a [[F64x4; ROWS]],
-    /// What the steps are to remove.
+    /// Residuals that the steps are to remove.
     pub residual: &'a [F64x4; ROWS],
     /// The damping of each.
     pub lambda: F64x4,
-    /// Where they begin.
+    /// The current points.
     pub x: &'a [F64x4],
     /// The box of all four.
     pub lower: &'a [f64],
@@ -25,13 +25,13 @@ pub struct FourBoxSteps<'a> {
 }
 
 impl FourBoxSteps<'_> {
-    /// Writes into `out` where each step leads: lane by lane what [`BoxStep::write`](super::box_step::BoxStep::write) writes. The Jacobians are
-    /// of one kind: their angular rows are zero in all lanes, or in none.
+    /// Writes the points after the steps into `out`, lane by lane those of [`BoxStep::write`](super::box_step::BoxStep::write).
+    /// The angular rows of the Jacobians are zero in all lanes, or in none.
     pub fn write(&self, out: &mut [F64x4]) {
         write_steps(self, out);
     }
 
-    /// Half the rows take less than half the time.
+    /// Solves on the position rows alone where the others are zero.
     #[inline(always)]
     fn write_rows_in_use<A: Arithmetic>(&self, out: &mut [F64x4]) {
         let moves_position_alone =
@@ -52,7 +52,7 @@ impl FourBoxSteps<'_> {
         let mut free = [Four::<A>::splat(1.0); MAX_DOF];
         for _ in 0..ROUNDS {
             let z = Ldl::of(self.gram::<A, R>(&free)).solve(remaining);
-            let mut someone_got_stuck = false;
+            let mut some_joint_hit_a_bound = false;
             for j in 0..self.x.len() {
                 let (zero, x) = (Four::splat(0.0), Four::<A>::of(self.x[j]));
                 let wanted = x - dot(&self.columns[j], &z);
@@ -63,15 +63,15 @@ impl FourBoxSteps<'_> {
                 if stays_free.stored() == was_free.stored() {
                     continue;
                 }
-                someone_got_stuck = true;
-                // What the joints that got stuck still move; zero for the others.
+                some_joint_hit_a_bound = true;
+                // Motion of the joint where it has just hit a bound; zero in other lanes.
                 let moved = stays_free.choose_below(was_free, bounded - x, zero);
                 for (rest, entry) in remaining.iter_mut().zip(&self.columns[j]) {
                     *rest = Four::of(*entry).mul_add(moved, *rest);
                 }
                 free[j] = stays_free;
             }
-            if !someone_got_stuck {
+            if !some_joint_hit_a_bound {
                 return;
             }
         }

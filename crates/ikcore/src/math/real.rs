@@ -1,6 +1,6 @@
-//! One number, or four side by side: what a kernel computes with that is written once for both.
+//! The number type of kernels that are written once for one number and for four.
 //!
-//! Lane by lane the four go through the operations of the one, in the same order, so that both agree bit for bit.
+//! Each lane of the four goes through the operations of the one in the same order: both agree bit for bit.
 
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -9,20 +9,20 @@ use super::arithmetic::Arithmetic;
 use super::f64x4::F64x4;
 use super::ordered::{larger, smaller};
 
-/// A real number, or several side by side.
+/// A real number, or one per lane.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// How it is stored.
+    /// Its stored form.
     type Stored: Copy;
 
-    /// How many there are side by side.
+    /// Number of lanes.
     const LANES: usize;
 
-    /// What is stored.
+    /// From its stored form.
     fn of(stored: Self::Stored) -> Self;
 
-    /// As it is stored.
+    /// Its stored form.
     fn stored(self) -> Self::Stored;
 
     /// The same number in all lanes.
@@ -31,7 +31,7 @@ pub trait Real:
     /// The number in lane `lane`.
     fn lane(self, lane: usize) -> f64;
 
-    /// With another number in lane `lane`.
+    /// The same with `value` in lane `lane`.
     fn with_lane(self, lane: usize, value: f64) -> Self;
 
     /// self * factor + addend.
@@ -57,7 +57,7 @@ pub trait Real:
 #[derive(Debug, Clone, Copy)]
 pub struct One<A>(f64, PhantomData<A>);
 
-/// Four numbers side by side, by arithmetic `A`.
+/// Four numbers, one per lane, by arithmetic `A`.
 #[derive(Debug, Clone, Copy)]
 pub struct Four<A>(F64x4, PhantomData<A>);
 
@@ -184,9 +184,9 @@ impl<A: Arithmetic> Real for Four<A> {
     }
 }
 
-/// `$operator` of [`One`] by that of f64, and of [`Four`] by that of the arithmetic.
+/// Implements `$operator` for [`One`] by f64 and for [`Four`] by the arithmetic.
 macro_rules! operator {
-    ($operator:ident, $method:ident, $of_quads:ident) => {
+    ($operator:ident, $method:ident, $of_lanes:ident) => {
         impl<A: Arithmetic> $operator for One<A> {
             type Output = Self;
 
@@ -201,7 +201,7 @@ macro_rules! operator {
 
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self::of(A::$of_quads(self.0, other.0))
+                Self::of(A::$of_lanes(self.0, other.0))
             }
         }
     };

@@ -1,4 +1,4 @@
-//! Rotations: logarithm and the Jacobian that goes with it, safe at no turn and at half a turn.
+//! Rotations: logarithm and its Jacobian, accurate from no turn to half a turn.
 
 use super::Frame;
 use super::arctangent::angle_of;
@@ -15,22 +15,22 @@ const NEAR_HALF_TURN: f64 = -0.9;
 /// The columns of rotations: their axes, seen from the base.
 pub type Axes<R> = [Vec3<R>; 3];
 
-/// The axes of one frame as the kernels here take them.
+/// The axes of `frame`.
 #[inline(always)]
 pub fn axes_of(frame: &Frame) -> Axes<One<NoFma>> {
     let [x, y, z] = &frame.axes;
     [Vec3::of(x), Vec3::of(y), Vec3::of(z)]
 }
 
-/// The rotation vector phi (rad) of R R_d', with R the axes of `frame` and R_d those of `target`: the turn that leads
-/// from the target to the frame, in base coordinates. Its length is the geodesic angle, at most pi.
+/// The rotation vector phi (rad) of R R_d', with R the axes of `frame` and R_d those of `target`: the turn from the target
+/// to the frame, in base coordinates. Its length is the geodesic angle, at most pi.
 #[inline]
 pub fn rotation_between(target: &Frame, frame: &Frame) -> [f64; 3] {
     let (target, frame) = (axes_of(target), axes_of(frame));
     Turn::between(&target, &frame).vector(&target, &frame).stored()
 }
 
-/// [`rotation_between`], and how it changes when a small turn is put before.
+/// [`rotation_between`], and its derivative with respect to a small turn put before.
 #[inline(always)]
 pub fn rotation_and_jacobian<R: Real>(target: &Axes<R>, frame: &Axes<R>) -> (Vec3<R>, InverseLeftJacobian<R>) {
     let turn = Turn::between(target, frame);
@@ -103,7 +103,8 @@ fn near_half_turn(target: &[[f64; 3]; 3], frame: &[[f64; 3]; 3], angle: f64, sin
     axis
 }
 
-/// The inverse left Jacobian of SO(3) at a rotation vector: how the logarithm changes when a small turn is put before.
+/// The inverse left Jacobian of SO(3) at a rotation vector: the derivative of the logarithm with respect to a small turn
+/// put before.
 #[derive(Debug, Clone, Copy)]
 pub struct InverseLeftJacobian<R> {
     columns: [Vec3<R>; 3],

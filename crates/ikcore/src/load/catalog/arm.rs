@@ -1,4 +1,4 @@
-//! The form in which makers print their arms: one DH row a joint, lengths in m, angles in degrees.
+//! Tables of arms as makers print them: one DH row per joint, lengths in m, angles in degrees.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,4 @@
-//! The way from base to tip as a chain: joints in order, then one element after the other.
+//! The robot of the joints from base to tip: independent joints in order, then the elements of the chain.
 
 use std::collections::HashMap;
 
@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::math::{Pose, pose};
 use crate::robot::{Bodies, ChainBuilder, Drive, Joint, JointKind, Robot};
 
-/// Builds the robot whose chain starts at link `base` and takes these steps.
+/// Builds the robot whose chain starts at link `base` and passes these joints.
 pub(super) fn build(document: &Document, base: &str, path: &[TreeStep]) -> Result<Robot> {
     let joints = &document.model.joints;
     let moving: Vec<usize> =
@@ -43,8 +43,8 @@ fn bodies<'a>(document: &Document, names: impl Iterator<Item = &'a str>) -> Bodi
     bodies
 }
 
-/// Adds the independent joints in chain order, narrowed by their followers, and returns the index in q of each joint of
-/// the document that is one. A master that is not on the chain stands where its first follower does.
+/// Adds the independent joints in chain order, narrowed by their followers, and returns the index in q of each independent
+/// joint of the document. A master off the chain takes the place of its first follower.
 fn add_joints(chain: &mut ChainBuilder, document: &Document, moving: &[usize]) -> Result<HashMap<usize, usize>> {
     let mut index_in_q = HashMap::new();
     for &joint in moving {
@@ -94,7 +94,7 @@ fn kind(document: &Document, index: usize) -> Result<JointKind> {
     }
 }
 
-/// Appends one joint. Backwards it is the inverse: the motion by -q first, then the inverse of its origin.
+/// Appends one joint. Reversed, it is the inverse: the motion by -q first, then the inverse of its origin.
 fn append(
     chain: &mut ChainBuilder,
     document: &Document,

@@ -1,7 +1,7 @@
-//! URDF text as a typed model: checked against roxmltree's view of it, reduced to links and joints, typed by urdf-rs.
+//! URDF text as a typed model: checked with roxmltree, reduced to links and joints, then read by urdf-rs.
 //!
-//! urdf-rs alone stops at unknown geometry, reads NaN, skips words that are no numbers and cannot tell a missing limit
-//! from zero; so it is handed a text in which only links and joints are left and every number is written out.
+//! urdf-rs alone stops at unknown geometry, accepts NaN, skips words that are no numbers and cannot tell a missing limit
+//! from zero. It therefore gets a text of nothing but links and joints, with every number written out.
 
 use std::collections::{HashMap, HashSet};
 
@@ -47,7 +47,7 @@ impl Document {
     }
 }
 
-/// The same robot with nothing but links and joints, all of whose numbers are written out.
+/// The same robot with links and joints only, and with all numbers written out.
 fn reduced(root: Node) -> Result<String> {
     if xml::children(root, "joint").next().is_none() {
         return Err(xml::error_at(root, "<robot> has no <joint>: a chain needs at least one that moves"));
