@@ -1,6 +1,6 @@
 //! Pairs over all branches of inverse kinematics of both ends, each at the whole turns nearest to the other end.
 
-use super::ends::{Pair, PairSearch};
+use super::pair_search::{Pair, PairSearch};
 use crate::error::Result;
 use crate::ik::{AllOptions, SolveOptions, bring_near, solve_all};
 use crate::objective::{Bounds, Point};

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::obstacle::{Obstacle, Scene, Shape, Sweep};
-use crate::planning::collision::{self, TimedMotion, refuse_collision, too_near};
+use crate::planning::collision_checks::{self, TimedMotion, refuse_collision, too_near};
 use crate::planning::plan::Violation;
 use crate::planning::planar_arm::PlanarArm;
 use crate::planning::point_to_point::PointToPointOptions;
@@ -39,7 +39,7 @@ impl<'a> CollisionTest<'a> {
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a negative margin.
     pub fn new(robot: &'a Robot, lines: Option<&'a Robot>, options: &'a PointToPointOptions) -> Result<Self> {
         let margin = options.kept_margin()?;
-        let scene = collision::scene(robot, lines, &options.obstacles)?;
+        let scene = collision_checks::scene(robot, lines, &options.obstacles)?;
         let flat = lines.and_then(|lines| {
             let arm = PlanarArm::of(lines)?;
             let kept = margin + ALLOWANCE * arm.lengths().iter().sum::<f64>();

@@ -1,7 +1,7 @@
 //! ZNNBAS at work: Algorithm 1, tick by tick.
 
-use super::super::{Tick, Verdict};
-use super::{Accept, Antenna, Delay, Znnbas};
+use super::znnbas::{Accept, Antenna, Delay, Znnbas};
+use super::{Tick, Verdict};
 use crate::math::ordered::sign;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;

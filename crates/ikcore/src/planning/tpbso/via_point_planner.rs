@@ -1,11 +1,11 @@
 //! The planner from end to end.
 
-use super::collision_test::CollisionTest;
+use super::collision_constraint::CollisionTest;
 use super::end_configurations::EndConfigurations;
-use super::published::{METHOD, no_configuration, search};
-use super::via_point::ViaPointCost;
+use super::published_settings::{METHOD, no_configuration, search};
+use super::via_point_cost::ViaPointCost;
 use crate::error::Result;
-use crate::planning::collision::{as_lines, can_collide};
+use crate::planning::collision_checks::{as_lines, can_collide};
 use crate::planning::planar_arm::Elbow;
 use crate::planning::{Endpoint, MotionLimits, Plan, PointToPointOptions};
 use crate::robot::Robot;

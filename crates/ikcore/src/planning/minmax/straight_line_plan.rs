@@ -1,7 +1,7 @@
 //! Plans without obstacles: straight lines between the pairs of configurations, of which the best is taken.
 
-use super::ends::{Pair, PairSearch};
 use super::line_timing::JointPolyline;
+use super::pair_search::{Pair, PairSearch};
 use crate::error::{Error, Result};
 use crate::planning::{Cost, Improvement, MotionLimits, Plan};
 use crate::solver::{Monitor, Status};

@@ -1,6 +1,6 @@
 //! From end to end through a via point: the decision vector of Wang et al. (2019), section III-A, and its cost.
 
-use super::collision_test::CollisionTest;
+use super::collision_constraint::CollisionTest;
 use super::end_configurations::EndConfigurations;
 use super::penalties::{BROKEN_LIMIT, NO_CONFIGURATION};
 use super::rest_segment::{Extremes, RestSegment, ViaPoint, quartic, quintic};

@@ -1,6 +1,6 @@
 //! Pairs of configurations for both ends, as near to each other in time as can be found.
 
-use super::displacement;
+use super::least_displacement;
 use crate::error::{Error, Result};
 use crate::ik::{Solution, SolveOptions, solve};
 use crate::limits::{Field, Limits, Profile};
@@ -175,7 +175,7 @@ impl<'a> PairSearch<'a> {
             Endpoint::Configuration(_) => None,
         });
         let mut moved = pair.clone();
-        self.evaluations += displacement::shorten(self.robot, self.limits, free, &mut moved);
+        self.evaluations += least_displacement::shorten(self.robot, self.limits, free, &mut moved);
         for (target, q) in free.into_iter().zip([&mut moved.start, &mut moved.end]) {
             let Some(target) = target else { continue };
             match self.solve(target, Some(q.to_vec()), monitor) {

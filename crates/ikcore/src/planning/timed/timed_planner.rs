@@ -1,8 +1,8 @@
 //! The planner: corners, the search for postures, the timing of the best.
 
-use super::cost::TimedCost;
 use super::interpolation::{Corners, Interpolation, Waypoints};
-use super::self_motion::SelfMotion;
+use super::redundant_motion::SelfMotion;
+use super::timed_cost::TimedCost;
 use crate::error::{Error, Result, require_positive};
 use crate::limits::Limits;
 use crate::planning::deviation::TipDeviation;

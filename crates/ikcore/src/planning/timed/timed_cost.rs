@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::interpolation::{Interpolation, Waypoints};
-use super::self_motion::{NODES, SelfMotion, travel};
+use super::redundant_motion::{NODES, SelfMotion, travel};
 use crate::error::Result;
 use crate::objective::{Bounds, Objective, Score};
 use crate::planning::deviation::TipDeviation;

@@ -1,10 +1,10 @@
 //! The planner: ends, then a straight line or a path around obstacles.
 
 use super::among_obstacles;
-use super::ends::PairSearch;
-use super::straight::without_obstacles;
+use super::pair_search::PairSearch;
+use super::straight_line_plan::without_obstacles;
 use crate::error::{Error, Result};
-use crate::planning::collision::can_collide;
+use crate::planning::collision_checks::can_collide;
 use crate::planning::{Endpoint, MotionLimits, Plan, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::Monitor;

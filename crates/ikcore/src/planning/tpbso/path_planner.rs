@@ -1,7 +1,7 @@
 //! The planner along a path.
 
 use super::path_cost::PathCost;
-use super::published::{METHOD, no_configuration, search};
+use super::published_settings::{METHOD, no_configuration, search};
 use super::redundancy::Redundancy;
 use crate::error::{Error, Result, require_positive};
 use crate::planning::planar_arm::PlanarArm;

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::refuse_repetition;
-use super::segment::{distance_to_segment, turn};
+use super::segment_geometry::{distance_to_segment, turn};
 use crate::error::{Error, Result};
 use crate::math::vector::distance;
 use crate::math::{Frame, pose};

@@ -11,10 +11,6 @@
 //! The proof of Theorem 1 describes another algorithm, which keeps theta' where h fell and else goes back to theta and waits.
 //! It is here as [`Accept::Improving`]: the theorem holds for it, while the target stands still.
 
-mod memory;
-
-pub(super) use memory::Memory;
-
 use crate::error::{Error, Result, require_positive};
 use crate::wording::words;
 

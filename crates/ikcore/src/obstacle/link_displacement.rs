@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::segment::Segment;
+use super::segment_distance::Segment;
 use crate::math::{Frame, MAX_DOF};
 use crate::robot::Robot;
 

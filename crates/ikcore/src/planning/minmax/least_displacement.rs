@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::ends::Pair;
+use super::pair_search::Pair;
 use crate::math::box_step::ROWS;
 use crate::objective::{Linearization, Point};
 use crate::planning::MotionLimits;
