@@ -6,7 +6,7 @@ The arm is not built as it was drawn: links up to 2 cm off, joints up to 2°. An
 circle by centimetres. ``BroydenBAS`` uses no drawing: it commands, measures the tip, and learns how one
 follows from the other.
 
-The same on a simulated arm with gravity and servos, as a film: ``examples/wrong_model.py``.
+The same on a simulated arm with gravity and servos, as a film: ``examples/15_wrong_model.py``.
 """
 
 import matplotlib.pyplot as plt

@@ -6,7 +6,7 @@ centimetres. `BroydenBAS` knows no drawing: it sends one command a tick, measure
 millimetre.
 
     pip install 'beetle-ik[plot,sim]'
-    python examples/wrong_model.py OUT          # writes OUT/wrong_model.gif and OUT/wrong_model.png
+    python examples/15_wrong_model.py OUT          # writes OUT/wrong_model.gif and OUT/wrong_model.png
 """
 
 import argparse
