@@ -13,7 +13,7 @@ use ikcore::planning::{
 };
 use ikcore::rng;
 use ikcore::robot::Robot;
-use ikcore::solver::differential_evolution::Update;
+use ikcore::solver::swarm::differential_evolution::Update;
 use ikcore::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Schedule, Status, Stop, Unattended};
 use ikcore::task::Target;
 
