@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 use crate::common::{assert_derivative, bits, configurations, message, pose_at, position_at, robot};
 use ikcore::ik::{Solution, SolveOptions, solve};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
+use ikcore::load::{Dh, DhTable};
 use ikcore::math::{Frame, pose};
 use ikcore::nalgebra::{Point3, Rotation3, Vector3};
-use ikcore::robot::{Dh, DhTable, JointKind, Robot};
+use ikcore::robot::{JointKind, Robot};
 use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, Status, Stop, Unattended, Variant};
 use ikcore::task::{Target, Tolerance};
 

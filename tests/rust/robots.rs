@@ -3,9 +3,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::PathBuf;
 
+use ikcore::load::{Dh, DhTable};
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix4, Vector3};
-use ikcore::robot::{Dh, DhTable, JointKind, Robot};
+use ikcore::robot::{JointKind, Robot};
 
 fn position(robot: &Robot, q: &[f64]) -> Vector3<f64> {
     robot.fk(q).unwrap().translation.vector

@@ -56,7 +56,9 @@
 pub mod batch;
 pub mod error;
 pub mod ik;
+pub mod kinematics;
 pub mod limits;
+pub mod load;
 pub mod manipulability;
 pub mod math;
 pub mod minimize;
@@ -69,6 +71,7 @@ pub mod problem;
 pub mod rng;
 pub mod robot;
 pub mod solver;
+pub mod starts;
 pub mod stored;
 pub mod task;
 pub mod tracking;

@@ -7,7 +7,8 @@ use crate::objective::{
     SmoothScore,
 };
 use crate::rng::LazyRng;
-use crate::robot::{Robot, Seeds};
+use crate::robot::Robot;
+use crate::starts::Seeds;
 use crate::task::{Assessment, Criterion, Target, entrywise};
 
 /// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.

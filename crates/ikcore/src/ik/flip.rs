@@ -6,10 +6,11 @@
 
 use std::f64::consts::PI;
 
+use crate::kinematics::Screw;
 use crate::math::so3::cross;
 use crate::math::vector::dot;
 use crate::objective::Point;
-use crate::robot::{Robot, Screw};
+use crate::robot::Robot;
 
 /// Cosine below which axes stand across each other, and lengths that differ by less are the same.
 const ACROSS: f64 = 1e-6;

@@ -5,11 +5,12 @@ use super::run::Run;
 use super::solution::Solution;
 use super::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
+use crate::kinematics::Beyond;
 use crate::limits::{Field, Limits};
 use crate::objective::{Bounds, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
-use crate::robot::{Beyond, Robot};
+use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{Criterion, Goals, Target, Task};
 

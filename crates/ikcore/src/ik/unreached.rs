@@ -1,7 +1,8 @@
 //! Why a target was not reached, in words.
 
+use crate::kinematics::Beyond;
 use crate::objective::Bounds;
-use crate::robot::{Beyond, Robot};
+use crate::robot::Robot;
 
 /// Joints named at most; the others are counted.
 const MOST_NAMED: usize = 3;

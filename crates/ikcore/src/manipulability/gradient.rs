@@ -5,10 +5,11 @@
 //! carries all elements behind it along, and moves the tip as seen from all before it.
 
 use super::Manipulability;
+use crate::kinematics::{Columns, Screw};
 use crate::math::MAX_DOF;
 use crate::math::singular::SingularValues;
 use crate::math::so3::cross;
-use crate::robot::{Columns, Robot, Screw};
+use crate::robot::Robot;
 
 /// The index at `q` and its gradient.
 pub(super) fn index(measure: &Manipulability, robot: &Robot, q: &[f64], out: &mut [f64]) -> f64 {

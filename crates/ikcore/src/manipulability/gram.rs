@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::robot::Columns;
+use crate::kinematics::Columns;
 
 const ROWS: usize = 6;
 

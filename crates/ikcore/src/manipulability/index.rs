@@ -5,9 +5,10 @@ use super::gradient;
 use super::gram::GramFactor;
 use super::motion::Motion;
 use crate::error::Result;
+use crate::kinematics::{Columns, Directions};
 use crate::math::MAX_DOF;
 use crate::math::singular::SingularValues;
-use crate::robot::{Columns, Directions, Robot};
+use crate::robot::Robot;
 
 /// The measure of a robot's postures: which motion counts, and how many directions of it the robot has at all.
 ///

@@ -4,8 +4,9 @@
 use std::f64::consts::PI;
 
 use super::{Manipulability, gradient};
+use crate::kinematics::Columns;
 use crate::math::MAX_DOF;
-use crate::robot::{Columns, Robot};
+use crate::robot::Robot;
 
 /// At most so many links move.
 pub const MAX_LINKS: usize = MAX_DOF;

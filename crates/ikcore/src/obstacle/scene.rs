@@ -4,8 +4,8 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use super::displacement::{Frames, displacement};
-use super::segment::{Segment, distance_between, distance_to_obstacle};
+use super::link_displacement::{Frames, displacement};
+use super::segment_distance::{Segment, distance_between, distance_to_obstacle};
 use super::shape::Obstacle;
 use crate::error::{Error, Result};
 use crate::math::arithmetic::Separate;

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use nalgebra::Matrix3;
 
-use super::stored::StoredCurve;
+use super::stored_path::StoredCurve;
 
 /// A curve that is passed through in time.
 ///

@@ -29,7 +29,7 @@ mod polyline;
 mod reference;
 mod rose;
 mod samples;
-mod stored;
+mod stored_path;
 mod timed_path;
 
 pub use circle::Circle;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Curve;
-use super::stored::StoredCurve;
+use super::stored_path::StoredCurve;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Knots;
 

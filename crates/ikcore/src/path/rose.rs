@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
-use super::stored::StoredCurve;
+use super::stored_path::StoredCurve;
 use super::{Curve, Plane};
 use crate::error::{Error, Result, require_positive};
 

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
 use super::orientation::check_rotations;
-use super::stored::StoredCurve;
+use super::stored_path::StoredCurve;
 use super::{Curve, Polyline};
 #[cfg(doc)]
 use crate::error::Error;

@@ -64,9 +64,9 @@ impl Drive {
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ChainBuilder {
-    pub(super) name: String,
-    pub(super) joints: Vec<Joint>,
-    pub(super) elements: Vec<Element>,
+    pub(crate) name: String,
+    pub(crate) joints: Vec<Joint>,
+    pub(crate) elements: Vec<Element>,
 }
 
 impl ChainBuilder {
@@ -82,7 +82,7 @@ impl ChainBuilder {
     }
 
     /// The independent joint of this index, to narrow its limits.
-    pub(super) fn joint_mut(&mut self, index: usize) -> &mut Joint {
+    pub(crate) fn joint_mut(&mut self, index: usize) -> &mut Joint {
         &mut self.joints[index]
     }
 
@@ -114,7 +114,7 @@ impl ChainBuilder {
     }
 
     /// Everything that the kernels rely on.
-    pub(super) fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem };
         let moving = self.elements.iter().filter(|e| matches!(e, Element::Moving { .. })).count();
         if moving == 0 || self.joints.is_empty() {

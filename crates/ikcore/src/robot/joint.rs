@@ -73,7 +73,7 @@ impl Joint {
     }
 
     /// Err for limits that contradict themselves.
-    pub(super) fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let Self { lower, upper, velocity, .. } = *self;
         let limits = [
             ("lower", lower, lower < f64::INFINITY, "a number below infinity"),

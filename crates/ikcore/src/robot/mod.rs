@@ -1,40 +1,15 @@
-//! Robots: the serial chain from a base link to a tip link, its joints, limits and kinematics.
+//! Robots: a serial chain from a base link to a tip link, its joints, limits and links.
 
-mod arrays;
-mod as_built;
+mod batched;
+mod bodies;
 mod builder;
-mod catalog;
-mod chain;
-mod collision;
-mod dh;
-mod directions;
-mod dispatch;
-mod four_kinematics;
 mod joint;
-mod kinematics;
-mod lane_search;
+mod manufacturing_errors;
 mod model;
-mod planar;
-mod reach;
-mod screws;
-mod seed_index;
-mod seeds;
-mod stages;
-mod stored;
-mod upright;
-mod urdf;
+mod serialization;
 
+pub(crate) use bodies::CollisionModel;
+pub use bodies::LinkCapsule;
 pub use builder::{ChainBuilder, Drive, Element};
-pub use collision::LinkCapsule;
-pub use dh::{Dh, DhTable};
-pub use directions::Directions;
-pub use four_kinematics::FourColumns;
 pub use joint::{Joint, JointKind};
-pub use kinematics::{Columns, Wrench};
 pub use model::Robot;
-pub use reach::{Beyond, Reach};
-pub use screws::{Screw, Screws};
-pub use seeds::Seeds;
-pub use upright::Upright;
-
-use crate::math::MAX_DOF;

@@ -4,17 +4,17 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::Matrix6xX;
 
+use super::bodies::CollisionModel;
 use super::builder::{ChainBuilder, Element};
-use super::chain::Chain;
-use super::collision::CollisionModel;
-use super::directions::Directions;
 use super::joint::Joint;
-use super::seed_index::SeedIndex;
-use super::{Columns, FourColumns, MAX_DOF, Wrench};
+use crate::kinematics::chain::Chain;
+use crate::kinematics::{Columns, Directions, FourColumns, Wrench};
+use crate::starts::index::SeedIndex;
+
 use crate::error::{Error, Result, require_finite};
 use crate::math::four_frames::FourFrames;
 use crate::math::quad::Quad;
-use crate::math::{Frame, Pose, pose};
+use crate::math::{Frame, MAX_DOF, Pose, pose};
 use crate::rng::LazyRng;
 
 /// A robot arm: a serial chain from base to tip.
@@ -43,11 +43,11 @@ impl PartialEq for Robot {
 }
 
 impl Robot {
-    pub(super) fn new(description: ChainBuilder) -> Result<Self> {
+    pub(crate) fn new(description: ChainBuilder) -> Result<Self> {
         Self::assembled(description, Pose::identity(), Pose::identity(), CollisionModel::default())
     }
 
-    pub(super) fn assembled(
+    pub(crate) fn assembled(
         description: ChainBuilder,
         base: Pose,
         tool: Pose,
@@ -245,19 +245,19 @@ impl Robot {
     }
 
     /// The same robot, taking up other room.
-    pub(super) fn with_collision(&self, collision: CollisionModel) -> Self {
+    pub(crate) fn with_collision(&self, collision: CollisionModel) -> Self {
         Self { collision, ..self.clone() }
     }
 
-    pub(super) fn collision(&self) -> &CollisionModel {
+    pub(crate) fn collision(&self) -> &CollisionModel {
         &self.collision
     }
 
-    pub(super) fn description(&self) -> &ChainBuilder {
+    pub(crate) fn description(&self) -> &ChainBuilder {
         &self.description
     }
 
-    pub(super) fn chain(&self) -> &Chain {
+    pub(crate) fn chain(&self) -> &Chain {
         &self.chain
     }
 
@@ -266,7 +266,7 @@ impl Robot {
         *self.directions.get_or_init(|| Directions::of(self))
     }
 
-    pub(super) fn seed_index(&self) -> &SeedIndex {
+    pub(crate) fn seed_index(&self) -> &SeedIndex {
         self.seed_index.get_or_init(|| {
             let elements = &self.description.elements;
             let moving = elements.iter().filter(|element| matches!(element, Element::Moving { .. })).count();

@@ -1,8 +1,9 @@
 //! Targets that no configuration reaches.
 
 use super::{Criterion, Target};
+use crate::kinematics::Beyond;
 use crate::objective::Bounds;
-use crate::robot::{Beyond, Robot};
+use crate::robot::Robot;
 
 impl Criterion {
     /// How far `target` is out of the reach of `robot` within `bounds`, where it is beyond doubt.

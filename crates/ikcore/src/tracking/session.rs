@@ -7,10 +7,11 @@ use super::record::Accepted;
 use super::rule::{Running, Tick, TickResult, TickRule};
 use super::step::Step;
 use crate::error::{Result, require_finite, require_positive};
+use crate::kinematics::Beyond;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point, Score};
 use crate::rng::{self, LazyRng};
-use crate::robot::{Beyond, Robot};
+use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{Assessment, Criterion, Goals, Target, Task};
 

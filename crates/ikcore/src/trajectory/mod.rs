@@ -1,7 +1,7 @@
 //! Joint motion in time.
 
+mod hermite_segment;
 mod piecewise;
-mod segment;
 mod sequence;
 
 pub use piecewise::{Coefficients, POWERS, Trajectory, polynomial};

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::segment;
+use super::hermite_segment;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Knots;
 use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range};
@@ -99,9 +99,9 @@ impl Trajectory {
             for i in row * n..(row + 1) * n {
                 let pair = |samples: &[f64]| [samples[i], samples[i + n]];
                 coefficients.push(match (qd, qdd) {
-                    (None, _) => segment::line(h, pair(q)),
-                    (Some(qd), None) => segment::cubic(h, pair(q), pair(qd)),
-                    (Some(qd), Some(qdd)) => segment::quintic(h, pair(q), pair(qd), pair(qdd)),
+                    (None, _) => hermite_segment::line(h, pair(q)),
+                    (Some(qd), None) => hermite_segment::cubic(h, pair(q), pair(qd)),
+                    (Some(qd), Some(qdd)) => hermite_segment::quintic(h, pair(q), pair(qd), pair(qdd)),
                 });
             }
         }

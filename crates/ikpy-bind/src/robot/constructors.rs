@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use ikcore::robot::{Dh, DhTable, JointKind, Robot};
+use ikcore::load::{Dh, DhTable};
+use ikcore::robot::{JointKind, Robot};
 use pyo3::prelude::*;
 
 use super::PyRobot;

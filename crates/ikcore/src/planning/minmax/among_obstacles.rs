@@ -1,14 +1,14 @@
 //! Plans among obstacles: collision-free configurations for both ends, a collision-free path between them, and a timing whose
 //! whole motion is certified.
 
-use super::ends::{NAMES, Pair, PairSearch};
 use super::line_timing::JointPolyline;
+use super::pair_search::{NAMES, Pair, PairSearch};
 use super::rrt_connect::{Connection, TreeSearch};
-use super::straight::{PAIRS, no_pair, straight};
+use super::straight_line_plan::{PAIRS, no_pair, straight};
 use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::obstacle::{Scene, Sweep};
-use crate::planning::collision::{RESERVE, TimedMotion, as_lines, refuse_collision, scene, too_near};
+use crate::planning::collision_checks::{RESERVE, TimedMotion, as_lines, refuse_collision, scene, too_near};
 use crate::planning::{Endpoint, Improvement, MotionLimits, Plan, PointToPointOptions};
 use crate::rng;
 use crate::solver::{Monitor, Status};

@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 
 use super::TipPath;
-use super::curve::PAUSE;
+use super::tip_curve::PAUSE;
 use crate::error::Result;
 use crate::path::{Path, Reference};
 

@@ -7,11 +7,12 @@
 //! | [`znnbas`] | a random antenna a tick and the sign of what it brought (Khan et al. 2022) | exactly 1 | to repeat the paper; it learns nothing, needs a fast clock, and its antennae shake the tool |
 
 pub mod broyden_bas;
+mod control_session;
 mod noise;
-mod session;
 pub mod znnbas;
+mod znnbas_state;
 
-pub use session::Session;
+pub use control_session::Session;
 pub use znnbas::{Accept, Antenna, Delay, Znnbas};
 
 use crate::error::Result;
@@ -49,7 +50,7 @@ impl Controller {
     fn start(&self, start: &[f64], dt: f64, tolerance: f64) -> Running {
         match self {
             Self::BroydenBas(broyden) => Running::BroydenBas(broyden_bas::Memory::new(*broyden, start, tolerance)),
-            Self::Znnbas(znnbas) => Running::Znnbas(znnbas::Memory::new(znnbas, start, dt)),
+            Self::Znnbas(znnbas) => Running::Znnbas(znnbas_state::Memory::new(znnbas, start, dt)),
         }
     }
 }
@@ -76,7 +77,7 @@ enum Verdict {
 #[derive(Debug)]
 enum Running {
     BroydenBas(Box<broyden_bas::Memory>),
-    Znnbas(Box<znnbas::Memory>),
+    Znnbas(Box<znnbas_state::Memory>),
 }
 
 impl Running {

@@ -6,10 +6,10 @@
 //! still stop before its displacement ends. A target that moves is caught up with on top of its own motion.
 
 use super::Tick;
+use crate::kinematics::Columns;
 use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::{Frame, MAX_DOF};
 use crate::objective::{Linearization, Point};
-use crate::robot::Columns;
 use crate::solver::LevenbergMarquardt;
 use crate::task::Target;
 

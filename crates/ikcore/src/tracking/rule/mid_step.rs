@@ -8,6 +8,7 @@
 
 use super::approach::Approach;
 use super::{Tick, TickResult};
+use crate::kinematics::Columns;
 use crate::limits::Field;
 use crate::math::{
     Frame, MAX_DOF,
@@ -15,7 +16,7 @@ use crate::math::{
 };
 use crate::objective::{Differentiable, Linearization, Point};
 use crate::problem::Problem;
-use crate::robot::{Columns, Robot};
+use crate::robot::Robot;
 use crate::solver::{Evaluator, Halt, LevenbergMarquardt, Stop, run};
 use crate::task::Assessment;
 
