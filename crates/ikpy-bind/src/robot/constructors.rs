@@ -7,7 +7,7 @@ use ikcore::robot::{JointKind, Robot};
 use pyo3::prelude::*;
 
 use super::PyRobot;
-use super::variants::per_joint;
+use super::modified_copies::per_joint;
 use crate::convert::{rigid, summary, vector};
 use crate::error::{invalid, raise};
 

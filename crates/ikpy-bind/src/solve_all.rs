@@ -9,14 +9,14 @@ use pyo3::types::{PyIterator, PyList};
 use crate::convert::{count, table, vector};
 use crate::error::raise;
 use crate::ik::{PySolution, read_target};
+use crate::indexing::{Selection, iterate, select};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::outcome::outcome;
-use crate::picked::{Picked, items, picked};
+use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
-use crate::stored::{self, Reduced};
 
 /// Distinct solutions of one target: a sequence of `Solution`.
 #[pyclass(name = "SolutionSet", module = "beetle_ik", frozen, sequence)]
@@ -57,15 +57,15 @@ impl PySolutionSet {
     /// A `Solution`; for a slice, a mask or several indices a list of them.
     fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let solution = |i: usize| PySolution::new(py, self.core.solutions[i].clone(), self.limits.clone_ref(py));
-        match picked("a set", index, self.core.solutions.len())? {
-            Picked::One(i) => Ok(Bound::new(py, solution(i))?.into_any()),
-            Picked::Many(rows) => Ok(PyList::new(py, rows.into_iter().map(solution))?.into_any()),
+        match select("a set", index, self.core.solutions.len())? {
+            Selection::One(i) => Ok(Bound::new(py, solution(i))?.into_any()),
+            Selection::Many(rows) => Ok(PyList::new(py, rows.into_iter().map(solution))?.into_any()),
         }
     }
 
     /// Each `Solution`.
     fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyIterator>> {
-        items(slf.as_any())
+        iterate(slf.as_any())
     }
 
     fn __repr__(&self) -> String {
@@ -73,9 +73,9 @@ impl PySolutionSet {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("set of solutions", &self.core))?;
+        let core = pickling::bytes(py, to_bytes("set of solutions", &self.core))?;
         let dof = self.q.bind(py).shape()[1];
-        stored::restored_from::<Self>(py, (core, dof, self.limits.clone_ref(py)))
+        pickling::restored_from::<Self>(py, (core, dof, self.limits.clone_ref(py)))
     }
 
     /// What pickle stored.
