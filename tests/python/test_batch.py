@@ -289,6 +289,7 @@ def test_what_progress_raises_stops_a_batch(threads: int) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no process can send itself Ctrl-C on Windows")
+@pytest.mark.usefixtures("ctrl_c_raises")
 @pytest.mark.parametrize("threads", [1, 2])
 @pytest.mark.parametrize("budget", [10**4, 10**12], ids=["many short searches", "endless searches"])
 def test_ctrl_c_stops_a_batch_that_leaves_python_to_other_threads(threads: int, budget: int) -> None:

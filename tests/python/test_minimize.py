@@ -184,6 +184,7 @@ def test_what_progress_raises_comes_out_with_the_best_so_far() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no process can send itself Ctrl-C on Windows")
+@pytest.mark.usefixtures("ctrl_c_raises")
 def test_ctrl_c_comes_out_with_the_best_so_far() -> None:
     timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()

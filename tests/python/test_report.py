@@ -13,6 +13,8 @@ from beetle_ik import experiments
 from beetle_ik._frames import Frames
 from beetle_ik.experiments import Context, Experiment
 from beetle_ik.report import (
+    CarriedOver,
+    Check,
     Claim,
     Column,
     Figure,
@@ -23,6 +25,7 @@ from beetle_ik.report import (
     Table,
     Verdict,
     drawing,
+    not_given,
     number,
 )
 from beetle_ik.report.markup import inline, paragraphs
@@ -46,15 +49,32 @@ def table(**changes: object) -> Table:
     return Table(**(options | changes))  # type: ignore[arg-type]
 
 
-def claim(holds: bool = True) -> Claim:
-    return Claim.checked("It is fast.", source="Table 2", measured="1 s", holds=holds, section="Times")
+def claim(**changes: object) -> Claim:
+    options: dict[str, object] = {
+        "statement": "It is fast.",
+        "source": "Table 2",
+        "rule": "At most 2 s.",
+        "measured": "1 s",
+        "holds": True,
+        "section": "Times",
+    }
+    options |= changes
+    return Claim.judged(options.pop("statement"), **options)  # type: ignore[arg-type]
+
+
+def check(holds: bool = True) -> Check:
+    return Check(
+        statement="It is ours.", rule="No step misses.", measured="0 steps missed", holds=holds, section="Times"
+    )
 
 
 def report(holds: bool = True) -> Report:
     with drawing(2.0) as figure:
         figure.subplots().plot([0.0, 1.0])
     blocks = ["Text with <marks>.", table(), Figure(name="figure_1", title="A line", drawing=figure)]
-    return Report(summary="All of *it*.", sections=[Section("Times", blocks)], claims=[claim(holds)])
+    return Report(
+        summary="All of *it*.", sections=[Section("Times", blocks)], claims=[claim(holds=holds)], checks=[check(holds)]
+    )
 
 
 @pytest.fixture
@@ -158,16 +178,80 @@ def test_a_wrong_table_is_refused_where_it_is_made(changes: dict[str, object], m
     assert str(refused.value) == message
 
 
-def test_a_verdict_needs_its_reason() -> None:
-    with pytest.raises(ValueError, match=r"^claim 'It is.': 'not reproducible' needs a reason$"):
-        Claim.not_reproducible("It is.", source="Table 2", reason="")
-    assert Claim.checked("It is.", source="", measured="", holds=True, reading="so").verdict is Verdict.WITH_READING
-    assert Claim.checked("It is.", source="", measured="", holds=False, reading="so").verdict is Verdict.MISSED
+@pytest.mark.parametrize(
+    ("data", "verdict"),
+    [
+        ({"holds": 1.0 <= 2.0}, Verdict.REPRODUCED),
+        ({"holds": 3.0 <= 2.0}, Verdict.CONTRADICTED),
+        ({"holds": True, "reading": "the band is 1 mm"}, Verdict.WITH_READING),
+        ({"holds": False, "reading": "the band is 1 mm"}, Verdict.CONTRADICTED),
+        ({"holds": {"star": True, "chain": True}}, Verdict.WITH_READING),
+        ({"holds": {"star": False, "chain": False}}, Verdict.CONTRADICTED),
+        ({"holds": {"star": True, "chain": False}}, Verdict.NOT_IDENTIFIABLE),
+        ({"holds": True, "missing": not_given({"band": 1e-3})}, Verdict.REPRODUCED),
+        ({"holds": True, "missing": not_given({"band": Printed.NOT_STATED})}, Verdict.NOT_IDENTIFIABLE),
+        ({"holds": False, "missing": not_given({"band": Printed.NOT_IN_COPY})}, Verdict.NOT_IDENTIFIABLE),
+        ({"holds": None, "reason": "It needs a robot."}, Verdict.NOT_TESTED),
+        ({"holds": np.float64(1.0) <= 2.0}, Verdict.REPRODUCED),
+        ({"holds": np.float64("nan") <= 2.0}, Verdict.CONTRADICTED),
+    ],
+)
+def test_a_verdict_follows_from_data(data: dict[str, object], verdict: Verdict) -> None:
+    assert claim(**data).verdict is verdict
+
+
+def test_a_verdict_cannot_be_written_down() -> None:
+    with pytest.raises(TypeError, match="unexpected keyword argument 'verdict'"):
+        claim(verdict=Verdict.REPRODUCED)
+    with pytest.raises(AttributeError):
+        claim().verdict = Verdict.REPRODUCED  # type: ignore[misc]
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        ({"rule": ""}, "claim 'It is fast.': state the rule by which it is judged"),
+        ({"holds": None}, "claim 'It is fast.': 'not tested' needs a reason"),
+        ({"holds": {}}, "claim 'It is fast.': `holds` names no reading"),
+    ],
+)
+def test_a_verdict_that_nothing_supports_is_refused(data: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError) as refused:  # noqa: PT011  # the message is compared in full
+        claim(**data)
+    assert str(refused.value) == message
+
+
+def test_a_claim_tells_what_was_chosen_what_is_missing_and_why() -> None:
+    assert claim().notes == []
+    assert claim(reading="a band of 1 mm", reason="It is slow.").notes == ["Reading: a band of 1 mm", "It is slow."]
+    mixed = claim(holds={"star": True, "chain": False, "greedy": False})
+    assert mixed.notes == ["Holds: star.", "Does not hold: chain; greedy."]
+    lacking = claim(missing=not_given({"band": Printed.NOT_STATED, "n": 20, "c": Printed.NOT_IN_COPY}))
+    assert lacking.notes == ["Not given: band (not stated), c (not in our copy)."]
+
+
+def test_a_failed_check_is_no_claim() -> None:
+    section = Section("Times", [])
+    made = Report.of("", [(section, [claim(holds=False), check(holds=True), check(holds=False)])])
+    assert [one.verdict for one in made.claims] == [Verdict.CONTRADICTED]
+    assert made.failed == [check(holds=False)]
+
+
+def test_a_report_says_what_it_did_not_compute() -> None:
+    carried = [
+        CarriedOver(text="It was 3.", command="tune"),
+        table(carried_over="tune"),
+        CarriedOver(text="", command="x"),
+    ]
+    assert Report(summary="", sections=[Section("Times", carried)]).carried_over == ["tune", "x"]
+    assert report().carried_over == []
 
 
 def test_a_report_refuses_what_does_not_hang_together() -> None:
-    with pytest.raises(ValueError, match=r"^claim 'It is fast.': there is no section 'Times'$"):
+    with pytest.raises(ValueError, match=r"^'It is fast.': there is no section 'Times'$"):
         Report(summary="", sections=[], claims=[claim()])
+    with pytest.raises(ValueError, match=r"^'It is ours.': there is no section 'Times'$"):
+        Report(summary="", sections=[], checks=[check()])
     with pytest.raises(ValueError, match=r"^two tables or figures are named 'table_2'$"):
         Report(summary="", sections=[Section("Times", [table(), table()])])
 
@@ -176,7 +260,10 @@ def test_a_report_and_its_files(tmp_path: Path, registered: list[Context]) -> No
     experiments.reproduce("first", tmp_path / "out", short=True)
     out = tmp_path / "out"
     found = {file.relative_to(out).as_posix() for file in out.rglob("*") if file.is_file()}
-    assert found == {"report.html", "report.json", "claims.csv", "tables/table_2.csv", "figures/figure_1.png"}
+    assert found == {
+        *("report.html", "report.json", "claims.csv", "checks.csv"),
+        *("tables/table_2.csv", "figures/figure_1.png"),
+    }
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "Text with &lt;marks&gt;." in page
     assert "All of <em>it</em>." in page
@@ -187,6 +274,11 @@ def test_a_report_and_its_files(tmp_path: Path, registered: list[Context]) -> No
     assert (told["name"], told["short"], told["success"]) == ("first", True, True)
     assert set(told["files"]) == found
     assert told["claims"][0]["verdict"] == "reproduced"
+    assert told["checks"][0]["holds"] is True
+    assert all(verdict.value in page and verdict.meaning in page for verdict in Verdict)
+    assert "everything on this page was computed in that run" in page
+    (row,) = csv.DictReader((out / "claims.csv").read_text(encoding="utf-8").splitlines())
+    assert (row["rule"], row["verdict"]) == ("At most 2 s.", "reproduced")
     assert [context.short for context in registered] == [True]
 
 
@@ -232,6 +324,7 @@ def test_all_reports_have_a_page_over_them(tmp_path: Path, registered: list[Cont
     assert [made.name for _, made in done] == ["first", "second"]
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert 'href="second/report.html#times"' in page
+    assert all(verdict.value in page and verdict.meaning in page for verdict in Verdict)
     assert (tmp_path / "second" / "figures" / "figure_1.png").is_file()
     assert len(registered) == 2
 
@@ -240,6 +333,7 @@ def test_a_new_report_takes_the_place_of_the_old_one(tmp_path: Path, registered:
     experiments.reproduce("all", tmp_path)
     experiments.reproduce("first", tmp_path)
     assert sorted(entry.name for entry in tmp_path.iterdir()) == [
+        "checks.csv",
         "claims.csv",
         "figures",
         "report.html",

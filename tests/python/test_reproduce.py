@@ -12,7 +12,7 @@ from typer.testing import CliRunner, Result
 from beetle_ik import experiments
 from beetle_ik.cli import app
 from beetle_ik.experiments import Context, Experiment
-from beetle_ik.report import Claim, Report, Section
+from beetle_ik.report import Check, Claim, Report, Section
 
 
 def run(*arguments: str) -> Result:
@@ -21,11 +21,16 @@ def run(*arguments: str) -> Result:
 
 @pytest.fixture
 def registered(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An experiment "paper" whose claim holds for seed 0 only."""
+    """An experiment "paper" whose claim holds for seed 0 only, and whose check does for seeds 0 and 1."""
 
     def report(context: Context) -> Report:
-        claim = Claim.checked("It holds.", source="Table 1", measured="1.5 m", holds=context.seed == 0)
-        return Report(summary="It was run.", sections=[Section("Runs", ["One."])], claims=[claim])
+        claim = Claim.judged(
+            "It holds.", source="Table 1", rule="At most 2 m.", measured="1.5 m", holds=context.seed == 0
+        )
+        check = Check(
+            statement="No limit is broken.", rule="Excess 0.", measured="0.1 rad/s", holds=context.seed in (0, 1)
+        )
+        return Report(summary="It was run.", sections=[Section("Runs", ["One."])], claims=[claim], checks=[check])
 
     paper = Experiment(name="paper", title="A paper", paper="A. Author, 2020", run=report)
     monkeypatch.setattr("beetle_ik.experiments.reproduction.experiment", lambda _: paper)
@@ -41,10 +46,17 @@ def test_a_report_is_written_and_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("registered")
-def test_a_claim_that_was_missed_exits_with_1(tmp_path: Path) -> None:
+def test_a_contradicted_claim_is_a_finding_and_no_failure(tmp_path: Path) -> None:
     result = run("paper", "--seed", "1", "--out", str(tmp_path))
+    assert result.exit_code == 0
+    assert json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))["claims"][0]["verdict"] == "contradicted"
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_failed_check_exits_with_1(tmp_path: Path) -> None:
+    result = run("paper", "--seed", "2", "--out", str(tmp_path))
     assert result.exit_code == 1
-    assert "paper missed: It holds. Measured: 1.5 m" in result.stdout
+    assert "paper: check failed: No limit is broken. Rule: Excess 0. Measured: 0.1 rad/s" in result.stdout
     assert (tmp_path / "report.html").is_file()
 
 

@@ -1,4 +1,4 @@
-"""`beetle-ik reproduce`: run a paper's experiments again."""
+"""`beetle-ik reproduce`: repeats a paper's experiments."""
 
 from contextlib import closing
 from pathlib import Path
@@ -18,13 +18,17 @@ def reproduce(
     name: Annotated[str, typer.Argument(help=f"One of {', '.join(experiments.names())}, or all.")],
     *,
     out: Annotated[
-        Path, typer.Option(help="Folder for the report, its tables and its figures; an earlier report is replaced.")
+        Path, typer.Option(help="Folder for the report, its tables and figures; an earlier report is replaced.")
     ],
     short: Annotated[bool, typer.Option("--short", help="A quick pass with fewer runs.")] = False,
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Run a paper's experiments again: every table beside the printed one, every figure, every claim with a verdict."""
+    """Repeat a paper's experiments: each table next to the printed one, each figure, and a verdict on each claim.
+
+    The exit status is 1 if a check of the library itself fails. A contradicted claim of a paper is a finding, not an
+    error.
+    """
     with closing(Bar()) as bar:
         done = experiments.reproduce(name, out, short=short, seed=seed, progress=bar.show, option="--out")
     if as_json:
@@ -32,18 +36,19 @@ def reproduce(
         print_json(described_reports if name == experiments.ALL else described_reports[0])
     else:
         _show(done, out / ("index.html" if name == experiments.ALL else "report.html"))
-    raise typer.Exit(1 if any(report.missed for report, _ in done) else 0)
+    raise typer.Exit(1 if any(report.failed for report, _ in done) else 0)
 
 
 def _show(done: list[tuple[Report, Provenance]], page: Path) -> None:
     rows = [(made.name, *_counts(report), f"{made.elapsed:.1f}") for report, made in done]
-    print_table("Claims by verdict", ("experiment", *Verdict, "time [s]"), rows)
+    print_table("Claims by verdict", ("experiment", *Verdict, "checks passed", "time [s]"), rows)
     for report, made in done:
-        for claim in report.missed:
-            typer.echo(f"{made.name} missed: {claim.statement} Measured: {claim.measured}")
+        for check in report.failed:
+            typer.echo(f"{made.name}: check failed: {check.statement} Rule: {check.rule} Measured: {check.measured}")
     typer.echo(f"{counted(len(done), 'report')}: {page}")
 
 
 def _counts(report: Report) -> list[str]:
     verdicts = [claim.verdict for claim in report.claims]
-    return [str(verdicts.count(verdict)) for verdict in Verdict]
+    passed = f"{len(report.checks) - len(report.failed)} of {len(report.checks)}"
+    return [*(str(verdicts.count(verdict)) for verdict in Verdict), passed]

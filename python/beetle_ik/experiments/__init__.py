@@ -40,12 +40,13 @@ where `run` takes a `Context` and returns a `Report`:
                 )
             ],
             claims=[
-                Claim.checked(
+                Claim.judged(
                     "The error is around 1e-5 m.",
                     source="Section IV-A",
-                    measured=f"{number(error)} m (at most 2e-5 m)",
+                    rule="The largest final error is at most 2e-5 m.",      # the page prints it beside the verdict
+                    measured=f"{number(error)} m",
                     holds=error <= 2e-5,
-                    reading="the error band is 1.7e-5 m; the paper names none",     # leave out where nothing was chosen
+                    reading="The error band is 1.7e-5 m; the paper names none.",    # leave out where nothing was chosen
                     section="Equal precision",
                 )
             ],
@@ -54,11 +55,14 @@ where `run` takes a `Context` and returns a `Report`:
 What the library expects of it:
 
 - An experiment of several parts is a folder with a module a part, whose function returns a `Part`: a section and the
-  claims that it decides. `Report.of(summary, parts)` puts them together.
+  claims and checks that it decides. `Report.of(summary, parts)` puts them together.
 - A compared cell is `(printed, measured)`. What the paper prints but our copy lacks is `Printed.NOT_IN_COPY`; what it
   does not give is `Printed.NOT_STATED`. Nothing is invented.
-- A claim that no run can decide is `Claim.not_reproducible(..., reason=...)`. One that is `checked` and does not hold
-  is "missed", and the command exits with 1.
+- Every claim of the paper has its row, the unwelcome ones too. `Claim.judged` derives the verdict from data by the
+  rule printed beside it; nobody writes a verdict down. A claim that does not hold is "contradicted": a finding.
+- What the library says of itself is a `Check`. One that fails makes the command exit with 1; one that cannot fail is
+  no check.
+- A table or text with numbers of an earlier run says so: `Table(carried_over=...)`, `CarriedOver`.
 - All randomness comes from `context.seeds` and the `seed=` of calls; no result is kept from one run to the next.
 - matplotlib is imported by `drawing` alone. Units in labels, a legend where there is more than one line, colours from
   `beetle_ik.report` (they are safe for colour-blind readers), captions that say what to see.

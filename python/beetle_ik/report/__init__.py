@@ -1,4 +1,4 @@
-"""Reports to read: text, figures, tables with the printed value beside the measured one, claims with verdicts.
+"""Reports to read: text, figures, tables with the printed value beside the measured one, claims with verdicts, checks.
 
     from beetle_ik.report import Claim, Column, Figure, Report, Section, Table, drawing
 
@@ -13,7 +13,8 @@
 """
 
 from .._style import BLACK, BLUE, FORBIDDEN, GREEN, ORANGE, PALETTE, PURPLE, SKY, VERMILION, line
-from .content import Block, Cell, Claim, Column, Figure, Part, Printed, Report, Section, Spread, Table, Value, Verdict
+from .claim import Check, Claim, Printed, Verdict, not_given
+from .content import Block, CarriedOver, Cell, Column, Figure, Part, Report, Section, Spread, Table, Value
 from .drawing import draw_error, draw_velocities, drawing
 from .folder import report_folder
 from .needs import check_installed
@@ -31,7 +32,9 @@ __all__ = [
     "SKY",
     "VERMILION",
     "Block",
+    "CarriedOver",
     "Cell",
+    "Check",
     "Claim",
     "Column",
     "Figure",
@@ -50,6 +53,7 @@ __all__ = [
     "draw_velocities",
     "drawing",
     "line",
+    "not_given",
     "number",
     "report_folder",
     "write_index",

@@ -1,4 +1,4 @@
-"""What a report is made of: sections of text, tables and figures, and claims with their verdicts.
+"""What a report is made of: sections of text, tables and figures; claims of the paper and checks of the library.
 
 Everything is checked when it is made, so that a mistake shows where it was written and not in the finished page.
 """
@@ -8,8 +8,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from enum import Enum, StrEnum
 from typing import TYPE_CHECKING, TypeAlias
+
+from .claim import Check, Claim, Printed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -17,69 +18,6 @@ if TYPE_CHECKING:
     from .._frames import Frames
 
 _FILE_STEM = re.compile(r"[a-z0-9_]+")
-
-
-class Verdict(StrEnum):
-    """What became of a claim."""
-
-    REPRODUCED = "reproduced"
-    WITH_READING = "reproduced with a stated reading"
-    NOT_REPRODUCIBLE = "not reproducible"  # a finding, with its reason
-    MISSED = "missed"  # this run is outside what it must show: something has changed or broken
-
-
-@dataclass(frozen=True, kw_only=True)
-class Claim:
-    """One statement of a paper beside what came out.
-
-    Made by `Claim.checked` where a run decides, by `Claim.not_reproducible` where no run could.
-    """
-
-    statement: str
-    """What the paper says, in our words or, in quotes, in its own."""
-    source: str
-    """Where it says so: "Section IV-A, Figure 2"."""
-    measured: str
-    """What came out, with units, and the bound it was held against."""
-    verdict: Verdict
-    reason: str = ""
-    """The reading, or why it cannot be reproduced. Required unless plainly reproduced or missed."""
-    section: str | None = None
-    """Title of the section that shows it."""
-
-    def __post_init__(self) -> None:
-        """Refuse a verdict without the reason that it needs."""
-        if self.verdict in (Verdict.WITH_READING, Verdict.NOT_REPRODUCIBLE) and not self.reason:
-            raise ValueError(f"claim '{self.statement}': '{self.verdict}' needs a reason")
-
-    @classmethod
-    def checked(
-        cls, statement: str, *, source: str, measured: str, holds: bool, reading: str = "", section: str | None = None
-    ) -> Claim:
-        """A claim that the run decides: reproduced if it `holds`, with a `reading` where one had to be chosen."""
-        kept = Verdict.WITH_READING if reading else Verdict.REPRODUCED
-        return cls(
-            statement=statement,
-            source=source,
-            measured=measured,
-            verdict=kept if holds else Verdict.MISSED,
-            reason=reading,
-            section=section,
-        )
-
-    @classmethod
-    def not_reproducible(
-        cls, statement: str, *, source: str, reason: str, measured: str = "", section: str | None = None
-    ) -> Claim:
-        """A claim that cannot be reproduced, and why: data the paper does not give, a target out of reach."""
-        return cls(
-            statement=statement,
-            source=source,
-            measured=measured,
-            verdict=Verdict.NOT_REPRODUCIBLE,
-            reason=reason,
-            section=section,
-        )
 
 
 @dataclass(frozen=True)
@@ -95,13 +33,6 @@ class Spread:
         mean = sum(values) / len(values)
         squares = sum((value - mean) ** 2 for value in values)
         return cls(mean, (squares / (len(values) - 1)) ** 0.5 if len(values) > 1 else float("nan"))
-
-
-class Printed(Enum):
-    """Why there is no printed value to set beside the measured one."""
-
-    NOT_IN_COPY = "not in our copy"  # the paper prints it; the text that we have lost it
-    NOT_STATED = "not stated"  # the paper does not give it
 
 
 Value: TypeAlias = str | int | float | Spread | None
@@ -137,6 +68,8 @@ class Table:
     caption: str = ""
     folded: bool = False
     """Shown when the reader asks for it: for the numbers behind a figure."""
+    carried_over: str = ""
+    """The command that computes it, where this run did not."""
 
     def __post_init__(self) -> None:
         """Refuse rows that do not fit the columns."""
@@ -169,7 +102,17 @@ class Figure:
         _check_file_stem(self.name)
 
 
-Block: TypeAlias = str | Table | Figure
+@dataclass(frozen=True, kw_only=True)
+class CarriedOver:
+    """Text with numbers that this run did not compute. The page marks it and names the command."""
+
+    text: str
+    """As the text of a section."""
+    command: str
+    """What computes them."""
+
+
+Block: TypeAlias = str | CarriedOver | Table | Figure
 
 
 @dataclass(frozen=True)
@@ -184,8 +127,8 @@ class Section:
     blocks: Sequence[Block]
 
 
-Part: TypeAlias = tuple[Section, list[Claim]]
-"""A section with the claims that it decides."""
+Part: TypeAlias = tuple[Section, Sequence[Claim | Check]]
+"""A section with the claims and checks that it decides."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,14 +139,17 @@ class Report:
     """The finding in a few sentences: what a reader should know who reads nothing else."""
     sections: Sequence[Section]
     claims: Sequence[Claim] = field(default=())
+    checks: Sequence[Check] = field(default=())
+    """What the run says of the library itself."""
 
     def __post_init__(self) -> None:
         """Refuse links to nowhere and names used twice."""
         titles = {section.title for section in self.sections}
-        for claim in self.claims:
-            if claim.section is not None and claim.section not in titles:
-                raise ValueError(f"claim '{claim.statement}': there is no section '{claim.section}'")
-        names = [block.name for block in self.blocks if not isinstance(block, str)]
+        decided: list[Claim | Check] = [*self.claims, *self.checks]
+        for judged in decided:
+            if judged.section is not None and judged.section not in titles:
+                raise ValueError(f"'{judged.statement}': there is no section '{judged.section}'")
+        names = [*(table.name for table in self.tables), *(figure.name for figure in self.figures)]
         for name in names:
             if names.count(name) > 1:
                 raise ValueError(f"two tables or figures are named '{name}'")
@@ -214,7 +160,8 @@ class Report:
         return cls(
             summary=summary,
             sections=[section for section, _ in parts],
-            claims=[claim for _, claims in parts for claim in claims],
+            claims=[judged for _, all_judged in parts for judged in all_judged if isinstance(judged, Claim)],
+            checks=[judged for _, all_judged in parts for judged in all_judged if isinstance(judged, Check)],
         )
 
     @property
@@ -233,9 +180,16 @@ class Report:
         return [block for block in self.blocks if isinstance(block, Figure)]
 
     @property
-    def missed(self) -> list[Claim]:
-        """Claims that this run should have shown and did not."""
-        return [claim for claim in self.claims if claim.verdict is Verdict.MISSED]
+    def failed(self) -> list[Check]:
+        """Checks that do not hold: something has changed or broken."""
+        return [check for check in self.checks if not check.holds]
+
+    @property
+    def carried_over(self) -> list[str]:
+        """Commands that compute what this run did not; empty where it computed everything."""
+        tables = [table.carried_over for table in self.tables if table.carried_over]
+        texts = [block.command for block in self.blocks if isinstance(block, CarriedOver)]
+        return list(dict.fromkeys(tables + texts))
 
 
 def _check_file_stem(name: str) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from .content import Figure, Report, Table, Verdict
+from .claim import Verdict
+from .content import CarriedOver, Figure, Report, Table
 from .markup import inline, paragraphs, slug
 from .tables import shown_rows
 
@@ -30,9 +31,9 @@ def index_page(reports: list[tuple[Report, Provenance]]) -> str:
 
 
 def _counts(reports: list[Report]) -> list[tuple[Verdict, int]]:
-    """How many claims met each verdict."""
+    """How many claims met each verdict; those that none met are explained too."""
     counts = Counter(claim.verdict for report in reports for claim in report.claims)
-    return [(verdict, counts[verdict]) for verdict in Verdict if counts[verdict]]
+    return [(verdict, counts[verdict]) for verdict in Verdict]
 
 
 def _templates() -> Environment:
@@ -49,6 +50,7 @@ def _templates() -> Environment:
     tests: dict[str, Any] = {
         "table": lambda block: isinstance(block, Table),
         "figure": lambda block: isinstance(block, Figure),
+        "carried_over": lambda block: isinstance(block, CarriedOver),
     }
     templates.tests.update(tests)
     templates.filters.update(

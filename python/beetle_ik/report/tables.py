@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from .content import Column, Printed, Spread, Table, Value
+from .claim import Printed
+from .content import Column, Spread, Table, Value
 from .numbers import number, spread
 
 _Entry: TypeAlias = Value | Printed

@@ -9,7 +9,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from .content import Claim, Figure, Report
+from .claim import Check, Claim
+from .content import Figure, Report
 from .folder import MANIFEST, files_in
 from .page import index_page, report_page
 from .picture import gif, png
@@ -39,7 +40,7 @@ class Provenance:
 
 
 def write_report(folder: Path, report: Report, provenance: Provenance) -> None:
-    """Write `report.html`, `report.json`, `claims.csv`, `tables/*.csv`, `figures/*.png` and `*.gif` into `folder`."""
+    """Write the page, its JSON, `claims.csv`, `checks.csv`, tables (CSV) and figures (PNG, GIF) into `folder`."""
     dpi = _DPI_SHORT if provenance.short else _DPI
     for kind in ("tables", "figures"):
         (folder / kind).mkdir()
@@ -47,6 +48,7 @@ def write_report(folder: Path, report: Report, provenance: Provenance) -> None:
         (folder / "tables" / f"{table.name}.csv").write_text(to_csv(table), encoding="utf-8")
     embedded = {figure.name: _picture(figure, folder / "figures", dpi) for figure in report.figures}
     (folder / "claims.csv").write_text(_claims_csv(report.claims), encoding="utf-8")
+    (folder / "checks.csv").write_text(_checks_csv(report.checks), encoding="utf-8")
     (folder / "report.html").write_text(report_page(report, provenance, embedded), encoding="utf-8")
     _write_manifest(folder, described(report, provenance))
 
@@ -61,9 +63,11 @@ def described(report: Report, provenance: Provenance) -> dict[str, Any]:
     """A report for machines: how it was made, what it says, each claim."""
     return {
         **asdict(provenance),
-        "success": not report.missed,
+        "success": not report.failed,
         "summary": report.summary,
-        "claims": [asdict(claim) for claim in report.claims],
+        "carried_over": report.carried_over,
+        "claims": [{**asdict(claim), "verdict": claim.verdict} for claim in report.claims],
+        "checks": [asdict(check) for check in report.checks],
     }
 
 
@@ -83,9 +87,19 @@ def _picture(figure: Figure, folder: Path, dpi: int) -> str:
 
 
 def _claims_csv(claims: Sequence[Claim]) -> str:
+    columns = ["statement", "source", "rule", "measured", "verdict", "notes"]
+    return _csv(
+        columns, [{**vars(claim), "verdict": claim.verdict, "notes": " ".join(claim.notes)} for claim in claims]
+    )
+
+
+def _checks_csv(checks: Sequence[Check]) -> str:
+    return _csv(["statement", "rule", "measured", "holds"], [vars(check) for check in checks])
+
+
+def _csv(columns: list[str], rows: list[dict[str, Any]]) -> str:
     text = io.StringIO()
-    columns = ["statement", "source", "measured", "verdict", "reason"]
     writer = csv.DictWriter(text, columns, extrasaction="ignore", lineterminator="\n")
     writer.writeheader()
-    writer.writerows(asdict(claim) for claim in claims)
+    writer.writerows(rows)
     return text.getvalue()

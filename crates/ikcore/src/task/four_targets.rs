@@ -1,6 +1,7 @@
 //! Four targets of one kind, linearized side by side.
 
-use super::{Criterion, SquaredError, Target, orientation};
+use super::residual::orientation;
+use super::{Criterion, SquaredError, Target};
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, Baseline, by_instructions};
 use crate::math::box_step::ROWS;
@@ -11,7 +12,7 @@ use crate::math::vec3::Vec3;
 use crate::objective::{FourLinearizations, Score};
 use crate::robot::Robot;
 
-/// Residuals, their angular rows empty, and the squared distances of [`position`](super::position), side by side.
+/// Residuals, their angular rows empty, and the squared distances of [`position`](super::residual::position), side by side.
 #[inline(always)]
 fn linearize_positions<A: Arithmetic>(wanted: &[F64x4; 3], tips: &[F64x4; 3], residual: &mut [F64x4; ROWS]) -> F64x4 {
     let missed = Vec3::<Four<A>>::of(tips) - Vec3::of(wanted);
@@ -20,7 +21,7 @@ fn linearize_positions<A: Arithmetic>(wanted: &[F64x4; 3], tips: &[F64x4; 3], re
     missed.dot(missed).stored()
 }
 
-/// Squared distances and squared angles of [`pose`](super::pose), side by side, from the geometric Jacobians that stand in `columns`.
+/// Squared distances and squared angles of [`pose`](super::residual::pose), side by side, from the geometric Jacobians that stand in `columns`.
 #[inline(always)]
 fn linearize_poses<A: Arithmetic>(
     wanted: &Frame<F64x4>,

@@ -1,7 +1,7 @@
 //! Swarms and evolution: classes that are a population and a list of options.
 
-use ikcore::solver::beetle_swarm::Direction;
-use ikcore::solver::differential_evolution::Update;
+use ikcore::solver::swarm::beetle_swarm::Direction;
+use ikcore::solver::swarm::differential_evolution::Update;
 use ikcore::solver::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Qpso};
 use pyo3::prelude::*;
 

@@ -185,9 +185,10 @@ def _table(cases: list[Case]) -> Table:
 def _error_claims(cases: list[Case]) -> list[Claim]:
     sources = {FIVE_LINK.name: "Section IV-A.1, Figure 2", IIWA.name: "Sections IV-A.2 and IV-A.4, Figures 3 and 7"}
     return [
-        Claim.checked(
+        Claim.judged(
             f"The {arm} tracks its circle with a steady error around {number(_PUBLISHED[arm], 1)} m.",
             source=source,
+            rule="The mean error is within the bounds in brackets, and every run enters its band and stays there.",
             measured="; ".join(case.told for case in cases if case.task.name == arm),
             holds=all(case.is_as_published for case in cases if case.task.name == arm),
             reading=(
@@ -206,9 +207,10 @@ def _error_claims(cases: list[Case]) -> list[Claim]:
 def _limit_claim(cases: list[Case]) -> Claim:
     excess, allowed = max(0.0, *(case.excess for case in cases)), number(ROUNDING, 1)
     runs = sum(len(case.results) for case in cases)
-    return Claim.checked(
+    return Claim.judged(
         "The resolved joint velocities always stay within the variable limits.",
         source="Sections IV-A.1 and IV-A.2, Figures 2(d) and 3",
+        rule=f"The largest excess over the limit is at most {number(ROUNDING, 1)} rad/s.",
         measured=f"largest excess over the limit in {runs} runs: {number(excess, 2)} rad/s (at most {allowed})",
         holds=excess <= ROUNDING,
         reading=(

@@ -95,9 +95,11 @@ def _claim(boxed: list[Boxed]) -> Claim:
     runs = sum(len(one.results) for one in boxed)
     nearest = min(-one.outside for one in boxed)
     away = ", ".join(f"{number(one.away, 2)} m ({one.task.name})" for one in boxed)
-    return Claim.checked(
+    return Claim.judged(
         "The end-effector stays within specific spaces, pₘᵢₙ < p(t) < pₘₐₓ.",
         source="Section II-B, eq. (5)",
+        rule="In every step the tip is inside the box, within the velocity limits, and at most two "
+        "bands from the point of the box nearest to its target.",
         measured=(
             f"in all steps of {runs} runs the tip is inside, by {number(nearest, 2)} m at least, and at most {away} "
             "from the point of the box nearest to its target"

@@ -149,9 +149,10 @@ def _claims(found: dict[str, Measurements]) -> list[Claim]:
     few, *_, many = found["figure_4"][star]
     by_c1, by_c2 = ({row.value: row for row in found[figure][star]} for figure in ("figure_5", "figure_6"))
     return [
-        Claim.checked(
+        Claim.judged(
             "With more explorations n the error converges faster and the joint velocity oscillates less, at more cost.",
             source="Section IV-A.3a, Figure 4",
+            rule="From the fewest to the most explorations: fewer steps to the band, less roughness, more evaluations.",
             measured=_change("n", few, many),
             holds=many.steps.mean < few.steps.mean
             and many.roughness.mean < few.roughness.mean
@@ -160,9 +161,10 @@ def _claims(found: dict[str, Measurements]) -> list[Claim]:
             section=TITLE,
         ),
         *(
-            Claim.checked(
+            Claim.judged(
                 f"A larger {symbol} decreases the computation and makes the joint velocity oscillate.",
                 source=source,
+                rule="From 0.3 to 1 the evaluations at least halve and the roughness at least doubles.",
                 measured=f"{_change(symbol, rows[0.3], rows[1.0])} (cost at most half, roughness at least double)",
                 holds=rows[1.0].evaluations.mean <= 0.5 * rows[0.3].evaluations.mean
                 and rows[1.0].roughness.mean >= 2.0 * rows[0.3].roughness.mean,

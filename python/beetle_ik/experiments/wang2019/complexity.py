@@ -70,9 +70,10 @@ def complexity(context: Context) -> Part:
 def _claim(proportional: list[Growth], others: list[Growth]) -> Claim:
     ratios = [growth.of_evaluations for growth in proportional]
     exponents = [growth.exponent for growth in (*proportional, *others)]
-    return Claim.checked(
+    return Claim.judged(
         "Cost grows in proportion to population and iterations.",
         source="Section IV-D.3, Table 2",
+        rule=f"Evaluations grow by the same factor as their cause, to {_LEFT_OVER:g} of it.",
         measured=(
             f"evaluations grow {number(min(ratios))} to {number(max(ratios))} times as much as their cause; no part of "
             f"the verdict: exponents of time between {number(min(exponents), 2)} and {number(max(exponents), 2)}"

@@ -32,9 +32,10 @@ def typos(runs: list[Motion]) -> Part:
     off = float(np.abs(positions - POSITION_2).max())
     same = float(np.abs(table_1.fk(np.radians(START)) - home()).max())
     return section, [
-        Claim.checked(
+        Claim.judged(
             "Table 1 and eq. (1) describe the robot of the experiment.",
             source="Tables 1, 3 and 4",
+            rule="At the printed R₂ the tip is within half the last digit of the printed positions.",
             measured=(
                 f"at the printed R₂ the tip of Table 1's robot is within {number(off * 1e6, 2)} µm of the printed "
                 f"positions (at most {_HALF_DIGIT * 1e6:.1f} µm, half of their last digit); the built-in robot differs "
