@@ -53,7 +53,7 @@ fn farthest_out_of_reach(reference: &Reference, first: usize, session: &Session)
     let Ok(bounds) = session.limits().position_box() else { return Ok(None) }; // they vary in time
     for i in first..reference.len() {
         if let Some(beyond) = session.beyond_reach(&target(reference, i), &bounds)?
-            && farthest.is_none_or(|(most, _)| (beyond.distance, beyond.lean) > (most.distance, most.lean))
+            && farthest.is_none_or(|(most, _)| (beyond.distance, beyond.angle) > (most.distance, most.angle))
         {
             farthest = Some((beyond, reference.time(i)));
         }
