@@ -103,7 +103,7 @@ impl PyPlan {
         pickling::restored_from::<Self>(py, (core, &self.reference, &self.robot, &self.limits, &self.obstacles))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     #[pyo3(signature = (bytes, reference, robot, limits, obstacles))]
     fn _restore(

@@ -30,8 +30,8 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1; None: (1, 1).
 ///     solver: what searches; None: the method's own.
 ///     stop: budgets; None: the method's own.
-///     seed: of the random draws: the same seed, the same bits.
-///     progress: True for a bar on the terminal, or a callable of (done, total).
+///     seed: seed of the random draws; the same seed gives the same bits.
+///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
 /// Returns:
 ///     A `Plan`. That no plan keeps everything is a status beside the least violating trajectory, not an error.

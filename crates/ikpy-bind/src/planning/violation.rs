@@ -55,7 +55,7 @@ impl PyViolation {
         pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("violation", &self.0))?,))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     fn _restore(bytes: &[u8]) -> PyResult<Self> {
         from_bytes("violation", bytes).map(Self).map_err(raise)
