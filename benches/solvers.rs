@@ -13,7 +13,7 @@ use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{
     Algorithm, AnySolver, Bas, BeeColony, BeetleSwarm, DifferentialEvolution, Evaluator, Firefly, Genetic, Pso, Qpso,
-    Schedule, Stop, Unattended, Variant, pso::Form,
+    Schedule, Stop, Unattended, Variant, swarm::pso::Form,
 };
 use ikcore::task::{Target, Tolerance};
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result, require_finite};
 use crate::objective::{Bounds, CallPattern, Objective, Point, Score};
 use crate::rng::{self, LazyRng};
-use crate::solver::reporting::Reporting;
+use crate::solver::monitor::Reporting;
 use crate::solver::stop::Stopwatch;
 use crate::solver::{AnySolver, DerivativeFree, Evaluator, Monitor, Status, Stop};
 

@@ -1,8 +1,8 @@
 //! Options that are fields of a core value: conversion from and to Python, and `repr`.
 
 use ikcore::solver::Variant;
-use ikcore::solver::beetle_swarm::Direction;
-use ikcore::solver::differential_evolution::Update;
+use ikcore::solver::swarm::beetle_swarm::Direction;
+use ikcore::solver::swarm::differential_evolution::Update;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 

@@ -1,24 +1,18 @@
 //! Inverse kinematics: one target, one answer, or all of them.
 
-mod all;
-mod arcs;
+mod attempt;
 mod best;
-mod curve;
-mod flip;
+mod context;
+mod goal_descent;
 mod nearest;
-mod prepared;
-mod room;
-mod round;
-mod run;
-mod self_motion;
 mod side_by_side;
 mod solution;
 mod solve;
-mod unreached;
+mod solve_all;
 
-pub use all::{AllOptions, SolutionSet, solve_all};
+pub(crate) use context::Prepared;
 pub(crate) use nearest::bring_near;
-pub(crate) use prepared::Prepared;
 pub(crate) use side_by_side::Query;
 pub use solution::Solution;
 pub use solve::{Prefer, SolveOptions, solve};
+pub use solve_all::{AllOptions, SolutionSet, solve_all};

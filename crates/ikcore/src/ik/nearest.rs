@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::prepared::Prepared;
-use super::run::Run;
-use super::self_motion::SelfMotion;
+use super::attempt::Run;
+use super::context::Prepared;
+use super::goal_descent::SelfMotion;
 use super::solution::Solution;
 use crate::math::vector::distance;
 use crate::objective::{Bounds, Point};

@@ -3,8 +3,8 @@
 use std::cell::Cell;
 use std::time::Duration;
 
-use super::prepared::Prepared;
-use super::run::Run;
+use super::attempt::Run;
+use super::context::Prepared;
 use super::solution::Solution;
 use super::solve::Prefer;
 use crate::problem::Problem;

@@ -1,6 +1,6 @@
 //! One target, one answer.
 
-use super::prepared::Prepared;
+use super::context::Prepared;
 use super::solution::Solution;
 use crate::error::Result;
 use crate::limits::Limits;

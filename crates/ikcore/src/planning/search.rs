@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::objective::{Bounds, Objective, Point, Score};
 use crate::planning::plan::Improvement;
 use crate::rng;
-use crate::solver::reporting::Reporting;
+use crate::solver::monitor::Reporting;
 use crate::solver::{AnySolver, DerivativeFree, Evaluator, Monitor, Outcome, Status, Stop};
 
 /// What searches, and for how long.

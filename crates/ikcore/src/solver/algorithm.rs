@@ -2,21 +2,15 @@
 
 use super::apps::Apps;
 use super::bas::{Bas, Variant};
-use super::bee_colony::BeeColony;
-use super::beetle_swarm::BeetleSwarm;
 use super::broyden_bas::BroydenBas;
-use super::differential_evolution::DifferentialEvolution;
 use super::driver::{Outcome, Solver, run};
 use super::evaluator::Evaluator;
-use super::firefly::Firefly;
-use super::genetic::Genetic;
 use super::jacobian_transpose::JacobianTranspose;
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::multi_start::{MultiStart, RestartRule};
 use super::newton_raphson::NewtonRaphson;
-use super::population::Schedule;
-use super::pso::{Form, Pso};
-use super::qpso::Qpso;
+use super::swarm::pso::Form;
+use super::swarm::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, Qpso, Schedule};
 use crate::error::Result;
 use crate::objective::{Differentiable, Objective};
 

@@ -3,7 +3,7 @@
 //!
 //! The search is free, as published: a joint may pass its limits, and eq. (12) brings it back by whole turns.
 
-use super::conduct::{Conduct, Domain, Termination};
+use super::domain::{Conduct, Domain, Termination};
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Result, require_positive};

@@ -1,6 +1,6 @@
 //! The loop: start, step, check; the same for every solver.
 
-use super::conduct::Conduct;
+use super::domain::Conduct;
 use super::evaluator::{Evaluator, Halt};
 use super::stop::Status;
 use crate::objective::Objective;

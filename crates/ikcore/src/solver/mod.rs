@@ -11,10 +11,10 @@
 //! | [`apps`] | APPS (Yuan et al. 2016): descent by steps cut off joint by joint | gradient |
 //! | [`bas`] | beetle antennae search (Cheng et al. 2020): star, chain, greedy | values |
 //! | [`broyden_bas`] | antenna differences as secants: quasi-Newton without a Jacobian | residual |
-//! | [`beetle_swarm`] | beetle swarm (Wang et al. 2019): particles with antennae | values |
-//! | [`pso`], [`qpso`] | particle swarms, with velocities and quantum-behaved | values |
-//! | [`firefly`], [`bee_colony`] | firefly algorithm, artificial bee colony | values |
-//! | [`genetic`], [`differential_evolution`] | evolution by crossover and mutation, and by differences | values |
+//! | [`swarm::beetle_swarm`] | beetle swarm (Wang et al. 2019): particles with antennae | values |
+//! | [`Pso`], [`Qpso`] | particle swarms, with velocities and quantum-behaved | values |
+//! | [`Firefly`], [`BeeColony`] | firefly algorithm, artificial bee colony | values |
+//! | [`Genetic`], [`swarm::differential_evolution`] | evolution by crossover and mutation, and by differences | values |
 //! | [`jacobian_transpose`] | Jacobian transpose: steepest descent | residual and Jacobian |
 //! | [`levenberg_marquardt`] | Levenberg-Marquardt on the box | residual and Jacobian |
 //! | [`newton_raphson`] | Newton-Raphson by the pseudo-inverse | residual and Jacobian |
@@ -24,46 +24,31 @@ pub mod algorithm;
 pub mod any_solver;
 pub mod apps;
 pub mod bas;
-pub mod bee_colony;
-pub mod beetle_swarm;
 pub mod broyden_bas;
-pub mod conduct;
-pub mod differential_evolution;
+pub mod domain;
 pub mod driver;
 pub mod evaluator;
-pub mod firefly;
-pub mod genetic;
 pub mod jacobian_transpose;
 pub mod levenberg_marquardt;
+pub(crate) mod monitor;
 pub mod multi_start;
 pub mod newton_raphson;
-pub mod population;
-pub mod pso;
-pub mod qpso;
-pub(crate) mod reporting;
 pub mod side_by_side;
 pub mod stop;
-pub mod velocities;
+pub mod swarm;
 
 pub use algorithm::{Algorithm, DerivativeFree};
 pub use any_solver::AnySolver;
 pub use apps::{Apps, LearningRate};
 pub use bas::{Bas, Variant};
-pub use bee_colony::BeeColony;
-pub use beetle_swarm::BeetleSwarm;
 pub use broyden_bas::BroydenBas;
-pub use conduct::{Conduct, Domain, Termination};
-pub use differential_evolution::DifferentialEvolution;
+pub use domain::{Conduct, Domain, Termination};
 pub use driver::{Outcome, Solver, run};
 pub use evaluator::{Best, Evaluator, Halt};
-pub use firefly::Firefly;
-pub use genetic::Genetic;
 pub use jacobian_transpose::{JacobianTranspose, StepSize};
 pub use levenberg_marquardt::LevenbergMarquardt;
 pub use multi_start::{MultiStart, RestartRule};
 pub use newton_raphson::NewtonRaphson;
-pub use population::Schedule;
-pub use pso::Pso;
-pub use qpso::Qpso;
 pub(crate) use side_by_side::run_side_by_side;
 pub use stop::{Monitor, Status, Stop, Unattended};
+pub use swarm::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, Qpso, Schedule};

@@ -1,6 +1,6 @@
 //! The one multi-start: any solver, begun again elsewhere when it stalls or its attempt is hopeless.
 
-use super::conduct::Conduct;
+use super::domain::Conduct;
 use super::driver::Solver;
 use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result};

@@ -1,6 +1,7 @@
 //! Four targets of one kind, linearized side by side.
 
-use super::{Criterion, SquaredError, Target, orientation};
+use super::residual::orientation;
+use super::{Criterion, SquaredError, Target};
 use crate::math::arithmetic::{Arithmetic, Baseline};
 #[cfg(target_arch = "x86_64")]
 use crate::math::arithmetic::{Fused, has_fused};
@@ -13,7 +14,7 @@ use crate::math::triple::Triple;
 use crate::objective::{FourLinearizations, Score};
 use crate::robot::Robot;
 
-/// Residuals, their angular rows empty, and the squared distances of [`position`](super::position), side by side.
+/// Residuals, their angular rows empty, and the squared distances of [`position`](super::residual::position), side by side.
 #[inline(always)]
 fn linearize_positions<A: Arithmetic>(wanted: &[Quad; 3], tips: &[Quad; 3], residual: &mut [Quad; ROWS]) -> Quad {
     let missed = Triple::<Four<A>>::of(tips) - Triple::of(wanted);
@@ -22,7 +23,7 @@ fn linearize_positions<A: Arithmetic>(wanted: &[Quad; 3], tips: &[Quad; 3], resi
     missed.dot(missed).stored()
 }
 
-/// Squared distances and squared angles of [`pose`](super::pose), side by side, from the geometric Jacobians that stand in `columns`.
+/// Squared distances and squared angles of [`pose`](super::residual::pose), side by side, from the geometric Jacobians that stand in `columns`.
 #[inline(always)]
 fn linearize_poses<A: Arithmetic>(
     wanted: &FourFrames,

@@ -1,6 +1,6 @@
 //! `plan_along_path`.
 
-use ikcore::path::Reference;
+use ikcore::path::Waypoints;
 use ikcore::planning::{self, AlongPathMethod, AlongPathOptions, TipPath};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
@@ -91,16 +91,16 @@ fn read_tip_path(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<TipPath> {
 }
 
 /// Points (k, 3), or poses (k, 4, 4).
-fn read_points(path: &Bound<'_, PyAny>) -> PyResult<Reference> {
+fn read_points(path: &Bound<'_, PyAny>) -> PyResult<Waypoints> {
     let rows = array("path", path)?;
     let numbers = rows.as_slice()?;
     match rows.shape() {
-        [_, 3] => Reference::new(1.0, numbers.as_chunks().0.to_vec(), None).map_err(raise),
+        [_, 3] => Waypoints::new(numbers.as_chunks().0.to_vec(), None).map_err(raise),
         [_, 4, 4] => {
             let poses = rigid_matrices(numbers)?;
             let positions = poses.iter().map(|pose| pose.translation.vector.into()).collect();
             let rotations = poses.iter().map(|pose| *pose.rotation.matrix()).collect();
-            Reference::new(1.0, positions, Some(rotations)).map_err(raise)
+            Waypoints::new(positions, Some(rotations)).map_err(raise)
         }
         shape => Err(invalid(format!(
             "path: expected a Path, points (k, 3) or poses (k, 4, 4), got shape {}",

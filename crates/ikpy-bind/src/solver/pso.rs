@@ -1,7 +1,7 @@
 //! `PSO`.
 
 use ikcore::solver::Pso;
-use ikcore::solver::pso::{Accept, Form, Walls};
+use ikcore::solver::swarm::pso::{Accept, Form, Walls};
 use pyo3::prelude::*;
 
 use super::schedule::{limited, schedule, scheduled, show_schedule};

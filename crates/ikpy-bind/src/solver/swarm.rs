@@ -1,7 +1,7 @@
 //! Swarms and evolutionary algorithms: classes of a population and options.
 
-use ikcore::solver::beetle_swarm::Direction;
-use ikcore::solver::differential_evolution::Update;
+use ikcore::solver::swarm::beetle_swarm::Direction;
+use ikcore::solver::swarm::differential_evolution::Update;
 use ikcore::solver::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Qpso};
 use pyo3::prelude::*;
 

@@ -3,8 +3,8 @@
 use std::sync::Mutex;
 
 use ikcore::solver::stop::Stopwatch;
+use ikcore::tracking::ControlSession;
 use ikcore::tracking::Controller;
-use ikcore::tracking::controller::Session;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -28,13 +28,13 @@ use crate::solver::PyBroydenBas;
 /// `BroydenBAS` when the error is in its band or max_evaluations_per_step are made.
 #[pyclass(name = "ControlSession", module = "beetle_ik", frozen)]
 pub struct PyControlSession {
-    session: Mutex<Session>,
+    session: Mutex<ControlSession>,
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
 
-in_progress!(PyControlSession, Session);
+in_progress!(PyControlSession, ControlSession);
 
 #[pymethods]
 impl PyControlSession {
@@ -77,7 +77,7 @@ impl PyControlSession {
         let start = vector("start", start)?;
         limits.map_or(Ok(()), |limits| limits.require_no_functions("session", "track_model_free"))?;
         let (in_force, limits) = limits_without_robot(py, limits, start.len(), &Sampling::once())?;
-        let session = Session::new(controller, &start, dt, limits, position_tolerance, count("seed", seed)?);
+        let session = ControlSession::new(controller, &start, dt, limits, position_tolerance, count("seed", seed)?);
         Ok(Self { session: Mutex::new(session.map_err(raise)?), limits: in_force })
     }
 }

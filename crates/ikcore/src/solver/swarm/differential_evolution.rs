@@ -1,11 +1,11 @@
 //! Differential evolution, DE/rand/1/bin (Storn and Price 1997).
 
-use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
 use super::population::{Generation, Members, Population, Schedule};
 use crate::error::{Error, Result};
 use crate::objective::{Bounds, Objective};
 use crate::rng::LazyRng;
+use crate::solver::driver::Solver;
+use crate::solver::evaluator::{Evaluator, Halt};
 use crate::wording::words;
 
 /// When a trial that does no worse takes its vector's place.

@@ -1,13 +1,13 @@
 //! Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): particles have no velocity, but are found around
 //! an attractor with a spread that follows from their distance to the mean best place.
 
-use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
 use super::population::{Generation, Members, Memory, Population, Schedule, tile};
 use crate::error::{Result, require_positive};
 use crate::math::logarithm::ln;
 use crate::objective::{Objective, Point};
 use crate::rng::{LazyRng, split};
+use crate::solver::driver::Solver;
+use crate::solver::evaluator::{Evaluator, Halt};
 
 /// Quantum-behaved particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,10 @@
 //! The search for one target: attempts within a budget, and what is made of those that miss.
 
-use super::prepared::Prepared;
+use super::context::Prepared;
 use super::solution::Solution;
-use super::unreached::obstruction;
 use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
+use crate::problem::obstruction;
 use crate::rng::LazyRng;
 use crate::solver::stop::Stopwatch;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, Outcome, Status, Stop, run};

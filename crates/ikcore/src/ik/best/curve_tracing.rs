@@ -5,9 +5,9 @@
 //! is walked once, and of each of its [`Arcs`] it is told what they promise.
 
 use super::arcs::{Arcs, Promise};
-use super::curve::{LONGEST, Step, Walk};
-use super::room::Room;
-use super::self_motion::difference;
+use super::curve_walk::{LONGEST, Step, Walk};
+use super::wrapped_limits::Room;
+use crate::ik::goal_descent::difference;
 use crate::math::vector::{dot, norm};
 use crate::objective::{Bounds, Point};
 use crate::problem::Problem;

@@ -5,8 +5,8 @@
 
 use smallvec::SmallVec;
 
-use super::curve::Place;
-use super::room::Room;
+use super::curve_walk::Place;
+use super::wrapped_limits::Room;
 use crate::math::MAX_DOF;
 use crate::math::hermite::Cubic;
 use crate::math::vector::dot;

@@ -5,12 +5,12 @@
 //! shrinks by a constant factor: MATLAB's linear shrinking needs to know the last generation in advance, which a budget
 //! of evaluations or a tolerance leaves open.
 
-use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
 use super::population::{Generation, Members, Population, Schedule};
 use crate::error::{Error, Result, require_positive};
 use crate::objective::Objective;
 use crate::rng::LazyRng;
+use crate::solver::driver::Solver;
+use crate::solver::evaluator::{Evaluator, Halt};
 
 /// Genetic algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,12 +4,12 @@
 //! loop over j is the outer one: every firefly has its turn to attract all that are less bright, and these are evaluated
 //! together. A step is one turn; a generation is a turn of each.
 
-use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
 use super::population::{Generation, Members, Population, Schedule};
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Objective, Point};
 use crate::rng::split;
+use crate::solver::driver::Solver;
+use crate::solver::evaluator::{Evaluator, Halt};
 
 /// Firefly algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]

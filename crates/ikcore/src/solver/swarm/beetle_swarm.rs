@@ -5,13 +5,13 @@
 //! which the swarm diverges; the antennae of eq. (28) to (30) stand at x +- V d/2 (the paper prints one name for both)
 //! with the velocity just updated, as line 7 of its Algorithm 1 has it. [`BeetleSwarm::literal`] has no inertia weight.
 
-use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
 use super::population::{Generation, Members, Memory, Population, Schedule};
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
 use crate::math::ordered::sign;
 use crate::objective::Objective;
+use crate::solver::driver::Solver;
+use crate::solver::evaluator::{Evaluator, Halt};
 use crate::wording::words;
 
 /// Which way a beetle goes along its velocity, given what its antennae smell.

@@ -1,7 +1,7 @@
 //! A robot and options that were found in order, and how one target is solved with them.
 
+use super::attempt::Run;
 use super::nearest::bring_near;
-use super::run::Run;
 use super::solution::Solution;
 use super::{Prefer, SolveOptions};
 use crate::error::{Error, Result};

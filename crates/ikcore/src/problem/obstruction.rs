@@ -9,7 +9,7 @@ const MOST_NAMED: usize = 3;
 
 /// What is in the way at `q`: how far the target is out of reach, if it provably is, where the tip has `passed` its
 /// region, and the joints at their limits.
-pub(super) fn obstruction(
+pub(crate) fn obstruction(
     robot: &Robot,
     bounds: &Bounds,
     q: &[f64],

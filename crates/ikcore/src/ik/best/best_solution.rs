@@ -2,12 +2,12 @@
 //! on each of them several places where nothing near is better.
 
 use super::arcs::Promise;
-use super::flip::flips;
-use super::nearest::bring_near;
-use super::prepared::Prepared;
-use super::round::{Round, Visit};
-use super::run::Run;
-use super::solution::Solution;
+use super::branch_flip::flips;
+use super::curve_tracing::{Round, Visit};
+use crate::ik::attempt::Run;
+use crate::ik::context::Prepared;
+use crate::ik::nearest::bring_near;
+use crate::ik::solution::Solution;
 use crate::objective::{Bounds, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
@@ -30,7 +30,7 @@ const SAME: f64 = 1e-9;
 impl Prepared<'_> {
     /// The solution with the least cost among those found until [`PATIENCE`] of them in a row, or [`PATIENCE_FOR_CURVES`]
     /// evaluations, brought nothing new; the best miss where there is none.
-    pub(super) fn run_best(
+    pub(in crate::ik) fn run_best(
         &self,
         target: &Target,
         start: Option<&[f64]>,

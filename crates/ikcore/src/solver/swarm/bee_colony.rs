@@ -1,11 +1,11 @@
 //! Artificial bee colony (Karaboga 2005; Karaboga and Basturk 2007): employed bees search near their food source,
 //! onlookers near good ones, and a source that yields nothing better for long is left to a scout.
 
-use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
 use super::population::{Generation, Members, Population, Schedule};
 use crate::error::{Error, Result};
 use crate::objective::Objective;
+use crate::solver::driver::Solver;
+use crate::solver::evaluator::{Evaluator, Halt};
 
 /// Artificial bee colony.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,11 +4,12 @@
 //! Moved by v and turned by w, the tip changes E by -(f . v + m . w). Here f = p_d - p, and, since a turn moves the axis
 //! r_c by w x r_c, m is the sum of r_c x d_c over the columns r_c of its rotation and d_c of the wanted one.
 
-use super::{Target, position};
+use super::position;
 use crate::kinematics::Wrench;
 use crate::math::Frame;
 use crate::math::arithmetic::Separate;
 use crate::math::so3::cross;
+use crate::task::Target;
 
 /// E: of a pose over its three axes and position, of other targets over the parts that they ask for.
 #[inline]

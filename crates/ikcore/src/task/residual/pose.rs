@@ -1,10 +1,11 @@
 //! The tip at a pose: r = (p - p_d, log(R R_d')), in base coordinates.
 
-use super::{SquaredError, orientation, position};
+use super::{orientation, position};
 use crate::math::Frame;
 use crate::math::real::Real;
 use crate::math::so3::axes_of;
 use crate::objective::Linearization;
+use crate::task::SquaredError;
 
 /// Squared distance and squared angle.
 #[inline]

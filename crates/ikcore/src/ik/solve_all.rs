@@ -5,9 +5,9 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::SolveOptions;
+use super::attempt::Run;
+use super::context::Prepared;
 use super::nearest::bring_near;
-use super::prepared::Prepared;
-use super::run::Run;
 use super::solution::Solution;
 use crate::error::{Error, Result, require_positive};
 use crate::math::vector::distance;

@@ -9,7 +9,8 @@ use crate::objective::{
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::starts::Seeds;
-use crate::task::{Assessment, Criterion, Target, entrywise};
+use crate::task::residual::entrywise;
+use crate::task::{Assessment, Criterion, Target};
 
 /// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
 #[derive(Debug, Clone, Copy)]

@@ -4,7 +4,7 @@
 //! Predictor and corrector: a step follows the curve's direction and its bend since the step before; Gauss-Newton brings it
 //! back to the task. Between two places, joints follow the cubics that meet the curve's directions at both.
 
-use super::self_motion::difference;
+use crate::ik::goal_descent::difference;
 use crate::math::MAX_DOF;
 use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::vector::{distance, dot, norm};

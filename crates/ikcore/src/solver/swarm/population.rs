@@ -3,9 +3,9 @@
 //! The first generation is the start and, for the rest, uniform draws in the box. A step of a swarm is one generation:
 //! the first step draws and evaluates the other members, so that a start that is solved costs one evaluation.
 
-use super::evaluator::{Evaluator, Halt};
 use crate::error::{Error, Result};
 use crate::objective::{Objective, Point};
+use crate::solver::evaluator::{Evaluator, Halt};
 
 /// The size of a population, and when it gives up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,13 +6,13 @@
 
 use std::fmt;
 
-use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
 use super::population::{Generation, Memory, Population, Schedule, tile};
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Bounds, Objective};
 use crate::rng::LazyRng;
+use crate::solver::driver::Solver;
+use crate::solver::evaluator::{Evaluator, Halt};
 use crate::wording::words;
 
 /// What keeps velocities from growing.

@@ -4,11 +4,12 @@
 //! a is the tip's axis and d what it is to be. Their difference is smooth wherever the axis points, which the angle between
 //! them is not; its length is 2 sin(angle / 2), and a small turn w of the tip changes it by w x a.
 
-use super::{SquaredError, position};
+use super::position;
 use crate::math::Frame;
 use crate::math::arithmetic::Separate;
 use crate::math::so3::{cross, norm};
 use crate::objective::Linearization;
+use crate::task::SquaredError;
 
 /// Squared distance and squared angle between the axes, and the sum of squares r'r.
 #[inline]
