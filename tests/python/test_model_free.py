@@ -174,7 +174,7 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
         (
             lambda: bik.ZNNBAS(antenna_length=0.1, c1=0.3),
             bik.InvalidInputError,
-            "antenna_length and c1 exclude each other: a constant antenna, or one of c1 sqrt(h)",
+            "give either antenna_length, for a constant antenna, or c1, for one of c1 sqrt(h)",
         ),
         (
             lambda: track(controller=bik.ZNNBAS(antenna_length=[0.1, 0.2])),
