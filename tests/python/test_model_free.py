@@ -210,7 +210,7 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
         (
             lambda: bik.ZNNBAS().session(ON_CIRCLE, dt=0.1, limits=bik.Limits(velocity=lambda t: t)),
             bik.UnsupportedLimit,
-            "session cannot honour callable velocity limits: it has no end to be sampled to; give numbers or a "
+            "session cannot honour callable velocity limits: it has no end time up to which to sample; give numbers or a "
             "Sinusoid, or use track_model_free",
         ),
         (lambda: track(dt=0.0), bik.InvalidInputError, "dt must be positive and finite, got 0"),
