@@ -170,7 +170,8 @@ def stays_in_range(nodes: Array) -> Claim:
 
 def _leaves(nodes: Array, join: Callable[[Array, Array], Array]) -> NDArray[np.bool_]:
     between = join(np.linspace(0.0, _NODES - 1.0, _POINTS), nodes)
-    return np.any((between < -_MET) | (between > 1.0 + _MET), axis=1)
+    leaves: NDArray[np.bool_] = np.any((between < -_MET) | (between > 1.0 + _MET), axis=1)
+    return leaves
 
 
 def _lines(at: Array, nodes: Array) -> Array:
@@ -188,11 +189,12 @@ def _natural_spline(at: Array, nodes: Array) -> Array:
     i = np.minimum(at.astype(int), _NODES - 2)
     right = at - i
     left = 1.0 - right
-    return (
+    value: Array = (
         left * nodes[:, i]
         + right * nodes[:, i + 1]
         + ((left**3 - left) * curvature[:, i] + (right**3 - right) * curvature[:, i + 1]) / 6.0
     )
+    return value
 
 
 _JOINS: dict[str, Callable[[Array, Array], Array]] = {

@@ -9,11 +9,11 @@ import beetle_ik as bik
 
 from ..experiment import Context
 from .nearest import bang_bang, nearest_bent_as_in_the_paper
-from .searches import RIVALS, TPBSO, TUNED, USUAL, Plans, Search, best_so_far, costs
-from .settings import LINKS, ONE_EACH, UNITS, Criterion, each
+from .searches import RIVALS, TPBSO, TUNED, USUAL, Plans, Search, best_so_far, costs, plan_all
+from .settings import LINKS, ONE_EACH, UNITS, Criterion
 
 _SEEDS = 20  # as the paper
-_SEEDS_SHORT = 2
+_SEEDS_SHORT = 1
 EQUAL_ITERATIONS = "equal iterations, usual constants"
 EQUAL_EVALUATIONS = "equal evaluations, usual constants"
 EQUAL_TUNING = "equal evaluations, equal tuning"
@@ -70,10 +70,9 @@ def plan_motions(context: Context) -> list[Motion]:
 
 
 def _motion(objective: Criterion, links: int, seeds: range) -> Motion:
-    def plans(searches: Sequence[Search]) -> Plans:
-        return {
-            search.name: each(lambda seed, search=search: search.plan(links, objective, seed), seeds)
-            for search in searches
-        }
+    def plan(search: Search, seed: int) -> bik.Plan:
+        return search.plan(links, objective, seed)
 
-    return Motion(objective, links, plans(USUAL), plans(TUNED))
+    usual = plan_all(USUAL, plan, seeds)
+    tuned = plan_all([search for search in TUNED if search not in USUAL], plan, seeds)
+    return Motion(objective, links, usual, {search.name: (usual | tuned)[search.name] for search in TUNED})

@@ -13,7 +13,7 @@ import beetle_ik as bik
 from .settings import END, FROM_END_TO_END, REACH, START, arm
 
 _VELOCITY, _ACCELERATION = np.pi, 2 * np.pi  # of FROM_END_TO_END
-_SEARCH_SEEDS = range(4)  # the nearest pair at given elbows is the best of so many searches
+_SEARCH_SEEDS = range(2)  # the nearest pair at given elbows is the best of so many searches
 _SEARCH = bik.Stop(max_evaluations=20_000)
 _OUT_OF_REACH = 10.0  # rad; more than any displacement
 
@@ -55,7 +55,8 @@ def _nearest_pair(links: int) -> NDArray[np.float64]:
             _configurations(half, place)
             for half, place in zip(np.split(orientations, 2, axis=1), (START, END), strict=True)
         )
-        return np.nan_to_num(np.abs(end - start).max(axis=1), nan=_OUT_OF_REACH)
+        largest: NDArray[np.float64] = np.nan_to_num(np.abs(end - start).max(axis=1), nan=_OUT_OF_REACH)
+        return largest
 
     bounds = np.full(2 * free, np.pi)
     solver = bik.DifferentialEvolution(population=40, stall_generations=None)

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from statistics import fmean, stdev
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 import beetle_ik as bik
 
 from ...report import BLUE, GREEN, PURPLE, VERMILION
 from .planner import PAPERS_ELBOWS, Objective, Solver, plan_along, plan_between
-from .settings import END, EVALUATIONS, FROM_END_TO_END, POPULATION, START, THREE_LINKS, Criterion, arm
+from .settings import END, EVALUATIONS, FROM_END_TO_END, POPULATION, START, THREE_LINKS, Criterion, arm, each
 
 STANDARD_ERRORS = 2.0  # by which a mean has to be lower
 _CLOSE = 1.01  # times the final cost: converged
@@ -126,7 +127,14 @@ Plans = Mapping[str, Sequence[bik.Plan]]
 """The plans of each search, by its name: one a seed."""
 
 
-def best_so_far(plans: Sequence[bik.Plan], evaluations: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+def plan_all(
+    searches: Sequence[Search], plan: Callable[[Search, int], bik.Plan], seeds: Sequence[int]
+) -> dict[str, list[bik.Plan]]:
+    """What `plan` makes of each search and seed."""
+    return {search.name: each(partial(plan, search), seeds) for search in searches}
+
+
+def best_so_far(plans: Sequence[bik.Plan], evaluations: ArrayLike) -> NDArray[np.float64]:
     """The best cost of each plan's search after so many evaluations (plans, evaluations), penalties included."""
     rows = []
     for plan in plans:
@@ -152,4 +160,4 @@ def is_lower(one: Sequence[float], other: Sequence[float]) -> bool:
     if min(len(one), len(other)) < 2:
         return fmean(one) < fmean(other)
     error = (stdev(one) ** 2 / len(one) + stdev(other) ** 2 / len(other)) ** 0.5
-    return fmean(other) - fmean(one) > STANDARD_ERRORS * error
+    return bool(fmean(other) - fmean(one) > STANDARD_ERRORS * error)
