@@ -133,12 +133,15 @@ def _case(path: str, objective: Criterion, searches: Sequence[Search], seeds: ra
 def follows(path: str, cases: Sequence[Case]) -> Claim:
     """Whether every plan of the beetle swarm stays with the points."""
     mine = [plan for case in cases if case.path == path for plan in case.plans[TPBSO]]
-    kept, worst = sum(plan.success for plan in mine), max(plan.accuracy for plan in mine)
+    kept, worst = sum(plan.success for plan in mine), max(from_the_points(plan) for plan in mine)
     accuracy = _PATHS[path][1]
     return Claim.judged(
         f"The manipulator follows the given points of the {path} well, in little time or with little rotation.",
         source="Section IV-C.1, Figures 13-14" if path == "pentagram" else "Section IV-C.2, Figures 15-16",
-        rule=f"Every plan of TPBSO keeps the limits and is within {number(1e3 * accuracy, 2)} mm of the points.",
+        rule=(
+            f"Every plan of TPBSO keeps the limits, and is within {number(1e3 * accuracy, 2)} mm of each point at its time "
+            "(eq. 24)."
+        ),
         measured=f"{kept} of {len(mine)} plans; at worst {number(1e3 * worst, 4)} mm",
         holds=kept == len(mine) and worst <= accuracy,
         reading="Path, links, limits and accuracy are ours; eq. (25) needs weights, which it lacks.",
@@ -251,13 +254,22 @@ def _whole_turns(angle: NDArray[np.float64]) -> NDArray[np.float64]:
     return turns
 
 
-def _draw_distance(axes: Axes, plan: bik.Plan, accuracy: float) -> None:
+def from_the_points(plan: bik.Plan) -> float:
+    """The largest distance (m) of the tip from a point at its time, eq. (24)."""
+    return float(_distances(plan)[1].max())
+
+
+def _distances(plan: bik.Plan) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """When the points are due (s), and how far the tip is from them then (m)."""
     reference = np.asarray(plan.reference)
     time = np.linspace(0.0, plan.trajectory.duration, len(reference))
     tip = plan.robot.fk(plan.trajectory.at(time)[0])[:, :3, 3]
-    axes.plot(
-        time, 1e3 * np.linalg.norm(tip - reference, axis=1), color=BLUE, marker=".", label="distance from the points"
-    )
+    return time, np.linalg.norm(tip - reference, axis=1)
+
+
+def _draw_distance(axes: Axes, plan: bik.Plan, accuracy: float) -> None:
+    time, distance = _distances(plan)
+    axes.plot(time, 1e3 * distance, color=BLUE, marker=".", label="distance from the points")
     axes.axhline(1e3 * accuracy, color=VERMILION, linestyle="--", label="accuracy asked for")
     axes.set(xlabel="time [s]", ylabel="distance [mm]")
     legend_above(axes, columns=2)
@@ -272,7 +284,7 @@ def _table(cases: Sequence[Case]) -> Table:
             Column(name="objective"),
             Column(name="search"),
             Column(name="cost", unit="s, rad", digits=4),
-            Column(name="accuracy, at worst", unit="mm", digits=4),
+            Column(name="from the path, at worst", unit="mm", digits=4),
             Column(name="plans that keep all"),
         ],
         rows=[*(row for case in cases for row in _rows(case))],
@@ -291,7 +303,7 @@ def _rows(case: Case) -> Iterator[list[Value]]:
 
 
 def _worst(plans: Sequence[bik.Plan]) -> float:
-    """Largest distance from the points (mm)."""
+    """Largest distance from the path anywhere (mm)."""
     return 1e3 * max(plan.accuracy for plan in plans)
 
 

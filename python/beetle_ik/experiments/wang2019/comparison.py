@@ -163,7 +163,9 @@ def _figure_17(motions: Sequence[Motion]) -> Figure:
                         label=search.name,
                         **line(i) | {"color": search.color, "linestyle": "none"},
                     )
-                axes.plot(LINKS, [motion.bound[0] for motion in mine], "k_", markersize=30, label=mine[0].bound[1])
+                axes.plot(
+                    LINKS, [motion.bound[0] for motion in mine], "k_", markersize=30, label="bound, or best known"
+                )
                 axes.set(title=contest, xticks=LINKS, ylabel=label(objective))
         for axes in panels[-1]:
             axes.set(xlabel="links")

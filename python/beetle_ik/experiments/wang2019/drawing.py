@@ -73,7 +73,7 @@ def draw_positions(axes: Axes, plan: bik.Plan) -> None:
     for j, q in enumerate(plan.trajectory.at(time)[0].T):
         axes.plot(time, q, label=f"joint {j + 1}", **line(j))
     axes.set(xlabel="time [s]", ylabel="joint position [rad]")
-    legend_above(axes, columns=3)
+    legend_above(axes, columns=5)
 
 
 def draw_velocities(axes: Axes, plan: bik.Plan, limit: float) -> None:

@@ -33,7 +33,7 @@ def equations(context: Context) -> Part:
     trials = context.pick(full=_TRIALS, short=_TRIALS_SHORT)
     claims = [
         joins(*_random_motions(random, trials)),
-        reaches(random.uniform(-np.pi, np.pi, (trials, 2))),
+        reaches(_tip(random.uniform(-np.pi, np.pi, (trials, 2)))),
         keeps_out(random.uniform(-np.pi, np.pi, trials), random.uniform(0.1, 1.9, trials)),
         stays_in_range(random.uniform(0.0, 1.0, (trials, _NODES))),
     ]
@@ -96,10 +96,10 @@ def _at(coefficients: list[Array], time: Array, order: int) -> Array:
     return value
 
 
-def reaches(angles: Array) -> Claim:
+def reaches(places: Array) -> Claim:
     """Whether the angles of eq. (1) and (2) put a two-link arm where it should be."""
-    places = _tip(angles)
-    second = np.arccos((np.sum(places**2, axis=1) - 2.0) / 2.0)  # eq. (1), links of 1 m
+    with np.errstate(invalid="ignore"):  # a place out of reach
+        second = np.arccos((np.sum(places**2, axis=1) - 2.0) / 2.0)  # eq. (1), links of 1 m
     unturned = _tip(np.column_stack((np.zeros_like(second), second)))
     cosine = np.sum(places * unturned, axis=1) / np.sum(places**2, axis=1)  # eq. (2)
     first = np.arccos(np.clip(cosine, -1.0, 1.0))

@@ -97,8 +97,8 @@ def _draw(found: Plans) -> Drawing:
     clear = {name: _clear(plans) for name, plans in found.items()}
     shown = clear[TPBSO] or [plan for plans in clear.values() for plan in plans]
     best = min(shown, key=lambda plan: plan.cost)
-    with drawing(5.4) as figure:
-        (search, space), (positions, velocities) = figure.subplots(2, 2)
+    with drawing(6.0) as figure:
+        (search, space), (positions, velocities) = figure.subplots(2, 2, height_ratios=[1.3, 1.0])
         draw_searches(search, [one for one in _SEARCHES if clear[one.name]], clear)
         draw_bound(search, _TANGENT, "shortest way round")
         search.set(ylabel="way of the tip [m]", ylim=(1.5, None))

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import beetle_ik as bik
 
 TITLE = "From place to place"
-_DRAWN_SHORT = (2, 5)  # links
+_DRAWN_SHORT = (5,)  # links
 _WELL = 1.25  # times the best plan known
 _SOON = 10  # iterations of 200
 
@@ -63,8 +63,8 @@ def _figures(motions: Sequence[Motion], drawn: Sequence[int]) -> Iterator[Figure
 def _draw(motion: Motion) -> Drawing:
     best = min(motion.tuned[TPBSO], key=lambda plan: plan.cost)
     bound, name = motion.bound
-    with drawing(5.4) as figure:
-        (search, space), (positions, velocities) = figure.subplots(2, 2)
+    with drawing(6.0) as figure:
+        (search, space), (positions, velocities) = figure.subplots(2, 2, height_ratios=[1.3, 1.0])
         draw_searches(search, TUNED, motion.tuned)
         draw_bound(search, bound, name)
         search.set(ylabel=label(motion.objective), ylim=(0.8 * bound, None))
