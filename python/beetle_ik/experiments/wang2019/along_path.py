@@ -139,8 +139,8 @@ def follows(path: str, cases: Sequence[Case]) -> Claim:
         f"The manipulator follows the given points of the {path} well, in little time or with little rotation.",
         source="Section IV-C.1, Figures 13-14" if path == "pentagram" else "Section IV-C.2, Figures 15-16",
         rule=(
-            f"Every plan of TPBSO keeps the limits, and is within {number(1e3 * accuracy, 2)} mm of each point at its time "
-            "(eq. 24)."
+            f"Every plan of TPBSO keeps the limits, and is within {number(1e3 * accuracy, 2)} mm of each point at its "
+            "time (eq. 24)."
         ),
         measured=f"{kept} of {len(mine)} plans; at worst {number(1e3 * worst, 4)} mm",
         holds=kept == len(mine) and worst <= accuracy,

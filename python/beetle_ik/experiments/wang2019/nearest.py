@@ -13,7 +13,7 @@ import beetle_ik as bik
 from .settings import END, FROM_END_TO_END, REACH, START, arm
 
 _VELOCITY, _ACCELERATION = np.pi, 2 * np.pi  # of FROM_END_TO_END
-_SEARCH_SEEDS = range(2)  # the nearest pair at given elbows is the best of so many searches
+_SEARCH_SEEDS = range(3)  # the nearest pair at given elbows is the best of so many searches
 _SEARCH = bik.Stop(max_evaluations=20_000)
 _OUT_OF_REACH = 10.0  # rad; more than any displacement
 
