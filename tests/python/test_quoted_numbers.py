@@ -66,7 +66,7 @@ def test_a_wrong_digit_is_found() -> None:
     ("pattern", "ours", "column"),
     [
         (
-            r"takes ([\d.]+) ms \(`Tracker.step`\); placo takes ([\d.]+), the Robotics Toolbox ([\d.]+) and mink ([\d.]+)",
+            r"([\d.]+) ms \(`Tracker.step`\); placo takes ([\d.]+), the Robotics Toolbox ([\d.]+) and mink ([\d.]+)",
             "beetle-ik, Tracker.step",
             6,
         ),

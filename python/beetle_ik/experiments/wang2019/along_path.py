@@ -166,10 +166,10 @@ def takes_as_many_iterations(cases: Sequence[Case]) -> Claim:
         source="Section IV-C.2, Figures 13-16",
         rule=f"Median iterations to within 1 % of the final cost differ by a factor of {_ALIKE:g} at most.",
         measured="; ".join(
-            f"{WORDS[objective]}: {iterations['closed curve', objective]} and {iterations['pentagram', objective]}"
+            f"{WORDS[objective]}: {iterations['closed curve', objective]} iterations along the curve, "
+            f"{iterations['pentagram', objective]} along the pentagram"
             for objective in UNITS
-        )
-        + " iterations",
+        ),
         holds=all(1.0 / _ALIKE <= ratio <= _ALIKE for ratio in ratios.values()),
         reading="Path, links, limits and constants are ours; the constants are the tuned ones.",
         section=TITLE,

@@ -91,7 +91,8 @@ def is_close_where_said(motions: Sequence[Motion]) -> Claim:
             f"Averaged over the arms, PSO's mean time and GA's mean rotation are at most {_CLOSE} times TPBSO's, PSO's "
             "mean rotation and GA's mean time are more."
         ),
-        measured="; ".join(
+        measured="times TPBSO's: "
+        + "; ".join(
             f"{contest}: "
             + ", ".join(
                 f"{rival} {number(ratio)} in {WORDS[objective][6:]}" for (rival, objective), ratio in ratios.items()

@@ -83,7 +83,7 @@ def planned(objective: Criterion, motions: Sequence[Motion]) -> Claim:
         f"TPBSO plans motions of {WORDS[objective]} for arms of 2 to 5 links, within all limits.",
         source="Section IV-A, Figures 2-5" if objective == "time" else "Section IV-A, Figures 6-9",
         rule="The exact extremes of velocity and acceleration keep the limits in every plan.",
-        measured=f"{kept} of {len(plans)} plans keep them",
+        measured=f"{kept} of {len(plans)} plans keep them all",
         holds=kept == len(plans),
         reading="Limits, reach and the swarm's constants are ours: the paper states none.",
         section=TITLE,
@@ -104,6 +104,7 @@ def converges_well(motions: Sequence[Motion]) -> Claim:
         source="Section IV-A.1, Figures 2-5",
         rule=f"TPBSO's mean time is at most {_WELL} times the best plan known with the same elbows, for 2 to 5 links.",
         measured=(
+            "with 2 to 5 links "
             f"{'; '.join(f'{_listed(ratios)} times ({_constants(contest)})' for contest, ratios in shown.items())}; "
             f"tuned, {_listed(over_the_bound)} times the bang-bang bound"
         ),
@@ -120,12 +121,12 @@ def is_easy(motions: Sequence[Motion]) -> Claim:
         for motion in motions
         if motion.objective == "joint_travel"
     }
-    others = ", ".join(f"{number(count)} with {links}" for links, count in iterations.items() if links > 2)
+    others = ", ".join(f"{count:g} with {links}" for links, count in iterations.items() if links > 2)
     return Claim.judged(
         "With 2 links and least rotation, the number of iterations to convergence is very small: the task is simple.",
         source="Section IV-A.2, Figure 6(a)",
         rule=f"The median run is within 1 % of its final cost after at most {_SOON} of {GENERATIONS} iterations.",
-        measured=f"{number(iterations[2])} iterations; {others} links",
+        measured=f"{iterations[2]:g} iterations; {others} links",
         holds=iterations[2] <= _SOON,
         reading="Constants are ours. With two links every motion without a detour turns the joints by the same.",
         section=TITLE,
