@@ -48,11 +48,13 @@ impl<'a> Problem<'a> {
         self.target
     }
 
-    /// How the tip at `q` lies outside its region, in words, if it does.
-    pub(crate) fn outside_region(&self, q: &[f64]) -> Option<String> {
-        let (region, tip) = (self.criterion.region.as_ref()?, self.robot.tip_position(q));
-        (!region.contains(&tip))
-            .then(|| format!("the tip is outside its region, which asks for {}", region.violated_faces(&tip)))
+    pub(super) fn robot(&self) -> &'a Robot {
+        self.robot
+    }
+
+    /// When the target counts as reached.
+    pub(crate) fn criterion(&self) -> &Criterion {
+        &self.criterion
     }
 
     /// The assessment of `q`, by forward kinematics.

@@ -10,7 +10,7 @@ use crate::limits::{Field, Limits, Profile};
 use crate::manipulability::Motion;
 use crate::path::Reference;
 use crate::robot::Robot;
-use crate::solver::stop::Stopwatch;
+use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status, Stop};
 use crate::task::{Goal, Target, Tolerance};
 
