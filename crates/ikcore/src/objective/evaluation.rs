@@ -4,9 +4,9 @@ use smallvec::SmallVec;
 
 use crate::error::{Error, Result};
 use crate::math::box_step::ROWS;
+use crate::math::comparison::{larger, smaller};
 use crate::math::f64x4::F64x4;
-use crate::math::ordered::{larger, smaller};
-use crate::math::{MAX_DOF, interval};
+use crate::math::{MAX_DOF, sampling_range};
 use crate::rng::LazyRng;
 
 /// A point of the search space; on the stack up to [`MAX_DOF`] entries. `clone` copies entry by entry: hot paths take
@@ -238,7 +238,7 @@ impl Bounds {
 
     /// The ranges to draw from; an open side reaches one turn from the other bound, or half a turn from zero.
     pub fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.lower.iter().zip(&self.upper).map(|(lower, upper)| interval::finite(*lower, *upper, HALF_TURN))
+        self.lower.iter().zip(&self.upper).map(|(lower, upper)| sampling_range::finite(*lower, *upper, HALF_TURN))
     }
 
     /// A uniform draw from the [`ranges`](Self::ranges).
