@@ -1,7 +1,9 @@
 //! Four targets of one kind, linearized side by side.
 
+use super::criterion::Criterion;
 use super::residual::orientation;
-use super::{Criterion, SquaredError, Target};
+use super::target::Target;
+use super::tip_error::SquaredError;
 use crate::math::arithmetic::{Arithmetic, Baseline};
 #[cfg(target_arch = "x86_64")]
 use crate::math::arithmetic::{Fused, has_fused};
