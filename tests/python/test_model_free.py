@@ -210,8 +210,8 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
         (
             lambda: bik.ZNNBAS().session(ON_CIRCLE, dt=0.1, limits=bik.Limits(velocity=lambda t: t)),
             bik.UnsupportedLimit,
-            "session cannot honour callable velocity limits: it has no end time up to which to sample; give numbers or a "
-            "Sinusoid, or use track_model_free",
+            "session cannot honour callable velocity limits: it has no end time up to which to sample; give numbers or "
+            "a Sinusoid, or use track_model_free",
         ),
         (lambda: track(dt=0.0), bik.InvalidInputError, "dt must be positive and finite, got 0"),
         (lambda: track(start=[]), bik.InvalidInputError, "start: expected 1 to 32 joints, got 0"),
