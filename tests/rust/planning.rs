@@ -13,7 +13,7 @@ use ikcore::planning::{
 };
 use ikcore::rng;
 use ikcore::robot::Robot;
-use ikcore::solver::swarm::differential_evolution::Update;
+use ikcore::solver::TrialUpdate;
 use ikcore::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Schedule, Status, Stop, Unattended};
 use ikcore::task::Target;
 
@@ -45,7 +45,7 @@ fn plan(k: usize, options: PointToPointOptions) -> Plan {
 fn evolution() -> Option<AnySolver<DerivativeFree>> {
     let standard = DifferentialEvolution::default();
     let schedule = Schedule { population: 40, stall_generations: usize::MAX, ..standard.schedule };
-    Some(AnySolver::Single(DifferentialEvolution { schedule, update: Update::Immediate, ..standard }.into()))
+    Some(AnySolver::Single(DifferentialEvolution { schedule, update: TrialUpdate::Immediate, ..standard }.into()))
 }
 
 /// The mean cost over seeds, all plans sound.

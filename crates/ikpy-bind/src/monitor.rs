@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use ikcore::solver::Monitor;
-use ikcore::solver::stop::Stopwatch;
+use ikcore::solver::Stopwatch;
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 

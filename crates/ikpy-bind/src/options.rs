@@ -1,8 +1,8 @@
 //! Options that are fields of a core value: conversion from and to Python, and `repr`.
 
-use ikcore::solver::Variant;
-use ikcore::solver::swarm::beetle_swarm::Direction;
-use ikcore::solver::swarm::differential_evolution::Update;
+use ikcore::solver::BasVariant;
+use ikcore::solver::BeetleDirection;
+use ikcore::solver::TrialUpdate;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -107,7 +107,7 @@ macro_rules! named {
     )*};
 }
 
-named!(Direction, Update, Variant);
+named!(BeetleDirection, TrialUpdate, BasVariant);
 
 /// Defines getters, `repr`, hash and pickling of a class whose options are the fields of its core value.
 macro_rules! options {

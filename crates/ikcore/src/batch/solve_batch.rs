@@ -16,9 +16,9 @@ use super::pool;
 use super::results::{Batch, Item};
 use super::targets::Targets;
 use crate::error::{Error, Result};
-use crate::ik::{self, Prepared, Solution, SolveOptions};
+use crate::ik::{Query, Solution, SolveContext, SolveOptions, solve_queries};
 use crate::robot::Robot;
-use crate::solver::stop::Stopwatch;
+use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
 use crate::wording::words;
@@ -79,7 +79,7 @@ pub fn solve_batch(
 
 /// What all threads share.
 struct Job<'a> {
-    prepared: Prepared<'a>,
+    context: SolveContext<'a>,
     targets: Targets<'a>,
     starts: Option<&'a [f64]>,
     common_start: Option<&'a [f64]>,
@@ -108,19 +108,19 @@ impl<'a> Job<'a> {
             let expected = format!("{} numbers, {rows} rows (one per target) of {dof} joints", rows * dof);
             return Err(Error::WrongLength { what: "starts".into(), expected, got: starts.len() });
         }
-        let prepared = Prepared::new(robot, &options.each)?;
+        let context = SolveContext::new(robot, &options.each)?;
         let common_start = options.each.start.as_deref();
-        common_start.map_or(Ok(()), |q| prepared.check_start(q))?;
-        prepared.require_reference(options.starts.or(common_start))?;
-        Ok(Self { prepared, targets, starts: options.starts, common_start, dof })
+        common_start.map_or(Ok(()), |q| context.check_start(q))?;
+        context.require_reference(options.starts.or(common_start))?;
+        Ok(Self { context, targets, starts: options.starts, common_start, dof })
     }
 
     /// Target `i` and where it begins, both checked.
     fn read(&self, i: usize) -> Result<(Target, Option<&'a [f64]>)> {
-        let target = self.prepared.read(&self.targets.read(i)?)?;
+        let target = self.context.read(&self.targets.read(i)?)?;
         let Some(starts) = self.starts else { return Ok((target, self.common_start)) };
         let start = &starts[i * self.dof..(i + 1) * self.dof];
-        self.prepared.check_start(start).map(|()| (target, Some(start)))
+        self.context.check_start(start).map(|()| (target, Some(start)))
     }
 
     /// Finds a wrong row before any work is spent on the others.
@@ -137,7 +137,7 @@ impl<'a> Job<'a> {
     /// How many targets a thread takes at once.
     fn group(&self, threads: usize) -> usize {
         let (fewest, most) = GROUP;
-        let together = self.prepared.descent_side_by_side().is_some();
+        let together = self.context.side_by_side_descent().is_some();
         if together { (self.targets.len() / (GROUPS_A_THREAD * threads)).clamp(fewest, most) } else { 1 }
     }
 
@@ -159,7 +159,7 @@ impl<'a> Job<'a> {
             match self.read(first + row) {
                 Ok((target, start)) => {
                     rows.push(row);
-                    queries.push(ik::Query { target, start, stream: (first + row) as u64 });
+                    queries.push(Query { target, start, stream: (first + row) as u64 });
                 }
                 Err(_) => {
                     *item = Item::untouched(Status::Invalid);
@@ -167,7 +167,7 @@ impl<'a> Job<'a> {
                 }
             }
         }
-        self.prepared.run_all(&queries, monitor, |query, solution| {
+        solve_queries(&self.context, &queries, monitor, |query, solution| {
             let Solution { q, status, error, obstruction, iterations, restarts, evaluations, elapsed } = solution;
             let row = rows[query];
             qs[row * self.dof..(row + 1) * self.dof].copy_from_slice(&q);

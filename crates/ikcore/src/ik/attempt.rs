@@ -1,164 +1,105 @@
-//! The search for one target: attempts within a budget, and what is made of those that miss.
+//! The attempt at one target: runs of the solver within the target's budget, and a last descent from the best miss.
 
-use super::context::Prepared;
+use super::budget::Budget;
+use super::context::SolveContext;
+use super::goal_descent::GoalDescent;
 use super::solution::Solution;
 use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
-use crate::problem::obstruction;
 use crate::rng::LazyRng;
-use crate::solver::stop::Stopwatch;
-use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, Outcome, Status, Stop, run};
-
-/// Evaluations kept back for going on from the best miss: attempts are abandoned long before they are as near as they get.
-const RESERVE: usize = 200;
+use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, Status, run};
+use crate::task::Goals;
 
 /// Starts from which a target beyond the reach is approached.
 const APPROACHES: usize = 8;
 
-/// What one target has cost so far.
-pub(super) struct Run {
-    stop: Stop,
-    stopwatch: Stopwatch,
-    iterations: usize,
-    restarts: usize,
-    evaluations: usize,
+/// Everything that solving one target needs.
+pub(super) struct Attempt<'m, 'p> {
+    pub context: &'p SolveContext<'p>,
+    pub problem: &'m mut Problem<'p>,
+    pub rng: &'m mut LazyRng,
+    pub monitor: &'m mut dyn Monitor,
+    pub budget: Budget,
 }
 
-impl Run {
-    /// Nothing spent yet.
-    pub fn new(stop: Stop) -> Self {
-        Self { stop, stopwatch: Stopwatch::start(), iterations: 0, restarts: 0, evaluations: 0 }
+impl<'m, 'p> Attempt<'m, 'p> {
+    /// An attempt with its whole budget.
+    pub fn new(
+        context: &'p SolveContext<'p>,
+        problem: &'m mut Problem<'p>,
+        rng: &'m mut LazyRng,
+        monitor: &'m mut dyn Monitor,
+    ) -> Self {
+        Self { context, problem, rng, monitor, budget: Budget::new(context.options().stop) }
     }
 
-    /// Evaluations that may still be made.
-    pub fn left(&self) -> usize {
-        self.stop.max_evaluations.saturating_sub(self.evaluations)
+    /// The caller's start, or the best that is known of.
+    pub fn first_start(&mut self, start: Option<&[f64]>) -> Point {
+        self.context.first_start(self.problem, start, self.rng)
     }
 
-    /// Counts evaluations made elsewhere.
-    pub fn count(&mut self, evaluations: usize) {
-        self.evaluations += evaluations;
+    /// Writes another start into `x`.
+    pub fn next_start(&mut self, x: &mut [f64]) {
+        self.problem.propose_start(1, self.context.bounds(), self.rng, x);
     }
 
-    /// Whether a budget is used up.
-    pub fn is_spent(&self) -> bool {
-        self.left() == 0
-            || self.iterations >= self.stop.max_iterations
-            || self.stop.max_time.is_some_and(|limit| self.stopwatch.elapsed() >= limit)
-    }
-
-    /// One run of the solver from `x0`, and, where it missed, on from its best point; a target that is provably beyond the
-    /// reach is only approached.
-    pub fn attempt(
-        &mut self,
-        prepared: &Prepared<'_>,
-        problem: &mut Problem<'_>,
-        x0: &[f64],
-        rng: &mut LazyRng,
-        monitor: &mut dyn Monitor,
-    ) -> Solution {
-        let bounds = prepared.bounds();
-        let Some(MultiStart { solver: descent, .. }) = prepared.options().solver.restarted_descent() else {
-            let (status, q) = self.search(prepared, problem, bounds, x0, 0, rng, monitor);
-            return self.explained(status, q, prepared, problem);
+    /// Runs the solver from `x0` and, where it misses, descends from its best point. A target provably beyond the reach is
+    /// only approached.
+    pub fn solve_from(&mut self, x0: &[f64]) -> Solution {
+        let bounds = self.context.bounds();
+        let Some(MultiStart { solver: descent, .. }) = self.context.options().solver.restarted_descent() else {
+            let (status, q) = self.search(bounds, x0, 0);
+            return self.explained(status, q);
         };
-        if prepared.beyond_reach(problem.target()).is_some() {
-            let q = self.approach(prepared, problem, &descent, x0, rng, monitor);
-            return self.explained(Status::OutOfReach, q, prepared, problem);
+        if self.problem.beyond_reach(bounds).is_some() {
+            let q = self.approach(&descent, x0);
+            return self.explained(Status::OutOfReach, q);
         }
-        let (status, q) = self.search(prepared, problem, bounds, x0, self.reserve(), rng, monitor);
-        self.concluded(prepared, problem, &descent, (status, q), rng, monitor)
+        let (status, q) = self.search(bounds, x0, self.budget.reserve());
+        self.finish(&descent, status, q)
     }
 
-    /// Evaluations to keep back from the search.
-    pub fn reserve(&self) -> usize {
-        if self.left() > 10 * RESERVE { RESERVE } else { 0 }
+    /// Runs the solver from `x0` within `bounds`, leaving `reserve` evaluations.
+    pub fn search(&mut self, bounds: &Bounds, x0: &[f64], reserve: usize) -> (Status, Point) {
+        let objective: &mut dyn Differentiable = self.problem;
+        let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(reserve), self.rng, self.monitor);
+        let status = self.context.options().solver.run(&mut evaluator, x0);
+        self.budget.add(&evaluator);
+        (status, Point::from_slice(&evaluator.best().x))
     }
 
-    /// What a search came to; where it missed, on from its best point.
-    pub fn concluded(
-        &mut self,
-        prepared: &Prepared<'_>,
-        problem: &mut Problem<'_>,
-        descent: &LevenbergMarquardt,
-        (status, q): (Status, Point),
-        rng: &mut LazyRng,
-        monitor: &mut dyn Monitor,
-    ) -> Solution {
+    /// The solution of a search that ended with `status` at `q`; a miss is followed by a descent from there.
+    pub fn finish(&mut self, descent: &LevenbergMarquardt, status: Status, q: Point) -> Solution {
         if !matches!(status, Status::BudgetSpent | Status::Stalled) {
-            return self.explained(status, q, prepared, problem);
+            return self.explained(status, q);
         }
-        let (solved, q) = self.descend(prepared, problem, descent, q, rng, monitor);
-        self.explained(if solved { Status::Solved } else { status }, q, prepared, problem)
+        let (solved, q) = self.descend(descent, q);
+        self.explained(if solved { Status::Solved } else { status }, q)
     }
 
-    /// The solver's own run within `bounds`, leaving `reserve` evaluations.
-    #[allow(clippy::too_many_arguments)]
-    pub fn search(
-        &mut self,
-        prepared: &Prepared<'_>,
-        problem: &mut Problem<'_>,
-        bounds: &Bounds,
-        x0: &[f64],
-        reserve: usize,
-        rng: &mut LazyRng,
-        monitor: &mut dyn Monitor,
-    ) -> (Status, Point) {
-        let stop = self.rest(reserve);
-        let objective: &mut dyn Differentiable = problem;
-        let mut evaluator = Evaluator::new(objective, bounds, stop, rng, monitor);
-        let outcome = prepared.options().solver.run(&mut evaluator, x0);
-        self.found(&evaluator, outcome)
-    }
-
-    /// Counts a search that ended; how it ended, and its best point.
-    pub fn found<O: Objective + ?Sized>(&mut self, evaluator: &Evaluator<'_, O>, outcome: Outcome) -> (Status, Point) {
-        self.evaluations += evaluator.evaluations();
-        self.restarts += evaluator.attempts() - 1;
-        self.iterations += outcome.iterations;
-        (outcome.status(), Point::from_slice(&evaluator.best().x))
-    }
-
-    /// One descent to its end from `q`: whether it solved, and the best point.
-    fn descend(
-        &mut self,
-        prepared: &Prepared<'_>,
-        problem: &mut Problem<'_>,
-        descent: &LevenbergMarquardt,
-        q: Point,
-        rng: &mut LazyRng,
-        monitor: &mut dyn Monitor,
-    ) -> (bool, Point) {
-        if self.is_spent() {
+    /// Descends once from `q` to the end; whether that solved, and the best point.
+    fn descend(&mut self, descent: &LevenbergMarquardt, q: Point) -> (bool, Point) {
+        if self.budget.is_spent() {
             return (false, q);
         }
-        let objective: &mut dyn Differentiable = problem;
-        let mut evaluator = Evaluator::new(objective, prepared.bounds(), self.rest(0), rng, monitor);
-        let outcome = run(descent, &mut evaluator, &q);
-        self.evaluations += evaluator.evaluations();
-        self.iterations += outcome.iterations;
+        let (objective, bounds): (&mut dyn Differentiable, _) = (self.problem, self.context.bounds());
+        let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(0), self.rng, self.monitor);
+        run(descent, &mut evaluator, &q);
+        self.budget.add(&evaluator);
         (evaluator.best().solved, Point::from_slice(&evaluator.best().x))
     }
 
-    /// The nearest of a few descents towards what cannot be reached.
-    fn approach(
-        &mut self,
-        prepared: &Prepared<'_>,
-        problem: &mut Problem<'_>,
-        descent: &LevenbergMarquardt,
-        x0: &[f64],
-        rng: &mut LazyRng,
-        monitor: &mut dyn Monitor,
-    ) -> Point {
+    /// The nearest of a few descents towards a target that cannot be reached.
+    fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64]) -> Point {
         let mut best: Option<(f64, Point)> = None;
         let mut x = Point::from_slice(x0);
         for approach in 0..APPROACHES {
             if approach > 0 {
-                problem.propose_start(approach, prepared.bounds(), rng, &mut x);
-                self.restarts += 1;
+                self.next_start(&mut x);
+                self.budget.restarts += 1;
             }
-            let (_, q) = self.descend(prepared, problem, descent, x.clone(), rng, monitor);
-            let value = problem.assess(&q).score.value;
+            let (_, q) = self.descend(descent, x.clone());
+            let value = self.problem.assess(&q).score.value;
             if best.as_ref().is_none_or(|(least, _)| value < *least) {
                 best = Some((value, q));
             }
@@ -166,37 +107,51 @@ impl Run {
         best.map_or(x, |(_, q)| q)
     }
 
-    /// What is left of the budgets, less `reserve` evaluations.
-    pub fn rest(&self, reserve: usize) -> Stop {
-        Stop {
-            max_evaluations: self.left() - reserve,
-            max_iterations: self.stop.max_iterations.saturating_sub(self.iterations),
-            max_time: self.stop.max_time.map(|limit| limit.saturating_sub(self.stopwatch.elapsed())),
-            ..self.stop
-        }
+    /// Moves `q` along its self-motion to the nearest optimum of `goals`; false where `q` is at no solution, nor near one.
+    pub fn descend_goals(&mut self, goals: &mut Goals, q: &mut Point) -> bool {
+        let mut descent = GoalDescent {
+            robot: self.context.robot(),
+            problem: self.problem,
+            goals,
+            bounds: self.context.bounds(),
+            evaluations: 0,
+            max_evaluations: self.budget.left(),
+        };
+        let is_solved = descent.descend(q);
+        self.budget.evaluations += descent.evaluations;
+        is_solved
     }
 
-    fn explained(&self, status: Status, q: Point, prepared: &Prepared<'_>, problem: &Problem<'_>) -> Solution {
-        let mut solution = self.solution(status, q, problem);
+    /// The result at `q`, with the reason of a miss.
+    fn explained(&self, status: Status, q: Point) -> Solution {
+        let mut solution = self.solution(status, q);
         if status != Status::Solved {
-            let beyond = prepared.beyond_reach(problem.target());
-            let passed = problem.outside_region(&solution.q);
-            solution.obstruction = obstruction(prepared.robot(), prepared.bounds(), &solution.q, beyond, passed);
+            solution.obstruction = self.problem.obstruction(self.context.bounds(), &solution.q);
         }
         solution
     }
 
     /// The result at `q`.
-    pub fn solution(&self, status: Status, q: Point, problem: &Problem<'_>) -> Solution {
+    pub fn solution(&self, status: Status, q: Point) -> Solution {
         Solution {
             status,
-            error: problem.assess(&q).error.into(),
+            error: self.problem.assess(&q).error.into(),
             obstruction: String::new(),
-            iterations: self.iterations,
-            restarts: self.restarts,
-            evaluations: self.evaluations,
-            elapsed: self.stopwatch.elapsed(),
+            iterations: self.budget.iterations,
+            restarts: self.budget.restarts,
+            evaluations: self.budget.evaluations,
+            elapsed: self.budget.elapsed(),
             q,
+        }
+    }
+
+    /// Gives a solved `solution` the status [`Status::HeldInRegion`] where the region keeps the tip from the target itself.
+    pub fn mark_held_in_region(&self, solution: Solution) -> Solution {
+        match self.problem.criterion().blocked_by_region(self.problem.target()) {
+            Some(obstruction) if solution.status == Status::Solved => {
+                Solution { status: Status::HeldInRegion, obstruction, ..solution }
+            }
+            _ => solution,
         }
     }
 }

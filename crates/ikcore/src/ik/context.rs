@@ -1,22 +1,29 @@
-//! A robot and options that were found in order, and how one target is solved with them.
+//! What all targets of a call have in common, validated once.
 
-use super::attempt::Run;
-use super::nearest::bring_near;
-use super::solution::Solution;
-use super::{Prefer, SolveOptions};
+use super::options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
-use crate::kinematics::Beyond;
 use crate::limits::{Field, Limits};
 use crate::objective::{Bounds, Objective, Point};
 use crate::problem::Problem;
-use crate::rng::{self, LazyRng};
+use crate::rng::LazyRng;
 use crate::robot::Robot;
-use crate::solver::{Monitor, Status};
+use crate::solver::{LevenbergMarquardt, MultiStart};
 use crate::task::{Criterion, Goals, Target, Task};
 
-/// A robot and options that were found in order, ready for any number of targets.
+/// A validated target and start.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Query<'a> {
+    /// Where the tip is to be, as [`SolveContext::read`] returns it.
+    pub target: Target,
+    /// Where to begin.
+    pub start: Option<&'a [f64]>,
+    /// Which stream of the seed the draws come from.
+    pub stream: u64,
+}
+
+/// Validated robot and options, ready to solve any number of targets.
 #[derive(Debug)]
-pub(crate) struct Prepared<'a> {
+pub(crate) struct SolveContext<'a> {
     robot: &'a Robot,
     /// The robot with the tool of the task, where it has one; boxed, since what is prepared is moved about.
     with_tool: Option<Box<Robot>>,
@@ -26,7 +33,7 @@ pub(crate) struct Prepared<'a> {
     bounds: Bounds,
 }
 
-impl<'a> Prepared<'a> {
+impl<'a> SolveContext<'a> {
     /// Checks what all targets have in common, but for [`SolveOptions::start`]: that is an argument of each.
     ///
     /// # Errors
@@ -64,14 +71,18 @@ impl<'a> Prepared<'a> {
         &self.goals
     }
 
-    pub(super) fn criterion(&self) -> &Criterion {
-        &self.criterion
-    }
-
     pub(super) fn options(&self) -> &SolveOptions {
         self.options
     }
 
+    /// The default solver's descent where it can run side by side: nothing follows it and no clock runs.
+    pub(crate) fn side_by_side_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
+        let alone = self.options.prefer == Prefer::Any && self.goals.is_empty();
+        let descent = self.options.solver.restarted_descent();
+        descent.filter(|_| alone && self.options.stop.max_time.is_none())
+    }
+
+    /// The problem of reaching `target`.
     pub(super) fn problem<'p>(&'p self, target: &'p Target) -> Problem<'p> {
         Problem::new(self.robot(), target, self.criterion).disregarding_turns()
     }
@@ -107,64 +118,14 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// Solves for a target and a start that are in order, drawing from `stream` of the seed.
-    pub(crate) fn run(
-        &self,
-        target: &Target,
-        start: Option<&[f64]>,
-        stream: u64,
-        monitor: &mut dyn Monitor,
-    ) -> Solution {
-        let solution = self.search(target, start, stream, monitor);
-        self.marked_if_blocked(target, solution)
-    }
-
-    /// The solution with status [`Status::HeldInRegion`] where it is solved, but the region keeps the tip from the target itself.
-    pub(super) fn marked_if_blocked(&self, target: &Target, solution: Solution) -> Solution {
-        match self.criterion.blocked_by_region(target) {
-            Some(obstruction) if solution.status == Status::Solved => {
-                Solution { status: Status::HeldInRegion, obstruction, ..solution }
-            }
-            _ => solution,
-        }
-    }
-
-    fn search(&self, target: &Target, start: Option<&[f64]>, stream: u64, monitor: &mut dyn Monitor) -> Solution {
-        let mut rng = rng::stream(self.options.seed, stream);
-        if let (Prefer::Nearest, Some(start)) = (self.options.prefer, start) {
-            return self.run_nearest(target, start, &mut rng, monitor);
-        }
-        if self.options.prefer == Prefer::Best {
-            return self.run_best(target, start, &mut rng, monitor);
-        }
-        let mut problem = self.problem(target);
-        let x0 = self.first_start(&mut problem, start, &mut rng);
-        let mut run = Run::new(self.options.stop);
-        let mut solution = run.attempt(self, &mut problem, &x0, &mut rng, monitor);
-        if solution.status == Status::Solved && !self.goals.is_empty() {
-            let q = &mut solution.q;
-            if let Some(start) = start {
-                bring_near(self.robot(), &self.bounds, start, q);
-            }
-            self.descend_to(&mut problem, &mut self.goals.clone(), &mut run, q);
-            return run.solution(Status::Solved, solution.q, &problem);
-        }
-        solution
-    }
-
-    /// Where the first attempt begins: at the caller's start, or at the best that is known of.
+    /// The caller's start, or the best that is known of.
     pub(super) fn first_start(&self, problem: &mut Problem<'_>, start: Option<&[f64]>, rng: &mut LazyRng) -> Point {
-        let Some(start) = start else {
-            let mut x0 = Point::from_elem(0.0, self.robot().dof());
-            problem.propose_start(0, &self.bounds, rng, &mut x0);
-            return x0;
-        };
-        Point::from_slice(start)
-    }
-
-    /// How far the target is out of reach, where it is beyond doubt.
-    pub(super) fn beyond_reach(&self, target: &Target) -> Option<Beyond> {
-        self.criterion.beyond_reach(target, self.robot(), &self.bounds)
+        if let Some(start) = start {
+            return Point::from_slice(start);
+        }
+        let mut x0 = Point::from_elem(0.0, self.robot().dof());
+        problem.propose_start(0, &self.bounds, rng, &mut x0);
+        x0
     }
 }
 

@@ -25,7 +25,7 @@ const MOST_CORRECTIONS: usize = 5;
 const SHORTEN: f64 = 0.3;
 
 /// A problem, the goals beside it, and what has been spent on them.
-pub(super) struct SelfMotion<'a, 'p> {
+pub(super) struct GoalDescent<'a, 'p> {
     pub robot: &'a Robot,
     pub problem: &'a mut Problem<'p>,
     pub goals: &'a mut Goals,
@@ -36,13 +36,13 @@ pub(super) struct SelfMotion<'a, 'p> {
 }
 
 /// A point that solves the task, and the goals there.
-struct Place {
+struct TaskPoint {
     q: Point,
     cost: f64,
     gradient: Point,
 }
 
-impl SelfMotion<'_, '_> {
+impl GoalDescent<'_, '_> {
     /// Moves `q`, which solves the task or nearly so, to where the goals are best near it; false where there is no solution near.
     pub fn descend(&mut self, q: &mut Point) -> bool {
         let begin = self.place(q.clone());
@@ -59,7 +59,7 @@ impl SelfMotion<'_, '_> {
     }
 
     /// Steps down the slope from `here` to where there is none.
-    fn follow_slope(&mut self, mut here: Place) -> Place {
+    fn follow_slope(&mut self, mut here: TaskPoint) -> TaskPoint {
         let mut linearization = Linearization::default();
         let mut rate = f64::INFINITY;
         // The last step and the slope that it went down: what the next rate is estimated from.
@@ -86,11 +86,11 @@ impl SelfMotion<'_, '_> {
     /// there is none worth the while.
     fn shorter_until_better(
         &mut self,
-        here: &Place,
+        here: &TaskPoint,
         at: &Linearization,
         slope: &[f64],
         rate: &mut f64,
-    ) -> Option<Place> {
+    ) -> Option<TaskPoint> {
         while *rate * largest(slope) > SHORTEST && self.evaluations + MOST_CORRECTIONS <= self.max_evaluations {
             let mut q = self.near(at, here, slope, *rate);
             if self.correct(&mut q) {
@@ -122,7 +122,7 @@ impl SelfMotion<'_, '_> {
     }
 
     /// What is left of the gradient once the task and the box are respected.
-    fn projected(&self, here: &Place, at: &Linearization) -> Point {
+    fn projected(&self, here: &TaskPoint, at: &Linearization) -> Point {
         let rate = PROBE / largest(&here.gradient);
         let out = self.near(at, here, &here.gradient, rate);
         // The task itself may be missed by what its tolerance allows: that part is no slope.
@@ -131,7 +131,7 @@ impl SelfMotion<'_, '_> {
     }
 
     /// The point of the linearised task that is nearest to a step of `rate` down `slope`.
-    fn near(&self, at: &Linearization, here: &Place, slope: &[f64], rate: f64) -> Point {
+    fn near(&self, at: &Linearization, here: &TaskPoint, slope: &[f64], rate: f64) -> Point {
         let mut preferred: Point = here.q.iter().zip(slope).map(|(q, slope)| q - rate * slope).collect();
         self.bounds.clip(&mut preferred);
         let mut out = preferred.clone();
@@ -152,10 +152,10 @@ impl SelfMotion<'_, '_> {
         self.problem.linearize(q, out).solved
     }
 
-    fn place(&mut self, q: Point) -> Place {
+    fn place(&mut self, q: Point) -> TaskPoint {
         let mut gradient = q.clone();
         let cost = self.goals.cost(self.robot, &q, &mut gradient);
-        Place { q, cost, gradient }
+        TaskPoint { q, cost, gradient }
     }
 }
 

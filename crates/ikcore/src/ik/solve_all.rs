@@ -4,14 +4,14 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::SolveOptions;
-use super::attempt::Run;
-use super::context::Prepared;
-use super::nearest::bring_near;
+use super::attempt::Attempt;
+use super::context::SolveContext;
+use super::options::SolveOptions;
 use super::solution::Solution;
+use super::whole_turns::bring_near;
 use crate::error::{Error, Result, require_positive};
 use crate::math::vector::distance;
-use crate::objective::{Objective, Point};
+use crate::objective::{Bounds, Point};
 use crate::rng;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
@@ -86,37 +86,24 @@ pub fn solve_all(
     if *limit == 0 {
         return Err(Error::out_of_range("limit", "at least 1", 0.0));
     }
-    let prepared = Prepared::new(robot, each)?;
+    let context = SolveContext::new(robot, each)?;
     let start = each.start.as_deref();
-    let target = prepared.read(target)?;
-    start.map_or(Ok(()), |q| prepared.check_start(q))?;
-    Ok(search(&prepared, &target, start, options, monitor))
+    let target = context.read(target)?;
+    start.map_or(Ok(()), |q| context.check_start(q))?;
+    let mut problem = context.problem(&target);
+    let mut rng = rng::stream(each.seed, 0);
+    Ok(search(Attempt::new(&context, &mut problem, &mut rng, monitor), start, options))
 }
 
-fn search(
-    prepared: &Prepared<'_>,
-    target: &Target,
-    start: Option<&[f64]>,
-    options: &AllOptions,
-    monitor: &mut dyn Monitor,
-) -> SolutionSet {
-    let (robot, bounds) = (prepared.robot(), prepared.bounds());
-    let mut rng = rng::stream(options.each.seed, 0);
-    let mut problem = prepared.problem(target);
-    let mut run = Run::new(options.each.stop);
-    let reference: Point = match start {
-        Some(q) => q.into(),
-        None => middle(robot, prepared),
-    };
-    let mut x0 = reference.clone();
-    if start.is_none() {
-        problem.propose_start(0, bounds, &mut rng, &mut x0);
-    }
+fn search(mut attempt: Attempt<'_, '_>, start: Option<&[f64]>, options: &AllOptions) -> SolutionSet {
+    let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
+    let mut x0 = attempt.first_start(start);
+    let reference = start.map_or_else(|| middle(robot, bounds), Point::from);
     let (mut solutions, mut known) = (Vec::<Solution>::new(), 0);
     let mut interrupted = false;
     let last = loop {
-        let attempt = run.attempt(prepared, &mut problem, &x0, &mut rng, monitor);
-        let mut solution = prepared.marked_if_blocked(target, attempt);
+        let found = attempt.solve_from(&x0);
+        let mut solution = attempt.mark_held_in_region(found);
         if solution.status != Status::Solved {
             break Some(solution);
         }
@@ -127,14 +114,14 @@ fn search(
             known = 0;
             solutions.push(solution);
         }
-        // Without a start any will do; with one, the nearest are wanted, and they may come last.
+        // Without a start any solutions will do; with one, the nearest are wanted, and they may come last.
         let enough = start.is_none() && solutions.len() == options.limit;
-        // Attempts may be too short to ask.
-        interrupted = !monitor.keep_going();
-        if interrupted || known == PATIENCE || enough || run.is_spent() {
+        // Runs may be too short to poll the monitor.
+        interrupted = !attempt.monitor.keep_going();
+        if interrupted || known == PATIENCE || enough || attempt.budget.is_spent() {
             break None;
         }
-        problem.propose_start(1, bounds, &mut rng, &mut x0);
+        attempt.next_start(&mut x0);
     };
     if let Some(start) = start {
         solutions.sort_by(|a, b| distance(&a.q, start).total_cmp(&distance(&b.q, start)));
@@ -142,12 +129,12 @@ fn search(
     solutions.truncate(options.limit);
     interrupted |= last.as_ref().is_some_and(|solution| solution.status == Status::Interrupted);
     let miss = last.filter(|_| solutions.is_empty());
-    let spent = run.solution(Status::Solved, reference, &problem);
-    SolutionSet { solutions, miss, evaluations: spent.evaluations, elapsed: spent.elapsed, interrupted }
+    let (evaluations, elapsed) = (attempt.budget.evaluations, attempt.budget.elapsed());
+    SolutionSet { solutions, miss, evaluations, elapsed, interrupted }
 }
 
-fn middle(robot: &Robot, prepared: &Prepared<'_>) -> Point {
-    let bounds = prepared.bounds();
+/// The middle of the ranges that joints are sampled from.
+fn middle(robot: &Robot, bounds: &Bounds) -> Point {
     let ranges = bounds.lower().iter().zip(bounds.upper()).zip(robot.joints());
     ranges
         .map(|((lower, upper), joint)| {

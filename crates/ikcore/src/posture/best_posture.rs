@@ -14,8 +14,7 @@ use crate::math::vector::distance;
 use crate::objective::{Bounds, Objective, Score};
 use crate::rng;
 use crate::robot::Robot;
-use crate::solver::stop::Stopwatch;
-use crate::solver::{DifferentialEvolution, Evaluator, Monitor, Status, Stop, run};
+use crate::solver::{DifferentialEvolution, Evaluator, Monitor, Status, Stop, Stopwatch, run};
 use crate::task::{Target, TipError};
 
 /// How to search.
@@ -109,7 +108,7 @@ fn evolve(linkage: &Linkage, seed: u64, monitor: &mut dyn Monitor) -> Option<Fou
     let mut rng = rng::stream(seed, 0);
     let x0 = vec![0.0; links - 2];
     let mut evaluator = Evaluator::new(&mut objective, &bounds, stop, &mut rng, monitor);
-    let status = match run(&DifferentialEvolution::default(), &mut evaluator, &x0).status() {
+    let status = match run(&DifferentialEvolution::default(), &mut evaluator, &x0) {
         Status::Interrupted => Status::Interrupted,
         _ => Status::Solved,
     };

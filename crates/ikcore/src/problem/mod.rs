@@ -1,7 +1,8 @@
-//! A robot and a target as something to minimise, and why a target was missed.
+//! The inverse kinematics problem: a robot and a target as an [objective](crate::objective).
+//!
+//! `inverse_kinematics` is the objective that solvers minimise; `obstruction` says why a target was missed.
 
 mod inverse_kinematics;
 mod obstruction;
 
 pub use inverse_kinematics::Problem;
-pub(crate) use obstruction::obstruction;

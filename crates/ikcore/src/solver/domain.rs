@@ -1,32 +1,11 @@
-//! A solver's declarations: where it searches, and what ends it.
+//! Where a solver's points may lie.
 
-/// Where a solver's points may lie. What is returned lies in the box whatever the domain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// Where a solver's points may lie. The returned point always lies in the box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Domain {
-    /// In the box: what is outside is clipped.
-    #[default]
+    /// In the box: points outside are clipped.
     Clipped,
-    /// Anywhere, for entries with a period: they are brought into the box by whole periods where that is possible, and left
-    /// outside where it is not. Other entries are clipped.
+    /// Anywhere, for entries with a period: whole periods bring them into the box where that is possible, and they stay
+    /// outside where it is not. Entries without a period are clipped.
     Wrapped,
-}
-
-/// What ends a run before its budget does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Termination {
-    /// The problem's own test.
-    #[default]
-    Solved,
-    /// A threshold of the solver's own ([`Halt::BelowThreshold`](super::Halt::BelowThreshold)). The problem's test still
-    /// decides whether the result counts as solved.
-    Threshold,
-}
-
-/// A solver's declarations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Conduct {
-    /// Where it searches.
-    pub domain: Domain,
-    /// What ends it before its budget does.
-    pub termination: Termination,
 }

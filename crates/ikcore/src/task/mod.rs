@@ -3,7 +3,6 @@
 mod criterion;
 mod four_targets;
 mod goal;
-mod reach;
 mod region;
 pub(crate) mod residual;
 mod target;

@@ -1,7 +1,7 @@
 //! Swarms and evolutionary algorithms: classes of a population and options.
 
-use ikcore::solver::swarm::beetle_swarm::Direction;
-use ikcore::solver::swarm::differential_evolution::Update;
+use ikcore::solver::BeetleDirection;
+use ikcore::solver::TrialUpdate;
 use ikcore::solver::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Qpso};
 use pyo3::prelude::*;
 
@@ -188,7 +188,7 @@ swarm! {
         /// Ratio of delta to the distance between the antennae.
         step_over_antennae: f64,
         /// "printed" or "downhill".
-        direction: Direction,
+        direction: BeetleDirection,
     }
 }
 
@@ -210,6 +210,6 @@ swarm! {
         /// Probability that a coordinate comes from the mutant.
         crossover_rate: f64,
         /// "generation" or "immediate".
-        update: Update,
+        update: TrialUpdate,
     }
 }

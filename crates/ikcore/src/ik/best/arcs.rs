@@ -5,8 +5,8 @@
 
 use smallvec::SmallVec;
 
-use super::curve_walk::Place;
-use super::wrapped_limits::Room;
+use super::curve_walk::CurvePoint;
+use super::wrapped_limits::WrappedLimits;
 use crate::math::MAX_DOF;
 use crate::math::hermite::Cubic;
 use crate::math::vector::dot;
@@ -19,19 +19,19 @@ const DOUBT: f64 = 0.1;
 
 /// A place nearly on a curve, within the limits or nearly so, and a cost of the goals that is hoped for there: hardly more
 /// than the least near it.
-pub(super) struct Promise {
+pub(super) struct Candidate {
     pub cost: f64,
     pub q: Point,
 }
 
-/// What the limits leave of the curves, and what it promises.
+/// What the limits leave of the curves, and what it candidates.
 pub(super) struct Arcs<'r, 'a> {
     robot: &'a Robot,
-    room: &'r Room<'a>,
+    limits: &'r WrappedLimits<'a>,
     goals: &'r mut Goals,
     /// At the end of the last step, if within the limits.
     last: Option<Asked>,
-    promises: Vec<Promise>,
+    candidates: Vec<Candidate>,
 }
 
 /// The goals' cost at a place, and its slope from joint to joint.
@@ -41,14 +41,14 @@ struct Asked {
 }
 
 impl<'r, 'a> Arcs<'r, 'a> {
-    pub fn new(robot: &'a Robot, room: &'r Room<'a>, goals: &'r mut Goals) -> Self {
-        Self { robot, room, goals, last: None, promises: Vec::new() }
+    pub fn new(robot: &'a Robot, limits: &'r WrappedLimits<'a>, goals: &'r mut Goals) -> Self {
+        Self { robot, limits, goals, last: None, candidates: Vec::new() }
     }
 
-    /// The promises made, the best first.
-    pub fn into_promises(mut self) -> Vec<Promise> {
-        self.promises.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        self.promises
+    /// The candidates made, the best first.
+    pub fn into_candidates(mut self) -> Vec<Candidate> {
+        self.candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        self.candidates
     }
 
     /// The next step does not begin where the last one ended.
@@ -57,16 +57,16 @@ impl<'r, 'a> Arcs<'r, 'a> {
     }
 
     /// Looks at the step from `begin` to `end`, the chord between them `length` long.
-    pub fn look(&mut self, begin: &Place, end: &Place, length: f64) {
+    pub fn look(&mut self, begin: &CurvePoint, end: &CurvePoint, length: f64) {
         let ways: SmallVec<[Cubic; MAX_DOF]> = (0..begin.q.len())
             .map(|j| {
-                let from = self.room.near_middle(j, begin.q[j]);
+                let from = self.limits.near_middle(j, begin.q[j]);
                 let slopes = [begin.along[j], end.along[j]].map(|slope| length * slope);
                 Cubic::new([from, from + end.q[j] - begin.q[j]], slopes)
             })
             .collect();
         let mut last = self.last.take();
-        for [from, to] in self.room.pieces(&ways) {
+        for [from, to] in self.limits.pieces(&ways) {
             let before = last.take().filter(|_| from == 0.0);
             let asked = [before.unwrap_or_else(|| self.ask(&ways, from)), self.ask(&ways, to)];
             self.promise(&ways, [from, to], &asked);
@@ -86,7 +86,7 @@ impl<'r, 'a> Arcs<'r, 'a> {
         let lowest = cost.lowest();
         let fall = left.cost.min(right.cost) - cost.at(lowest);
         let q = self.place(ways, from + lowest * (to - from));
-        self.promises.push(Promise { cost: cost.at(lowest) - DOUBT * fall, q });
+        self.candidates.push(Candidate { cost: cost.at(lowest) - DOUBT * fall, q });
     }
 
     fn ask(&mut self, ways: &[Cubic], share: f64) -> Asked {
@@ -96,6 +96,6 @@ impl<'r, 'a> Arcs<'r, 'a> {
     }
 
     fn place(&self, ways: &[Cubic], share: f64) -> Point {
-        ways.iter().enumerate().map(|(j, way)| self.room.near_middle(j, way.at(share))).collect()
+        ways.iter().enumerate().map(|(j, way)| self.limits.near_middle(j, way.at(share))).collect()
     }
 }

@@ -1,18 +1,16 @@
-//! Of several solutions, the one that serves the goals best: the self-motion of a target may have several branches, and
-//! on each of them several places where nothing near is better.
+//! [`Prefer::Best`](crate::ik::Prefer::Best): the search over branches and curves of solutions.
+//!
+//! The self-motion of a target may have several branches, and each branch several local optima of the goals.
 
-use super::arcs::Promise;
+use super::arcs::Candidate;
 use super::branch_flip::flips;
-use super::curve_tracing::{Round, Visit};
-use crate::ik::attempt::Run;
-use crate::ik::context::Prepared;
-use crate::ik::nearest::bring_near;
+use super::curve_tracing::{CurveTracer, Visit};
+use crate::ik::attempt::Attempt;
 use crate::ik::solution::Solution;
+use crate::ik::whole_turns::bring_near;
 use crate::objective::{Bounds, Objective, Point};
-use crate::problem::Problem;
-use crate::rng::LazyRng;
-use crate::solver::{Monitor, Status};
-use crate::task::{Goals, Target};
+use crate::solver::Status;
+use crate::task::Goals;
 
 /// Solutions in a row that are no better, or on curves known already, before the search is over.
 const PATIENCE: usize = 40;
@@ -27,79 +25,61 @@ const NEAR: f64 = 0.1;
 /// Costs that differ by less are the same.
 const SAME: f64 = 1e-9;
 
-impl Prepared<'_> {
-    /// The solution with the least cost among those found until [`PATIENCE`] of them in a row, or [`PATIENCE_FOR_CURVES`]
-    /// evaluations, brought nothing new; the best miss where there is none.
-    pub(in crate::ik) fn run_best(
-        &self,
-        target: &Target,
-        start: Option<&[f64]>,
-        rng: &mut LazyRng,
-        monitor: &mut dyn Monitor,
-    ) -> Solution {
-        let mut problem = self.problem(target);
-        let mut run = Run::new(self.options().stop);
-        let mut x0 = Point::from_elem(0.0, self.robot().dof());
-        match start {
-            Some(q) => x0.copy_from_slice(q),
-            None => problem.propose_start(0, self.bounds(), rng, &mut x0),
-        }
-        let first = run.attempt(self, &mut problem, &x0, rng, monitor);
-        if first.status != Status::Solved {
-            return first;
-        }
-        let mut search = Search {
-            prepared: self,
-            start,
-            goals: self.goals().clone(),
-            round: Round::new(self.robot(), self.bounds()),
-            bounds: self.bounds().clone(),
-            flipped: Vec::new(),
-            best: (f64::INFINITY, first.q.clone()),
-            patience: usize::MAX,
-            problem,
-            run,
-        };
-        let status = search.go_on_from(first.q, rng, monitor);
-        let (_, best) = search.best;
-        search.run.solution(status, best, &search.problem)
+/// The solution with the least cost among those found until [`PATIENCE`] of them in a row, or [`PATIENCE_FOR_CURVES`]
+/// evaluations, brought nothing new; the best miss where there is none.
+pub(in crate::ik) fn best_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
+    let context = attempt.context;
+    let x0 = attempt.first_start(start);
+    let first = attempt.solve_from(&x0);
+    if first.status != Status::Solved {
+        return first;
     }
+    let mut search = BestSearch {
+        attempt,
+        start,
+        goals: context.goals().clone(),
+        tracer: CurveTracer::new(context.robot(), context.bounds()),
+        bounds: context.bounds().clone(),
+        flipped: Vec::new(),
+        best: (f64::INFINITY, first.q.clone()),
+        patience: usize::MAX,
+    };
+    let status = search.go_on_from(first.q);
+    let (_, best) = search.best;
+    search.attempt.solution(status, best)
 }
 
 /// The search for a better solution than those found so far.
-struct Search<'s, 'p> {
-    prepared: &'s Prepared<'p>,
-    problem: Problem<'s>,
+struct BestSearch<'s, 'm, 'p> {
+    attempt: &'s mut Attempt<'m, 'p>,
     goals: Goals,
     start: Option<&'s [f64]>,
-    run: Run,
-    round: Round<'s>,
-    /// Where solutions are sought: between the limits, or anywhere once curves were met, on which limits do not matter.
+    tracer: CurveTracer<'p>,
+    /// Where solutions are sought: within the limits, or anywhere once a curve was met, on which limits do not matter.
     bounds: Bounds,
-    /// Flips of solutions, to be begun from.
+    /// Branch flips of solutions, to begin from.
     flipped: Vec<Point>,
     best: (f64, Point),
     /// Evaluations that may still be spent before something new must have come.
     patience: usize,
 }
 
-impl Search<'_, '_> {
+impl BestSearch<'_, '_, '_> {
     /// Goes on from the solution `q`, and from others, until nothing new comes.
-    fn go_on_from(&mut self, mut q: Point, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Status {
+    fn go_on_from(&mut self, mut q: Point) -> Status {
         self.improve(q.clone());
         let mut nothing_new = 0;
-        while nothing_new < PATIENCE && !self.run.is_spent() {
+        while nothing_new < PATIENCE && !self.attempt.budget.is_spent() {
             nothing_new = if self.is_new(&q) { 0 } else { nothing_new + 1 };
             // Searches may be too short to ask.
-            if !monitor.keep_going() {
+            if !self.attempt.monitor.keep_going() {
                 return Status::Interrupted;
             }
-            let x0 = self.next_start(rng);
-            let left = self.run.left();
+            let x0 = self.next_start();
+            let left = self.attempt.budget.left();
             let reserve = left.saturating_sub(self.patience);
-            let (status, found) =
-                self.run.search(self.prepared, &mut self.problem, &self.bounds, &x0, reserve, rng, monitor);
-            self.patience = self.patience.saturating_sub(left - self.run.left());
+            let (status, found) = self.attempt.search(&self.bounds, &x0, reserve);
+            self.patience = self.patience.saturating_sub(left - self.attempt.budget.left());
             match status {
                 Status::Solved => q = found,
                 Status::Interrupted => return status,
@@ -110,39 +90,40 @@ impl Search<'_, '_> {
     }
 
     /// The next flip that comes near the target, else a start from all over.
-    fn next_start(&mut self, rng: &mut LazyRng) -> Point {
-        while self.run.left() > 0
+    fn next_start(&mut self) -> Point {
+        while self.attempt.budget.left() > 0
             && let Some(q) = self.flipped.pop()
         {
-            self.run.count(1);
-            if self.problem.evaluate(&q).value < NEAR {
+            self.attempt.budget.evaluations += 1;
+            if self.attempt.problem.evaluate(&q).value < NEAR {
                 return q;
             }
         }
-        let mut x0 = Point::from_elem(0.0, self.problem.dimension());
-        self.problem.propose_start(1, self.prepared.bounds(), rng, &mut x0);
+        let mut x0 = Point::from_elem(0.0, self.attempt.problem.dimension());
+        self.attempt.next_start(&mut x0);
         x0
     }
 
     /// Looks at the solution `q` and at the curve through it, if it is on one; whether that brought anything new.
     fn is_new(&mut self, q: &Point) -> bool {
-        let visit = self.round.visit(&mut self.problem, &mut self.goals, q, self.run.left());
-        self.run.count(self.round.take_evaluations());
+        let left = self.attempt.budget.left();
+        let visit = self.tracer.visit(self.attempt.problem, &mut self.goals, q, left);
+        self.attempt.budget.evaluations += self.tracer.take_evaluations();
         match visit {
             Visit::Known => false,
             Visit::NoCurve => self.improve(q.clone()),
-            Visit::Curve(promises) => {
-                for Promise { cost, q } in promises {
+            Visit::Curve(candidates) => {
+                for Candidate { cost, q } in candidates {
                     if cost > self.best.0 - SAME {
                         break;
                     }
                     self.improve(q);
                 }
-                if self.prepared.options().solver.restarted_descent().is_some() {
+                if self.attempt.context.options().solver.restarted_descent().is_some() {
                     let (lower, upper) = self.bounds.parts_mut();
                     lower.fill(f64::NEG_INFINITY);
                     upper.fill(f64::INFINITY);
-                    self.flipped.extend(flips(self.prepared.robot(), q));
+                    self.flipped.extend(flips(self.attempt.context.robot(), q));
                     self.patience = PATIENCE_FOR_CURVES;
                 }
                 true
@@ -153,12 +134,12 @@ impl Search<'_, '_> {
     /// Moves on from `q`, at or near a solution, to where the goals are best near it. Whether that is better than the best,
     /// which it then replaces.
     fn improve(&mut self, mut q: Point) -> bool {
-        let prepared = self.prepared;
-        let robot = prepared.robot();
+        let context = self.attempt.context;
+        let robot = context.robot();
         if let Some(start) = self.start {
-            bring_near(robot, prepared.bounds(), start, &mut q);
+            bring_near(robot, context.bounds(), start, &mut q);
         }
-        if !prepared.descend_to(&mut self.problem, &mut self.goals, &mut self.run, &mut q) {
+        if !self.attempt.descend_goals(&mut self.goals, &mut q) {
             return false;
         }
         let cost = self.goals.cost(robot, &q, &mut q.clone());

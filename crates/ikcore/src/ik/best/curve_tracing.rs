@@ -4,9 +4,9 @@
 //! posture may be on an arc so short that no random start finds it; but it is on the curve of one that is found. Each curve
 //! is walked once, and of each of its [`Arcs`] it is told what they promise.
 
-use super::arcs::{Arcs, Promise};
-use super::curve_walk::{LONGEST, Step, Walk};
-use super::wrapped_limits::Room;
+use super::arcs::{Arcs, Candidate};
+use super::curve_walk::{LONGEST, StepKind, Walk};
+use super::wrapped_limits::WrappedLimits;
 use crate::ik::goal_descent::difference;
 use crate::math::vector::{dot, norm};
 use crate::objective::{Bounds, Point};
@@ -22,9 +22,9 @@ const STEPS_BETWEEN: usize = 8;
 const ON_CURVE: f64 = 0.02;
 
 /// The curves walked so far.
-pub(super) struct Round<'a> {
+pub(super) struct CurveTracer<'a> {
     robot: &'a Robot,
-    room: Room<'a>,
+    limits: WrappedLimits<'a>,
     /// Where all steps began, and how far each led.
     passed: Vec<(Point, Point)>,
     evaluations: usize,
@@ -35,7 +35,7 @@ pub(super) enum Visit {
     /// It was walked before.
     Known,
     /// Places to go on from, the most promising first.
-    Curve(Vec<Promise>),
+    Curve(Vec<Candidate>),
     /// The task leaves no freedom, or more than that of a curve.
     NoCurve,
 }
@@ -51,14 +51,14 @@ enum End {
     Spent,
 }
 
-impl<'a> Round<'a> {
+impl<'a> CurveTracer<'a> {
     pub fn new(robot: &'a Robot, bounds: &'a Bounds) -> Self {
-        Self { robot, room: Room::new(robot, bounds), passed: Vec::new(), evaluations: 0 }
+        Self { robot, limits: WrappedLimits::new(robot, bounds), passed: Vec::new(), evaluations: 0 }
     }
 
     /// What there is to know of the curve through the solution `q`, at the cost of `most` evaluations at most.
     pub fn visit(&mut self, problem: &mut Problem<'_>, goals: &mut Goals, q: &[f64], most: usize) -> Visit {
-        if knows(&self.room, &self.passed, q) {
+        if knows(&self.limits, &self.passed, q) {
             return Visit::Known;
         }
         let Some(mut walk) = Walk::enter(problem, q, most) else {
@@ -66,15 +66,15 @@ impl<'a> Round<'a> {
             return Visit::NoCurve;
         };
         let begin = walk.here().clone();
-        let mut arcs = Arcs::new(self.robot, &self.room, goals);
-        if walk_on(&mut walk, &self.room, &mut arcs, &mut self.passed) == End::Joined {
+        let mut arcs = Arcs::new(self.robot, &self.limits, goals);
+        if walk_on(&mut walk, &self.limits, &mut arcs, &mut self.passed) == End::Joined {
             // What is left of the curve lies the other way.
             walk.turn_back_at(&begin);
             arcs.interrupt();
-            walk_on(&mut walk, &self.room, &mut arcs, &mut self.passed);
+            walk_on(&mut walk, &self.limits, &mut arcs, &mut self.passed);
         }
         self.evaluations += walk.evaluations();
-        Visit::Curve(arcs.into_promises())
+        Visit::Curve(arcs.into_candidates())
     }
 
     /// Evaluations of the forward kinematics since they were taken last.
@@ -84,11 +84,16 @@ impl<'a> Round<'a> {
 }
 
 /// Walks until the curve closes or joins one that is known, looking at what the limits leave of it.
-fn walk_on(walk: &mut Walk<'_, '_>, room: &Room<'_>, arcs: &mut Arcs<'_, '_>, passed: &mut Vec<(Point, Point)>) -> End {
+fn walk_on(
+    walk: &mut Walk<'_, '_>,
+    limits: &WrappedLimits<'_>,
+    arcs: &mut Arcs<'_, '_>,
+    passed: &mut Vec<(Point, Point)>,
+) -> End {
     let begin = walk.here().clone();
     for count in 1..=MOST_STEPS {
         let Some((from, step)) = walk.step() else { break };
-        if step == Step::Corner {
+        if step == StepKind::Corner {
             arcs.interrupt();
             continue;
         }
@@ -97,13 +102,13 @@ fn walk_on(walk: &mut Walk<'_, '_>, room: &Room<'_>, arcs: &mut Arcs<'_, '_>, pa
         let length = norm(&chord);
         arcs.look(&from, there, length);
         passed.push((from.q, chord));
-        let since = room.apart(&there.q, &begin.q);
+        let since = limits.apart(&there.q, &begin.q);
         // Begin and end overlap, so that nothing between them is missed.
         if count > 3 && norm(&since) < 1.1 * length && dot(&since, &begin.along) >= 0.0 {
             return End::Closed;
         }
         let earlier = passed.len().saturating_sub(STEPS_BETWEEN);
-        if count % STEPS_BETWEEN == 0 && knows(room, &passed[..earlier], &there.q) {
+        if count % STEPS_BETWEEN == 0 && knows(limits, &passed[..earlier], &there.q) {
             return End::Joined;
         }
     }
@@ -111,12 +116,12 @@ fn walk_on(walk: &mut Walk<'_, '_>, room: &Room<'_>, arcs: &mut Arcs<'_, '_>, pa
 }
 
 /// Whether `q` lies on one of these steps.
-fn knows(room: &Room<'_>, steps: &[(Point, Point)], q: &[f64]) -> bool {
+fn knows(limits: &WrappedLimits<'_>, steps: &[(Point, Point)], q: &[f64]) -> bool {
     // No step leads as far in any joint: most are told by the first.
     let may_reach =
-        |(begin, _): &&(Point, Point)| (0..q.len()).all(|j| room.turned(j, q[j] - begin[j]).abs() < 2.0 * LONGEST);
+        |(begin, _): &&(Point, Point)| (0..q.len()).all(|j| limits.turned(j, q[j] - begin[j]).abs() < 2.0 * LONGEST);
     steps.iter().filter(may_reach).any(|(begin, chord)| {
-        let there = room.apart(q, begin);
+        let there = limits.apart(q, begin);
         let share = (dot(&there, chord) / dot(chord, chord)).clamp(0.0, 1.0);
         let aside: Point = there.iter().zip(chord).map(|(there, chord)| there - share * chord).collect();
         norm(&aside) < ON_CURVE

@@ -28,14 +28,14 @@ const MOST_CORRECTIONS: usize = 2;
 
 /// A place on a curve, and the curve's direction there.
 #[derive(Debug, Clone)]
-pub(super) struct Place {
+pub(super) struct CurvePoint {
     pub q: Point,
     pub along: Point,
 }
 
 /// What a step led along.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Step {
+pub(super) enum StepKind {
     /// A stretch of the curve, from the place before to here.
     Smooth,
     /// Past a corner: another curve may have been caught, what lies between is not known.
@@ -45,7 +45,7 @@ pub(super) enum Step {
 /// A walk along a curve.
 pub(super) struct Walk<'w, 'p> {
     problem: &'w mut Problem<'p>,
-    here: Place,
+    here: CurvePoint,
     /// How fast the direction changes along the curve.
     bend: Point,
     length: f64,
@@ -79,13 +79,13 @@ impl<'w, 'p> Walk<'w, 'p> {
             }
         }
         let is_curve = (freedom - 1.0_f64).abs() < 0.5;
-        let here = Place { q: q.into(), along: normalized(along) };
+        let here = CurvePoint { q: q.into(), along: normalized(along) };
         let bend = Point::from_elem(0.0, q.len());
         is_curve.then(|| Self { problem, here, bend, length: LONGEST, at, evaluations: 1, max_evaluations })
     }
 
     /// Where it has come to.
-    pub fn here(&self) -> &Place {
+    pub fn here(&self) -> &CurvePoint {
         &self.here
     }
 
@@ -95,15 +95,15 @@ impl<'w, 'p> Walk<'w, 'p> {
     }
 
     /// Goes on from `place`, the other way.
-    pub fn turn_back_at(&mut self, place: &Place) {
+    pub fn turn_back_at(&mut self, place: &CurvePoint) {
         let along = place.along.iter().map(|slope| -slope).collect();
-        self.here = Place { q: place.q.clone(), along };
+        self.here = CurvePoint { q: place.q.clone(), along };
         self.bend.fill(0.0);
         self.length = LONGEST;
     }
 
     /// The next step: the place it leaves, and what it leads along. None where no evaluations are left for it.
-    pub fn step(&mut self) -> Option<(Place, Step)> {
+    pub fn step(&mut self) -> Option<(CurvePoint, StepKind)> {
         while self.evaluations + MOST_CORRECTIONS <= self.max_evaluations {
             let (there, aside) = self.try_step();
             let cosine = dot(&self.here.along, &there.along);
@@ -115,21 +115,21 @@ impl<'w, 'p> Walk<'w, 'p> {
             let from = std::mem::replace(&mut self.here, there);
             if !is_smooth {
                 self.bend.fill(0.0);
-                return Some((from, Step::Corner));
+                return Some((from, StepKind::Corner));
             }
             let turn = difference(&self.here.along, &from.along);
             self.bend = turn.into_iter().map(|turn| turn / self.length).collect();
             if cosine > STRAIGHT {
                 self.length = (2.0 * self.length).min(LONGEST);
             }
-            return Some((from, Step::Smooth));
+            return Some((from, StepKind::Smooth));
         }
         None
     }
 
     /// A step of the present length, and by how much it was off the curve before it was brought back.
-    fn try_step(&mut self) -> (Place, f64) {
-        let (h, Place { q: from, along }) = (self.length, &self.here);
+    fn try_step(&mut self) -> (CurvePoint, f64) {
+        let (h, CurvePoint { q: from, along }) = (self.length, &self.here);
         let predicted: Point = (0..from.len()).map(|j| from[j] + h * (along[j] + 0.5 * h * self.bend[j])).collect();
         let mut q = Point::from_slice(&predicted);
         for _ in 0..MOST_CORRECTIONS {
@@ -143,7 +143,7 @@ impl<'w, 'p> Walk<'w, 'p> {
         }
         let along = normalized(tangent(&self.at, &q, along));
         let aside = distance(&q, &predicted);
-        (Place { q, along }, aside)
+        (CurvePoint { q, along }, aside)
     }
 }
 

@@ -11,7 +11,7 @@ use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
 /// Between the joint limits.
-pub(super) struct Room<'a> {
+pub(super) struct WrappedLimits<'a> {
     bounds: &'a Bounds,
     middle: Point,
     /// Which joints repeat themselves after a turn.
@@ -21,7 +21,7 @@ pub(super) struct Room<'a> {
 /// Pieces of a way, from share to share of it.
 pub(super) type Pieces = SmallVec<[[f64; 2]; 4]>;
 
-impl<'a> Room<'a> {
+impl<'a> WrappedLimits<'a> {
     pub fn new(robot: &Robot, bounds: &'a Bounds) -> Self {
         // A joint that turns without end has no middle; any angle may serve.
         let middle = |(lower, upper): (f64, f64)| {

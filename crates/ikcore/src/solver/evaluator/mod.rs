@@ -1,10 +1,12 @@
-//! Between solver and objective: counts, clips, checks, and keeps the best.
+//! The evaluator stands between solver and objective: it counts, clips, checks, and keeps the best point.
+//!
+//! `budgeted` holds the evaluator itself: counts, budgets, the end of a run. `values` and `derivatives` are the evaluations
+//! that solvers ask for; `best_point` is the best of them.
 
-mod best;
+mod best_point;
 mod budgeted;
 mod derivatives;
-mod halt;
+mod values;
 
-pub use best::Best;
+pub use best_point::BestPoint;
 pub use budgeted::Evaluator;
-pub use halt::Halt;

@@ -1,11 +1,13 @@
 //! Artificial bee colony (Karaboga 2005; Karaboga and Basturk 2007): employed bees search near their food source,
 //! onlookers near good ones, and a source that yields nothing better for long is left to a scout.
 
-use super::population::{Generation, Members, Population, Schedule};
+use super::population::{Generation, Members, Population};
+use super::schedule::Schedule;
 use crate::error::{Error, Result};
 use crate::objective::Objective;
+use crate::solver::Status;
 use crate::solver::driver::Solver;
-use crate::solver::evaluator::{Evaluator, Halt};
+use crate::solver::evaluator::Evaluator;
 
 /// Artificial bee colony.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +57,7 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for BeeColony {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let sources = self.schedule.population;
         Ok(State {
             population: Population::start(&self.schedule, evaluator, x0)?,
@@ -67,7 +69,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeeColony {
     }
 
     /// One cycle: employed bees, onlookers, a scout.
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         if state.population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             return Ok(());
         }
@@ -87,7 +89,7 @@ impl BeeColony {
         &self,
         state: &mut State,
         evaluator: &mut Evaluator<'_, O>,
-    ) -> Result<(), Halt> {
+    ) -> Result<(), Status> {
         let State { population, trials, .. } = state;
         let limit = self.limit.unwrap_or(trials.len() * evaluator.dimension());
         let worn = (1..trials.len()).fold(0, |worn, i| if trials[i] > trials[worn] { i } else { worn });
@@ -105,7 +107,7 @@ impl BeeColony {
 impl State {
     /// v = x with one coordinate moved: v_j = x_j + phi (x_j - y_j), phi in [-1, 1), y another source, eq. (2) of
     /// Karaboga and Basturk (2007). The better of x and v remains.
-    fn search<O: Objective + ?Sized>(&mut self, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn search<O: Objective + ?Sized>(&mut self, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let Self { population: Population { members, .. }, trials, chosen, candidates, .. } = self;
         let n = evaluator.dimension();
         for (bee, source) in chosen.iter().enumerate() {

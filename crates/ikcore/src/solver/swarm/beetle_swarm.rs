@@ -5,18 +5,21 @@
 //! which the swarm diverges; the antennae of eq. (28) to (30) stand at x +- V d/2 (the paper prints one name for both)
 //! with the velocity just updated, as line 7 of its Algorithm 1 has it. [`BeetleSwarm::literal`] has no inertia weight.
 
-use super::population::{Generation, Members, Memory, Population, Schedule};
+use super::best_places::BestPlaces;
+use super::population::{Generation, Members, Population};
+use super::schedule::Schedule;
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
 use crate::math::ordered::sign;
 use crate::objective::Objective;
+use crate::solver::Status;
 use crate::solver::driver::Solver;
-use crate::solver::evaluator::{Evaluator, Halt};
+use crate::solver::evaluator::Evaluator;
 use crate::wording::words;
 
 /// Which way a beetle goes along its velocity, given what its antennae smell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
+pub enum BeetleDirection {
     /// With the sign of F(right) - F(left), as eq. (28) prints it: against the slope where the velocity leads downhill,
     /// which slows the swarm's contraction.
     Printed,
@@ -24,7 +27,7 @@ pub enum Direction {
     Downhill,
 }
 
-words!("direction": Direction { Printed => "printed", Downhill => "downhill" });
+words!("direction": BeetleDirection { Printed => "printed", Downhill => "downhill" });
 
 /// Beetle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +51,7 @@ pub struct BeetleSwarm {
     /// c of eq. (31): delta over the distance d of the antennae.
     pub step_over_antennae: f64,
     /// The sign in eq. (28).
-    pub direction: Direction,
+    pub direction: BeetleDirection,
 }
 
 impl Default for BeetleSwarm {
@@ -65,7 +68,7 @@ impl Default for BeetleSwarm {
             step: 1.0,
             step_decay: 0.97,
             step_over_antennae: 5.0,
-            direction: Direction::Printed,
+            direction: BeetleDirection::Printed,
         }
     }
 }
@@ -107,7 +110,7 @@ impl BeetleSwarm {
 #[derive(Debug, Clone)]
 pub struct State {
     population: Population,
-    memory: Memory,
+    memory: BestPlaces,
     velocities: Velocities,
     /// Right and left antenna of each beetle in turn.
     antennae: Members,
@@ -118,11 +121,11 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
         let beetles = self.schedule.population;
         Ok(State {
-            memory: Memory::new(beetles, x0.len()),
+            memory: BestPlaces::new(beetles, x0.len()),
             velocities: Velocities::new(&population, self.velocity_limit),
             antennae: Members::new(2 * beetles, x0.len()),
             step: self.step,
@@ -131,7 +134,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
     }
 
     /// Lines 5 to 21 of Algorithm 1.
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let State { population, memory, velocities, antennae, step } = state;
         if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             velocities.draw(population, evaluator.rng());
@@ -159,7 +162,7 @@ impl BeetleSwarm {
         step: f64,
         antennae: &mut Members,
         evaluator: &mut Evaluator<'_, O>,
-    ) -> Result<(), Halt> {
+    ) -> Result<(), Status> {
         let n = evaluator.dimension();
         let half = 0.5 * step / self.step_over_antennae;
         let pairs = antennae.points.chunks_exact_mut(2 * n);
@@ -179,7 +182,7 @@ impl BeetleSwarm {
         let beetles = beetles.points.chunks_exact_mut(n).zip(velocities.chunks_exact(n));
         for ((x, v), smells) in beetles.zip(antennae.values.chunks_exact(2)) {
             let printed = sign(smells[0] - smells[1]);
-            let way = if self.direction == Direction::Printed { printed } else { -printed };
+            let way = if self.direction == BeetleDirection::Printed { printed } else { -printed };
             let share = self.velocity_share + (1.0 - self.velocity_share) * step * way;
             x.iter_mut().zip(v).for_each(|(x, v)| *x += share * v);
         }

@@ -1,23 +1,25 @@
 //! Differential evolution, DE/rand/1/bin (Storn and Price 1997).
 
-use super::population::{Generation, Members, Population, Schedule};
+use super::population::{Generation, Members, Population};
+use super::schedule::Schedule;
 use crate::error::{Error, Result};
 use crate::objective::{Bounds, Objective};
 use crate::rng::LazyRng;
+use crate::solver::Status;
 use crate::solver::driver::Solver;
-use crate::solver::evaluator::{Evaluator, Halt};
+use crate::solver::evaluator::Evaluator;
 use crate::wording::words;
 
 /// When a trial that does no worse takes its vector's place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Update {
+pub enum TrialUpdate {
     /// After all trials, as published: they are evaluated together.
     Generation,
     /// At once, so that the next trials build on it: fewer evaluations, one by one.
     Immediate,
 }
 
-words!("update": Update { Generation => "generation", Immediate => "immediate" });
+words!("update": TrialUpdate { Generation => "generation", Immediate => "immediate" });
 
 /// Differential evolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,13 +31,13 @@ pub struct DifferentialEvolution {
     /// CR: probability that a coordinate comes from the mutant.
     pub crossover_rate: f64,
     /// When a better trial takes its vector's place.
-    pub update: Update,
+    pub update: TrialUpdate,
 }
 
 impl Default for DifferentialEvolution {
     /// F = 0.5 and CR = 0.9, the first choices of Storn and Price (1997).
     fn default() -> Self {
-        Self { schedule: Schedule::of(50), weight: 0.5, crossover_rate: 0.9, update: Update::Generation }
+        Self { schedule: Schedule::of(50), weight: 0.5, crossover_rate: 0.9, update: TrialUpdate::Generation }
     }
 }
 
@@ -66,12 +68,12 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for DifferentialEvolution {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
         Ok(State { trials: Members::new(self.schedule.population, x0.len()), population })
     }
 
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let State { population, trials } = state;
         if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             return Ok(());
@@ -79,12 +81,12 @@ impl<O: Objective + ?Sized> Solver<O> for DifferentialEvolution {
         let members = &mut population.members;
         for i in 0..members.values.len() {
             self.cross(members, i, evaluator.bounds(), evaluator.rng(), trials.point_mut(i));
-            if self.update == Update::Immediate {
+            if self.update == TrialUpdate::Immediate {
                 trials.values[i] = evaluator.evaluate(trials.point_mut(i))?;
                 select(members, trials, i);
             }
         }
-        if self.update == Update::Generation {
+        if self.update == TrialUpdate::Generation {
             trials.evaluate_from(0, evaluator)?;
             (0..members.values.len()).for_each(|i| select(members, trials, i));
         }

@@ -4,12 +4,14 @@
 //! loop over j is the outer one: every firefly has its turn to attract all that are less bright, and these are evaluated
 //! together. A step is one turn; a generation is a turn of each.
 
-use super::population::{Generation, Members, Population, Schedule};
+use super::population::{Generation, Members, Population};
+use super::schedule::Schedule;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Objective, Point};
 use crate::rng::split;
+use crate::solver::Status;
 use crate::solver::driver::Solver;
-use crate::solver::evaluator::{Evaluator, Halt};
+use crate::solver::evaluator::Evaluator;
 
 /// Firefly algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +89,7 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for Firefly {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let fireflies = self.schedule.population;
         let population = Population::start(&self.schedule, evaluator, x0)?;
         Ok(State {
@@ -101,7 +103,7 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
         })
     }
 
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let State { population, moving, moved, attractor, randomness, scales, draws } = state;
         if population.begin_generation(&self.turns(), evaluator)? == Generation::First {
             return Ok(());

@@ -5,12 +5,14 @@
 //! shrinks by a constant factor: MATLAB's linear shrinking needs to know the last generation in advance, which a budget
 //! of evaluations or a tolerance leaves open.
 
-use super::population::{Generation, Members, Population, Schedule};
+use super::population::{Generation, Members, Population};
+use super::schedule::Schedule;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::Objective;
 use crate::rng::LazyRng;
+use crate::solver::Status;
 use crate::solver::driver::Solver;
-use crate::solver::evaluator::{Evaluator, Halt};
+use crate::solver::evaluator::Evaluator;
 
 /// Genetic algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,7 +97,7 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for Genetic {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let members = self.schedule.population;
         Ok(State {
             population: Population::start(&self.schedule, evaluator, x0)?,
@@ -105,7 +107,7 @@ impl<O: Objective + ?Sized> Solver<O> for Genetic {
         })
     }
 
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let State { population, children, ranking, scale } = state;
         if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             return Ok(());

@@ -3,56 +3,17 @@
 //! The first generation is the start and, for the rest, uniform draws in the box. A step of a swarm is one generation:
 //! the first step draws and evaluates the other members, so that a start that is solved costs one evaluation.
 
-use crate::error::{Error, Result};
+use super::schedule::Schedule;
 use crate::objective::{Objective, Point};
-use crate::solver::evaluator::{Evaluator, Halt};
-
-/// The size of a population, and when it gives up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Schedule {
-    /// Members of a generation.
-    pub population: usize,
-    /// Generations after which the swarm gives up, the first included.
-    pub max_generations: usize,
-    /// It gives up earlier after so many generations in a row without a gain of a millionth of the best value.
-    pub stall_generations: usize,
-}
+use crate::solver::Status;
+use crate::solver::evaluator::Evaluator;
 
 /// The share of the best value that counts as a gain: the function tolerance of the MATLAB solvers.
 const GAIN: f64 = 1e-6;
 
-/// The largest population: it must fit into memory.
-const LARGEST_POPULATION: usize = 1_000_000;
-
-impl Schedule {
-    /// Members of a generation; as many generations as the budget allows, but no more than 50 without a gain (the MATLAB
-    /// genetic algorithm's default).
-    pub const fn of(population: usize) -> Self {
-        Self { population, max_generations: usize::MAX, stall_generations: 50 }
-    }
-
-    /// Checks the counts; the algorithm needs `fewest` members.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] names the option and its range.
-    pub fn validate(&self, fewest: usize) -> Result<()> {
-        let Self { population, max_generations, stall_generations } = *self;
-        if !(fewest..=LARGEST_POPULATION).contains(&population) {
-            let requirement = format!("between {fewest} and {LARGEST_POPULATION}");
-            return Err(Error::out_of_range("population", &requirement, population as f64));
-        }
-        for (name, count) in [("max_generations", max_generations), ("stall_generations", stall_generations)] {
-            if count == 0 {
-                return Err(Error::out_of_range(name, "at least 1", 0.0));
-            }
-        }
-        Ok(())
-    }
-}
-
 /// Points, one after another, and their values.
 #[derive(Debug, Clone)]
-pub struct Members {
+pub(super) struct Members {
     /// All coordinates, member by member.
     pub points: Vec<f64>,
     /// A value for each.
@@ -103,31 +64,31 @@ impl Members {
     /// Evaluates the first `count` members, in bulk; clips them to the box.
     ///
     /// # Errors
-    /// The evaluator's [`Halt`].
+    /// The evaluator's [`Status`].
     pub fn evaluate_first<O: Objective + ?Sized>(
         &mut self,
         count: usize,
         evaluator: &mut Evaluator<'_, O>,
-    ) -> Result<(), Halt> {
+    ) -> Result<(), Status> {
         evaluator.evaluate_all(&mut self.points[..count * self.dimension], &mut self.values[..count])
     }
 
     /// Evaluates the members from `first` on, in bulk; clips them to the box.
     ///
     /// # Errors
-    /// The evaluator's [`Halt`].
+    /// The evaluator's [`Status`].
     pub fn evaluate_from<O: Objective + ?Sized>(
         &mut self,
         first: usize,
         evaluator: &mut Evaluator<'_, O>,
-    ) -> Result<(), Halt> {
+    ) -> Result<(), Status> {
         evaluator.evaluate_all(&mut self.points[first * self.dimension..], &mut self.values[first..])
     }
 }
 
 /// The present generation.
 #[derive(Debug, Clone)]
-pub struct Population {
+pub(super) struct Population {
     /// Where its members are.
     pub members: Members,
     /// Widths of the ranges that the first generation is drawn from.
@@ -142,7 +103,7 @@ pub struct Population {
 
 /// Which generation a step has begun.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Generation {
+pub(super) enum Generation {
     /// The first, whose members are drawn and evaluated already.
     First,
     /// One that the algorithm makes of the one before.
@@ -153,12 +114,12 @@ impl Population {
     /// Evaluates the start, which is the first member.
     ///
     /// # Errors
-    /// The evaluator's [`Halt`].
+    /// The evaluator's [`Status`].
     pub fn start<O: Objective + ?Sized>(
         schedule: &Schedule,
         evaluator: &mut Evaluator<'_, O>,
         x0: &[f64],
-    ) -> Result<Self, Halt> {
+    ) -> Result<Self, Status> {
         let mut members = Members::new(schedule.population, x0.len());
         let start = members.point_mut(0);
         start.copy_from_slice(x0);
@@ -171,14 +132,14 @@ impl Population {
     /// other members. Later generations are the algorithm's work.
     ///
     /// # Errors
-    /// The evaluator's [`Halt`]; [`Halt::Stalled`] by the schedule.
+    /// The evaluator's [`Status`]; [`Status::Stalled`] by the schedule.
     pub fn begin_generation<O: Objective + ?Sized>(
         &mut self,
         schedule: &Schedule,
         evaluator: &mut Evaluator<'_, O>,
-    ) -> Result<Generation, Halt> {
+    ) -> Result<Generation, Status> {
         if self.generation == schedule.max_generations || self.has_stalled(schedule, evaluator.attempt_value()) {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         self.generation += 1;
         if self.generation > 1 {
@@ -202,34 +163,8 @@ impl Population {
     }
 }
 
-/// The best place that each member has been at: p of particle swarms, and g, the best of them.
-#[derive(Debug, Clone)]
-pub struct Memory {
-    /// Where each was at its best.
-    pub members: Members,
-    /// The best of them.
-    pub leader: usize,
-}
-
-impl Memory {
-    /// Nothing remembered yet of so many members.
-    pub fn new(population: usize, dimension: usize) -> Self {
-        Self { members: Members::new(population, dimension), leader: 0 }
-    }
-
-    /// Takes over the places that are better in `now`; the first time, all of them.
-    pub fn update(&mut self, now: &Population) {
-        for i in 0..now.members.values.len() {
-            if now.members.values[i] < self.members.values[i] || now.generation == 1 {
-                self.members.take(i, &now.members, i);
-            }
-        }
-        self.leader = self.members.best();
-    }
-}
-
 /// Fills `rows` with copies of `row`, so that a loop over the coordinates of all members can read what they have in common.
-pub fn tile(row: &[f64], rows: &mut [f64]) {
+pub(super) fn tile(row: &[f64], rows: &mut [f64]) {
     let mut filled = row.len().min(rows.len());
     rows[..filled].copy_from_slice(&row[..filled]);
     while filled < rows.len() {

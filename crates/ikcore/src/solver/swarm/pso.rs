@@ -6,25 +6,28 @@
 
 use std::fmt;
 
-use super::population::{Generation, Memory, Population, Schedule, tile};
+use super::best_places::BestPlaces;
+use super::population::{Generation, Population, tile};
+use super::schedule::Schedule;
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
 use crate::objective::{Bounds, Objective};
 use crate::rng::LazyRng;
+use crate::solver::Status;
 use crate::solver::driver::Solver;
-use crate::solver::evaluator::{Evaluator, Halt};
+use crate::solver::evaluator::Evaluator;
 use crate::wording::words;
 
 /// What keeps velocities from growing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Form {
+pub enum PsoForm {
     /// The whole new velocity is multiplied by chi, which follows from the attractions.
     Constriction,
     /// The old velocity is multiplied by this weight.
     Inertia(f64),
 }
 
-impl fmt::Display for Form {
+impl fmt::Display for PsoForm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Constriction => "constriction",
@@ -33,7 +36,7 @@ impl fmt::Display for Form {
     }
 }
 
-impl Form {
+impl PsoForm {
     /// The form of this name; `inertia` is the weight of "inertia", 0.729 if left out (Eberhart and Shi 2000).
     ///
     /// # Errors
@@ -72,14 +75,14 @@ words!("walls": Walls { Absorbing => "absorbing", Random => "random" });
 
 /// Whether a particle stays where it went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Accept {
+pub enum Acceptance {
     /// Always, as published.
     Always,
     /// Where that is its best place so far; else it returns there. Quicker on smooth functions, and what mealpy's PSO does.
     Improving,
 }
 
-words!("accept": Accept { Always => "always", Improving => "improving" });
+words!("accept": Acceptance { Always => "always", Improving => "improving" });
 
 /// Particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +90,7 @@ pub struct Pso {
     /// Particles and generations.
     pub schedule: Schedule,
     /// What keeps velocities from growing.
-    pub form: Form,
+    pub form: PsoForm,
     /// Attraction to the particle's own best place.
     pub c1: f64,
     /// Attraction to the swarm's best place.
@@ -95,20 +98,20 @@ pub struct Pso {
     /// Largest velocity, as a share of the box's width a generation.
     pub velocity_limit: f64,
     /// Whether a particle stays where it went.
-    pub accept: Accept,
+    pub accept: Acceptance,
     /// What becomes of a coordinate that would leave the box.
     pub walls: Walls,
 }
 
 impl Default for Pso {
     fn default() -> Self {
-        Self::of(Form::Constriction)
+        Self::of(PsoForm::Constriction)
     }
 }
 
 impl Pso {
     /// A form with its published attractions. Half the width is the dynamic range X_max of Eberhart and Shi (2000).
-    pub fn of(form: Form) -> Self {
+    pub fn of(form: PsoForm) -> Self {
         let attraction = form.attraction();
         Self {
             schedule: Schedule::of(40),
@@ -116,7 +119,7 @@ impl Pso {
             c1: attraction,
             c2: attraction,
             velocity_limit: 0.5,
-            accept: Accept::Always,
+            accept: Acceptance::Always,
             walls: Walls::Absorbing,
         }
     }
@@ -133,10 +136,10 @@ impl Pso {
             return Err(Error::out_of_range("velocity_limit", "positive", self.velocity_limit));
         }
         match self.form {
-            Form::Inertia(weight) if !(0.0..1.0).contains(&weight) => {
+            PsoForm::Inertia(weight) if !(0.0..1.0).contains(&weight) => {
                 Err(Error::out_of_range("inertia", "at least 0 and below 1", weight))
             }
-            Form::Constriction if !(self.c1 + self.c2 > 4.0) => {
+            PsoForm::Constriction if !(self.c1 + self.c2 > 4.0) => {
                 Err(Error::out_of_range("c1 + c2", "above 4 with form 'constriction'", self.c1 + self.c2))
             }
             _ => Ok(()),
@@ -146,8 +149,8 @@ impl Pso {
     /// The weights (w, c1, c2) of v = w v + c1 r1 (p - x) + c2 r2 (g - x).
     fn weights(&self) -> [f64; 3] {
         match self.form {
-            Form::Inertia(weight) => [weight, self.c1, self.c2],
-            Form::Constriction => {
+            PsoForm::Inertia(weight) => [weight, self.c1, self.c2],
+            PsoForm::Constriction => {
                 // chi = 2 / |2 - phi - sqrt(phi^2 - 4 phi)|, eq. (4) of Eberhart and Shi (2000)
                 let phi = self.c1 + self.c2;
                 let chi = 2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs();
@@ -161,7 +164,7 @@ impl Pso {
 #[derive(Debug, Clone)]
 pub struct State {
     population: Population,
-    memory: Memory,
+    memory: BestPlaces,
     velocities: Velocities,
     tiled: TiledBounds,
 }
@@ -169,17 +172,17 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for Pso {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
         Ok(State {
-            memory: Memory::new(self.schedule.population, x0.len()),
+            memory: BestPlaces::new(self.schedule.population, x0.len()),
             velocities: Velocities::new(&population, self.velocity_limit),
             tiled: TiledBounds::new(evaluator.bounds(), &population),
             population,
         })
     }
 
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let State { population, memory, velocities, tiled } = state;
         if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             velocities.draw(population, evaluator.rng());
@@ -193,7 +196,7 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
             population.members.evaluate_from(0, evaluator)?;
         }
         memory.update(population);
-        if self.accept == Accept::Improving {
+        if self.accept == Acceptance::Improving {
             population.members.points.copy_from_slice(&memory.members.points);
         }
         Ok(())

@@ -1,13 +1,16 @@
 //! Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): particles have no velocity, but are found around
 //! an attractor with a spread that follows from their distance to the mean best place.
 
-use super::population::{Generation, Members, Memory, Population, Schedule, tile};
+use super::best_places::BestPlaces;
+use super::population::{Generation, Members, Population, tile};
+use super::schedule::Schedule;
 use crate::error::{Result, require_positive};
 use crate::math::logarithm::ln;
 use crate::objective::{Objective, Point};
 use crate::rng::{LazyRng, split};
+use crate::solver::Status;
 use crate::solver::driver::Solver;
-use crate::solver::evaluator::{Evaluator, Halt};
+use crate::solver::evaluator::Evaluator;
 
 /// Quantum-behaved particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,20 +42,20 @@ impl Qpso {
 #[derive(Debug, Clone)]
 pub struct State {
     population: Population,
-    memory: Memory,
+    memory: BestPlaces,
     scratch: Scratch,
 }
 
 impl<O: Objective + ?Sized> Solver<O> for Qpso {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let population = Population::start(&self.schedule, evaluator, x0)?;
-        let memory = Memory::new(self.schedule.population, x0.len());
+        let memory = BestPlaces::new(self.schedule.population, x0.len());
         Ok(State { scratch: Scratch::new(&population.members), population, memory })
     }
 
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let State { population, memory, scratch } = state;
         if population.begin_generation(&self.schedule, evaluator)? == Generation::Later {
             find_mean(memory, &mut scratch.mean);
@@ -88,7 +91,7 @@ impl Scratch {
 const LAST_PLACE: f64 = 1.0 / (1_u64 << 27) as f64;
 
 /// m = (sum over particles of p) / M.
-fn find_mean(memory: &Memory, mean: &mut [f64]) {
+fn find_mean(memory: &BestPlaces, mean: &mut [f64]) {
     mean.fill(0.0);
     for p in memory.members.points() {
         mean.iter_mut().zip(p).for_each(|(mean, p)| *mean += p);
@@ -99,7 +102,7 @@ fn find_mean(memory: &Memory, mean: &mut [f64]) {
 
 impl Qpso {
     /// x = phi p + (1 - phi) g -+ alpha |m - x| ln(1/u), phi, u and the sign anew for each coordinate.
-    fn draw_particles(&self, points: &mut [f64], memory: &Memory, scratch: &mut Scratch, rng: &mut LazyRng) {
+    fn draw_particles(&self, points: &mut [f64], memory: &BestPlaces, scratch: &mut Scratch, rng: &mut LazyRng) {
         tile(memory.members.point(memory.leader), &mut scratch.leader);
         tile(&scratch.mean, &mut scratch.means);
         rng.fill(&mut scratch.draws);

@@ -3,12 +3,13 @@
 //! What all particles have in common is repeated for each of them, so that an update is one long loop over all coordinates,
 //! which the compiler vectorises whatever the dimension.
 
-use super::population::{Memory, Population, tile};
+use super::best_places::BestPlaces;
+use super::population::{Population, tile};
 use crate::rng::{LazyRng, split};
 
 /// The velocities of all particles.
 #[derive(Debug, Clone)]
-pub struct Velocities {
+pub(super) struct Velocities {
     /// All coordinates, particle by particle.
     pub all: Vec<f64>,
     /// The largest velocities, for every coordinate of every particle.
@@ -39,7 +40,7 @@ impl Velocities {
     }
 
     /// v = w v + c1 r1 (p - x) + c2 r2 (g - x), r1 and r2 anew for each coordinate, clamped to the largest.
-    pub fn update(&mut self, [w, c1, c2]: [f64; 3], population: &Population, memory: &Memory, rng: &mut LazyRng) {
+    pub fn update(&mut self, [w, c1, c2]: [f64; 3], population: &Population, memory: &BestPlaces, rng: &mut LazyRng) {
         tile(memory.members.point(memory.leader), &mut self.leader);
         rng.fill(&mut self.draws);
         let count = self.all.len();

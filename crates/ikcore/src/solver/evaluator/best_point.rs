@@ -4,7 +4,7 @@ use crate::objective::Point;
 
 /// The best point met so far.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Best {
+pub struct BestPoint {
     /// Where; empty before the first evaluation.
     pub x: Point,
     /// Its value; infinite where the objective was never finite.
@@ -13,14 +13,14 @@ pub struct Best {
     pub solved: bool,
 }
 
-impl Default for Best {
+impl Default for BestPoint {
     /// Nothing met yet.
     fn default() -> Self {
         Self { x: Point::new(), value: f64::INFINITY, solved: false }
     }
 }
 
-impl Best {
+impl BestPoint {
     /// Takes a point in where it is better: solved before unsolved, then the lower value, then the earlier.
     #[inline]
     pub(super) fn challenge(&mut self, x: &[f64], value: f64, solved: bool) {
