@@ -69,7 +69,7 @@ def rates(runs: list[Motion]) -> Part:
                 title="Iterations by learning rate and by the scale of E that it is meant for, threshold 10⁻⁸",
                 columns=[Column(name="scale of E"), Column(name="η"), *(Column(name=name) for name in MOTIONS)],
                 rows=[
-                    [scale, rate, *(count if count is not None else f"> {BUDGET}" for count in row)]
+                    [scale, f"{rate:g}", *(count if count is not None else f"> {BUDGET}" for count in row)]
                     for (scale, rate), row in counts.items()
                 ],
                 caption="Each motion starts from the printed R₂ of the one before.",
