@@ -159,7 +159,7 @@ def _table(cases: list[Case]) -> Table:
         columns=[
             Column(name="arm"),
             Column(name="walk"),
-            Column(name="error band", unit="m", digits=2),
+            Column(name="error band", unit="m"),
             Column(name="mean error, second half", unit="m", compared=True),
             Column(name="steps to the band, at most"),
             Column(name="evaluations"),

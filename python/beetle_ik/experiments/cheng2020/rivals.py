@@ -141,11 +141,11 @@ def _table_2(compared: list[Compared]) -> Table:
         columns=[
             Column(name="method"),
             Column(name="time", unit="s", compared=True),
-            Column(name="time over BAS", compared=True, digits=2),
+            Column(name="time over BAS", compared=True),
             Column(name="evaluations a step"),
-            Column(name="over BAS", digits=2),
+            Column(name="over BAS"),
             Column(name="steps outside"),
-            Column(name="roughness", unit="rad/s", digits=2),
+            Column(name="roughness", unit="rad/s"),
         ],
         rows=[
             [
@@ -175,8 +175,8 @@ def _table_1(compared: list[Compared]) -> Table:
         title=f"Table 1: the same budget; mean errors of the second half over {len(compared[0].results)} tests",
         columns=[
             Column(name="method"),
-            *(Column(name=f"along {axis}", unit="m", compared=True, digits=2) for axis in "xyz"),
-            Column(name="mean error", unit="m", compared=True, digits=2),
+            *(Column(name=f"along {axis}", unit="m", compared=True) for axis in "xyz"),
+            Column(name="mean error", unit="m", compared=True),
         ],
         rows=[
             [

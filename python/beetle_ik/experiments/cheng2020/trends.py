@@ -159,7 +159,7 @@ def explorations_claim(found: Measurements) -> Claim:
         "With more explorations n the error converges faster and the joint velocity oscillates less, at more cost.",
         source="Section IV-A.3a, Figure 4",
         rule="From the fewest to the most explorations: fewer steps to the band, less roughness, more evaluations.",
-        measured="; ".join(f"{name}: {_change('n', *both)}" for name, both in ends.items()),
+        measured="; ".join(f"{name}: {_change(*both)}" for name, both in ends.items()),
         holds={
             name: many.steps.mean < few.steps.mean
             and many.roughness.mean < few.roughness.mean
@@ -183,9 +183,10 @@ def length_claim(symbol: str, source: str, found: Measurements) -> Claim:
         f"A larger {symbol} decreases the computation and makes the joint velocity oscillate.",
         source=source,
         rule="With the larger value there are fewer evaluations and there is more roughness.",
-        measured="; ".join(
-            f"{name}: {number(after.evaluations.mean / before.evaluations.mean, 2)} times the evaluations, "
-            f"{number(after.roughness.mean / before.roughness.mean, 2)} times the roughness"
+        measured="evaluations and roughness change "
+        + "; ".join(
+            f"{number(after.evaluations.mean / before.evaluations.mean, 2)} and "
+            f"{number(after.roughness.mean / before.roughness.mean, 2)} times ({name})"
             for name, (before, after) in changes.items()
         ),
         holds={
@@ -197,12 +198,10 @@ def length_claim(symbol: str, source: str, found: Measurements) -> Claim:
     )
 
 
-def _change(symbol: str, before: Measured, after: Measured) -> str:
+def _change(before: Measured, after: Measured) -> str:
     return (
-        f"{symbol} from {before.value:g} to {after.value:g}, steps to the band {number(before.steps.mean, 2)} to "
-        f"{number(after.steps.mean, 2)}, roughness {number(before.roughness.mean, 2)} to "
-        f"{number(after.roughness.mean, 2)} rad/s, evaluations {number(round(before.evaluations.mean))} to "
-        f"{number(round(after.evaluations.mean))}"
+        f"{number(before.steps.mean, 2)} to {number(after.steps.mean, 2)} steps, "
+        f"{number(before.roughness.mean, 2)} to {number(after.roughness.mean, 2)} rad/s"
     )
 
 
@@ -218,8 +217,8 @@ def _table(sweep: Sweep, found: Measurements) -> Table:
             Column(name="arm"),
             Column(name="walk"),
             Column(name=sweep.symbol),
-            Column(name="steps to the band", digits=2),
-            Column(name="roughness", unit="rad/s", digits=2),
+            Column(name="steps to the band"),
+            Column(name="roughness", unit="rad/s"),
             Column(name="evaluations"),
         ],
         rows=[
