@@ -63,7 +63,9 @@ pub fn time_optimal(
     let waypoints = waypoints.as_slice()?;
     let path = if spline == "polyline" {
         if knots.is_some() {
-            return Err(invalid("knots can only be given for a spline: the parameter of a polyline is its length".into()));
+            return Err(invalid(
+                "knots can only be given for a spline: the parameter of a polyline is its length".into(),
+            ));
         }
         JointPath::polyline(joints, waypoints, blend.unwrap_or(0.0))
     } else {
