@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::segment_distance::Segment;
+use super::segment_distance::LineSegment;
 use crate::math::{Frame, MAX_DOF};
 use crate::robot::Robot;
 
@@ -18,7 +18,7 @@ pub(super) type Frames = [Frame; MAX_DOF + 1];
 pub(super) fn displacement(
     robot: &Robot,
     frames: &Frames,
-    segment: &Segment,
+    segment: &LineSegment,
     stages: std::ops::Range<usize>,
     reach: &[f64],
 ) -> f64 {

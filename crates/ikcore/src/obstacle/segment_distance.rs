@@ -7,7 +7,7 @@ use super::shape::Obstacle;
 use super::tangent::nearest_on_segment;
 
 /// A segment between two points (m).
-pub(super) type Segment = [Vector3<f64>; 2];
+pub(super) type LineSegment = [Vector3<f64>; 2];
 
 /// How far below the true distance an answer may lie (m).
 const ACCURACY: f64 = 1e-9;
@@ -24,7 +24,7 @@ struct Touch {
 
 /// Signed distance of the segment to the obstacle: negative by the depth of its deepest point. Never more than the
 /// truth, and at most [`ACCURACY`] less unless it is at least `enough`.
-pub(super) fn distance_to_obstacle(segment: &Segment, obstacle: &Obstacle, enough: f64) -> f64 {
+pub(super) fn distance_to_obstacle(segment: &LineSegment, obstacle: &Obstacle, enough: f64) -> f64 {
     let [a, b] = segment;
     let center = Vector3::from(obstacle.bounding_center);
     let from_sphere = (nearest_on_segment(a, b, &center) - center).norm() - obstacle.bounding_radius;
@@ -67,7 +67,7 @@ pub(super) fn distance_to_obstacle(segment: &Segment, obstacle: &Obstacle, enoug
 }
 
 /// Distance between two segments, exact.
-pub(super) fn distance_between(one: &Segment, other: &Segment) -> f64 {
+pub(super) fn distance_between(one: &LineSegment, other: &LineSegment) -> f64 {
     let ([p, p_end], [q, q_end]) = (one, other);
     let (u, v, w) = (p_end - p, q_end - q, p - q);
     let (uu, uv, vv, uw, vw) = (u.dot(&u), u.dot(&v), v.dot(&v), u.dot(&w), v.dot(&w));
