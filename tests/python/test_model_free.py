@@ -174,7 +174,7 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
         (
             lambda: bik.ZNNBAS(antenna_length=0.1, c1=0.3),
             bik.InvalidInputError,
-            "antenna_length and c1 exclude each other: a constant antenna, or one of c1 sqrt(h)",
+            "give either antenna_length, for a constant antenna, or c1, for one of c1 sqrt(h)",
         ),
         (
             lambda: track(controller=bik.ZNNBAS(antenna_length=[0.1, 0.2])),
@@ -210,7 +210,7 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
         (
             lambda: bik.ZNNBAS().session(ON_CIRCLE, dt=0.1, limits=bik.Limits(velocity=lambda t: t)),
             bik.UnsupportedLimit,
-            "session cannot honour callable velocity limits: it has no end to be sampled to; give numbers or a "
+            "session cannot honour callable velocity limits: it has no end time up to which to sample; give numbers or a "
             "Sinusoid, or use track_model_free",
         ),
         (lambda: track(dt=0.0), bik.InvalidInputError, "dt must be positive and finite, got 0"),

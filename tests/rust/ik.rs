@@ -144,9 +144,9 @@ fn an_orientation_that_parallel_axes_cannot_turn_to_is_said_to_be_one() {
     for name in Robot::names() {
         let robot = robot(name);
         let bounds: Vec<f64> = robot.joints().iter().map(|joint| joint.upper).collect();
-        if let Some(upright) = robot.reach(&bounds, &bounds).upright {
+        if let Some(fixed) = robot.reach(&bounds, &bounds).fixed_direction {
             for q in configurations(&robot, 50) {
-                assert!(upright.lean(&Frame::from(&robot.fk(&q).unwrap())) < 1e-9, "{name}");
+                assert!(fixed.angle_to(&Frame::from(&robot.fk(&q).unwrap())) < 1e-9, "{name}");
             }
         }
     }

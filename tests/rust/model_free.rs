@@ -8,9 +8,9 @@ use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{BroydenBas, Status, Unattended};
-use ikcore::tracking::controller::{Antenna, Session, Znnbas};
 use ikcore::tracking::{
-    Controller, Fault, FunctionPlant, KinematicPlant, ModelFreeOptions, ModelFreeRecord, Plant, track_model_free,
+    Antenna, ControlSession, Controller, Fault, FunctionPlant, KinematicPlant, ModelFreeOptions, ModelFreeRecord,
+    Plant, Znnbas, track_model_free,
 };
 
 const SEEDS: u64 = 20;
@@ -305,7 +305,7 @@ fn a_session_gives_the_same_commands_as_the_run() {
         let options = ModelFreeOptions { controller: controller.clone(), ..options(3) };
         let record = on_circle(&mut exact_plant(), &options);
         let limits = options.limits.clone().unwrap();
-        let mut session = Session::new(&controller, &ON_CIRCLE, 0.2, limits, 1e-9, 3).unwrap();
+        let mut session = ControlSession::new(&controller, &ON_CIRCLE, 0.2, limits, 1e-9, 3).unwrap();
         for i in 0..=150 {
             let step = loop {
                 let command = session.command(record.track.reference[i]).unwrap().to_vec();
@@ -321,7 +321,8 @@ fn a_session_gives_the_same_commands_as_the_run() {
 
 #[test]
 fn turns_are_kept() {
-    let mut session = Session::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none_for(2), 1e-6, 0).unwrap();
+    let mut session =
+        ControlSession::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none_for(2), 1e-6, 0).unwrap();
     let early = "observe: there is no command to answer; call command(target) first";
     assert_eq!(message(session.observe([0.0; 3])), early);
     session.command([1.0, 0.0, 0.0]).unwrap();

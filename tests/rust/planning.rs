@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::Frame;
 use ikcore::obstacle::Obstacle;
-use ikcore::path::{Path, Plane, Polyline, Reference};
+use ikcore::path::{Path, Plane, Polyline, Waypoints};
 use ikcore::planning::planar_arm::PlanarArm;
 use ikcore::planning::{
     AlongPathMethod, AlongPathOptions, Cost, Elbow, Endpoint, Plan, PointToPointMethod, PointToPointOptions, TipPath,
@@ -193,7 +193,7 @@ fn paths() -> [TipPath; 2] {
         let radius = (1.0 + 0.35 * (3.0 * angle).cos()) * 0.6 / 1.35;
         [1.0 + radius * angle.cos(), 1.0 + radius * angle.sin(), 0.0]
     });
-    let lobes = Reference::new(0.02, lobes.collect(), None).expect("valid input");
+    let lobes = Waypoints::new(lobes.collect(), None).expect("valid input");
     [TipPath::along(&Path::new(star)).expect("valid input"), TipPath::through(&lobes).expect("valid input")]
 }
 

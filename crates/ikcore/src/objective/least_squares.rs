@@ -4,7 +4,7 @@ use super::evaluation::{Objective, Score};
 use super::gradient::Gradient;
 use crate::math::MAX_DOF;
 use crate::math::box_step::ROWS;
-use crate::math::quad::Quad;
+use crate::math::f64x4::F64x4;
 
 /// Residual r and Jacobian dr/dx at a point.
 #[derive(Debug, Clone)]
@@ -37,14 +37,14 @@ pub trait LeastSquares: Residual {
 #[derive(Debug, Clone)]
 pub struct FourLinearizations {
     /// As [`Linearization::residual`].
-    pub residual: [Quad; ROWS],
+    pub residual: [F64x4; ROWS],
     /// As [`Linearization::columns`].
-    pub columns: [[Quad; ROWS]; MAX_DOF],
+    pub columns: [[F64x4; ROWS]; MAX_DOF],
 }
 
 impl Default for FourLinearizations {
     fn default() -> Self {
-        Self { residual: [Quad::ZERO; ROWS], columns: [[Quad::ZERO; ROWS]; MAX_DOF] }
+        Self { residual: [F64x4::ZERO; ROWS], columns: [[F64x4::ZERO; ROWS]; MAX_DOF] }
     }
 }
 
@@ -52,7 +52,7 @@ impl Default for FourLinearizations {
 /// system: for a robot, in the targets, which are of one kind.
 pub trait SideBySide: LeastSquares + Sized {
     /// [`linearize`](LeastSquares::linearize) of each objective at its lane of `xs`, to the same bits.
-    fn linearize_four(objectives: [&Self; 4], xs: &[Quad], out: &mut FourLinearizations) -> [Score; 4];
+    fn linearize_four(objectives: [&Self; 4], xs: &[F64x4], out: &mut FourLinearizations) -> [Score; 4];
 }
 
 impl Linearization {

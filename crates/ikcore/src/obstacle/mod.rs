@@ -20,6 +20,7 @@ mod link_displacement;
 pub mod scene;
 mod segment_distance;
 pub mod shape;
+mod signed_distance;
 pub mod sweep;
 mod tangent;
 mod triangles;

@@ -31,6 +31,7 @@ mod rose;
 mod samples;
 mod stored_path;
 mod timed_path;
+mod waypoints;
 
 pub use circle::Circle;
 pub use curve::Curve;
@@ -41,3 +42,4 @@ pub use reference::Reference;
 pub use rose::Rose;
 pub use samples::Samples;
 pub use timed_path::Path;
+pub use waypoints::Waypoints;

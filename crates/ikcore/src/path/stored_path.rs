@@ -1,5 +1,6 @@
 //! Paths as bytes.
 
+use std::any::Any;
 use std::sync::Arc;
 
 use nalgebra::Matrix3;
@@ -9,22 +10,28 @@ use super::{Circle, Curve, Hypotrochoid, Path, Polyline, Rose, Samples};
 use crate::error::{Error, Result};
 use crate::stored;
 
-/// The library's own curves.
+/// The library's own curves. Their order is part of the stored form.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum StoredCurve {
-    /// A [`Circle`].
+enum StoredCurve {
     Circle(Circle),
-    /// A [`Hypotrochoid`].
     Hypotrochoid(Hypotrochoid),
-    /// A [`Polyline`].
     Polyline(Polyline),
-    /// A [`Rose`].
     Rose(Rose),
-    /// [`Samples`].
     Samples(Samples),
 }
 
 impl StoredCurve {
+    /// The form in which `curve` is stored; None for a curve of your own.
+    fn of(curve: &dyn Curve) -> Option<Self> {
+        let curve: &dyn Any = curve;
+        let circle = || curve.downcast_ref().cloned().map(Self::Circle);
+        let hypotrochoid = || curve.downcast_ref().cloned().map(Self::Hypotrochoid);
+        let polyline = || curve.downcast_ref().cloned().map(Self::Polyline);
+        let rose = || curve.downcast_ref().cloned().map(Self::Rose);
+        let samples = || curve.downcast_ref().cloned().map(Self::Samples);
+        circle().or_else(hypotrochoid).or_else(polyline).or_else(rose).or_else(samples)
+    }
+
     fn curve(self) -> Arc<dyn Curve> {
         match self {
             Self::Circle(curve) => Arc::new(curve),
@@ -42,7 +49,7 @@ impl Path {
     /// # Errors
     /// [`Error::InvalidPath`] for a curve of your own: only the library's can be stored.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
-        let Some(curve) = self.curve.stored() else {
+        let Some(curve) = StoredCurve::of(&*self.curve) else {
             return Err(Error::InvalidPath {
                 problem: "a curve of your own cannot be stored; store its samples".into(),
             });

@@ -1,8 +1,8 @@
 //! What all planners among obstacles share: the robot's body, the distance that is kept, and trajectories as motions that
 //! can be certified.
 
-use super::plan::Violation;
 use super::planar_arm::PlanarArm;
+use super::violation::Violation;
 use crate::error::{Error, Result};
 use crate::math::polynomial::evaluate;
 use crate::obstacle::{Contact, JointMotion, Obstacle, Scene};

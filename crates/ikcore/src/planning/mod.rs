@@ -33,13 +33,15 @@ pub mod time_optimal;
 mod timed;
 pub mod tip_path;
 mod tpbso;
+mod violation;
 
 pub use along_path::{AlongPathMethod, AlongPathOptions, plan_along_path};
 pub use cost::Cost;
 pub use endpoint::Endpoint;
 pub use motion_limits::MotionLimits;
-pub use plan::{Improvement, Plan, Violation};
+pub use plan::{Improvement, Plan};
 pub use planar_arm::Elbow;
 pub use point_to_point::{PointToPointMethod, PointToPointOptions, plan_point_to_point};
 pub use time_optimal::{JointPath, SplineEnds, TimingLimits, TimingOptions, time_optimal};
 pub use tip_path::TipPath;
+pub use violation::Violation;

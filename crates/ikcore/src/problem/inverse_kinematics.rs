@@ -1,14 +1,14 @@
 //! A robot and a target as something to minimise.
 
 use crate::math::box_step::ROWS;
-use crate::math::quad::Quad;
+use crate::math::f64x4::F64x4;
 use crate::objective::{
     Bounds, FourLinearizations, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SideBySide,
     SmoothScore,
 };
 use crate::rng::LazyRng;
 use crate::robot::Robot;
-use crate::starts::Seeds;
+use crate::starts::Starts;
 use crate::task::residual::entrywise;
 use crate::task::{Assessment, Criterion, Target};
 
@@ -19,7 +19,7 @@ pub struct Problem<'a> {
     target: &'a Target,
     criterion: Criterion,
     /// Found when the first start is asked for.
-    seeds: Option<Seeds<'a>>,
+    seeds: Option<Starts<'a>>,
     turns: Turns,
 }
 
@@ -93,8 +93,8 @@ impl Objective for Problem<'_> {
         if self.seeds.is_none() {
             let aim = self.criterion.aim(self.target);
             self.seeds = match (&aim, aim.position()) {
-                (Target::Pose(pose), _) => Some(self.robot.seeds_near_pose(pose)),
-                (_, Some(position)) => Some(self.robot.seeds_near_position(&position)),
+                (Target::Pose(pose), _) => Some(self.robot.starts_near_pose(pose)),
+                (_, Some(position)) => Some(self.robot.starts_near_position(&position)),
                 _ => None,
             };
         }
@@ -146,7 +146,7 @@ impl SideBySide for Problem<'_> {
     /// The problems are of one robot and one criterion, their targets of one kind that
     /// [goes side by side](Target::goes_side_by_side).
     #[inline]
-    fn linearize_four(problems: [&Self; 4], qs: &[Quad], out: &mut FourLinearizations) -> [Score; 4] {
+    fn linearize_four(problems: [&Self; 4], qs: &[F64x4], out: &mut FourLinearizations) -> [Score; 4] {
         let Problem { robot, criterion, .. } = &problems[0];
         debug_assert!(problems.iter().all(|problem| std::ptr::eq(problem.robot, *robot)), "one robot for all four");
         Target::linearize_four(problems.map(|problem| problem.target), robot, qs, criterion, out)

@@ -8,8 +8,8 @@ use super::levenberg_marquardt::{Descent, LevenbergMarquardt};
 use super::multi_start::{AttemptProgress, MultiStart};
 use super::status::Status;
 use crate::math::MAX_DOF;
+use crate::math::f64x4::F64x4;
 use crate::math::four_box_steps::FourBoxSteps;
-use crate::math::quad::Quad;
 use crate::objective::{Bounds, FourLinearizations, Point, Score, SideBySide};
 
 /// Runs side by side.
@@ -32,7 +32,7 @@ pub(crate) fn run_side_by_side<'a, L, O: SideBySide + 'a>(
         bounds,
         ended,
         lanes: std::array::from_fn(|_| None),
-        points: [[Quad::ZERO; MAX_DOF]; 2],
+        points: [[F64x4::ZERO; MAX_DOF]; 2],
         linearizations: [FourLinearizations::default(), FourLinearizations::default()],
         here: 0,
     };
@@ -58,7 +58,7 @@ struct Lanes<'s, 'a, L, O, F> {
     ended: F,
     lanes: [Option<Lane<'a, L, O>>; LANES],
     /// One for the points, one for the trials; `here` says which is which.
-    points: [[Quad; MAX_DOF]; 2],
+    points: [[F64x4; MAX_DOF]; 2],
     linearizations: [FourLinearizations; 2],
     here: usize,
 }
@@ -126,7 +126,7 @@ impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Option<Status>)> L
         let steps = FourBoxSteps {
             columns: &columns[..n],
             residual,
-            lambda: Quad(std::array::from_fn(|l| lambda(&self.lanes[l]))),
+            lambda: F64x4(std::array::from_fn(|l| lambda(&self.lanes[l]))),
             x: &x[..n],
             lower: self.bounds.lower(),
             upper: self.bounds.upper(),

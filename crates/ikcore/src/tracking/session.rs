@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
-use super::TrackOptions;
 use super::record::Accepted;
-use super::rule::{Running, Tick, TickResult, TickRule};
+use super::rule::{RunningRule, Tick, TickResult, TickRule};
 use super::step::Step;
+use super::track_options::TrackOptions;
 use crate::error::{Result, require_finite, require_positive};
 use crate::kinematics::Beyond;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
@@ -26,7 +26,7 @@ pub struct Session {
     limits: Limits,
     limit_at: LimitAt,
     rule: TickRule,
-    running: Running,
+    running: RunningRule,
     task: Option<Task>,
     criterion: Criterion,
     goals: Goals,

@@ -1,7 +1,7 @@
 //! The polynomial of a segment of length h (s) that meets given values at both ends: Hermite interpolation in the time
 //! since its start, as trajectories store it. [`Cubic`](crate::math::hermite::Cubic) runs over the share of a way.
 
-use super::{Coefficients, polynomial};
+use super::coefficients::{Coefficients, polynomial};
 
 /// Meets two positions.
 pub fn line(h: f64, [q0, q1]: [f64; 2]) -> Coefficients {

@@ -1,6 +1,7 @@
 //! Pairs over all branches of inverse kinematics of both ends, each at the whole turns nearest to the other end.
 
-use super::pair_search::{Pair, PairSearch};
+use super::end_pair::EndPair;
+use super::pair_search::PairSearch;
 use crate::error::Result;
 use crate::ik::{AllOptions, SolveOptions, bring_near, solve_all};
 use crate::objective::{Bounds, Point};
@@ -15,7 +16,7 @@ impl PairSearch<'_> {
     ///
     /// # Errors
     /// None for ends that have a configuration.
-    pub(super) fn branches(&mut self, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<Pair>> {
+    pub(super) fn branches(&mut self, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>> {
         let [starts, ends] = [self.configurations(0, monitor)?, self.configurations(1, monitor)?];
         let bounds = Bounds::from_ranges(self.limits.lower.iter().copied().zip(self.limits.upper.iter().copied()));
         let start_is_free = matches!(self.ends[0], Endpoint::Target(_));

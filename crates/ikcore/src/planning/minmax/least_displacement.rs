@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::pair_search::Pair;
+use super::end_pair::EndPair;
 use crate::math::box_step::ROWS;
 use crate::objective::{Linearization, Point};
 use crate::planning::MotionLimits;
@@ -23,7 +23,7 @@ const DAMPING: f64 = 0.0125;
 const SMALLEST_WEIGHT: f64 = 1e-3;
 
 /// Moves the ends of `pair` whose target is given; returns how many times kinematics were evaluated.
-pub(super) fn shorten(robot: &Robot, limits: &MotionLimits, free: [Option<&Target>; 2], pair: &mut Pair) -> usize {
+pub(super) fn shorten(robot: &Robot, limits: &MotionLimits, free: [Option<&Target>; 2], pair: &mut EndPair) -> usize {
     let n = robot.dof();
     let free_ends: Vec<(usize, &Target)> = free.into_iter().enumerate().filter_map(|(i, t)| Some((i, t?))).collect();
     if free_ends.is_empty() {

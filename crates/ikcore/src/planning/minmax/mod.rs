@@ -14,6 +14,7 @@
 
 mod among_obstacles;
 mod branch_pairs;
+mod end_pair;
 mod least_displacement;
 mod line_timing;
 mod minmax_planner;

@@ -1,5 +1,6 @@
 //! Pairs of configurations for both ends, as near to each other in time as can be found.
 
+use super::end_pair::EndPair;
 use super::least_displacement;
 use crate::error::{Error, Result};
 use crate::ik::{Solution, SolveOptions, solve};
@@ -11,15 +12,6 @@ use crate::robot::Robot;
 use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
-use crate::wording::number;
-
-/// Configurations of both ends, and the time of a quintic between them (s).
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Pair {
-    pub start: Point,
-    pub end: Point,
-    pub duration: f64,
-}
 
 /// What all searches for configurations share.
 pub(super) struct PairSearch<'a> {
@@ -63,9 +55,9 @@ impl<'a> PairSearch<'a> {
     ///
     /// # Errors
     /// [`Error::Unreachable`] for an end that no configuration was found for.
-    pub(super) fn pairs(&mut self, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<Pair>> {
+    pub(super) fn pairs(&mut self, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>> {
         let given = self.ends.iter().all(|end| matches!(end, Endpoint::Configuration(_)));
-        let mut pairs: Vec<Pair> = vec![];
+        let mut pairs: Vec<EndPair> = vec![];
         for attempt in 0..if given { 1 } else { count } {
             if attempt > 0 && !monitor.keep_going() {
                 break;
@@ -101,10 +93,10 @@ impl<'a> PairSearch<'a> {
         &mut self,
         count: usize,
         tries: usize,
-        accept: impl Fn(&Pair) -> bool,
+        accept: impl Fn(&EndPair) -> bool,
         monitor: &mut dyn Monitor,
-    ) -> Result<Vec<Pair>> {
-        let mut pairs: Vec<Pair> = vec![];
+    ) -> Result<Vec<EndPair>> {
+        let mut pairs: Vec<EndPair> = vec![];
         for attempt in 1..=tries {
             if pairs.len() == count || !monitor.keep_going() {
                 break;
@@ -120,9 +112,9 @@ impl<'a> PairSearch<'a> {
         Ok(pairs)
     }
 
-    pub(super) fn pair(&self, start: Point, end: Point) -> Pair {
+    pub(super) fn pair(&self, start: Point, end: Point) -> EndPair {
         let duration = self.limits.quintic_duration(start.iter().zip(&end).map(|(start, end)| end - start));
-        Pair { start, end, duration }
+        EndPair { start, end, duration }
     }
 
     /// A configuration of an end, from `near` or a random start. The first attempt must find one.
@@ -168,7 +160,7 @@ impl<'a> PairSearch<'a> {
     }
 
     /// The pair moved along its self-motion, or itself where that does not help.
-    fn improved(&mut self, pair: Pair, monitor: &mut dyn Monitor) -> Pair {
+    fn improved(&mut self, pair: EndPair, monitor: &mut dyn Monitor) -> EndPair {
         let ends = self.ends;
         let free = ends.map(|end| match end {
             Endpoint::Target(target) => Some(target),
@@ -185,25 +177,5 @@ impl<'a> PairSearch<'a> {
         }
         let moved = self.pair(moved.start, moved.end);
         if moved.duration < pair.duration { moved } else { pair }
-    }
-}
-
-/// Pairs that differ by less are one (rad, m).
-const SAME: f64 = 1e-3;
-
-impl Pair {
-    fn is_same(&self, other: &Self) -> bool {
-        let near = |a: &Point, b: &Point| a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME);
-        near(&self.start, &other.start) && near(&self.end, &other.end)
-    }
-
-    /// Err unless the ends differ.
-    pub(super) fn require_motion(&self) -> Result<()> {
-        let largest = self.start.iter().zip(&self.end).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        if largest > 0.0 {
-            return Ok(());
-        }
-        let problem = format!("start and end are the same configuration (largest difference {} rad)", number(largest));
-        Err(Error::InvalidTrajectory { problem })
     }
 }

@@ -1,7 +1,8 @@
 //! Plans without obstacles: straight lines between the pairs of configurations, of which the best is taken.
 
+use super::end_pair::EndPair;
 use super::line_timing::JointPolyline;
-use super::pair_search::{Pair, PairSearch};
+use super::pair_search::PairSearch;
 use crate::error::{Error, Result};
 use crate::planning::{Cost, Improvement, MotionLimits, Plan};
 use crate::solver::{Monitor, Status};
@@ -43,7 +44,7 @@ pub fn without_obstacles(search: &mut PairSearch, objective: Cost, monitor: &mut
 }
 
 /// The quicker of a quintic and of constant velocity between blends.
-pub fn straight(pair: &Pair, limits: &MotionLimits) -> Result<Trajectory> {
+pub fn straight(pair: &EndPair, limits: &MotionLimits) -> Result<Trajectory> {
     pair.require_motion()?;
     let line = JointPolyline(vec![pair.start.to_vec(), pair.end.to_vec()]);
     let quintic = line.with_stops(limits)?;

@@ -6,7 +6,7 @@
 
 use nalgebra::DMatrix;
 
-use super::interpolation::Waypoints;
+use super::interpolation::JointWaypoints;
 use super::null_space::{null_space, turned};
 use super::projection::project;
 use crate::error::{Error, Result};
@@ -34,13 +34,13 @@ const STARTS: usize = 16;
 const JUMP: f64 = 1.5;
 
 /// The arm on its path.
-pub struct SelfMotion<'a> {
+pub struct RedundantMotion<'a> {
     robot: &'a Robot,
     tip_path: &'a TipPath,
     bounds: Bounds,
     /// What the tip reaches at the nominal motion's knots.
     targets: Vec<Target>,
-    nominal: Waypoints,
+    nominal: JointWaypoints,
     /// Directions of the self-motion at each node: a column each.
     bases: Vec<DMatrix<f64>>,
     /// What the offset at a node contributes at a point: point by point, node by node.
@@ -50,7 +50,7 @@ pub struct SelfMotion<'a> {
     linearization: Linearization,
 }
 
-impl<'a> SelfMotion<'a> {
+impl<'a> RedundantMotion<'a> {
     /// The arm on `path`.
     ///
     /// # Errors
@@ -64,7 +64,7 @@ impl<'a> SelfMotion<'a> {
             bounds: Bounds::from_ranges(joints.iter().map(|joint| (joint.lower, joint.upper))),
             targets: knots.iter().map(|knot| tip_path.target(*knot)).collect(),
             weights: node_weights(&knots),
-            nominal: Waypoints { knots, rows: vec![] },
+            nominal: JointWaypoints { knots, rows: vec![] },
             bases: vec![],
             starts_as_given: start.is_some(),
             linearization: Linearization::default(),
@@ -78,12 +78,12 @@ impl<'a> SelfMotion<'a> {
     }
 
     /// The nominal motion.
-    pub fn nominal(&self) -> &Waypoints {
+    pub fn nominal(&self) -> &JointWaypoints {
         &self.nominal
     }
 
     /// Takes another nominal motion on the same path.
-    pub fn take(&mut self, nominal: Waypoints) {
+    pub fn take(&mut self, nominal: JointWaypoints) {
         self.targets = nominal.knots.iter().map(|knot| self.tip_path.target(*knot)).collect();
         self.weights = node_weights(&nominal.knots);
         self.nominal = nominal;

@@ -2,8 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::interpolation::{Interpolation, Waypoints};
-use super::redundant_motion::{NODES, SelfMotion, travel};
+use super::interpolation::{Interpolation, JointWaypoints};
+use super::redundant_motion::{NODES, RedundantMotion, travel};
 use crate::error::Result;
 use crate::objective::{Bounds, Objective, Score};
 use crate::planning::deviation::TipDeviation;
@@ -14,7 +14,7 @@ use crate::planning::{Cost, JointPath, MotionLimits, TimingLimits};
 /// its nodes.
 pub struct TimedCost<'a> {
     /// The configurations that the arm may choose from.
-    pub motion: SelfMotion<'a>,
+    pub motion: RedundantMotion<'a>,
     /// The splines through those chosen.
     pub interpolation: Interpolation<'a>,
     /// Limits that the motion keeps.
@@ -52,9 +52,9 @@ impl TimedCost<'_> {
     }
 
     /// The joint positions for these offsets, at the nominal motion's knots, and by how much they miss the path (m, rad).
-    pub fn waypoints(&mut self, z: &[f64]) -> (Waypoints, f64) {
+    pub fn waypoints(&mut self, z: &[f64]) -> (JointWaypoints, f64) {
         let knots = self.motion.nominal().knots.clone();
-        let mut waypoints = Waypoints { rows: vec![0.0; knots.len() * self.motion.dof()], knots };
+        let mut waypoints = JointWaypoints { rows: vec![0.0; knots.len() * self.motion.dof()], knots };
         let missed = self.motion.place(z, &mut waypoints.rows);
         (waypoints, missed)
     }
@@ -84,7 +84,7 @@ impl TimedCost<'_> {
     }
 
     /// By how much the tip exceeds the accuracy in the middle between knots, as multiples of it, summed.
-    fn deviation(&self, waypoints: &Waypoints, path: &JointPath) -> f64 {
+    fn deviation(&self, waypoints: &JointWaypoints, path: &JointPath) -> f64 {
         let Interpolation { robot, tip_path, .. } = self.interpolation;
         let tip = TipDeviation { robot, tip_path, configurations: |share: f64, q: &mut [f64]| path.position(share, q) };
         let off = |ends: &[f64]| (tip.bound(0.5 * (ends[0] + ends[1])) / self.accuracy - 1.0).max(0.0);

@@ -1,7 +1,7 @@
 //! The planner: corners, the search for postures, the timing of the best.
 
-use super::interpolation::{Corners, Interpolation, Waypoints};
-use super::redundant_motion::SelfMotion;
+use super::interpolation::{Corners, Interpolation, JointWaypoints};
+use super::redundant_motion::RedundantMotion;
 use super::timed_cost::TimedCost;
 use crate::error::{Error, Result, require_positive};
 use crate::limits::Limits;
@@ -50,7 +50,7 @@ pub fn along_path(
         require_on_path(robot, q, tip_path, accuracy)?;
     }
     let robot = limits.applied_to(robot)?;
-    let mut motion = SelfMotion::new(&robot, tip_path, options.start.as_deref(), options.seed)?;
+    let mut motion = RedundantMotion::new(&robot, tip_path, options.start.as_deref(), options.seed)?;
     let interpolation = choose_corners(&mut motion, &robot, tip_path, accuracy, &timing_limits)?;
     let cost = TimedCost {
         motion,
@@ -66,13 +66,13 @@ pub fn along_path(
 
 /// Decides whether the arm stops at corners, by what is quicker on the nominal motion, and gives that motion the knots it needs.
 fn choose_corners<'a>(
-    motion: &mut SelfMotion<'_>,
+    motion: &mut RedundantMotion<'_>,
     robot: &'a Robot,
     tip_path: &'a TipPath,
     accuracy: f64,
     limits: &TimingLimits,
 ) -> Result<Interpolation<'a>> {
-    let mut quickest: Option<(f64, Interpolation, Waypoints)> = None;
+    let mut quickest: Option<(f64, Interpolation, JointWaypoints)> = None;
     for corners in Corners::on(tip_path) {
         let interpolation = Interpolation { robot, tip_path, corners: *corners };
         let waypoints = interpolation.refined(motion.nominal().clone(), accuracy)?;

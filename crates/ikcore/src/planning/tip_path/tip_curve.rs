@@ -7,7 +7,7 @@ use super::segment_geometry::{distance_to_segment, turn};
 use crate::error::{Error, Result};
 use crate::math::vector::distance;
 use crate::math::{Frame, pose};
-use crate::path::Reference;
+use crate::path::Waypoints;
 use crate::task::Target;
 use crate::wording::number;
 
@@ -25,7 +25,7 @@ pub struct TipPath {
     corners: Vec<usize>,
     /// When each row of a timed path is passed (s); None for given points, which messages number.
     times: Option<Vec<f64>>,
-    points: Reference,
+    points: Waypoints,
     /// Path parameters of those points.
     point_shares: Vec<f64>,
 }
@@ -34,22 +34,23 @@ pub struct TipPath {
 pub(super) const PAUSE: f64 = 1e-9;
 
 impl TipPath {
-    /// Straight from row to row of `points`; their times do not matter.
+    /// Straight from point to point.
     ///
     /// # Errors
     /// [`Error::InvalidPath`] where a point repeats the one before it.
-    pub fn through(points: &Reference) -> Result<Self> {
+    pub fn through(points: &Waypoints) -> Result<Self> {
         refuse_repetition(points)?;
-        Self::from_rows(points.clone(), (0..points.len()).collect(), None)
+        Self::from_rows(points, &(0..points.len()).collect::<Vec<_>>(), None)
     }
 
-    pub(super) fn from_rows(reference: Reference, points: Vec<usize>, times: Option<Vec<f64>>) -> Result<Self> {
-        let rows = 0..reference.len();
+    /// The curve through all `waypoints`, which passes those at the rows `points` as given; `times` (s) for a path in time.
+    pub(super) fn from_rows(waypoints: &Waypoints, points: &[usize], times: Option<&[f64]>) -> Result<Self> {
+        let rows = 0..waypoints.len();
         let quaternion = |r: Matrix3<f64>| UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(r));
-        let rotations: Option<Vec<_>> = rows.clone().map(|i| reference.rotation(i).map(quaternion)).collect();
+        let rotations: Option<Vec<_>> = rows.clone().map(|i| waypoints.rotation(i).map(quaternion)).collect();
         let step = |i: usize| {
             let turned = rotations.as_ref().map_or(0.0, |rows| rows[i - 1].angle_to(&rows[i]));
-            distance(&reference.position(i), &reference.position(i - 1)).hypot(turned)
+            distance(&waypoints.position(i), &waypoints.position(i - 1)).hypot(turned)
         };
         let steps: Vec<f64> = rows.clone().map(|i| if i == 0 { 0.0 } else { step(i) }).collect();
         let way: f64 = steps.iter().sum();
@@ -67,15 +68,15 @@ impl TipPath {
         // The last one is 1 whatever the rounding.
         let share = |i: usize| shares[i] / travelled;
         let kept: Vec<usize> = rows.filter(|i| *i == 0 || steps[*i] > PAUSE * way).collect();
-        let positions: Vec<[f64; 3]> = kept.iter().map(|i| reference.position(*i)).collect();
-        let place = points.iter().map(|i| reference.position(*i)).collect();
-        let turned = points.iter().map(|i| reference.rotation(*i)).collect();
+        let positions: Vec<[f64; 3]> = kept.iter().map(|i| waypoints.position(*i)).collect();
+        let place = points.iter().map(|i| waypoints.position(*i)).collect();
+        let turned = points.iter().map(|i| waypoints.rotation(*i)).collect();
         let tip_path = Self {
             shares: kept.iter().map(|i| share(*i)).collect(),
             corners: vec![],
             rotations: rotations.map(|rows| kept.iter().map(|i| rows[*i]).collect()),
             times: times.map(|times| kept.iter().map(|i| times[*i]).collect()),
-            points: Reference::new(1.0, place, turned)?,
+            points: Waypoints::new(place, turned)?,
             point_shares: points.iter().map(|i| share(*i)).collect(),
             positions,
         };
@@ -83,7 +84,7 @@ impl TipPath {
     }
 
     /// The points that the published planner passes: those given, or 51 at equal times.
-    pub fn points(&self) -> &Reference {
+    pub fn points(&self) -> &Waypoints {
         &self.points
     }
 

@@ -7,7 +7,7 @@
 use super::position;
 use crate::kinematics::Wrench;
 use crate::math::Frame;
-use crate::math::arithmetic::Separate;
+use crate::math::arithmetic::NoFma;
 use crate::math::so3::cross;
 use crate::task::target::Target;
 
@@ -36,7 +36,7 @@ fn axes(target: &Target, tip: &Frame) -> impl Iterator<Item = ([f64; 3], [f64; 3
     let (pairs, count) = match target {
         Target::Position(_) => ([([0.0; 3], [0.0; 3]); 3], 0),
         Target::Pose(frame) | Target::Orientation(frame) => (std::array::from_fn(|c| (tip.axes[c], frame.axes[c])), 3),
-        Target::Pointing { frame, axis } => ([(tip.turn::<Separate>(axis), frame.turn::<Separate>(axis)); 3], 1),
+        Target::Pointing { frame, axis } => ([(tip.turn::<NoFma>(axis), frame.turn::<NoFma>(axis)); 3], 1),
     };
     pairs.into_iter().take(count)
 }

@@ -7,7 +7,7 @@ use crate::math::Frame;
 use crate::math::box_step::ROWS;
 use crate::math::real::Real;
 use crate::math::so3::{Axes, rotation_and_jacobian, rotation_between};
-use crate::math::triple::Triple;
+use crate::math::vec3::Vec3;
 
 /// The squared geodesic angle.
 #[inline(always)]
@@ -27,7 +27,7 @@ pub fn linearize<R: Real>(
     let (phi, inverse) = rotation_and_jacobian(target, tip);
     for column in columns {
         let [.., x, y, z] = *column;
-        column[3..].copy_from_slice(&inverse.apply(Triple::of(&[x, y, z])).stored());
+        column[3..].copy_from_slice(&inverse.apply(Vec3::of(&[x, y, z])).stored());
     }
     residual[3..].copy_from_slice(&phi.stored());
     phi.dot(phi)

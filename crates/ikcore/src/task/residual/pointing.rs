@@ -6,7 +6,7 @@
 
 use super::position;
 use crate::math::Frame;
-use crate::math::arithmetic::Separate;
+use crate::math::arithmetic::NoFma;
 use crate::math::so3::{cross, norm};
 use crate::objective::Linearization;
 use crate::task::tip_error::SquaredError;
@@ -26,7 +26,7 @@ pub fn linearize(
     dof: usize,
     out: &mut Linearization,
 ) -> (SquaredError, f64) {
-    let a = tip.turn::<Separate>(axis);
+    let a = tip.turn::<NoFma>(axis);
     for column in &mut out.columns[..dof] {
         let moved = cross(&[column[3], column[4], column[5]], &a);
         column[3..].copy_from_slice(&moved);
@@ -40,7 +40,7 @@ pub fn linearize(
 /// a - d.
 #[inline(always)]
 fn difference(target: &Frame, axis: &[f64; 3], tip: &Frame) -> [f64; 3] {
-    position::residual(&target.turn::<Separate>(axis), &tip.turn::<Separate>(axis))
+    position::residual(&target.turn::<NoFma>(axis), &tip.turn::<NoFma>(axis))
 }
 
 fn errors(target: &Frame, tip: &Frame, difference: &[f64; 3]) -> (SquaredError, f64) {

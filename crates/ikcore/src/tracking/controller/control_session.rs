@@ -1,6 +1,7 @@
 //! A controller at work on an arm that somebody else moves: clock, limits, and whose turn it is.
 
-use super::{Controller, Running, Tick, Verdict};
+use super::control_tick::{ControlTick, Verdict};
+use super::controller_choice::{Controller, RunningController};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::math::MAX_DOF;
@@ -17,8 +18,8 @@ use crate::tracking::step::Step;
 ///
 /// The first command is the start itself: it only tells where the tip is, and time stands still.
 #[derive(Debug)]
-pub struct Session {
-    running: Running,
+pub struct ControlSession {
+    running: RunningController,
     limits: Limits,
     tolerance: f64,
     dt: f64,
@@ -50,7 +51,7 @@ enum Stage {
     Sent { target: [f64; 3], first: bool },
 }
 
-impl Session {
+impl ControlSession {
     /// A session at rest in `start` (n,) at t = 0, with ticks of `dt` (s). `tolerance` is the error band (m).
     ///
     /// # Errors
@@ -148,7 +149,7 @@ impl Session {
             Stage::Within => false,
         };
         if !first {
-            let tick = Tick { target, bounds: &self.tick_box.bounds };
+            let tick = ControlTick { target, bounds: &self.tick_box.bounds };
             self.running.choose_command(tick, &mut self.rng);
         }
         self.stage = Stage::Sent { target, first };
@@ -170,7 +171,7 @@ impl Session {
             self.running.begin(target, position);
             return Ok(Some(self.end_tick(target)));
         }
-        let tick = Tick { target, bounds: &self.tick_box.bounds };
+        let tick = ControlTick { target, bounds: &self.tick_box.bounds };
         if self.running.observe(tick, position) == Verdict::GoOn {
             self.stage = Stage::Within;
             return Ok(None);

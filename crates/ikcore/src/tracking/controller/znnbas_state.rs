@@ -1,7 +1,7 @@
 //! ZNNBAS at work: Algorithm 1, tick by tick.
 
-use super::znnbas::{Accept, Antenna, Delay, Znnbas};
-use super::{Tick, Verdict};
+use super::control_tick::{ControlTick, Verdict};
+use super::znnbas::{Acceptance, Antenna, Delay, Znnbas};
 use crate::math::ordered::sign;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
@@ -12,12 +12,12 @@ const LONGEST: f64 = 0.5;
 
 /// What the controller remembers from tick to tick.
 #[derive(Debug)]
-pub struct Memory {
+pub struct ZnnbasState {
     /// k dt.
     gain: f64,
     antenna: Antenna,
     delay: Delay,
-    accept: Accept,
+    accept: Acceptance,
     /// theta, the state of the integrator.
     theta: Point,
     /// Where the tip was at the last theta that was measured (m).
@@ -48,7 +48,7 @@ struct Past {
     ticks: usize,
 }
 
-impl Memory {
+impl ZnnbasState {
     pub fn new(options: &Znnbas, start: &[f64], dt: f64) -> Box<Self> {
         let (n, delay) = (start.len(), options.delay_steps);
         Box::new(Self {
@@ -89,12 +89,12 @@ impl Memory {
         &self.sent
     }
 
-    pub fn choose_command(&mut self, tick: Tick<'_>, rng: &mut LazyRng) {
+    pub fn choose_command(&mut self, tick: ControlTick<'_>, rng: &mut LazyRng) {
         let Self { theta, sent, antenna, .. } = self;
         rng.symmetric(sent); // b, line 14
         let error = match self.accept {
-            Accept::Always => self.value,
-            Accept::Improving => squared_distance(&tick.target, &self.standing),
+            Acceptance::Always => self.value,
+            Acceptance::Improving => squared_distance(&tick.target, &self.standing),
         };
         let lengths = match antenna {
             Antenna::Constant(lengths) => &lengths[..],
@@ -106,20 +106,20 @@ impl Memory {
         tick.bounds.clip(sent); // (11)
     }
 
-    pub fn observe(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
+    pub fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> Verdict {
         self.position = position;
         self.answered.copy_from_slice(&self.sent);
         let target = self.on_the_way.swap(&mut self.answered, tick.target);
         self.value = squared_distance(&target, &position); // h of (12)
         match self.accept {
-            Accept::Always => self.move_theta(),
-            Accept::Improving
+            Acceptance::Always => self.move_theta(),
+            Acceptance::Improving
                 if squared_distance(&tick.target, &position) < squared_distance(&tick.target, &self.standing) =>
             {
                 self.theta.copy_from_slice(&self.answered);
                 self.standing = position;
             }
-            Accept::Improving => {}
+            Acceptance::Improving => {}
         }
         // A limit may have closed in since the command.
         tick.bounds.clip(&mut self.theta);

@@ -1,6 +1,6 @@
 //! Any solver as a tick rule: begun anew from the accepted configuration, in the box of the tick.
 
-use super::{Tick, TickResult};
+use super::tick::{Tick, TickResult};
 use crate::objective::Differentiable;
 use crate::problem::Problem;
 use crate::solver::{AnySolver, Evaluator, Status, Stop};

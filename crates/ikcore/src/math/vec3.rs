@@ -1,13 +1,13 @@
-//! Vectors of three [`Real`]s for kernels: their operations are spelled out entry by entry, since closures over arrays are compiled
-//! without the instructions of the kernel that they stand in.
+//! Vectors of three [`Real`]s for kernels. Operations are spelled out entry by entry: closures over arrays would be compiled
+//! without the instructions of the kernel that calls them.
 
 use std::ops::{Add, Mul, Sub};
 
 use super::real::Real;
 
-/// A vector, or several side by side.
+/// A vector, or one per lane.
 #[derive(Debug, Clone, Copy)]
-pub struct Triple<R> {
+pub struct Vec3<R> {
     /// First entry.
     pub x: R,
     /// Second entry.
@@ -16,15 +16,15 @@ pub struct Triple<R> {
     pub z: R,
 }
 
-impl<R: Real> Triple<R> {
-    /// What is stored.
+impl<R: Real> Vec3<R> {
+    /// From its stored form.
     #[inline(always)]
     pub fn of(stored: &[R::Stored; 3]) -> Self {
         let [x, y, z] = *stored;
         Self { x: R::of(x), y: R::of(y), z: R::of(z) }
     }
 
-    /// As it is stored.
+    /// Its stored form.
     #[inline(always)]
     pub fn stored(self) -> [R::Stored; 3] {
         [self.x.stored(), self.y.stored(), self.z.stored()]
@@ -60,13 +60,13 @@ impl<R: Real> Triple<R> {
         }
     }
 
-    /// The scalar product, by separate roundings.
+    /// The scalar product, without FMA.
     #[inline(always)]
     pub fn dot(self, other: Self) -> R {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
-    /// The cross product, by separate roundings.
+    /// The cross product, without FMA.
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self {
@@ -76,9 +76,9 @@ impl<R: Real> Triple<R> {
         }
     }
 
-    /// The cross product, by fused roundings where the arithmetic has them.
+    /// The cross product, with FMA where the arithmetic has it.
     #[inline(always)]
-    pub fn cross_fused(self, other: Self) -> Self {
+    pub fn cross_fma(self, other: Self) -> Self {
         Self {
             x: self.y.mul_add(other.z, -(self.z * other.y)),
             y: self.z.mul_add(other.x, -(self.x * other.z)),
@@ -87,7 +87,7 @@ impl<R: Real> Triple<R> {
     }
 }
 
-impl<R: Real> Mul<R> for Triple<R> {
+impl<R: Real> Mul<R> for Vec3<R> {
     type Output = Self;
 
     #[inline(always)]
@@ -96,7 +96,7 @@ impl<R: Real> Mul<R> for Triple<R> {
     }
 }
 
-impl<R: Real> Add for Triple<R> {
+impl<R: Real> Add for Vec3<R> {
     type Output = Self;
 
     #[inline(always)]
@@ -105,7 +105,7 @@ impl<R: Real> Add for Triple<R> {
     }
 }
 
-impl<R: Real> Sub for Triple<R> {
+impl<R: Real> Sub for Vec3<R> {
     type Output = Self;
 
     #[inline(always)]

@@ -2,15 +2,13 @@
 
 use std::ops::Neg;
 
-use super::arithmetic::Arithmetic;
-
-/// Four numbers, on which [`Arithmetic`] works lane by lane. A vector of three takes one with a lane to spare: arrays of three
-/// the compiler takes to pieces, and a Jacobian then takes a tenth longer.
+/// Four numbers, on which [`Arithmetic`](super::arithmetic::Arithmetic) works lane by lane. A vector of three may take one
+/// too, its last lane unused: the compiler splits arrays of three, and a Jacobian then takes a tenth longer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(32))]
-pub struct Quad(pub [f64; 4]);
+pub struct F64x4(pub [f64; 4]);
 
-impl Quad {
+impl F64x4 {
     /// Zeros.
     pub const ZERO: Self = Self([0.0; 4]);
 
@@ -20,13 +18,13 @@ impl Quad {
         Self([value; 4])
     }
 
-    /// Four neighbours in `row`, of which the first is number `first`.
+    /// The four entries of `row` from `first` on.
     #[inline(always)]
     pub fn of<const L: usize>(row: &[f64; L], first: usize) -> Self {
         Self([row[first], row[first + 1], row[first + 2], row[first + 3]])
     }
 
-    /// Writes the lanes into `row`, from number `first` on.
+    /// Writes the lanes into `row`, from `first` on.
     #[inline(always)]
     pub fn write<const L: usize>(self, row: &mut [f64; L], first: usize) {
         row[first..first + 4].copy_from_slice(&self.0);
@@ -45,23 +43,15 @@ impl Quad {
         [x, y, z]
     }
 
-    /// The cross product of two vectors.
+    /// (y, z, x), the last lane as it is.
     #[inline(always)]
-    pub fn cross<A: Arithmetic>(self, other: Self) -> Self {
-        // a x b = P (a * Pb - Pa * b), entry by entry, with the cyclic permutation P.
-        let product = A::mul_quad(self.permuted(), other);
-        A::mul_add_quad(self, other.permuted(), -product).permuted()
-    }
-
-    /// y, z, x.
-    #[inline(always)]
-    fn permuted(self) -> Self {
+    pub(super) fn permuted(self) -> Self {
         let [x, y, z, w] = self.0;
         Self([y, z, x, w])
     }
 }
 
-impl Neg for Quad {
+impl Neg for F64x4 {
     type Output = Self;
 
     #[inline(always)]

@@ -1,4 +1,4 @@
-//! What an index picks from a sequence of ours: as numpy has it.
+//! NumPy-style indexing of result sequences.
 
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyIndexError;
@@ -8,38 +8,38 @@ use pyo3::types::PyIterator;
 
 use crate::convert::summary;
 
-/// What an index asks for.
-pub enum Picked {
+/// The items that an index selects.
+pub enum Selection {
     /// One item.
     One(usize),
     /// Several, in this order.
     Many(Vec<usize>),
 }
 
-/// The items out of `len` that an index asks for: a whole number, from the end where negative, or whatever picks from a
-/// numpy array of one dimension: a slice, a mask, whole numbers. `what` holds them.
-pub fn picked(what: &str, index: &Bound<'_, PyAny>, len: usize) -> PyResult<Picked> {
+/// Resolves an index into `len` items: an integer (negative counts from the end), or any index of a one-dimensional numpy
+/// array: a slice, a mask, a list of integers. `what` names the sequence in errors.
+pub fn select(what: &str, index: &Bound<'_, PyAny>, len: usize) -> PyResult<Selection> {
     let py = index.py();
     if let Ok(index) = index.extract::<isize>() {
         let from_start = if index < 0 { index.checked_add_unsigned(len) } else { Some(index) };
         let inside = from_start.and_then(|i| usize::try_from(i).ok()).filter(|i| *i < len);
         let outside = || PyIndexError::new_err(format!("index {index} is outside {what} of {len}"));
-        return inside.map(Picked::One).ok_or_else(outside);
+        return inside.map(Selection::One).ok_or_else(outside);
     }
     let all = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "arange"), (len,))?;
     match all.get_item(index)?.cast::<PyArray1<i64>>() {
-        Ok(rows) => Ok(Picked::Many(rows.readonly().as_array().iter().map(|i| *i as usize).collect())),
+        Ok(rows) => Ok(Selection::Many(rows.readonly().as_array().iter().map(|i| *i as usize).collect())),
         Err(_) => {
             let got = summary(index);
             Err(PyIndexError::new_err(format!(
-                "{what} has one dimension: a number, slice or mask picks from it, got {got}"
+                "{what} has one dimension: the index must be a number, slice or mask, got {got}"
             )))
         }
     }
 }
 
-/// The items of a sequence, each made when its turn comes.
-pub fn items<'py>(sequence: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyIterator>> {
+/// Iterates over a sequence lazily: each item is made on demand.
+pub fn iterate<'py>(sequence: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyIterator>> {
     let py = sequence.py();
     let builtins = py.import(intern!(py, "builtins"))?;
     let indices = builtins.call_method1(intern!(py, "range"), (sequence.len()?,))?;
