@@ -1,13 +1,13 @@
 //! `plan_along_path`.
 
 use ikcore::path::Waypoints;
-use ikcore::planning::{self, AlongPathMethod, AlongPathOptions, TipPath};
+use ikcore::planning::{self, AlongPathOptions, TipPath};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::elbow::read_elbow;
 use super::plan::PyPlan;
+use super::tpbso::read_method;
 use crate::convert::{array, count, rigid_matrices, shape_text, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
@@ -20,30 +20,32 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///
 /// Args:
 ///     robot: the arm.
-///     path: a `Path`, whose times do not matter here, or points (k, 3) (m) or poses (k, 4, 4), straight in between.
+///     path: a `Path`, of which the times are ignored, or points (k, 3) (m) or poses (k, 4, 4), straight in between.
 ///     start_q: joint angles (n,) to start from; None: the planner's choice.
 ///     limits: positions, velocities and accelerations to keep; None: the robot's.
-///     method: "timed": redundancy and the fastest timing found together; "tpbso": redundancy by a beetle swarm, uniform
-///         time, splines through every second point (Wang et al. 2019).
+///     method: "timed": redundancy and fastest timing in one search; "tpbso" or `TPBSO(...)`: redundancy found by a beetle
+///         swarm, uniform time, splines through every second point (Wang et al. 2019), for planar arms.
 ///     objective: what to minimise: "time" or "joint_travel".
-///     elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it; None: 1.
-///     accuracy: how far the tip may be from the path (m), between its points too, and how far turned from it (rad); as
-///         many points are passed as that takes. None: a thousandth of the path's extent, for "tpbso" 4 %.
-///     solver: what searches; None: the method's own.
-///     stop: budgets; None: the method's own.
+///     accuracy: allowed distance of the tip from the path (m), also between its points, and allowed angle from its
+///         orientation (rad). The trajectory passes as many points as that takes. None: a thousandth of the path's extent,
+///         for "tpbso" 4 %.
+///     solver: the search of "timed", one that needs values alone; None: differential evolution. `TPBSO` has its own.
+///     stop: budget of the search; None: the method's own.
 ///     seed: of the random draws: the same seed, the same bits.
 ///     progress: True for a bar on the terminal, or a callable of (done, total).
 ///
 /// Returns:
-///     A `Plan`. That no plan keeps everything is a status beside the least violating trajectory, not an error.
+///     A `Plan`. Where no plan keeps everything, its status says so and its trajectory is the least violating one.
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach.
 ///     LimitError: limits that contradict themselves.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
-#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", elbow=None, accuracy=None,
-                    solver=None, stop=None, seed=0, progress=None))]
+#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method=None, objective="time", accuracy=None, solver=None,
+                    stop=None, seed=0, progress=None),
+       text_signature = "(robot, path, *, start_q=None, limits=None, method='timed', objective='time', accuracy=None, \
+                         solver=None, stop=None, seed=0, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_along_path(
     py: Python<'_>,
@@ -51,9 +53,8 @@ pub fn plan_along_path(
     path: &Bound<'_, PyAny>,
     start_q: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
-    method: &str,
+    method: Option<&Bound<'_, PyAny>>,
     objective: &str,
-    elbow: Option<i128>,
     accuracy: Option<f64>,
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
@@ -64,22 +65,17 @@ pub fn plan_along_path(
     let tip_path = read_tip_path(py, path)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
     let options = AlongPathOptions {
-        method: method.parse().map_err(raise)?,
+        method: read_method(method)?,
         objective: objective.parse().map_err(raise)?,
         start: start_q.map(|q| vector("start_q", q)).transpose()?,
         limits: resolved,
-        elbow: elbow.map(|sign| read_elbow("elbow", sign)).transpose()?,
         accuracy,
         solver: solver.map(|solver| derivative_free_solver("plan_along_path", solver)).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
     let plan = watched(py, progress, |watcher| planning::plan_along_path(&arm, &tip_path, &options, watcher))?;
-    let positions = match options.method {
-        AlongPathMethod::Timed => tip_path.positions().as_flattened().to_vec(),
-        AlongPathMethod::Tpbso => (0..tip_path.points().len()).flat_map(|i| tip_path.points().position(i)).collect(),
-    };
-    PyPlan::new(plan, Some(positions), robot, in_force, PyTuple::empty(py).unbind())
+    PyPlan::new(plan, robot, in_force, PyTuple::empty(py).unbind())
 }
 
 /// A `Path`, or points (k, 3), or poses (k, 4, 4).

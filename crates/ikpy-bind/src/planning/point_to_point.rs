@@ -4,8 +4,8 @@ use ikcore::planning::{self, Endpoint, PointToPointOptions};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 
-use super::elbow::read_elbows;
 use super::plan::PyPlan;
+use super::tpbso::read_method;
 use crate::convert::{array, count, vector};
 use crate::error::{invalid, raise};
 use crate::ik::read_target;
@@ -13,7 +13,7 @@ use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::Obstacles;
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, derivative_free_solver};
+use crate::solver::PyStop;
 
 /// Plans a motion from one end to another, at rest at both.
 ///
@@ -22,28 +22,27 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     start, end: position (3,) (m) or pose (4, 4) of the tip; the configuration is the planner's choice.
 ///     start_q, end_q: instead of them, joint angles (n,).
 ///     limits: positions, velocities and accelerations to keep; None: the robot's.
-///     method: "minmax": the ends' configurations that are nearest in time, joined at the limits' pace; "tpbso":
-///         polynomials through a via point, searched by a beetle swarm (Wang et al. 2019).
+///     method: "minmax": the configurations of both ends that are nearest in time, joined as fast as the limits allow;
+///         "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
 ///     objective: what to minimise: "time", "joint_travel" or "tip_travel".
-///     obstacles: what the robot may not touch, from `bik.obstacles`; it may never touch itself if it has capsules.
+///     obstacles: shapes from `bik.obstacles` to avoid. A robot that has capsules avoids itself too.
 ///     margin: distance to keep from obstacles and between links (m); None: 1 mm.
-///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1; None: (1, 1).
-///     solver: what searches; None: the method's own.
-///     stop: budgets; None: the method's own.
+///     stop: budget of the search; None: the method's own.
 ///     seed: of the random draws: the same seed, the same bits.
 ///     progress: True for a bar on the terminal, or a callable of (done, total).
 ///
 /// Returns:
-///     A `Plan`. That no plan keeps everything is a status beside the least violating trajectory, not an error.
+///     A `Plan`. Where no plan keeps everything, its status says so and its trajectory is the least violating one.
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, an end that cannot be reached (which, and by how much).
 ///     LimitError: limits that contradict themselves or exclude an end.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
-#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method="minmax",
-                    objective="time", obstacles=None, margin=None, elbows=None, solver=None, stop=None, seed=0,
-                    progress=None))]
+#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method=None, objective="time",
+                    obstacles=None, margin=None, stop=None, seed=0, progress=None),
+       text_signature = "(robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method='minmax', \
+                         objective='time', obstacles=None, margin=None, stop=None, seed=0, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point(
     py: Python<'_>,
@@ -53,12 +52,10 @@ pub fn plan_point_to_point(
     start_q: Option<&Bound<'_, PyAny>>,
     end_q: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
-    method: &str,
+    method: Option<&Bound<'_, PyAny>>,
     objective: &str,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
-    elbows: Option<[i128; 2]>,
-    solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
     seed: i128,
     progress: Option<&Bound<'_, PyAny>>,
@@ -69,18 +66,16 @@ pub fn plan_point_to_point(
     let obstacles = Obstacles::read(py, obstacles)?;
     let given = obstacles.tuple;
     let options = PointToPointOptions {
-        method: method.parse().map_err(raise)?,
+        method: read_method(method)?,
         objective: objective.parse().map_err(raise)?,
         obstacles: obstacles.core,
         margin,
-        elbows: elbows.map(read_elbows).transpose()?,
         limits: resolved,
-        solver: solver.map(|solver| derivative_free_solver("plan_point_to_point", solver)).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
     let plan = watched(py, progress, |watcher| planning::plan_point_to_point(&arm, &start, &end, &options, watcher))?;
-    PyPlan::new(plan, None, robot, in_force, given)
+    PyPlan::new(plan, robot, in_force, given)
 }
 
 /// An end given as a target or as joint angles.

@@ -1,6 +1,6 @@
 //! The one list of solver classes, and solvers as arguments.
 
-use ikcore::solver::{Algorithm, AnySolver, DerivativeFree};
+use ikcore::solver::{Algorithm, AnySolver, DerivativeFree, MultiStart};
 use pyo3::PyClass;
 use pyo3::prelude::*;
 
@@ -58,6 +58,19 @@ solvers! {
         DifferentialEvolution = PyDifferentialEvolution, Firefly = PyFirefly, Genetic = PyGenetic, Pso = PyPso, Qpso = PyQpso;
     with_more: Apps = PyApps, BroydenBas = PyBroydenBas, JacobianTranspose = PyJacobianTranspose,
         LevenbergMarquardt = PyLevenbergMarquardt, NewtonRaphson = PyNewtonRaphson;
+}
+
+/// The Python value of a solver that needs values alone.
+pub fn derivative_free_to_python<'py>(
+    py: Python<'py>,
+    solver: &AnySolver<DerivativeFree>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match solver.clone() {
+        AnySolver::Single(solver) => to_python(py, &Algorithm::DerivativeFree(solver)),
+        AnySolver::MultiStart(MultiStart { solver, rule }) => {
+            Ok(Bound::new(py, PyMultiStart(MultiStart { solver: Algorithm::DerivativeFree(solver), rule }))?.into_any())
+        }
+    }
 }
 
 /// A solver argument.

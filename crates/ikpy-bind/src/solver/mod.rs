@@ -17,7 +17,7 @@ mod swarm;
 use pyo3::prelude::*;
 
 use any_solver::add_classes;
-pub use any_solver::{any_solver, derivative_free_solver, known_solver, solver_names};
+pub use any_solver::{any_solver, derivative_free_solver, derivative_free_to_python, known_solver, solver_names};
 pub use broyden_bas::PyBroydenBas;
 use multi_start::PyMultiStart;
 pub use stop::{PyStop, status};

@@ -124,7 +124,7 @@ def _shortest(run: Callable[[], bik.Plan], repeats: int) -> bik.Plan:
 def _plan(links: int, solver: bik.BeetleSwarm | bik.PSO | bik.Genetic, iterations: int) -> bik.Plan:
     stop = bik.Stop(max_iterations=iterations, max_evaluations=_ENOUGH)
     return bik.plan_point_to_point(
-        arm(links), START, END, method="tpbso", limits=FROM_END_TO_END, solver=solver, stop=stop
+        arm(links), START, END, method=bik.TPBSO(solver=solver), limits=FROM_END_TO_END, stop=stop
     )
 
 

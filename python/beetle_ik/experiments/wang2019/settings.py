@@ -66,11 +66,10 @@ class Search:
             arm(links),
             START,
             END,
-            method="tpbso",
+            method=bik.TPBSO(solver=self.solver),
             objective=objective,
             limits=FROM_END_TO_END,
             obstacles=obstacles,
-            solver=self.solver,
             stop=bik.Stop(max_evaluations=self.evaluations),
             seed=seed,
         )
@@ -88,11 +87,10 @@ class Search:
         return bik.plan_along_path(
             THREE_LINKS,
             path,
-            method="tpbso",
+            method=bik.TPBSO(solver=self.solver),
             objective=objective,
             limits=limits,
             accuracy=accuracy,
-            solver=self.solver,
             stop=bik.Stop(max_evaluations=self.evaluations),
             seed=seed,
         )
