@@ -192,7 +192,7 @@ def test_points_from_a_file(tmp_path: Path) -> None:
         ),
         (
             ["fk", "iiwa14", "--tip", "x", "--q", "0"],
-            "--base and --tip belong to --urdf; a built-in robot has its own",
+            "--base and --tip can only be used with --urdf: a built-in robot has its own base and tip",
         ),
         (["fk", "planar5", "--q", "0,0,x,0,0"], "--q: 'x' is not a number"),
         (
@@ -213,7 +213,7 @@ def test_points_from_a_file(tmp_path: Path) -> None:
         ),
         (
             [*TRACK, "--velocity-limit", "1", "--velocity-sinusoid", "1,0.1,1"],
-            "--velocity-limit and --velocity-sinusoid are two ways to say the same: leave one out",
+            "both --velocity-limit and --velocity-sinusoid were given: give one of them",
         ),
         (
             [*TRACK, "--velocity-sinusoid", "1,2"],

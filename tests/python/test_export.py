@@ -93,7 +93,7 @@ def test_a_tracked_path_survives_csv(tmp_path: Path, tracked: bik.TrackResult) -
         ("t,q:a\n0,1\n", ", line 1: column 'time' is missing; columns found: t, q:a"),
         (
             "time,qd:a\n0,1\n",
-            ", line 1: no joint positions: expected a column for each joint, named 'q:joint' or by the joint alone; "
+            ", line 1: no joint positions: expected a column for each joint, named 'q:joint' or 'joint'; "
             "columns found: time, qd:a",
         ),
         ("time,a,b,qd:a\n0,1,2,3\n", ", line 1: column 'qd:b' is missing, though 'qd:a' is there"),

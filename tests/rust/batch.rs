@@ -12,7 +12,8 @@ use ikcore::nalgebra::Matrix4;
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{
-    Algorithm, AnySolver, Bas, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop, Unattended, Variant,
+    Algorithm, AnySolver, Bas, BasVariant, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop,
+    Unattended,
 };
 use ikcore::task::Target;
 
@@ -168,7 +169,7 @@ fn times_of_targets_add_up() {
 #[test]
 fn items_draw_from_streams_of_their_own() {
     let robot = robot("iiwa14");
-    let solver = AnySolver::Single(Algorithm::from(Bas::of(Variant::Greedy)));
+    let solver = AnySolver::Single(Algorithm::from(Bas::of(BasVariant::Greedy)));
     let each = SolveOptions { solver, start: Some(vec![0.3; 7]), ..SolveOptions::default() };
     let options = BatchOptions { each, ..on_threads(2) };
     let [first, second] = [[0.4, 0.3, 0.9], [0.5, 0.1, 0.8]];

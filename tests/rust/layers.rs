@@ -25,7 +25,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("manipulability", &["kinematics", "robot"]),
     ("task", &["kinematics", "robot", "manipulability", "objective"]),
     ("solver", &["objective"]),
-    ("problem", &["starts", "robot", "task", "limits", "objective"]),
+    ("problem", &["kinematics", "starts", "robot", "task", "limits", "objective"]),
     ("minimize", &["objective", "solver"]),
     ("ik", &["kinematics", "robot", "objective", "limits", "manipulability", "task", "solver", "problem"]),
     ("batch", &["kinematics", "robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"]),

@@ -12,7 +12,7 @@ use ikcore::nalgebra::{Matrix4, Vector3};
 use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 use ikcore::solver::RestartRule;
-use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, MultiStart, Stop, Unattended, Variant};
+use ikcore::solver::{Algorithm, AnySolver, Bas, BasVariant, LevenbergMarquardt, MultiStart, Stop, Unattended};
 use ikcore::task::{Target, Tolerance};
 use ikcore::tracking::{Session, TickRule, TrackOptions, track};
 
@@ -216,7 +216,7 @@ fn options_of_solvers_out_of_range() {
         );
     }
     let says = "variant must be one of 'star', 'chain', 'greedy', got 'cain'";
-    assert_eq!(message("cain".parse::<Variant>()), says);
+    assert_eq!(message("cain".parse::<BasVariant>()), says);
     assert_eq!(message("end".parse::<LimitAt>()), "limit_at must be one of 'interval', 'start', got 'end'");
 }
 

@@ -13,7 +13,7 @@ use ikcore::planning::{
 };
 use ikcore::rng;
 use ikcore::robot::Robot;
-use ikcore::solver::differential_evolution::Update;
+use ikcore::solver::TrialUpdate;
 use ikcore::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Schedule, Status, Stop, Unattended};
 use ikcore::task::Target;
 
@@ -49,7 +49,7 @@ fn plan(k: usize, options: PointToPointOptions) -> Plan {
 fn by_evolution() -> PointToPointMethod {
     let standard = DifferentialEvolution::default();
     let schedule = Schedule { population: 40, stall_generations: usize::MAX, ..standard.schedule };
-    searched_by(DifferentialEvolution { schedule, update: Update::Immediate, ..standard }.into())
+    searched_by(DifferentialEvolution { schedule, update: TrialUpdate::Immediate, ..standard }.into())
 }
 
 fn searched_by(solver: DerivativeFree) -> PointToPointMethod {

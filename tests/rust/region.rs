@@ -5,7 +5,7 @@ use ikcore::ik::{AllOptions, SolveOptions, solve, solve_all};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::robot::Robot;
-use ikcore::solver::{Algorithm, AnySolver, Bas, Status, Stop, Unattended, Variant};
+use ikcore::solver::{Algorithm, AnySolver, Bas, BasVariant, Status, Stop, Unattended};
 use ikcore::task::{Components, Criterion, Kind, Region, Target, Task, Tolerance};
 use ikcore::tracking::{Session, TickRule, TrackOptions, WeightedPseudoInverse, track};
 
@@ -168,7 +168,7 @@ fn no_tick_of_any_rule_ends_outside() {
 #[test]
 fn beetles_follow_the_faces() {
     let iiwa = robot("iiwa14");
-    for variant in [Variant::Star, Variant::Chain] {
+    for variant in [BasVariant::Star, BasVariant::Chain] {
         let bas = Bas { variant, c1: 1.0, ..Bas::default() };
         let (options, reference) = leaving(&iiwa, TickRule::Solver(AnySolver::Single(bas.into())), 1e-4);
         let record = track(&iiwa, &reference, None, &options, &mut Unattended).unwrap();

@@ -12,13 +12,13 @@ use pyo3::types::PyIterator;
 use crate::convert::{Numbers, Rows, array, optional_count, row, rows, shape_text, table};
 use crate::error::{invalid, raise};
 use crate::ik::PySolution;
+use crate::indexing::{Selection, iterate, select};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
-use crate::picked::{Picked, items, picked};
+use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
-use crate::stored::{self, Reduced};
 
 /// Solutions in the order of the targets, as columns; `b[i]` is one of them as a `Solution`, `b[10:20]` and
 /// `b[~b.success]` are batches of some of them.
@@ -74,13 +74,13 @@ impl PyBatchSolution {
     /// A `Solution`; for a slice, a mask or several indices a `BatchSolution` of these, whose `elapsed` is the sum of
     /// theirs.
     fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        match picked("a batch", index, self.items.len())? {
-            Picked::One(i) => {
+        match select("a batch", index, self.items.len())? {
+            Selection::One(i) => {
                 let q = self.q.bind(py).readonly();
                 let solution = self.items[i].solution(&q.as_slice()?[i * self.dof..(i + 1) * self.dof]);
                 Ok(Bound::new(py, PySolution::new(py, solution, self.limits.clone_ref(py)))?.into_any())
             }
-            Picked::Many(rows) => {
+            Selection::Many(rows) => {
                 let batch = self.core(py)?.select(&rows);
                 Ok(Bound::new(py, Self::new(py, batch, self.limits.clone_ref(py))?)?.into_any())
             }
@@ -89,7 +89,7 @@ impl PyBatchSolution {
 
     /// Each `Solution`.
     fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyIterator>> {
-        items(slf.as_any())
+        iterate(slf.as_any())
     }
 
     fn __repr__(&self) -> String {
@@ -97,8 +97,8 @@ impl PyBatchSolution {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("batch of solutions", &self.core(py)?))?;
-        stored::restored_from::<Self>(py, (core, self.limits.clone_ref(py)))
+        let core = pickling::bytes(py, to_bytes("batch of solutions", &self.core(py)?))?;
+        pickling::restored_from::<Self>(py, (core, self.limits.clone_ref(py)))
     }
 
     /// What pickle stored.

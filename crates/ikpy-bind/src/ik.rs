@@ -12,10 +12,10 @@ use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::Watcher;
 use crate::outcome::outcome;
+use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
-use crate::stored::{self, Reduced};
 
 /// The best configuration found, and what became of the search.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
@@ -72,8 +72,8 @@ impl PySolution {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("solution", &self.core))?;
-        stored::restored_from::<Self>(py, (core, &self.limits))
+        let core = pickling::bytes(py, to_bytes("solution", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, &self.limits))
     }
 
     /// What pickle stored.

@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use ikcore::solver::Monitor;
-use ikcore::solver::stop::Stopwatch;
+use ikcore::solver::Stopwatch;
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
 use crate::convert::summary;
 use crate::error::{invalid, raise};
-use crate::upward;
+use crate::python_calls;
 
 /// Time between two looks at Python, and between two reports of progress: short enough to feel immediate, long enough to cost nothing.
 const INTERVAL: Duration = Duration::from_millis(20);
@@ -113,7 +113,7 @@ impl Progress {
     }
 
     fn bar(py: Python<'_>) -> PyResult<Self> {
-        let bar = upward::progress_bar(py)?;
+        let bar = python_calls::progress_bar(py)?;
         Ok(Self { update: Some(bar.getattr("update")?.unbind()), bar: Some(bar.unbind()) })
     }
 

@@ -1,8 +1,8 @@
 //! Options that are fields of a core value: how they come from Python, go back and show themselves.
 
-use ikcore::solver::Variant;
-use ikcore::solver::beetle_swarm::Direction;
-use ikcore::solver::differential_evolution::Update;
+use ikcore::solver::BasVariant;
+use ikcore::solver::BeetleDirection;
+use ikcore::solver::TrialUpdate;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -107,7 +107,7 @@ macro_rules! named {
     )*};
 }
 
-named!(Direction, Update, Variant);
+named!(BeetleDirection, TrialUpdate, BasVariant);
 
 /// The getters of a class whose options are the fields of its core value, how it shows itself and how it pickles.
 macro_rules! options {

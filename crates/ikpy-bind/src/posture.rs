@@ -11,8 +11,8 @@ use crate::limits::PyLimits;
 use crate::monitor::watched;
 use crate::options::options;
 use crate::outcome::outcome;
+use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
-use crate::stored::{self, Reduced};
 
 /// The particle swarm of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization": over joint
 /// points on circles, with a constriction factor (eq. 17, 18).
@@ -109,8 +109,8 @@ impl PyPlanarPosture {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("posture", &self.core))?;
-        stored::restored_from::<Self>(py, (core, &self.limits))
+        let core = pickling::bytes(py, to_bytes("posture", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, &self.limits))
     }
 
     /// What pickle stored.

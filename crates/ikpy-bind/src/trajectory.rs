@@ -9,7 +9,7 @@ use crate::convert::{Array, array, copied, counted, row, shape_text, table, time
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::options::NewArguments;
-use crate::upward;
+use crate::python_calls;
 
 /// Joint motion in time, a polynomial between knots: q_j(t) = sum over p of coefficients[i, j, p] (t - time[i])^p.
 ///
@@ -185,29 +185,29 @@ impl PyTrajectory {
     /// Writes samples as CSV, whole or not at all: every `dt` (s) and at the end; None: at the knots.
     #[pyo3(signature = (file, *, dt=None))]
     fn to_csv(slf: Bound<'_, Self>, file: Bound<'_, PyAny>, dt: Option<f64>) -> PyResult<()> {
-        upward::write(slf.py(), "to_csv", (&slf, file, dt))
+        python_calls::write(slf.py(), "to_csv", (&slf, file, dt))
     }
 
     /// Writes knots and coefficients as npz, whole or not at all.
     fn to_npz(slf: Bound<'_, Self>, file: Bound<'_, PyAny>) -> PyResult<()> {
-        upward::write(slf.py(), "to_npz", (&slf, file))
+        python_calls::write(slf.py(), "to_npz", (&slf, file))
     }
 
     /// Reads what `to_csv` wrote, or any CSV with a column `time` and one column per joint.
     #[staticmethod]
     fn from_csv<'py>(file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        upward::read("from_csv", file)
+        python_calls::read("from_csv", file)
     }
 
     /// Reads what `to_npz` wrote.
     #[staticmethod]
     fn from_npz<'py>(file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        upward::read("from_npz", file)
+        python_calls::read("from_npz", file)
     }
 
     /// A matplotlib figure of positions, velocities and accelerations.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        upward::plot(slf.into_any(), "trajectory")
+        python_calls::plot(slf.into_any(), "trajectory")
     }
 
     fn __repr__(&self) -> String {

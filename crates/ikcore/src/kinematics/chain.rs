@@ -1,17 +1,15 @@
-//! The chain in the form that the kernels run through: per moving element one constant frame, then a turn about and a
-//! slide along its own z axis. Constant transforms and the directions of axes are folded in when the robot is built.
+//! A serial chain as the kernels run through it: per moving element (a *stage*) one constant frame, then a turn about and
+//! a slide along its own z axis. Constant transforms and the directions of axes are folded in when the chain is built.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::dispatch::Kernels;
-use super::reach::Reach;
 use super::stages::Stages;
 use crate::math::{Frame, Pose, pose};
-use crate::robot::Element;
 
-/// What drives a stage: turn = turn_scale * q\[joint\] + turn_offset, and likewise the slide. One of the scales is zero.
+/// Motion of a stage: turn = turn_scale * q\[joint\] + turn_offset (rad), and likewise the slide (m). One of the scales
+/// is zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Motion {
+pub(crate) struct StageMotion {
     pub joint: usize,
     pub turn_scale: f64,
     pub turn_offset: f64,
@@ -19,14 +17,23 @@ pub(crate) struct Motion {
     pub slide_offset: f64,
 }
 
-impl Motion {
+impl StageMotion {
     const NONE: Self = Self { joint: 0, turn_scale: 0.0, turn_offset: 0.0, slide_scale: 0.0, slide_offset: 0.0 };
+
+    /// A turn by `scale * q[joint] + offset` (rad).
+    pub fn turn(joint: usize, scale: f64, offset: f64) -> Self {
+        Self { joint, turn_scale: scale, turn_offset: offset, ..Self::NONE }
+    }
+
+    /// A slide by `scale * q[joint] + offset` (m).
+    pub fn slide(joint: usize, scale: f64, offset: f64) -> Self {
+        Self { joint, slide_scale: scale, slide_offset: offset, ..Self::NONE }
+    }
 }
 
-/// Where a link sits: after so many stages, at a constant frame from there.
+/// Constant frame of a link, seen from the frame reached after `stages` stages.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LinkFrame {
-    pub name: String,
     pub stages: usize,
     pub offset: Frame,
 }
@@ -34,63 +41,78 @@ pub(crate) struct LinkFrame {
 /// The folded chain.
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
-    /// How many elements move; the rest of the stages is padding.
+    /// Number of moving elements; the stages behind them are padding.
     pub moving: usize,
     /// One per moving element.
     pub stages: Stages,
     /// One per moving element, then padding that moves nothing.
-    pub motions: Vec<Motion>,
+    pub motions: Vec<StageMotion>,
+    /// The tip, seen from the last stage.
     pub tip: Frame,
     pub links: Vec<LinkFrame>,
-    /// How far the tip can be from the first joint, sliding aside.
-    pub stretched: Reach,
-    pub kernels: Kernels,
 }
 
 /// Numbers of stages that kernels are compiled for. Chains are padded up to the next one.
-pub(crate) const SIZES: [usize; 8] = [4, 5, 6, 7, 8, 12, 16, 32];
+pub(super) const SIZES: [usize; 8] = [4, 5, 6, 7, 8, 12, 16, 32];
 
 /// Sines are taken four at a time: a remainder of one to three costs as much as all the rest (measured).
 const LANES: usize = 4;
 
 impl Chain {
-    /// Folds `elements` between `base` and `tool`. The number of moving elements has been checked.
-    pub fn new(elements: &[Element], base: &Pose, tool: &Pose) -> Self {
-        let (mut stages, mut motions, mut links) = (vec![], vec![], vec![]);
-        // Constant transform since the last moving element, already in that element's z-aligned frame.
-        let mut constant = *base;
-        for element in elements {
-            match element {
-                Element::Fixed(transform) => constant *= transform,
-                Element::Link(name) => {
-                    let offset = Frame::from(&constant);
-                    links.push(LinkFrame { name: name.clone(), stages: stages.len(), offset });
-                }
-                Element::Moving { axis, turns, joint, scale, offset } => {
-                    let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
-                    stages.push(Frame::from(&(constant * aligned)));
-                    motions.push(if *turns {
-                        Motion { joint: *joint, turn_scale: *scale, turn_offset: *offset, ..Motion::NONE }
-                    } else {
-                        Motion { joint: *joint, slide_scale: *scale, slide_offset: *offset, ..Motion::NONE }
-                    });
-                    constant = aligned.inverse();
-                }
-            }
-        }
-        let tip = Frame::from(&(constant * tool));
-        let moving = stages.len();
-        let padded = SIZES.into_iter().find(|size| *size >= moving).unwrap_or(moving);
-        motions.resize(padded.next_multiple_of(LANES), Motion::NONE);
-        Self {
-            moving,
-            stretched: Reach::of_links(&stages, &motions, &tip),
-            stages: Stages::new(&stages),
-            motions,
-            tip,
-            links,
-            kernels: Kernels::for_stages(padded),
-        }
+    /// Number of stages with padding: one of [`SIZES`].
+    pub(super) fn padded_stages(&self) -> usize {
+        padded(self.moving)
+    }
+
+    /// Constant frames of the moving elements, each seen from the one before.
+    pub(super) fn moving_frames(&self) -> impl Iterator<Item = Frame> {
+        (0..self.moving).map(|stage| self.stages.frame(stage))
+    }
+}
+
+fn padded(moving: usize) -> usize {
+    SIZES.into_iter().find(|size| *size >= moving).unwrap_or(moving)
+}
+
+/// Folds the elements of a chain, given one after another from base to tip.
+pub(crate) struct ChainFolder {
+    /// Constant transform since the last moving element, from that element's z-aligned frame.
+    constant: Pose,
+    frames: Vec<Frame>,
+    motions: Vec<StageMotion>,
+    links: Vec<LinkFrame>,
+}
+
+impl ChainFolder {
+    /// An empty chain that starts at `base`.
+    pub fn new(base: &Pose) -> Self {
+        Self { constant: *base, frames: vec![], motions: vec![], links: vec![] }
+    }
+
+    /// Appends a constant transform.
+    pub fn fixed(&mut self, transform: &Pose) {
+        self.constant *= transform;
+    }
+
+    /// Marks the frame reached so far as that of the next link.
+    pub fn link(&mut self) {
+        self.links.push(LinkFrame { stages: self.frames.len(), offset: Frame::from(&self.constant) });
+    }
+
+    /// Appends a motion about or along `axis`, of unit length.
+    pub fn moving(&mut self, axis: &Vector3<f64>, motion: StageMotion) {
+        let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
+        self.frames.push(Frame::from(&(self.constant * aligned)));
+        self.motions.push(motion);
+        self.constant = aligned.inverse();
+    }
+
+    /// The chain, its tip moved by `tool`. At least one element moves, at most [`MAX_DOF`](crate::math::MAX_DOF).
+    pub fn finish(self, tool: &Pose) -> Chain {
+        let Self { constant, frames, mut motions, links } = self;
+        let moving = frames.len();
+        motions.resize(padded(moving).next_multiple_of(LANES), StageMotion::NONE);
+        Chain { moving, stages: Stages::new(&frames), motions, tip: Frame::from(&(constant * tool)), links }
     }
 }
 

@@ -1,46 +1,45 @@
-//! Forward kinematics and Jacobian of four configurations side by side, lane by lane to the bits of
-//! [`kinematics`](super::forward).
+//! Forward kinematics and Jacobian of four configurations at once, lane by lane to the bits of
+//! [`jacobian`](super::jacobian).
 
 use super::chain::Chain;
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
-use crate::math::four_frames::FourFrames;
-use crate::math::quad::Quad;
+use crate::math::f64x4::F64x4;
 use crate::math::real::{Four, Real};
 use crate::math::sincos::sincos_by_column;
-use crate::math::triple::Triple;
+use crate::math::vec3::Vec3;
 
-/// Four Jacobians: each number of a column for all four in one register.
-pub type FourColumns = [[Quad; 6]];
+/// Four Jacobians: lane l of every number belongs to configuration l.
+pub type FourColumns = [[F64x4; 6]];
 
-/// The tips' frames, and into `columns` the Jacobians at `qs`, one entry per independent joint.
+/// Writes the Jacobians at `qs`, one entry per independent joint, into `columns` and returns the tips' frames.
 #[inline(always)]
-pub(crate) fn jacobian<A: Arithmetic, const N: usize>(
+pub(super) fn four_jacobians<A: Arithmetic, const N: usize>(
     chain: &Chain,
-    qs: &[Quad],
+    qs: &[F64x4],
     columns: &mut FourColumns,
-) -> FourFrames {
-    let (sines, cosines, slides) = motions::<A, N>(chain, qs);
-    let (mut axes, mut origins) = ([[Quad::ZERO; 3]; N], [[Quad::ZERO; 3]; N]);
-    let stage = |i: usize| Frames::<A>::stage(chain, i, Quad(sines[i]), Quad(cosines[i]), slides[i]);
+) -> Frame<F64x4> {
+    let (sines, cosines, slides) = stage_motions::<A, N>(chain, qs);
+    let (mut axes, mut origins) = ([[F64x4::ZERO; 3]; N], [[F64x4::ZERO; 3]; N]);
+    let stage = |i: usize| RunningFrames::<A>::stage(chain, i, F64x4(sines[i]), F64x4(cosines[i]), slides[i]);
     let mut frame = stage(0);
     (axes[0], origins[0]) = (frame.z.stored(), frame.origin.stored());
     for i in 1..N {
         frame = frame.then(stage(i));
         (axes[i], origins[i]) = (frame.z.stored(), frame.origin.stored());
     }
-    let tip = frame.then(Frames::splat(&chain.tip));
-    columns.fill([Quad::ZERO; 6]);
+    let tip = frame.then(RunningFrames::splat(&chain.tip));
+    columns.fill([F64x4::ZERO; 6]);
     for (i, motion) in chain.motions[..N].iter().enumerate() {
-        let axis = Triple::of(&axes[i]);
-        let lever = tip.origin - Triple::of(&origins[i]);
+        let axis = Vec3::of(&axes[i]);
+        let lever = tip.origin - Vec3::of(&origins[i]);
         let turn = Four::splat(motion.turn_scale);
-        let linear = axis.cross_fused(lever).mul_add(turn, axis * Four::splat(motion.slide_scale));
+        let linear = axis.cross_fma(lever).mul_add(turn, axis * Four::splat(motion.slide_scale));
         let angular = axis * turn;
         // Several stages may share a joint (mimics), so columns are summed.
         let [lx, ly, lz, ax, ay, az] = columns[motion.joint];
-        let [lx, ly, lz] = (Triple::of(&[lx, ly, lz]) + linear).stored();
-        let [ax, ay, az] = (Triple::of(&[ax, ay, az]) + angular).stored();
+        let [lx, ly, lz] = (Vec3::of(&[lx, ly, lz]) + linear).stored();
+        let [ax, ay, az] = (Vec3::of(&[ax, ay, az]) + angular).stored();
         columns[motion.joint] = [lx, ly, lz, ax, ay, az];
     }
     tip.stored()
@@ -48,8 +47,11 @@ pub(crate) fn jacobian<A: Arithmetic, const N: usize>(
 
 /// Sines, cosines and slides (m) of all stages.
 #[inline(always)]
-fn motions<A: Arithmetic, const N: usize>(chain: &Chain, qs: &[Quad]) -> ([[f64; 4]; N], [[f64; 4]; N], [Quad; N]) {
-    let (mut angles, mut slides) = ([[0.0; 4]; N], [Quad::ZERO; N]);
+fn stage_motions<A: Arithmetic, const N: usize>(
+    chain: &Chain,
+    qs: &[F64x4],
+) -> ([[f64; 4]; N], [[f64; 4]; N], [F64x4; N]) {
+    let (mut angles, mut slides) = ([[0.0; 4]; N], [F64x4::ZERO; N]);
     for (i, motion) in chain.motions[..N].iter().enumerate() {
         let value = Four::<A>::of(qs[motion.joint]);
         angles[i] = value.mul_add(Four::splat(motion.turn_scale), Four::splat(motion.turn_offset)).stored().0;
@@ -60,38 +62,38 @@ fn motions<A: Arithmetic, const N: usize>(chain: &Chain, qs: &[Quad]) -> ([[f64;
     (sines, cosines, slides)
 }
 
-/// Four frames while they run along the chain.
+/// Four frames while the pass runs along the chain.
 #[derive(Clone, Copy)]
-struct Frames<A> {
-    x: Triple<Four<A>>,
-    y: Triple<Four<A>>,
-    z: Triple<Four<A>>,
-    origin: Triple<Four<A>>,
+struct RunningFrames<A> {
+    x: Vec3<Four<A>>,
+    y: Vec3<Four<A>>,
+    z: Vec3<Four<A>>,
+    origin: Vec3<Four<A>>,
 }
 
-impl<A: Arithmetic> Frames<A> {
+impl<A: Arithmetic> RunningFrames<A> {
     /// The same frame four times.
     #[inline(always)]
     fn splat(frame: &Frame) -> Self {
         let [x, y, z] = &frame.axes;
-        Self { x: Triple::splat(x), y: Triple::splat(y), z: Triple::splat(z), origin: Triple::splat(&frame.origin) }
+        Self { x: Vec3::splat(x), y: Vec3::splat(y), z: Vec3::splat(z), origin: Vec3::splat(&frame.origin) }
     }
 
     /// Stage number `i`, slid along and turned about its own z axis.
     #[inline(always)]
-    fn stage(chain: &Chain, i: usize, sine: Quad, cosine: Quad, slide: Quad) -> Self {
+    fn stage(chain: &Chain, i: usize, sine: F64x4, cosine: F64x4, slide: F64x4) -> Self {
         let Self { x, y, z, origin } = Self::splat(&chain.stages.frame(i));
         let [sine, cosine, slide] = [Four::of(sine), Four::of(cosine), Four::of(slide)];
         Self { x: y.mul_add(sine, x * cosine), y: x.mul_add(-sine, y * cosine), z, origin: z.mul_add(slide, origin) }
     }
 
-    /// A vector of these frames' coordinates, turned into the base's.
+    /// Rotates a vector from these frames into the base: R v.
     #[inline(always)]
-    fn turn(&self, v: Triple<Four<A>>) -> Triple<Four<A>> {
+    fn turn(&self, v: Vec3<Four<A>>) -> Vec3<Four<A>> {
         self.z.mul_add(v.z, self.y.mul_add(v.y, self.x * v.x))
     }
 
-    /// The frames reached by `next` from here, as [`WideFrame::then`](crate::math::wide_frame::WideFrame::then).
+    /// self * next, as [`WideFrame::then`](super::wide_frame::WideFrame::then).
     #[inline(always)]
     fn then(&self, next: Self) -> Self {
         let p = next.origin;
@@ -104,7 +106,7 @@ impl<A: Arithmetic> Frames<A> {
     }
 
     #[inline(always)]
-    fn stored(self) -> FourFrames {
-        FourFrames { axes: [self.x.stored(), self.y.stored(), self.z.stored()], origin: self.origin.stored() }
+    fn stored(self) -> Frame<F64x4> {
+        Frame { axes: [self.x.stored(), self.y.stored(), self.z.stored()], origin: self.origin.stored() }
     }
 }

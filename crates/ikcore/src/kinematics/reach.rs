@@ -1,39 +1,39 @@
-//! How far the tip can be from the base at most.
+//! Bounds on where the tip can be, from the lengths of the links.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::chain::{Chain, Motion};
-use super::fixed_direction::Upright;
+use super::chain::{Chain, StageMotion};
+use super::fixed_direction::FixedDirection;
 use crate::math::Frame;
-use crate::math::arithmetic::Separate;
+use crate::math::arithmetic::NoFma;
 use crate::math::so3::norm;
-use crate::robot::Robot;
 use crate::wording::number;
 
-/// What the tip cannot leave: a ball, or a disk where all joints turn about parallel axes. Not all of it can be reached.
+/// The ball that the tip cannot leave, or the disk where all joints turn about parallel axes. Not all of it can be
+/// reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
     /// On the axis of the first joint (m); in the plane of the disk.
     pub center: [f64; 3],
     /// Infinite where a sliding joint has no limit (m).
     pub radius: f64,
-    /// The unit vector that the disk is normal to; None: a ball.
+    /// Unit normal of the disk; None for a ball.
     pub normal: Option<[f64; 3]>,
-    /// The direction that the tip keeps, if it does.
-    pub upright: Option<Upright>,
+    /// The direction that the tip keeps, if it keeps one.
+    pub fixed_direction: Option<FixedDirection>,
 }
 
-/// How far a target is out of reach.
+/// Lower bounds on how far a target is out of reach.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Beyond {
-    /// From where the tip can be, at least (m).
+    /// From the nearest point that the tip can be at (m).
     pub distance: f64,
-    /// From the plane that the tip of a planar arm moves in; 0 for any other (m).
+    /// From the plane in which the tip of a planar arm moves (m); 0 for other arms.
     pub off_plane: f64,
-    /// From any orientation that the tip can have, at least (rad).
-    pub lean: f64,
+    /// From the nearest orientation that the tip can have (rad).
+    pub angle: f64,
 }
 
 impl fmt::Display for Beyond {
@@ -41,16 +41,16 @@ impl fmt::Display for Beyond {
         let parts = [
             (self.distance, "out of reach by at least ", " m"),
             (self.off_plane, "", " m off the plane that the tip moves in"),
-            (self.lean, "", " rad off any orientation that the tip can have"),
+            (self.angle, "", " rad off any orientation that the tip can have"),
         ];
-        let told = parts.into_iter().filter(|(size, ..)| *size > 0.0);
-        let told: Vec<_> = told.map(|(size, before, after)| format!("{before}{}{after}", number(size))).collect();
-        f.write_str(&told.join(", "))
+        let given = parts.into_iter().filter(|(size, ..)| *size > 0.0);
+        let given: Vec<_> = given.map(|(size, before, after)| format!("{before}{}{after}", number(size))).collect();
+        f.write_str(&given.join(", "))
     }
 }
 
 impl Reach {
-    /// How far a position, an orientation, or both are outside, where that is more than `tolerance`.
+    /// How far a position, an orientation, or both are outside; None within `tolerance` (m, rad).
     pub fn beyond(
         &self,
         position: Option<&[f64; 3]>,
@@ -62,7 +62,9 @@ impl Reach {
         let beyond = Beyond {
             distance: position.map_or(0.0, |position| above(self.excess(position), metres)),
             off_plane: position.map_or(0.0, |position| above(self.off_plane(position).abs(), metres)),
-            lean: orientation.zip(self.upright).map_or(0.0, |(frame, upright)| above(upright.lean(frame), radians)),
+            angle: orientation
+                .zip(self.fixed_direction)
+                .map_or(0.0, |(frame, fixed)| above(fixed.angle_to(frame), radians)),
         };
         (beyond != Beyond::default()).then_some(beyond)
     }
@@ -84,41 +86,42 @@ impl Reach {
     }
 }
 
-impl Robot {
-    /// The reach between these joint limits: the lengths of all links, stretched out, and what joints slide.
-    pub fn reach(&self, lower: &[f64], upper: &[f64]) -> Reach {
-        let Chain { stretched, motions, .. } = self.chain();
-        let slides: f64 = motions.iter().map(|motion| longest_slide(motion, lower, upper)).sum();
-        Reach { radius: stretched.radius + slides, ..*stretched }
-    }
-}
-
 impl Reach {
-    /// Of links alone, without what joints slide; `stages` and `motions` may end with some that move nothing.
-    pub(crate) fn of_links(stages: &[Frame], motions: &[Motion], tip: &Frame) -> Self {
-        let along = |from: &mut Frame, link: &Frame| {
-            *from = from.then::<Separate>(link);
-            Some(*from)
-        };
-        let at_zero: Vec<Frame> = stages.iter().chain([tip]).scan(Frame::IDENTITY, along).collect();
-        let upright = Upright::of_chain(&at_zero, motions);
+    /// The reach of the links stretched out, without what joints slide.
+    pub(crate) fn of_links(chain: &Chain) -> Self {
+        let at_zero: Vec<Frame> = chain
+            .moving_frames()
+            .chain([chain.tip])
+            .scan(Frame::IDENTITY, |from, link| {
+                *from = from.then::<NoFma>(&link);
+                Some(*from)
+            })
+            .collect();
+        let motions = &chain.motions;
+        let fixed_direction = FixedDirection::of_chain(&at_zero, motions);
         let slides = motions.iter().any(|motion| motion.slide_scale != 0.0 || motion.slide_offset != 0.0);
-        if let Some(Upright { base: normal, .. }) = upright.filter(|_| !slides) {
-            return Self { upright, ..Self::of_planar_links(&at_zero, normal) };
+        if let Some(FixedDirection { base: normal, .. }) = fixed_direction.filter(|_| !slides) {
+            return Self { fixed_direction, ..Self::of_planar_links(&at_zero, normal) };
         }
         // A first joint that turns keeps the height at which the second one begins, so that only the distance from its axis
         // counts; of every other link all its length does.
-        let mut links = stages.iter().skip(1).chain([tip]).map(|frame| frame.origin);
+        let mut links = chain.moving_frames().skip(1).chain([chain.tip]).map(|frame| frame.origin);
         let [x, y, height] = links.next().unwrap_or_default();
         let (on_axis, first) = match motions[0].slide_scale {
             0.0 => (height, x.hypot(y)),
             _ => (0.0, norm(&[x, y, height])),
         };
-        let center = stages.first().unwrap_or(&Frame::IDENTITY).place::<Separate>(&[0.0, 0.0, on_axis]);
-        Self { center, radius: first + links.map(|link| norm(&link)).sum::<f64>(), normal: None, upright }
+        let center = chain.stages.frame(0).place::<NoFma>(&[0.0, 0.0, on_axis]);
+        Self { center, radius: first + links.map(|link| norm(&link)).sum::<f64>(), normal: None, fixed_direction }
     }
 
-    /// Of links between axes along `normal`, where they are at zero: along it the tip stays where it is.
+    /// This reach of the links of `chain`, and what its joints slide between these limits.
+    pub(crate) fn with_slides(self, chain: &Chain, lower: &[f64], upper: &[f64]) -> Self {
+        let slides: f64 = chain.motions.iter().map(|motion| longest_slide(motion, lower, upper)).sum();
+        Self { radius: self.radius + slides, ..self }
+    }
+
+    /// The disk of links between axes along `normal`. `at_zero` holds the frames of the stages and the tip at zero.
     fn of_planar_links(at_zero: &[Frame], normal: [f64; 3]) -> Self {
         let (mut center, mut radius) = (at_zero[0].origin, 0.0);
         for ends in at_zero.windows(2) {
@@ -127,11 +130,11 @@ impl Reach {
             radius += norm(&std::array::from_fn(|k| link[k] - along * normal[k]));
             center = std::array::from_fn(|k| center[k] + along * normal[k]);
         }
-        Self { center, radius, normal: Some(normal), upright: None }
+        Self { center, radius, normal: Some(normal), fixed_direction: None }
     }
 }
 
-fn longest_slide(motion: &Motion, lower: &[f64], upper: &[f64]) -> f64 {
+fn longest_slide(motion: &StageMotion, lower: &[f64], upper: &[f64]) -> f64 {
     if motion.slide_scale == 0.0 {
         return 0.0;
     }

@@ -1,15 +1,15 @@
-//! The constant frames of a chain, laid out for the kernels: one number of all stages side by side, so that four stages at a
-//! time are moved by their joints before the chain is walked.
+//! Constant frames of a chain as a structure of arrays: the same number of all stages in one row, so that joints move four
+//! stages at a time before the pass along the chain.
 
 use crate::math::Frame;
 use crate::math::MAX_DOF;
 use crate::math::arithmetic::Arithmetic;
-use crate::math::quad::Quad;
+use crate::math::f64x4::F64x4;
 
-/// Three coordinates of L vectors; entry i of a row belongs to vector i.
+/// Coordinates of L vectors: entry i of each row belongs to vector i.
 type Vectors<const L: usize> = [[f64; L]; 3];
 
-/// Where each stage stands on the one before it; those behind the last stand without offset.
+/// Frame of each stage, seen from the one before; the identity for padding.
 #[derive(Debug, Clone)]
 pub(crate) struct Stages {
     x: Vectors<MAX_DOF>,
@@ -41,7 +41,7 @@ impl Stages {
         }
     }
 
-    /// Where stage number `i` stands.
+    /// Frame of stage `i`.
     #[inline(always)]
     pub fn frame(&self, i: usize) -> Frame {
         Frame { axes: [vector(&self.x, i), vector(&self.y, i), vector(&self.z, i)], origin: vector(&self.origin, i) }
@@ -57,13 +57,13 @@ impl Stages {
     ) -> MovedStages<'_, L> {
         let [mut x, mut y, mut origin] = [[[0.0; L]; 3]; 3];
         for first in (0..L).step_by(4) {
-            let [sine, cosine, slide] = [sines, cosines, slides].map(|row| Quad::of(row, first));
+            let [sine, cosine, slide] = [sines, cosines, slides].map(|row| F64x4::of(row, first));
             for k in 0..3 {
-                let [old_x, old_y] = [&self.x[k], &self.y[k]].map(|row| Quad::of(row, first));
-                let [z, offset] = [&self.z[k], &self.origin[k]].map(|row| Quad::of(row, first));
-                A::mul_add_quad(sine, old_y, A::mul_quad(cosine, old_x)).write(&mut x[k], first);
-                A::mul_add_quad(-sine, old_x, A::mul_quad(cosine, old_y)).write(&mut y[k], first);
-                A::mul_add_quad(slide, z, offset).write(&mut origin[k], first);
+                let [old_x, old_y] = [&self.x[k], &self.y[k]].map(|row| F64x4::of(row, first));
+                let [z, offset] = [&self.z[k], &self.origin[k]].map(|row| F64x4::of(row, first));
+                A::mul_add_x4(sine, old_y, A::mul_x4(cosine, old_x)).write(&mut x[k], first);
+                A::mul_add_x4(-sine, old_x, A::mul_x4(cosine, old_y)).write(&mut y[k], first);
+                A::mul_add_x4(slide, z, offset).write(&mut origin[k], first);
             }
         }
         MovedStages { stages: self, x, y, origin }
@@ -71,7 +71,7 @@ impl Stages {
 }
 
 impl<const L: usize> MovedStages<'_, L> {
-    /// Where stage number `i` stands now.
+    /// Frame of stage `i`.
     #[inline(always)]
     pub fn frame(&self, i: usize) -> Frame {
         Frame {

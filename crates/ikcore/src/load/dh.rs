@@ -7,7 +7,7 @@ use crate::math::{Pose, pose};
 use crate::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 use crate::wording::words;
 
-/// Where the frames of a Denavit-Hartenberg table sit.
+/// Convention of a Denavit-Hartenberg table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dh {
     /// Denavit and Hartenberg 1955: frame i at the far end of link i, A_i = Rz(theta) Tz(d) Tx(a) Rx(alpha).
@@ -21,15 +21,15 @@ words!("convention": Dh { Modified => "modified", Standard => "standard" });
 /// A Denavit-Hartenberg table: one entry per joint in every list.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DhTable {
-    /// Where the frames sit.
+    /// The convention.
     pub convention: Dh,
     /// Link lengths (m).
     pub a: Vec<f64>,
     /// Link twists (rad).
     pub alpha: Vec<f64>,
-    /// Link offsets (m); of a prismatic joint, what is added to q.
+    /// Link offsets (m); added to q of a prismatic joint.
     pub d: Vec<f64>,
-    /// Joint angles (rad): added to q for a joint that turns, the fixed angle of a prismatic one.
+    /// Joint angles (rad): added to q of a joint that turns, the fixed angle of a prismatic one.
     pub theta: Vec<f64>,
     /// How the joints move.
     pub kinds: Vec<JointKind>,
@@ -67,7 +67,7 @@ impl DhTable {
 
     /// Appends joints `joint_1` to `joint_n` and links `link_1` to `link_n`, each in its DH frame.
     pub(super) fn append_to(&self, chain: &mut ChainBuilder) -> Result<()> {
-        self.check(&chain.name)?;
+        self.check(chain.name())?;
         for i in 0..self.a.len() {
             let kind = self.kinds[i];
             let joint = Joint::new(format!("joint_{}", i + 1), kind).with_range(self.lower[i], self.upper[i]);
@@ -90,7 +90,7 @@ impl DhTable {
         Ok(())
     }
 
-    /// Err unless all lists are as long as `a`, and lengths and angles are finite.
+    /// Checks that all lists are as long as `a`, and that lengths and angles are finite.
     fn check(&self, robot: &str) -> Result<()> {
         let n = self.a.len();
         let lengths = [

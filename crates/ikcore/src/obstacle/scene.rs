@@ -8,7 +8,7 @@ use super::link_displacement::{Frames, displacement};
 use super::segment_distance::{LineSegment, distance_between, distance_to_obstacle};
 use super::shape::Obstacle;
 use crate::error::{Error, Result};
-use crate::math::arithmetic::Separate;
+use crate::math::arithmetic::NoFma;
 use crate::math::{Frame, MAX_DOF};
 use crate::robot::{Joint, Robot};
 
@@ -99,7 +99,7 @@ impl<'a> Scene<'a> {
         }
         let carried = robot.capsules().iter().filter_map(|capsule| {
             let (stages, offset) = robot.place_of_link(&capsule.link)?;
-            let ends = [capsule.a, capsule.b].map(|end| offset.place::<Separate>(&end));
+            let ends = [capsule.a, capsule.b].map(|end| offset.place::<NoFma>(&end));
             Some(Carried { link: capsule.link.clone(), stages, ends, radius: capsule.radius })
         });
         let carried = carried.collect();
@@ -182,7 +182,7 @@ impl<'a> Scene<'a> {
         self.robot.write_stage_frames(q, &mut placement.frames);
         for (segment, carried) in placement.segments.iter_mut().zip(&self.carried) {
             let frame = &placement.frames[carried.stages];
-            *segment = carried.ends.map(|end| frame.place::<Separate>(&end).into());
+            *segment = carried.ends.map(|end| frame.place::<NoFma>(&end).into());
         }
     }
 

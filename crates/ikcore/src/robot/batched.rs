@@ -1,6 +1,6 @@
-//! Kinematics of many configurations, in and out as arrays stored row after row.
+//! Kinematics of many configurations, in arrays stored row after row.
 
-use super::Robot;
+use super::model::Robot;
 use crate::error::{Error, Result};
 use crate::kinematics::Columns;
 use crate::math::MAX_DOF;

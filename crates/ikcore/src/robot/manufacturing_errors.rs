@@ -1,6 +1,6 @@
-//! An arm as it may have been built, rather than as it was drawn.
+//! Robots with random errors of manufacture.
 
-use super::builder::Element;
+use super::description::Element;
 use super::model::Robot;
 use crate::error::{Error, Result};
 use crate::rng::LazyRng;
@@ -32,6 +32,6 @@ impl Robot {
                 Element::Moving { .. } | Element::Link(_) => {}
             }
         }
-        Self::assembled(description, *self.base(), *self.tool(), self.collision().clone())
+        Self::assembled(description, *self.base(), *self.tool(), self.bodies().clone())
     }
 }

@@ -1,15 +1,29 @@
-//! Robots: a serial chain from a base link to a tip link, its joints, limits and links.
+//! The robot: joints with limits, links, base, tool and bodies. Immutable, validated once, shared without locks.
+//!
+//! Kernels are in [`kinematics`](crate::kinematics), files and named robots in [`load`](crate::load). Read [`Robot`] first.
+//!
+//! | file | what |
+//! |---|---|
+//! | `joint`, `description`, `builder` | from joints and elements to a robot |
+//! | `model` | [`Robot`] |
+//! | `batched` | kinematics of many configurations |
+//! | `link_capsule`, `bodies` | capsules on the links |
+//! | `manufacturing_errors` | the same robot, built inexactly |
+//! | `serialization` | robots as bytes |
 
 mod batched;
 mod bodies;
 mod builder;
+mod description;
 mod joint;
+mod link_capsule;
 mod manufacturing_errors;
 mod model;
 mod serialization;
 
-pub(crate) use bodies::CollisionModel;
-pub use bodies::LinkCapsule;
-pub use builder::{ChainBuilder, Drive, Element};
+pub use builder::ChainBuilder;
+pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
+pub(crate) use link_capsule::Bodies;
+pub use link_capsule::LinkCapsule;
 pub use model::Robot;

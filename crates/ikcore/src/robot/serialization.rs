@@ -4,20 +4,20 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::bodies::CollisionModel;
-use super::builder::ChainBuilder;
+use super::description::Description;
+use super::link_capsule::Bodies;
 use super::model::Robot;
 use crate::error::Result;
 use crate::math::Pose;
 use crate::stored;
 
-/// What is stored of a robot: all that the rest follows from.
+/// The stored part of a robot; the rest follows from it.
 #[derive(Serialize, Deserialize)]
-struct Stored<'a> {
-    description: Cow<'a, ChainBuilder>,
+struct StoredRobot<'a> {
+    description: Cow<'a, Description>,
     base: Pose,
     tool: Pose,
-    collision: Cow<'a, CollisionModel>,
+    bodies: Cow<'a, Bodies>,
 }
 
 impl Robot {
@@ -26,11 +26,11 @@ impl Robot {
     /// # Errors
     /// [`Error::Corrupt`](crate::Error::Corrupt) if the encoder fails.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
-        let stored = Stored {
+        let stored = StoredRobot {
             description: Cow::Borrowed(self.description()),
             base: *self.base(),
             tool: *self.tool(),
-            collision: Cow::Borrowed(self.collision()),
+            bodies: Cow::Borrowed(self.bodies()),
         };
         stored::to_bytes("robot", &stored)
     }
@@ -40,9 +40,9 @@ impl Robot {
     /// # Errors
     /// [`Error::Corrupt`](crate::Error::Corrupt) for bytes of another version, damaged ones, or those of something else.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let Stored { description, base, tool, collision } = stored::from_bytes("robot", bytes)?;
-        let bare = Self::assembled(description.into_owned(), base, tool, CollisionModel::default())?;
-        let checked = bare.with_capsules(collision.capsules.clone())?;
-        Ok(checked.with_collision(collision.into_owned()))
+        let StoredRobot { description, base, tool, bodies } = stored::from_bytes("robot", bytes)?;
+        let bare = Self::assembled(description.into_owned(), base, tool, Bodies::default())?;
+        let checked = bare.with_capsules(bodies.capsules.clone())?;
+        Ok(checked.with_bodies(bodies.into_owned()))
     }
 }

@@ -1,21 +1,22 @@
-//! Configurations to start from, found by where they bring the tip.
+//! Index of random configurations by the frame that they reach.
 //!
-//! A turn of the first joint carries the whole arm round its first axis, a turn of the last only spins the flange: what
-//! the joints between them have to do stays the same. Both turns are taken out before stored frames are compared with a
-//! wanted one, and set in closed form afterwards. That leaves four dimensions to be covered instead of six, so that some
-//! thousand configurations lie close to most targets. Joints that slide, or that drive others, stay as they are stored.
+//! The first joint turns the whole arm about its axis and the last one only spins the flange; neither changes what the
+//! joints between them do. Both turns are taken out before stored frames are compared with a target, and set in closed
+//! form afterwards. Four dimensions instead of six remain to be covered, so that a few thousand configurations lie close
+//! to most targets. First and last joints that slide, or that drive others, keep their stored values.
 //!
-//! Entries lie sorted into buckets of like frames. A search compares the centres of the buckets first and then scans the few
-//! nearest, so that it reads a tenth of what a plain scan would: between calls other work empties the caches.
+//! Entries are sorted into buckets of similar frames. A search compares the centres of the buckets and then scans the
+//! nearest buckets: it reads a tenth of what a plain scan would, which matters because other work empties the caches
+//! between calls.
 
 use std::f64::consts::TAU;
 
-use super::lane_search::{Distance, LANES, Row, nearest_by_lane};
-use crate::kinematics::chain::{Chain, Motion};
+use super::nearest_by_lane::{Distance, LANES, LaneRow, nearest_by_lane};
+use crate::kinematics::chain::{Chain, StageMotion};
+use crate::kinematics::kernels::Kernels;
 use crate::math::Frame;
-use crate::math::arithmetic::Separate;
+use crate::math::arithmetic::NoFma;
 use crate::rng;
-use crate::robot::Joint;
 
 /// Configurations stored: 1.4 MB for 7 joints, 3.1 MB for 32, built in some 4 ms.
 const SIZE: usize = 8192;
@@ -26,55 +27,54 @@ const BUCKET: usize = 64;
 /// Buckets scanned.
 const SCANNED: usize = 4;
 
-/// Of so many blocks, one is compared with a point.
+/// Position queries scan every n-th block.
 const STRIDE: usize = SIZE / 512;
 
-/// What a change of one in an axis of unit length counts (m).
-pub(crate) const AXIS_WEIGHT: f64 = 0.3;
+/// Weight of a difference between unit axes, relative to positions (m).
+pub(super) const AXIS_WEIGHT: f64 = 0.3;
 
-/// Position, weighted z axis and weighted x axis of a frame.
+/// Features of a frame: position, weighted z axis, weighted x axis.
 const FEATURES: usize = 9;
 
-/// Random configurations of one robot within its limits, and the frames that they reach.
+/// Random configurations of one chain, and the frames that they reach.
 ///
-/// It knows neither base nor tool: frames are those of the last joint, seen from the first.
+/// Independent of base and tool: frames are those of the last joint, seen from the first.
 #[derive(Debug)]
-pub(crate) struct SeedIndex {
+pub(crate) struct StartIndex {
     dof: usize,
-    /// The first and last joint where they can be taken out.
-    pub first: Option<Turn>,
-    pub last: Option<Turn>,
+    /// The first and last joint, where their turns can be taken out.
+    pub(super) first: Option<Turn>,
+    pub(super) last: Option<Turn>,
     configurations: Vec<f64>,
     frames: Vec<Frame>,
-    /// Block after block the rows of `compared` features.
-    rows: Vec<Row>,
-    /// The same of the buckets' centres.
-    centres: Vec<Row>,
+    /// Rows of the `compared` features, block after block.
+    rows: Vec<LaneRow>,
+    /// The same for the centres of the buckets.
+    centres: Vec<LaneRow>,
     compared: Vec<usize>,
 }
 
-/// A joint that turns one stage and nothing else, by `scale` (rad) a unit.
+/// A joint that turns one stage and nothing else, by `scale` (rad) per unit of q.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Turn {
+pub(super) struct Turn {
     pub joint: usize,
     scale: f64,
 }
 
-impl SeedIndex {
-    /// The index of a chain with neither base nor tool, whose first `moving` stages are no padding.
-    pub fn new(chain: &Chain, moving: usize, joints: &[Joint]) -> Self {
-        let motions = &chain.motions[..moving];
+impl StartIndex {
+    /// The index of a chain with neither base nor tool, drawn from `ranges`, one per joint.
+    pub fn new(chain: &Chain, kernels: &Kernels, ranges: &[(f64, f64)]) -> Self {
+        let motions = &chain.motions[..chain.moving];
         let first = Turn::of_stage(motions, 0);
-        let last = if moving > 1 { Turn::of_stage(motions, moving - 1) } else { None };
-        let ranges: Vec<_> = joints.iter().map(Joint::sampling_range).collect();
+        let last = if chain.moving > 1 { Turn::of_stage(motions, chain.moving - 1) } else { None };
         let mut rng = rng::stream(0, 0);
         let drawn: Vec<f64> =
-            (0..SIZE).flat_map(|_| &ranges).map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect();
+            (0..SIZE).flat_map(|_| ranges).map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect();
         // The first joint turns every position to y = 0, the last one any x axis to any other.
         let redundant = |feature: usize| (first.is_some() && feature == 1) || (last.is_some() && feature >= 6);
         let compared = (0..FEATURES).filter(|feature| !redundant(*feature)).collect();
         let mut index = Self {
-            dof: joints.len(),
+            dof: ranges.len(),
             first,
             last,
             configurations: Vec::with_capacity(drawn.len()),
@@ -83,14 +83,14 @@ impl SeedIndex {
             centres: vec![],
             compared,
         };
-        index.fill(chain, &drawn);
+        index.fill(chain, kernels, &drawn);
         index
     }
 
     /// Stores the configurations `drawn`, bucket after bucket.
-    fn fill(&mut self, chain: &Chain, drawn: &[f64]) {
+    fn fill(&mut self, chain: &Chain, kernels: &Kernels, drawn: &[f64]) {
         let configurations: Vec<_> = drawn.chunks_exact(self.dof).collect();
-        let frames: Vec<_> = configurations.iter().map(|q| between_joints(chain, &chain.tip(q))).collect();
+        let frames: Vec<_> = configurations.iter().map(|q| between_joints(chain, &(kernels.tip)(chain, q))).collect();
         let features: Vec<_> = frames.iter().map(|frame| self.features(frame)).collect();
         let mut order: Vec<u32> = (0..SIZE as u32).collect();
         into_buckets(&mut order, &features, &self.compared);
@@ -104,7 +104,7 @@ impl SeedIndex {
         self.centres = self.rows_of(&centres);
     }
 
-    fn rows_of(&self, features: &[[f32; FEATURES]]) -> Vec<Row> {
+    fn rows_of(&self, features: &[[f32; FEATURES]]) -> Vec<LaneRow> {
         let blocks = features.chunks_exact(LANES);
         blocks
             .flat_map(|block| {
@@ -126,8 +126,8 @@ impl SeedIndex {
         [px, py, pz, zx, zy, zz, xx, xy, xz].map(|v| v as f32)
     }
 
-    /// Entries whose frames come near `wanted`, the nearest first.
-    pub fn near_frame(&self, wanted: &Frame) -> [usize; LANES] {
+    /// Entries with frames near `wanted`, nearest first.
+    pub(super) fn near_frame(&self, wanted: &Frame) -> [usize; LANES] {
         let all = self.features(wanted);
         let mut features = [0.0; FEATURES];
         features.iter_mut().zip(&self.compared).for_each(|(value, feature)| *value = all[*feature]);
@@ -141,25 +141,25 @@ impl SeedIndex {
         nearest_by_lane(&self.rows, width, blocks, &distance)
     }
 
-    /// Entries that bring the point `reach` (m) along the z axis of their frame near `place`, the nearest first.
-    pub fn near_point(&self, place: [f64; 3], reach: f64) -> [usize; LANES] {
+    /// Entries that bring the point at `reach` (m) along the z axis of their frame near `place`, nearest first.
+    pub(super) fn near_point(&self, place: [f64; 3], reach: f64) -> [usize; LANES] {
         let distance = ToPoint {
             place: place.map(|v| v as f32),
             reach: (reach / AXIS_WEIGHT) as f32,
             azimuth_free: self.first.is_some(),
         };
-        // Points have fewer dimensions than frames: some of the entries, from all buckets, are as dense.
+        // Positions have fewer dimensions than frames, so that a sample of all buckets is as dense.
         let blocks = (0..SIZE / LANES).step_by(STRIDE);
         nearest_by_lane(&self.rows, self.compared.len(), blocks, &distance)
     }
 
-    /// Configuration number `entry`, and the frame it reaches.
-    pub fn entry(&self, entry: usize) -> (&[f64], &Frame) {
+    /// Configuration of entry `entry`, and the frame that it reaches.
+    pub(super) fn entry(&self, entry: usize) -> (&[f64], &Frame) {
         (&self.configurations[entry * self.dof..(entry + 1) * self.dof], &self.frames[entry])
     }
 }
 
-/// Orders `entries` so that each run of [`BUCKET`] has like features: halved again and again across the widest feature.
+/// Orders `entries` into runs of [`BUCKET`] with similar features, by halving them across the widest feature.
 fn into_buckets(entries: &mut [u32], features: &[[f32; FEATURES]], compared: &[usize]) {
     if entries.len() <= BUCKET {
         return;
@@ -185,14 +185,14 @@ fn centre(bucket: &[[f32; FEATURES]]) -> [f32; FEATURES] {
     std::array::from_fn(|feature| bucket.iter().map(|features| features[feature]).sum::<f32>() / bucket.len() as f32)
 }
 
-/// To a frame with these features.
+/// Distance to a frame with these features.
 struct ToFrame<'a> {
     features: &'a [f32],
 }
 
 impl Distance for ToFrame<'_> {
     #[inline(always)]
-    fn of(&self, block: &[Row]) -> Row {
+    fn of(&self, block: &[LaneRow]) -> LaneRow {
         let mut squared = [0.0; LANES];
         for (row, feature) in block.iter().zip(self.features) {
             for (squared, entry) in squared.iter_mut().zip(row) {
@@ -203,7 +203,7 @@ impl Distance for ToFrame<'_> {
     }
 }
 
-/// From the point at `reach` along the weighted z axis to `place`; at any azimuth if that is free.
+/// Distance from `place` to the point at `reach` along the weighted z axis; at any azimuth if that is free.
 struct ToPoint {
     place: [f32; 3],
     reach: f32,
@@ -212,7 +212,7 @@ struct ToPoint {
 
 impl Distance for ToPoint {
     #[inline(always)]
-    fn of(&self, block: &[Row]) -> Row {
+    fn of(&self, block: &[LaneRow]) -> LaneRow {
         let [x, y, z] = self.place;
         let mut squared = [0.0; LANES];
         if self.azimuth_free {
@@ -239,14 +239,13 @@ impl Distance for ToPoint {
 }
 
 impl Turn {
-    fn of_stage(motions: &[Motion], stage: usize) -> Option<Self> {
-        let Motion { joint, turn_scale: scale, .. } = motions[stage];
+    fn of_stage(motions: &[StageMotion], stage: usize) -> Option<Self> {
+        let StageMotion { joint, turn_scale: scale, .. } = motions[stage];
         let alone = motions.iter().filter(|motion| motion.joint == joint).count() == 1;
         (alone && scale != 0.0).then_some(Self { joint, scale })
     }
 
-    /// The joint's value `q` after a turn by `angle` (rad), give or take the whole turns that bring it nearest to the
-    /// middle of `range`.
+    /// The joint's value `q` after a turn by `angle` (rad), moved by whole turns to be nearest to the middle of `range`.
     pub fn turned(&self, q: f64, angle: f64, (lower, upper): (f64, f64)) -> f64 {
         let (turned, period) = (q + angle / self.scale, TAU / self.scale.abs());
         turned - period * ((turned - 0.5 * (lower + upper)) / period).round()
@@ -254,12 +253,12 @@ impl Turn {
 }
 
 /// The frame of the last joint, seen from the first, when the tip of `chain` is at `tip`.
-pub(crate) fn between_joints(chain: &Chain, tip: &Frame) -> Frame {
-    chain.stages.frame(0).inverse().then::<Separate>(tip).then::<Separate>(&chain.tip.inverse())
+pub(super) fn between_joints(chain: &Chain, tip: &Frame) -> Frame {
+    chain.stages.frame(0).inverse().then::<NoFma>(tip).then::<NoFma>(&chain.tip.inverse())
 }
 
-/// `frame` carried round the base's z axis, given sine and cosine of the angle.
-pub(crate) fn turned_about_base_z(frame: &Frame, sine: f64, cosine: f64) -> Frame {
+/// `frame` turned about the base's z axis, given sine and cosine of the angle.
+pub(super) fn turned_about_base_z(frame: &Frame, sine: f64, cosine: f64) -> Frame {
     let turned = |v: [f64; 3]| [cosine * v[0] - sine * v[1], sine * v[0] + cosine * v[1], v[2]];
     Frame { axes: frame.axes.map(turned), origin: turned(frame.origin) }
 }

@@ -1,7 +1,10 @@
-//! The index of configurations to start from, over chain data and ranges of the joints.
+//! Starts for a descent: random configurations of a chain, indexed by where they bring the tip.
+//!
+//! They know a chain and the ranges of its joints, no `Robot`. Read [`index`] for what is stored, [`near_target`] for
+//! how an entry becomes a start; [`nearest_by_lane`] scans.
 
 pub(crate) mod index;
-mod lane_search;
 mod near_target;
+mod nearest_by_lane;
 
-pub use near_target::Seeds;
+pub use near_target::Starts;

@@ -1,53 +1,53 @@
-//! Starts near one target: entries of the robot's index, their first and last joint turned towards it.
+//! Starts near one target: entries of the index, their first and last joint turned towards it.
 
-use super::index::{AXIS_WEIGHT, SeedIndex, between_joints, turned_about_base_z};
-use super::lane_search::LANES;
+use super::index::{AXIS_WEIGHT, StartIndex, between_joints, turned_about_base_z};
+use std::f64::consts::PI;
+
+use super::nearest_by_lane::LANES;
+use crate::kinematics::chain::Chain;
 use crate::math::Frame;
-use crate::math::arithmetic::Separate;
-use crate::robot::{Joint, Robot};
+use crate::math::arithmetic::NoFma;
+use crate::math::interval;
 
-/// Indexed configurations that bring the tip near one target, the nearest first.
+/// Indexed configurations that bring the tip near one target, nearest first.
 #[derive(Debug, Clone, Copy)]
-pub struct Seeds<'a> {
-    index: &'a SeedIndex,
-    joints: &'a [Joint],
+pub struct Starts<'a> {
+    index: &'a StartIndex,
     wanted: Wanted,
     entries: [usize; LANES],
     used: usize,
 }
 
-/// The target as the index sees it: from the frame of the first joint.
+/// The target, seen from the frame of the first joint.
 #[derive(Debug, Clone, Copy)]
 enum Wanted {
-    /// The frame of the last joint.
+    /// A frame of the last joint.
     Frame(Frame),
-    /// The tip's `place`; `tip` is where the last joint holds it.
+    /// A `place` for the tip, which the last joint holds at `tip`.
     Point { place: [f64; 3], tip: [f64; 3] },
 }
 
-impl Robot {
-    /// Configurations to start from when the tip is to reach `pose`. The first call on a robot builds its index, which
-    /// copies with another base or tool share.
-    pub fn seeds_near_pose(&self, pose: &Frame) -> Seeds<'_> {
-        let wanted = between_joints(self.chain(), pose);
-        self.seeds(Wanted::Frame(wanted), self.seed_index().near_frame(&wanted))
+impl StartIndex {
+    /// Starts for bringing the tip of `chain` to `pose`. The chain may have another base and tool than the indexed one.
+    pub(crate) fn near_pose(&self, chain: &Chain, pose: &Frame) -> Starts<'_> {
+        let wanted = between_joints(chain, pose);
+        self.starts(Wanted::Frame(wanted), self.near_frame(&wanted))
     }
 
-    /// The same when only the tip's `position` (m) matters.
-    pub fn seeds_near_position(&self, position: &[f64; 3]) -> Seeds<'_> {
-        let place = self.chain().stages.frame(0).inverse().place::<Separate>(position);
-        let tip = self.chain().tip.origin;
-        // What the tip is off the last axis would need the x axis, which the index does not keep for every robot.
-        self.seeds(Wanted::Point { place, tip }, self.seed_index().near_point(place, tip[2]))
+    /// Starts for bringing the tip of `chain` to `position` (m). Ignores the tip's offset from the last axis.
+    pub(crate) fn near_position(&self, chain: &Chain, position: &[f64; 3]) -> Starts<'_> {
+        let place = chain.stages.frame(0).inverse().place::<NoFma>(position);
+        let tip = chain.tip.origin;
+        self.starts(Wanted::Point { place, tip }, self.near_point(place, tip[2]))
     }
 
-    fn seeds(&self, wanted: Wanted, entries: [usize; LANES]) -> Seeds<'_> {
-        Seeds { index: self.seed_index(), joints: self.joints(), wanted, entries, used: 0 }
+    fn starts(&self, wanted: Wanted, entries: [usize; LANES]) -> Starts<'_> {
+        Starts { index: self, wanted, entries, used: 0 }
     }
 }
 
-impl Seeds<'_> {
-    /// Writes the next one that lies in the box \[`lower`, `upper`\] into `q`; false when there are no more.
+impl Starts<'_> {
+    /// Writes the next start inside the box \[`lower`, `upper`\] into `q`; false when there are no more.
     pub fn write_next(&mut self, lower: &[f64], upper: &[f64], q: &mut [f64]) -> bool {
         while self.used < LANES {
             self.write(self.entries[self.used], lower, upper, q);
@@ -62,7 +62,7 @@ impl Seeds<'_> {
     fn write(&self, entry: usize, lower: &[f64], upper: &[f64], q: &mut [f64]) {
         let (configuration, frame) = self.index.entry(entry);
         q.copy_from_slice(configuration);
-        let range = |i: usize| self.joints[i].sampling_range_within(lower[i], upper[i]);
+        let range = |joint: usize| interval::finite(lower[joint], upper[joint], PI);
         let mut frame = *frame;
         if let Some(first) = self.index.first {
             let (sine, cosine) = self.turn_of_first(&frame);
@@ -74,10 +74,10 @@ impl Seeds<'_> {
         }
     }
 
-    /// Sine and cosine of the turn about the base's z axis that brings `frame` nearest to what is wanted.
+    /// Sine and cosine of the turn about the base's z axis that brings `frame` nearest to the target.
     fn turn_of_first(&self, frame: &Frame) -> (f64, f64) {
         match &self.wanted {
-            Wanted::Point { place, tip } => turn_between(&[(1.0, frame.place::<Separate>(tip), *place)]),
+            Wanted::Point { place, tip } => turn_between(&[(1.0, frame.place::<NoFma>(tip), *place)]),
             Wanted::Frame(wanted) => {
                 let z = AXIS_WEIGHT * AXIS_WEIGHT;
                 let x = if self.index.last.is_some() { 0.0 } else { z };

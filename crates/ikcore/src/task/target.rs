@@ -1,6 +1,7 @@
 //! Where the tip is to be, and how far a tip is from there.
 
-use super::{Assessment, Criterion, SquaredError, orientation, pointing, pose, position};
+use super::residual::{orientation, pointing, pose, position};
+use super::{Assessment, Criterion, SquaredError};
 use crate::error::{Result, require_finite};
 use crate::math::box_step::ROWS;
 use crate::math::real::Real;

@@ -9,7 +9,7 @@ use super::step::Step;
 use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
 use crate::path::Reference;
-use crate::solver::stop::Stopwatch;
+use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status};
 use crate::task::Tolerance;
 use crate::wording::{number, time};

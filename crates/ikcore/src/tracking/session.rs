@@ -10,6 +10,7 @@ use crate::error::{Result, require_finite, require_positive};
 use crate::kinematics::Beyond;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point, Score};
+use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
@@ -136,7 +137,7 @@ impl Session {
     /// As [`step`](Self::step).
     pub(super) fn beyond_reach(&self, wanted: &Target, bounds: &Bounds) -> Result<Option<Beyond>> {
         let target = self.read(wanted)?;
-        Ok(self.criterion.beyond_reach(&target, &self.robot, bounds))
+        Ok(Problem::new(&self.robot, &target, self.criterion).beyond_reach(bounds))
     }
 
     /// What the last tick has accepted.

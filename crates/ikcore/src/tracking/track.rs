@@ -10,7 +10,7 @@ use crate::limits::{Field, Limits, Profile};
 use crate::manipulability::Motion;
 use crate::path::Reference;
 use crate::robot::Robot;
-use crate::solver::stop::Stopwatch;
+use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status, Stop};
 use crate::task::{Goal, Target, Tolerance};
 
@@ -53,7 +53,7 @@ fn farthest_out_of_reach(reference: &Reference, first: usize, session: &Session)
     let Ok(bounds) = session.limits().position_box() else { return Ok(None) }; // they vary in time
     for i in first..reference.len() {
         if let Some(beyond) = session.beyond_reach(&target(reference, i), &bounds)?
-            && farthest.is_none_or(|(most, _)| (beyond.distance, beyond.lean) > (most.distance, most.lean))
+            && farthest.is_none_or(|(most, _)| (beyond.distance, beyond.angle) > (most.distance, most.angle))
         {
             farthest = Some((beyond, reference.time(i)));
         }

@@ -12,8 +12,8 @@ use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
 use crate::monitor::followed;
 use crate::outcome::outcome;
+use crate::pickling::{self, Reduced};
 use crate::solver::{PyStop, derivative_free_solver};
-use crate::stored::{self, Reduced};
 
 /// The best point found by `minimize`, and what became of the search.
 #[pyclass(name = "Minimum", module = "beetle_ik", frozen)]
@@ -68,8 +68,8 @@ impl PyMinimum {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("minimum", &self.core))?;
-        stored::restored_from::<Self>(py, (core, &self.limits))
+        let core = pickling::bytes(py, to_bytes("minimum", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, &self.limits))
     }
 
     /// What pickle stored.

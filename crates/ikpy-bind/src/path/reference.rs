@@ -9,7 +9,7 @@ use pyo3::types::{PyBytes, PyTuple};
 
 use crate::convert::{Array, matrix3, point, row, table, times};
 use crate::error::{invalid, raise};
-use crate::stored::{self, Reduced};
+use crate::pickling::{self, Reduced};
 
 /// A reference for the tip: a position for every time in [0, duration], and an orientation where one was given. Times
 /// outside are clamped.
@@ -104,7 +104,7 @@ impl PyPath {
 
     /// Functions go along as far as they pickle themselves: those that a module names do, lambdas do not.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        stored::restored_from::<Self>(py, self.state(py)?)
+        pickling::restored_from::<Self>(py, self.state(py)?)
     }
 
     /// What pickle stored.
@@ -152,12 +152,12 @@ impl PyPath {
     /// What makes it what it is: (curve, duration, orientation), each as bytes or as the function that was given.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let curve = match &self.curve {
-            Curve::Core(path) => stored::bytes(py, path.to_bytes())?.into_any(),
+            Curve::Core(path) => pickling::bytes(py, path.to_bytes())?.into_any(),
             Curve::Function { function, .. } => function.bind(py).clone(),
         };
         let orientation = match &self.orientation {
             Orientation::OfCurve => None,
-            Orientation::Constant(rotation) => Some(stored::bytes(py, to_bytes("orientation", rotation))?.into_any()),
+            Orientation::Constant(rotation) => Some(pickling::bytes(py, to_bytes("orientation", rotation))?.into_any()),
             Orientation::Function(function) => Some(function.bind(py).clone()),
         };
         (curve, self.duration(), orientation).into_pyobject(py)

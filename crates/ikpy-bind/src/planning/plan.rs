@@ -11,10 +11,10 @@ use crate::convert::table;
 use crate::error::raise;
 use crate::limits::PyLimits;
 use crate::outcome::outcome;
+use crate::pickling::{self, Reduced};
+use crate::python_calls;
 use crate::robot::PyRobot;
-use crate::stored::{self, Reduced};
 use crate::trajectory::PyTrajectory;
-use crate::upward;
 
 /// A planned motion, and what became of the search for it.
 #[pyclass(name = "Plan", module = "beetle_ik", frozen)]
@@ -91,7 +91,7 @@ impl PyPlan {
 
     /// A matplotlib figure: the arm along its way, the cost against evaluations, the joints' motion with their limits.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        upward::plot(slf.into_any(), "plan")
+        python_calls::plot(slf.into_any(), "plan")
     }
 
     fn __repr__(&self) -> String {
@@ -99,8 +99,8 @@ impl PyPlan {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("plan", &self.core))?;
-        stored::restored_from::<Self>(py, (core, &self.robot, &self.limits, &self.obstacles))
+        let core = pickling::bytes(py, to_bytes("plan", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, &self.robot, &self.limits, &self.obstacles))
     }
 
     /// What pickle stored.

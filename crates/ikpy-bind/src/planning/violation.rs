@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use crate::error::raise;
 use crate::hash::content_hash;
-use crate::stored::{self, Reduced};
+use crate::pickling::{self, Reduced};
 
 /// A bound that a planned trajectory breaks; `str` says it in words.
 #[pyclass(name = "Violation", module = "beetle_ik", frozen, eq)]
@@ -52,7 +52,7 @@ impl PyViolation {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        stored::restored_from::<Self>(py, (stored::bytes(py, to_bytes("violation", &self.0))?,))
+        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("violation", &self.0))?,))
     }
 
     /// What pickle stored.

@@ -10,7 +10,7 @@ use super::kinematics::in_pieces;
 use crate::convert::{Rows, row, rows, table, vector};
 use crate::error::raise;
 use crate::hash::content_hash;
-use crate::stored::{self, Reduced};
+use crate::pickling::{self, Reduced};
 
 /// The tip velocities that unit joint speeds give, |q'| = 1: an ellipsoid with one semi-axis per direction in which the
 /// tip can move, the longest first.
@@ -61,7 +61,7 @@ impl PyVelocityEllipsoid {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        stored::restored_from::<Self>(py, (stored::bytes(py, to_bytes("ellipsoid", &self.0))?,))
+        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("ellipsoid", &self.0))?,))
     }
 
     /// What pickle stored.

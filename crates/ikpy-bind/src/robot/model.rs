@@ -13,7 +13,7 @@ use crate::convert::{copied, counted, row};
 use crate::error::raise;
 use crate::hash::content_hash;
 use crate::limits::PyLimits;
-use crate::stored::{self, Reduced};
+use crate::pickling::{self, Reduced};
 
 /// Link, a (3,), b (3,) and radius (m).
 type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);
@@ -127,7 +127,7 @@ impl PyRobot {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        stored::restored_from::<Self>(py, (stored::bytes(py, self.core.to_bytes())?,))
+        pickling::restored_from::<Self>(py, (pickling::bytes(py, self.core.to_bytes())?,))
     }
 
     /// What pickle stored.

@@ -1,6 +1,6 @@
 //! `BAS`.
 
-use ikcore::solver::{Bas, Variant};
+use ikcore::solver::{Bas, BasVariant};
 use pyo3::prelude::*;
 
 use crate::convert::{count, optional_count};
@@ -34,7 +34,7 @@ impl PyBas {
         explorations: Option<i128>,
         max_passes: i128,
     ) -> PyResult<Self> {
-        let standard = Bas::of(variant.parse::<Variant>().map_err(raise)?);
+        let standard = Bas::of(variant.parse::<BasVariant>().map_err(raise)?);
         let bas = Bas {
             c1: c1.unwrap_or(standard.c1),
             c2: c2.unwrap_or(standard.c2),
@@ -50,7 +50,7 @@ impl PyBas {
 options! {
     PyBas, "BAS" {
         /// "star", "chain" or "greedy".
-        variant: Variant,
+        variant: BasVariant,
         /// Antenna length over error (rad per m).
         c1: f64,
         /// Step length over antenna length.

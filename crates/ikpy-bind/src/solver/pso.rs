@@ -1,7 +1,7 @@
 //! `PSO`.
 
 use ikcore::solver::Pso;
-use ikcore::solver::pso::{Accept, Form, Walls};
+use ikcore::solver::{Acceptance, PsoForm, Walls};
 use pyo3::prelude::*;
 
 use super::schedule::{limited, schedule, scheduled, show_schedule};
@@ -54,13 +54,13 @@ impl PyPso {
         max_generations: Option<i128>,
         stall_generations: Option<i128>,
     ) -> PyResult<Self> {
-        let standard = Pso::of(Form::named(form, inertia).map_err(raise)?);
+        let standard = Pso::of(PsoForm::named(form, inertia).map_err(raise)?);
         let solver = Pso {
             schedule: schedule(population, max_generations, stall_generations)?,
             c1: c1.unwrap_or(standard.c1),
             c2: c2.unwrap_or(standard.c2),
             velocity_limit,
-            accept: accept.parse::<Accept>().map_err(raise)?,
+            accept: accept.parse::<Acceptance>().map_err(raise)?,
             walls: walls.parse::<Walls>().map_err(raise)?,
             ..standard
         };
@@ -78,8 +78,8 @@ impl PyPso {
     #[getter]
     fn inertia(&self) -> Option<f64> {
         match self.0.form {
-            Form::Inertia(weight) => Some(weight),
-            Form::Constriction => None,
+            PsoForm::Inertia(weight) => Some(weight),
+            PsoForm::Constriction => None,
         }
     }
 

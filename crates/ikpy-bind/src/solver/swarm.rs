@@ -1,7 +1,7 @@
 //! Swarms and evolution: classes that are a population and a list of options.
 
-use ikcore::solver::beetle_swarm::Direction;
-use ikcore::solver::differential_evolution::Update;
+use ikcore::solver::BeetleDirection;
+use ikcore::solver::TrialUpdate;
 use ikcore::solver::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Qpso};
 use pyo3::prelude::*;
 
@@ -188,7 +188,7 @@ swarm! {
         /// delta over the distance of the antennae.
         step_over_antennae: f64,
         /// "printed" or "downhill".
-        direction: Direction,
+        direction: BeetleDirection,
     }
 }
 
@@ -210,6 +210,6 @@ swarm! {
         /// Probability that a coordinate comes from the mutant.
         crossover_rate: f64,
         /// "generation" or "immediate".
-        update: Update,
+        update: TrialUpdate,
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use ikcore::solver::stop::Stopwatch;
+use ikcore::solver::Stopwatch;
 use ikcore::tracking::ControlSession;
 use ikcore::tracking::Controller;
 use numpy::PyArray1;

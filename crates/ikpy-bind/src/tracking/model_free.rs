@@ -15,8 +15,8 @@ use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::monitor::{Watcher, attended};
 use crate::outcome::outcome;
 use crate::path::PyPath;
-use crate::stored::{self, Reduced};
-use crate::upward;
+use crate::pickling::{self, Reduced};
+use crate::python_calls;
 
 /// The record of a track without a model: k rows, row 0 the start at t = 0, row i the tick that ends at t_i = i dt; fewer than
 /// the path has where the plant failed.
@@ -75,7 +75,7 @@ impl PyModelFreeResult {
 
     /// A matplotlib figure: the tip's path, the error, joint angles, measurements.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        upward::plot(slf.into_any(), "model_free")
+        python_calls::plot(slf.into_any(), "model_free")
     }
 
     fn __repr__(&self) -> String {
@@ -85,8 +85,8 @@ impl PyModelFreeResult {
 
     /// What the plant raised goes along as far as it pickles itself.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("track without a model", &self.core))?;
-        stored::restored_from::<Self>(py, (core, self.limits.clone_ref(py), self.exception(py)))
+        let core = pickling::bytes(py, to_bytes("track without a model", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, self.limits.clone_ref(py), self.exception(py)))
     }
 
     /// What pickle stored.

@@ -11,7 +11,7 @@ use crate::convert::row;
 use crate::error::raise;
 use crate::limits::PyLimits;
 use crate::outcome::outcome;
-use crate::stored::{self, Reduced};
+use crate::pickling::{self, Reduced};
 
 /// What became of one step of a `Tracker` or a `ControlSession`.
 #[pyclass(name = "Step", module = "beetle_ik", frozen)]
@@ -67,7 +67,7 @@ impl PyStep {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
         let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed);
-        stored::restored_from::<Self>(py, (stored::bytes(py, to_bytes("step", &state))?, &self.limits))
+        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("step", &state))?, &self.limits))
     }
 
     /// What pickle stored.

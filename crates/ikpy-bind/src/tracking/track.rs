@@ -14,10 +14,10 @@ use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::outcome::outcome;
 use crate::path::PyPath;
+use crate::pickling::{self, Reduced};
+use crate::python_calls;
 use crate::robot::PyRobot;
-use crate::stored::{self, Reduced};
 use crate::trajectory::PyTrajectory;
-use crate::upward;
 
 /// The record of a track: k = steps + 1 rows; row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
 #[pyclass(name = "TrackResult", module = "beetle_ik", frozen)]
@@ -91,7 +91,7 @@ impl PyTrackResult {
 
     /// A matplotlib figure: the tip's path, the error, joint angles, velocities with their limits, evaluations.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        upward::plot(slf.into_any(), "track")
+        python_calls::plot(slf.into_any(), "track")
     }
 
     fn __repr__(&self) -> String {
@@ -99,8 +99,8 @@ impl PyTrackResult {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("track", &self.core))?;
-        stored::restored_from::<Self>(py, (core, self.robot.clone_ref(py), self.limits.clone_ref(py)))
+        let core = pickling::bytes(py, to_bytes("track", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, self.robot.clone_ref(py), self.limits.clone_ref(py)))
     }
 
     /// What pickle stored.

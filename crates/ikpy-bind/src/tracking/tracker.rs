@@ -2,8 +2,8 @@
 
 use std::sync::Mutex;
 
+use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
-use ikcore::solver::stop::Stopwatch;
 use ikcore::tracking::Session;
 use pyo3::prelude::*;
 

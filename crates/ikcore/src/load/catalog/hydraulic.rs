@@ -4,9 +4,7 @@ use nalgebra::Vector3;
 
 use crate::error::Result;
 use crate::math::pose;
-use crate::robot::Robot;
-use crate::robot::{ChainBuilder, Drive};
-use crate::robot::{Joint, JointKind};
+use crate::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 
 /// Lengths L1 and L2 (m): half of the swing arm radius of Table 1, 1.4 m, each.
 const LENGTH: f64 = 0.7;

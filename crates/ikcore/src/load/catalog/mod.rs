@@ -1,4 +1,4 @@
-//! The built-in robots: data tables, each with its source; [`named`] lists them.
+//! Built-in robots: data tables, each with its source. [`named`] lists them.
 
 mod arm;
 mod franka;

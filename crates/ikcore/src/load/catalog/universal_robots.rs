@@ -2,11 +2,11 @@
 //! kinematics and dynamics", joint ranges and speeds of the data sheets. Frame 0 is the maker's base frame; that of the
 //! ROS descriptions is turned by 180 degrees about z.
 
-use super::arm::{Arm, Limits, degrees, endless, row};
+use super::arm::{Arm, JointRange, degrees, endless, row};
 use crate::load::dh::Dh::Standard;
 
 /// A joint that makes two full turns, at a speed in degrees per second.
-const fn two_turns(speed: f64) -> Limits {
+const fn two_turns(speed: f64) -> JointRange {
     degrees(-360.0, 360.0, speed)
 }
 

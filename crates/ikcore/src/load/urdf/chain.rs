@@ -1,4 +1,4 @@
-//! The way from base to tip as a chain: joints in order, then one element after the other.
+//! The robot of the joints from base to tip: independent joints in order, then the elements of the chain.
 
 use std::collections::HashMap;
 
@@ -6,17 +6,14 @@ use nalgebra::Vector3;
 use urdf_rs::JointType;
 
 use super::document::Document;
-use super::link_capsules;
 use super::mimic::{self, Coupling};
-use super::tree::Step;
+use super::tree::TreeStep;
 use crate::error::{Error, Result};
 use crate::math::{Pose, pose};
-use crate::robot::Robot;
-use crate::robot::{ChainBuilder, Drive};
-use crate::robot::{Joint, JointKind};
+use crate::robot::{Bodies, ChainBuilder, Drive, Joint, JointKind, Robot};
 
-/// Builds the robot whose chain starts at link `base` and takes these steps.
-pub(super) fn build(document: &Document, base: &str, path: &[Step]) -> Result<Robot> {
+/// Builds the robot whose chain starts at link `base` and passes these joints.
+pub(super) fn build(document: &Document, base: &str, path: &[TreeStep]) -> Result<Robot> {
     let joints = &document.model.joints;
     let moving: Vec<usize> =
         path.iter().map(|step| step.joint).filter(|joint| joints[*joint].joint_type != JointType::Fixed).collect();
@@ -32,12 +29,22 @@ pub(super) fn build(document: &Document, base: &str, path: &[Step]) -> Result<Ro
         chain.link(far_link(document, *step));
     }
     let robot = chain.build()?;
-    let collision = link_capsules::of_links(document, robot.link_names());
-    Ok(robot.with_collision(collision))
+    let bodies = bodies(document, robot.link_names());
+    Ok(robot.with_bodies(bodies))
 }
 
-/// Adds the independent joints in chain order, narrowed by their followers, and returns the index in q of each joint of
-/// the document that is one. A master that is not on the chain stands where its first follower does.
+/// Capsules of the links of these names.
+fn bodies<'a>(document: &Document, names: impl Iterator<Item = &'a str>) -> Bodies {
+    let mut bodies = Bodies::default();
+    for link in names.filter_map(|name| document.capsules.get(name)) {
+        bodies.capsules.extend(link.capsules.iter().cloned());
+        bodies.unread.extend(link.unread.iter().cloned());
+    }
+    bodies
+}
+
+/// Adds the independent joints in chain order, narrowed by their followers, and returns the index in q of each independent
+/// joint of the document. A master off the chain takes the place of its first follower.
 fn add_joints(chain: &mut ChainBuilder, document: &Document, moving: &[usize]) -> Result<HashMap<usize, usize>> {
     let mut index_in_q = HashMap::new();
     for &joint in moving {
@@ -87,8 +94,13 @@ fn kind(document: &Document, index: usize) -> Result<JointKind> {
     }
 }
 
-/// Appends one joint. Backwards it is the inverse: the motion by -q first, then the inverse of its origin.
-fn append(chain: &mut ChainBuilder, document: &Document, step: Step, index_in_q: &HashMap<usize, usize>) -> Result<()> {
+/// Appends one joint. Reversed, it is the inverse: the motion by -q first, then the inverse of its origin.
+fn append(
+    chain: &mut ChainBuilder,
+    document: &Document,
+    step: TreeStep,
+    index_in_q: &HashMap<usize, usize>,
+) -> Result<()> {
     let origin = origin(document, step.joint);
     let sign = if step.reversed { -1.0 } else { 1.0 };
     if !step.reversed {
@@ -124,7 +136,7 @@ fn axis(document: &Document, index: usize) -> Result<Vector3<f64>> {
 }
 
 /// The link that a step leads to.
-fn far_link(document: &Document, step: Step) -> &str {
+fn far_link(document: &Document, step: TreeStep) -> &str {
     let joint = &document.model.joints[step.joint];
     if step.reversed { &joint.parent.link } else { &joint.child.link }
 }

@@ -1,13 +1,13 @@
-//! URDF text as a typed model: checked against roxmltree's view of it, reduced to links and joints, typed by urdf-rs.
+//! URDF text as a typed model: checked with roxmltree, reduced to links and joints, then read by urdf-rs.
 //!
-//! urdf-rs alone stops at unknown geometry, reads NaN, skips words that are no numbers and cannot tell a missing limit
-//! from zero; so it is handed a text in which only links and joints are left and every number is written out.
+//! urdf-rs alone stops at unknown geometry, accepts NaN, skips words that are no numbers and cannot tell a missing limit
+//! from zero. It therefore gets a text of nothing but links and joints, with every number written out.
 
 use std::collections::{HashMap, HashSet};
 
 use roxmltree::Node;
 
-use super::link_capsules::{self, LinkCollision};
+use super::link_capsules::{self, LinkCapsules};
 use super::xml;
 use crate::error::{Error, Result, suggestion};
 
@@ -19,8 +19,8 @@ pub(super) struct Document {
     pub(super) model: urdf_rs::Robot,
     /// Line of each joint, in the order of the model.
     joint_lines: Vec<u32>,
-    /// What each link takes up, by name.
-    pub(super) collision: HashMap<String, LinkCollision>,
+    /// Collision shapes of each link, by name.
+    pub(super) capsules: HashMap<String, LinkCapsules>,
 }
 
 impl Document {
@@ -37,8 +37,8 @@ impl Document {
         let model = urdf_rs::read_from_string(&reduced(root)?)
             .map_err(|error| Error::Urdf { line: None, problem: error.to_string() })?;
         let links = xml::children(root, "link").filter_map(|link| Some((link.attribute("name")?, link)));
-        let collision = links.map(|(name, link)| (name.to_owned(), link_capsules::read(name, link))).collect();
-        Ok(Self { model, joint_lines, collision })
+        let capsules = links.map(|(name, link)| (name.to_owned(), link_capsules::read(name, link))).collect();
+        Ok(Self { model, joint_lines, capsules })
     }
 
     /// An error at a joint.
@@ -47,7 +47,7 @@ impl Document {
     }
 }
 
-/// The same robot with nothing but links and joints, all of whose numbers are written out.
+/// The same robot with links and joints only, and with all numbers written out.
 fn reduced(root: Node) -> Result<String> {
     if xml::children(root, "joint").next().is_none() {
         return Err(xml::error_at(root, "<robot> has no <joint>: a chain needs at least one that moves"));

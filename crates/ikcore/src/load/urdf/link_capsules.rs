@@ -1,34 +1,23 @@
-//! The collision shapes of a link as capsules that hold them.
+//! Collision shapes of a link as capsules that contain them.
 
 use nalgebra::{Point3, Vector3};
 use roxmltree::Node;
 
-use super::document::Document;
 use super::xml;
 use crate::math::{Pose, pose};
-use crate::robot::{CollisionModel, LinkCapsule};
+use crate::robot::LinkCapsule;
 
-/// What one link takes up.
+/// The collision shapes of one link.
 #[derive(Debug, Clone, Default)]
-pub(super) struct LinkCollision {
-    capsules: Vec<LinkCapsule>,
-    /// Shapes that became no capsule, in words.
-    unread: Vec<String>,
+pub(super) struct LinkCapsules {
+    pub(super) capsules: Vec<LinkCapsule>,
+    /// Shapes without a capsule, in words.
+    pub(super) unread: Vec<String>,
 }
 
-/// What the links of these names take up together.
-pub(super) fn of_links<'a>(document: &Document, names: impl Iterator<Item = &'a str>) -> CollisionModel {
-    let mut model = CollisionModel::default();
-    for link in names.filter_map(|name| document.collision.get(name)) {
-        model.capsules.extend(link.capsules.iter().cloned());
-        model.unread.extend(link.unread.iter().cloned());
-    }
-    model
-}
-
-/// The shapes of a link. One that cannot be read is no error: most callers never ask for it.
-pub(super) fn read(name: &str, link: Node) -> LinkCollision {
-    let mut read = LinkCollision::default();
+/// Reads the shapes of a link. A shape that cannot be read is no error: most callers never ask for it.
+pub(super) fn read(name: &str, link: Node) -> LinkCapsules {
+    let mut read = LinkCapsules::default();
     for collision in xml::children(link, "collision") {
         let geometry = xml::children(collision, "geometry").next();
         let Some(shape) = geometry.and_then(|geometry| geometry.first_element_child()) else { continue };
@@ -44,12 +33,12 @@ pub(super) fn read(name: &str, link: Node) -> LinkCollision {
     read
 }
 
-/// Half of the axis and the radius of the capsule that holds a shape about the origin; None where it is unknown.
+/// Half of the axis, and the radius, of the capsule that contains a shape at the origin; None for unknown shapes.
 fn axis(shape: Node) -> Option<(Vector3<f64>, f64)> {
     let size = |name: &str| xml::number(shape, name, name).ok()?.filter(|size| *size > 0.0 && size.is_finite());
     match shape.tag_name().name() {
         "sphere" => Some((Vector3::zeros(), size("radius")?)),
-        // Of a cylinder the caps stick out: its ends are flat.
+        // The caps stick out of a cylinder, whose ends are flat.
         "cylinder" | "capsule" => Some((Vector3::z() * 0.5 * size("length")?, size("radius")?)),
         "box" => {
             let edges = Vector3::from(xml::vector(shape, "size", "size").ok()??);
@@ -68,7 +57,7 @@ fn axis(shape: Node) -> Option<(Vector3<f64>, f64)> {
     }
 }
 
-/// Where the shape sits in its link; None where that cannot be read.
+/// Pose of the shape in its link; None where it cannot be read.
 fn origin(collision: Node) -> Option<Pose> {
     let Some(origin) = xml::children(collision, "origin").next() else { return Some(Pose::identity()) };
     let xyz = xml::vector(origin, "xyz", "xyz").ok()?.unwrap_or_default();

@@ -1,13 +1,12 @@
-//! Mimic joints: which independent joint drives a joint in the end, and what the follower's limits leave to it.
+//! Mimic joints: the independent joint that drives each, narrowed by the limits of its followers.
 
 use urdf_rs::JointType;
 
 use super::document::Document;
 use crate::error::{Error, Result, suggestion};
-use crate::robot::Drive;
-use crate::robot::{Joint, JointKind};
+use crate::robot::{Drive, Joint, JointKind};
 
-/// The independent joint that drives a joint (itself, for most), and how far it drives it.
+/// The independent joint that drives a joint (for most the joint itself), and its drive.
 pub(super) struct Coupling {
     pub(super) master: usize,
     pub(super) drive: Drive,
@@ -46,7 +45,7 @@ fn unknown_target(document: &Document, follower: usize, target: &str) -> Error {
     document.error_at(follower, problem)
 }
 
-/// Narrows the master so that `follower`, driven by it, keeps its own limits. Err says why that leaves nothing.
+/// Narrows the master so that `follower`, driven by it, keeps its own limits. The error explains an empty range.
 pub(super) fn narrow(master: &mut Joint, follower: &Joint, drive: Drive) -> Result<(), String> {
     let Drive { scale, offset } = drive;
     if scale == 0.0 {

@@ -1,6 +1,6 @@
-//! Robots from URDF: the text is checked and reduced ([`document`]), its joints form a tree ([`tree`]), and the way
-//! through the tree from base to tip becomes a chain ([`chain`]) in which mimic joints follow ([`mimic`]) and links take
-//! up the room of their collision shapes ([`link_capsules`]).
+//! Robots from URDF. [`document`] checks the text and reduces it to links and joints, [`tree`] finds the joints from base to
+//! tip, and [`chain`] builds the robot from them, with mimic joints ([`mimic`]) and capsules around collision shapes
+//! ([`link_capsules`]).
 
 mod chain;
 mod document;

@@ -1,4 +1,4 @@
-//! From a file or its text to a robot.
+//! `Robot::from_urdf`: from a file or its text to a robot.
 
 use std::string::FromUtf8Error;
 

@@ -1,4 +1,4 @@
-//! The tree that the joints of a URDF make of its links, and the way through it from base to tip.
+//! The tree of links and joints, and the path through it from base to tip.
 
 use std::collections::HashMap;
 
@@ -13,16 +13,16 @@ pub(super) struct Tree<'a> {
     root: &'a str,
 }
 
-/// One joint on the way from base to tip.
+/// A joint on the path from base to tip.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step {
+pub(super) struct TreeStep {
     pub(super) joint: usize,
-    /// Whether it is passed from child to parent.
+    /// True where the path leads from child to parent.
     pub(super) reversed: bool,
 }
 
 impl<'a> Tree<'a> {
-    /// Err unless every link hangs on one parent at most, and all of them on the same root.
+    /// Checks that every link has at most one parent, and all have the same root.
     pub(super) fn new(document: &'a Document) -> Result<Self> {
         let joint_above = joints_above(document)?;
         let links = || document.model.links.iter().map(|link| link.name.as_str());
@@ -75,7 +75,7 @@ impl<'a> Tree<'a> {
     }
 
     /// The joints from `base` to `tip`: up to where the two branches meet, then down.
-    pub(super) fn path(&self, base: &'a str, tip: &'a str) -> Result<Vec<Step>> {
+    pub(super) fn path(&self, base: &'a str, tip: &'a str) -> Result<Vec<TreeStep>> {
         if base == tip {
             let problem = format!("base and tip are both '{base}': a chain needs two links");
             return Err(Error::Urdf { line: None, problem });
@@ -88,8 +88,8 @@ impl<'a> Tree<'a> {
             up.pop();
             down.pop();
         }
-        let up = up.into_iter().map(|joint| Step { joint, reversed: true });
-        let down = down.into_iter().rev().map(|joint| Step { joint, reversed: false });
+        let up = up.into_iter().map(|joint| TreeStep { joint, reversed: true });
+        let down = down.into_iter().rev().map(|joint| TreeStep { joint, reversed: false });
         Ok(up.chain(down).collect())
     }
 

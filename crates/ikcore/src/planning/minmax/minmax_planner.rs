@@ -8,7 +8,7 @@ use crate::planning::collision_checks::can_collide;
 use crate::planning::{Endpoint, MotionLimits, Plan, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::Monitor;
-use crate::solver::stop::Stopwatch;
+use crate::solver::Stopwatch;
 
 const METHOD: &str = "method=\"minmax\"";
 

@@ -9,7 +9,7 @@ use crate::objective::Point;
 use crate::planning::{Endpoint, MotionLimits};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
-use crate::solver::stop::Stopwatch;
+use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
 

@@ -11,7 +11,7 @@ use crate::planning::time_optimal::{coarse_duration, time};
 use crate::planning::tip_path::TipPath;
 use crate::planning::{AlongPathOptions, MotionLimits, Plan, TimingLimits, TimingOptions};
 use crate::robot::Robot;
-use crate::solver::stop::Stopwatch;
+use crate::solver::Stopwatch;
 use crate::solver::{AnySolver, DifferentialEvolution, Monitor, Schedule, Status, Stop};
 use crate::wording::number;
 

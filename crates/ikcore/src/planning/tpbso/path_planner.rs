@@ -10,7 +10,7 @@ use crate::planning::tip_path::{TipPath, refuse_repetition};
 use crate::planning::{AlongPathOptions, MotionLimits, Plan};
 use crate::robot::Robot;
 use crate::solver::Monitor;
-use crate::solver::stop::Stopwatch;
+use crate::solver::Stopwatch;
 
 /// Plans along a path, for planar arms.
 pub fn along_path(

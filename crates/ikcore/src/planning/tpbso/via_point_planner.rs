@@ -11,7 +11,7 @@ use crate::planning::planar_arm::Elbow;
 use crate::planning::{Endpoint, MotionLimits, Plan, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::Monitor;
-use crate::solver::stop::Stopwatch;
+use crate::solver::Stopwatch;
 
 /// Plans from end to end.
 pub fn point_to_point(

@@ -17,7 +17,7 @@ use crate::math::{
 use crate::objective::{Differentiable, Linearization, Point};
 use crate::problem::Problem;
 use crate::robot::Robot;
-use crate::solver::{Evaluator, Halt, LevenbergMarquardt, Stop, run};
+use crate::solver::{Evaluator, LevenbergMarquardt, Status, Stop, run};
 use crate::task::Assessment;
 
 /// Steps by the model in one tick; they converge quadratically, so that more would not help.
@@ -248,15 +248,15 @@ impl MidStepState {
         let mut problem = Problem::new(tick.robot, tick.target, *tick.criterion);
         let objective: &mut dyn Differentiable = &mut problem;
         let mut evaluator = Evaluator::new(objective, tick.tick_box, Stop::default(), tick.rng, tick.monitor);
-        let outcome = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
-        let evaluations = evaluator.evaluations();
+        let status = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
+        let (evaluations, iterations) = (evaluator.evaluations(), evaluator.iterations());
         found.q.copy_from_slice(&evaluator.best().x);
         self.here.place(&found.q);
         self.here.update(tick.robot);
         found.set_tip(&self.here.tip, tick.target, tick.criterion);
         found.evaluations += evaluations + 1;
-        found.iterations += outcome.iterations;
-        found.interrupted = outcome.halt == Halt::Interrupted;
+        found.iterations += iterations;
+        found.interrupted = status == Status::Interrupted;
     }
 
     /// Hands the kinematics at the end of this tick on to the beginning of the next.
