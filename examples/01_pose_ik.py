@@ -2,7 +2,7 @@
 Inverse kinematics of a pose
 ============================
 
-One target, one answer: joint angles, both errors, and a sentence. A target that cannot be reached is no exception.
+``solve`` returns joint positions, both errors and a message. A target that cannot be reached raises no exception.
 """
 
 import matplotlib.pyplot as plt
@@ -18,11 +18,11 @@ print("q =", np.round(solution.q, 4))
 print(f"errors: {solution.position_error:.1e} m, {solution.rotation_error:.1e} rad")
 
 # %%
-# Forward kinematics agrees.
+# Forward kinematics confirms the solution.
 print(np.allclose(robot.fk(solution.q), target, atol=2e-6))
 
 # %%
-# ``prefer="nearest"`` asks for the solution with the smallest joint motion from a start.
+# ``prefer="nearest"`` returns the solution with the smallest joint motion from a start.
 ready = np.array([0.0, -0.8, 0.0, -2.4, 0.0, 1.6, 0.8])
 nearest = bik.solve(robot, target, start=ready, prefer="nearest")
 print(
@@ -30,7 +30,7 @@ print(
 )
 
 # %%
-# Out of reach: the status says so, and the best configuration found is still there.
+# For a target out of reach, the status says so, and ``missed.q`` is the best configuration found.
 missed = bik.solve(robot, [2.0, 0.0, 0.5])
 print(missed.success, missed.status.name)
 print(missed.message)

@@ -2,8 +2,8 @@
 Your robot from a URDF
 ======================
 
-A robot comes from a URDF file, or from its text. Base and tip may be any two links; without them the root and the only
-leaf are taken.
+``Robot.from_urdf`` reads a URDF file or its text. Base and tip may be any two links; by default they are the root and
+the only leaf.
 """
 
 import matplotlib.pyplot as plt
@@ -21,7 +21,7 @@ LINK = """
 
 
 def joint(name: str, kind: str, parent: str, child: str, **numbers: float | str) -> str:
-    """One joint, and the link that it moves."""
+    """Returns the XML of one joint and the link that it moves."""
     given = {"offset": 0.3, "turn": 0.0, "axis": "0 1 0", "lower": -2.0, "upper": 2.0, "velocity": 1.5} | numbers
     return LINK.format(name=name, kind=kind, parent=parent, child=child, **given)
 
@@ -47,7 +47,7 @@ print(solution.message)
 print("joint angles and extension:", np.round(solution.q, 4))
 
 # %%
-# A mistake is named, with what would be right.
+# An error names the mistake and lists what is known.
 try:
     bik.Robot.from_urdf(urdf, tip="gripper")
 except bik.UnknownNameError as error:

@@ -2,8 +2,8 @@
 All solutions of a six-joint arm
 ================================
 
-An arm with six joints has a finite number of solutions for a pose, up to whole turns. ``solve_all`` looks for them
-until a hundred in a row were known already.
+An arm with six joints has a finite number of solutions for a pose, modulo whole turns. ``solve_all`` searches for them
+until a hundred in a row are known already.
 """
 
 import matplotlib.pyplot as plt
@@ -20,7 +20,7 @@ for solution in solutions:
     print(np.round(solution.q, 3), f"{np.linalg.norm(solution.q - start):.2f} rad from the start")
 
 # %%
-# Each of them reaches the pose with another arm.
+# Each solution reaches the pose in a different configuration.
 figure, axes = plt.subplots(subplot_kw={"projection": "3d"}, figsize=(7, 5.5))
 for i, solution in enumerate(solutions):
     x, y, z = robot.link_poses(solution.q)[:, :3, 3].T

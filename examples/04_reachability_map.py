@@ -2,8 +2,8 @@
 A batch, and the reachability map of an arm
 ===========================================
 
-``solve_batch`` solves many targets on all cores. Here it asks, for every point of a vertical slice, how many of a set
-of orientations the Panda can reach there: a reachability map.
+``solve_batch`` solves many targets on all cores. Here it computes a reachability map: how many of twelve orientations
+the Panda reaches at each point of a vertical plane.
 """
 
 import matplotlib.pyplot as plt
@@ -15,7 +15,7 @@ robot = bik.Robot.named("panda")
 x, z = np.linspace(-0.9, 0.9, 37), np.linspace(-0.4, 1.3, 35)
 
 # %%
-# Twelve orientations: the tool pointing along each axis of space, in two rolls.
+# Twelve orientations: the tool points along each axis, in both directions, with two roll angles.
 quarter = np.pi / 2
 pointing = [[0, 0, 0], [np.pi, 0, 0], [quarter, 0, 0], [-quarter, 0, 0], [0, quarter, 0], [0, -quarter, 0]]
 orientations = [
@@ -31,7 +31,7 @@ targets[..., 1, 3] = 0.0
 targets[..., 2, 3] = z[:, None, None]
 
 # %%
-# What cannot be reached costs the whole budget: it is set low here. A narrow budget misses some that can be reached.
+# Targets out of reach cost the whole budget, so it is set low here. A low budget misses some reachable targets.
 batch = bik.solve_batch(robot, targets.reshape(-1, 4, 4), stop=bik.Stop(max_evaluations=400))
 print(batch.message)
 share = batch.success.reshape(len(z), len(x), -1).mean(axis=2)

@@ -1,9 +1,9 @@
 """
-The best posture for a place
-============================
+The best posture for a position
+===============================
 
-A redundant arm holds its tip in one place in many postures. Goals say which are good, and ``prefer="best"`` looks all
-over for the best of them.
+A redundant arm reaches a position in many postures. Goals rate the postures, and ``prefer="best"`` searches for the
+best one globally.
 """
 
 import matplotlib.pyplot as plt
@@ -16,7 +16,7 @@ target = [0.9, 0.6, 0.0]
 motion = "position"
 
 # %%
-# Any solution; the best for the tip; the best for the whole arm.
+# Any solution, the best one for the tip, and the best one for the whole arm.
 found = {
     "any": bik.solve(robot, target),
     "best for the tip": bik.solve(robot, target, goals=bik.goals.Manipulability(motion=motion), prefer="best"),
@@ -26,7 +26,7 @@ figure, axes = plt.subplots(1, 3, sharex=True, sharey=True, figsize=(11, 4), lay
 angle = np.linspace(0.0, 2.0 * np.pi, 100)
 for panel, (name, solution) in zip(axes, found.items(), strict=True):
     w = robot.manipulability(solution.q, motion=motion)
-    print(f"{name}: manipulability of the tip {w:.3f}, in all {robot.link_manipulability(solution.q).sum():.3f}")
+    print(f"{name}: manipulability of the tip {w:.3f}, of all links {robot.link_manipulability(solution.q).sum():.3f}")
     ellipsoid = robot.velocity_ellipsoid(solution.q)
     a, b = (length * axis[:2] for length, axis in zip(ellipsoid.lengths, ellipsoid.axes, strict=True))
     outline = np.array(target[:2]) + 0.2 * (np.cos(angle)[:, None] * a + np.sin(angle)[:, None] * b)

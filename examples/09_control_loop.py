@@ -1,9 +1,9 @@
 """
-One call a tick: your control loop
-==================================
+Your control loop: one call per tick
+====================================
 
-``track`` knows the whole path beforehand. A ``Tracker`` is told one target a tick, and keeps the same limits: for a
-joystick, a camera, or another machine. A tick takes microseconds.
+``track`` needs the whole path in advance. A ``Tracker`` takes one target per tick, from a joystick, a camera or another
+machine, and keeps the same limits. A tick takes microseconds.
 """
 
 import matplotlib.pyplot as plt
@@ -17,8 +17,8 @@ start = np.array([0.0, -1.2, 1.8, -2.2, -1.5, 0.0])
 tracker = bik.Tracker(robot, start, dt=DT, limits=bik.Limits(velocity=1.0))
 
 # %%
-# Somebody's hand jumps by 25 cm every two seconds. A tracker looks one tick ahead: it is given a target that moves at a
-# pace the arm can keep, here 0.3 m/s, with the orientation kept.
+# The operator's hand jumps by 25 cm every two seconds. A tracker only looks one tick ahead, so the target moves at a
+# speed that the arm can follow, here 0.3 m/s, with constant orientation.
 home = robot.fk(start)
 hand = np.where(np.arange(800) // 200 % 2, 0.25, 0.0)
 target = home.copy()

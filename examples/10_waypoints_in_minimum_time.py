@@ -2,8 +2,8 @@
 Waypoints in minimum time
 =========================
 
-Joint positions that were taught by hand become a motion: ``time_optimal`` keeps the shape of the spline through them
-and finds the fastest timing that velocity and acceleration limits allow, at every instant.
+``time_optimal`` turns taught joint positions into a motion. It keeps the shape of the spline through them and computes
+the fastest timing within the velocity and acceleration limits, which hold at every instant.
 """
 
 import matplotlib.pyplot as plt
@@ -23,17 +23,17 @@ taught = np.array(
 limits = bik.Limits(velocity=robot.velocity_limit, acceleration=8.0)
 trajectory = bik.time_optimal(taught, limits, joint_names=robot.joint_names)
 print(f"{trajectory.duration:.3f} s")
-print("fastest:", np.round(trajectory.max_velocity(), 3), "rad/s")
-print("hardest:", np.round(trajectory.max_acceleration(), 3), "rad/s^2")
+print("largest velocities:", np.round(trajectory.max_velocity(), 3), "rad/s")
+print("largest accelerations:", np.round(trajectory.max_acceleration(), 3), "rad/s^2")
 
 # %%
-# With a jerk limit it takes a little longer.
+# With a jerk limit the motion takes slightly longer.
 gentle = bik.time_optimal(
     taught, bik.Limits(velocity=robot.velocity_limit, acceleration=8.0, jerk=100.0), joint_names=robot.joint_names
 )
 print(f"{gentle.duration:.3f} s with jerk limits")
 
 # %%
-# All the time one of the joints is at a limit.
+# At any time one of the joints is at a limit.
 bik.plot.saturation(trajectory, limits)
 plt.show()

@@ -2,9 +2,9 @@
 A pentagram in minimum time
 ===========================
 
-A planar arm with three links has one degree of freedom more than its tip needs. ``plan_along_path`` finds redundancy
-and timing together, and keeps the tip within the accuracy asked for all along the star: it stops at the corners.
-In the fastest motion some joint is at one of its limits at every moment.
+A planar arm with three links has one redundant degree of freedom. ``plan_along_path`` optimises redundancy and timing
+together, and keeps the tip within the requested accuracy along the whole star; it stops at the corners. In the fastest
+motion some joint is at a limit at any time.
 """
 
 import matplotlib.pyplot as plt
@@ -31,6 +31,6 @@ axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal", title=f"{plan.cost:.2f}
 axes.legend()
 
 # %%
-# How much of each limit is used.
+# The fraction of each limit that is used.
 bik.plot.saturation(plan.trajectory, limits)
 plt.show()

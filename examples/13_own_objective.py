@@ -2,8 +2,8 @@
 Your own objective
 ==================
 
-``minimize`` runs any solver that needs values alone on a function of yours. Here: where to bolt down a planar arm, so
-that it works well at four places at once.
+``minimize`` applies any derivative-free solver to your own function. Here it finds where to mount a planar arm, so that
+it moves well at four positions.
 """
 
 import matplotlib.pyplot as plt
@@ -16,7 +16,7 @@ arm = bik.Robot.planar([0.4, 0.4, 0.3])
 
 
 def worst(base: np.ndarray) -> float:
-    """Minus the lowest manipulability over the places, from a base at (x, y)."""
+    """Returns minus the lowest manipulability over the places, for a base at (x, y)."""
     best = []
     for place in PLACES - [*base, 0.0]:
         posture = bik.solve(
@@ -27,7 +27,7 @@ def worst(base: np.ndarray) -> float:
 
 
 # %%
-# A swarm of 15 particles, 900 evaluations at most. Its history says when it got better.
+# A swarm of 15 particles and at most 900 evaluations. The history records each improvement.
 found = bik.minimize(
     worst, [-0.5, -0.5], [1.5, 1.5], solver=bik.PSO(population=15), stop=bik.Stop(max_evaluations=900), seed=1
 )

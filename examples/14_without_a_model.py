@@ -2,11 +2,10 @@
 An arm with a wrong model
 =========================
 
-The arm is not built as it was drawn: links up to 2 cm off, joints up to 2°. Angles computed from the drawing miss the
-circle by centimetres. ``BroydenBAS`` uses no drawing: it commands, measures the tip, and learns how one
-follows from the other.
+The arm differs from its model: links by up to 2 cm, joints by up to 2°. Joint positions computed with the model miss
+the circle by centimetres. ``BroydenBAS`` uses no model: it commands the arm, measures the tip and learns the relation.
 
-The same on a simulated arm with gravity and servos, as a film: ``examples/15_wrong_model.py``.
+``examples/15_wrong_model.py`` does the same on a simulated arm with gravity and servos, and writes a film.
 """
 
 import matplotlib.pyplot as plt
@@ -20,13 +19,13 @@ circle = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
 start = np.array([0.6449, 0.2037, 0.1969, -0.7714, 0.2028, 0.7179, 0.1])
 
 # %%
-# With the model: the angles are right for the drawing.
+# With the model: the joint positions are exact for the model only.
 by_model = bik.track(drawn, circle, start, dt=0.2)
 reached = built.fk(by_model.q)[:, :3, 3]
 error_by_model = np.linalg.norm(reached - by_model.reference, axis=1)
 
 # %%
-# Without: one command a tick, measured with 0.05 mm of noise.
+# Without a model: one command per tick, measured with 0.05 mm of noise.
 plant = bik.KinematicPlant(built, noise=5e-5, seed=0)
 controller = bik.BroydenBAS(max_evaluations_per_step=1)
 without = bik.track_model_free(
@@ -39,7 +38,7 @@ print(f"without: {1e3 * without.position_error[settled].max():.2f} mm off at mos
 
 # %%
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
-left.plot(*by_model.reference[:, :2].T, color="black", linestyle=":", label="circle asked for")
+left.plot(*by_model.reference[:, :2].T, color="black", linestyle=":", label="reference")
 left.plot(*reached[settled, :2].T, label="with the model")
 left.plot(*without.position[settled, :2].T, label="without")
 left.set(xlabel="x [m]", ylabel="y [m]", aspect="equal", title="Seen from above")

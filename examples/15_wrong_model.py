@@ -1,9 +1,8 @@
-"""An arm that is not built as it was drawn: with the model of the drawing, and without any model.
+"""An arm that differs from its model, tracked with the model and without any.
 
-The simulated iiwa (MuJoCo: position servos, gravity, a sensor with 0.05 mm of noise on each axis) has a link that is 2
-cm longer than in the drawing, and joints that are 2 degrees off. Angles computed from the drawing miss the circle by
-centimetres. `BroydenBAS` knows no drawing: it sends one command a tick, measures the tip, and stays within a
-millimetre.
+The simulated iiwa (MuJoCo: position servos, gravity, a sensor with 0.05 mm of noise on each axis) has a link 2 cm
+longer than its model, and joints that are 2 degrees off. Joint positions computed with the model miss the circle by
+centimetres. `BroydenBAS` uses no model: it sends one command per tick, measures the tip, and stays within a millimetre.
 
     pip install 'beetle-ik[plot,sim]'
     python examples/15_wrong_model.py OUT          # writes OUT/wrong_model.gif and OUT/wrong_model.png
@@ -23,8 +22,8 @@ from beetle_ik.sim import MujocoPlant
 DT = 0.2  # s
 START = np.array([0.5449219327, 0.1036664288, 0.0969337234, -0.8713896072, 0.1027968992, 0.617944106, 0.0])
 CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=30.0)
-SETTLED = 20  # ticks: what the first antennae and the way to the circle take
-EVERY = 5  # ticks a frame
+SETTLED = 20  # ticks for the first antennae and the approach to the circle
+EVERY = 5  # ticks per frame
 VIEW = partial(
     MujocoPlant.picture, width=400, height=360, azimuth=-60.0, elevation=-50.0, distance=1.3, look_at=(0.2, 0.2, 0.8)
 )
@@ -47,14 +46,14 @@ class Filmed:
     """A plant that is filmed while it is moved."""
 
     def __init__(self, plant: MujocoPlant) -> None:
-        """At rest at the start."""
+        """Starts at rest."""
         plant.reset(START)
         self.plant = plant
         self.tips: list[Array] = []
         self.frames: list[NDArray[np.uint8]] = []
 
     def move(self, q: Array) -> Array:
-        """Send the arm to q, and say where its tip was measured."""
+        """Moves the arm to q and returns the measured tip."""
         measured = self.plant.move(q)
         self.tips.append(self.plant.tip)
         if len(self.tips) % EVERY == 0:
@@ -64,13 +63,13 @@ class Filmed:
 
     @property
     def error(self) -> Array:
-        """How far the tip was from the path (m), once it had settled."""
+        """Distances of the tip from the path (m), after the approach."""
         reference = CIRCLE.position(DT * np.arange(len(self.tips)))
         return np.asarray(np.linalg.norm(self.tips - reference, axis=1)[SETTLED:])
 
 
 def main() -> None:
-    """Follow the circle twice, and write what it looks like."""
+    """Follows the circle twice and writes the film."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=Path)
     out: Path = parser.parse_args().out
@@ -80,13 +79,13 @@ def main() -> None:
     by_model = Filmed(MujocoPlant(built, dt=DT, noise=5e-5))
     for q in bik.track(iiwa(), CIRCLE, START, dt=DT).q:
         by_model.move(q)
-    print(f"with the model of the drawing: {1e3 * by_model.error.max():.1f} mm off at most")
+    print(f"with the model: {1e3 * by_model.error.max():.1f} mm off at most")
 
     without = Filmed(MujocoPlant(built, dt=DT, noise=5e-5))
     controller = bik.BroydenBAS(max_evaluations_per_step=1)
     limits = bik.Limits(velocity=2.0)
     bik.track_model_free(without, CIRCLE, START, dt=DT, controller=controller, limits=limits)
-    print(f"without a model: {1e3 * without.error.max():.2f} mm off at most, one command a tick of {DT} s")
+    print(f"without a model: {1e3 * without.error.max():.2f} mm off at most, one command per tick of {DT} s")
 
     frames = [
         Image.fromarray(np.concatenate(pair, axis=1)) for pair in zip(by_model.frames, without.frames, strict=False)

@@ -1,17 +1,17 @@
-//! A solver in one sitting: random search, run on the position of an arm's tip. `cargo run --example random_search`.
+//! A complete solver: random search, applied to the tip position of an arm. `cargo run --example random_search`.
 
 use ikcore::objective::{Bounds, Objective, Point};
 use ikcore::rng;
 use ikcore::solver::{Evaluator, Solver, Status, Stop, Unattended, run};
 
-/// Uniform draws from the box, so many in each iteration: a yardstick for everything else.
+/// Draws points uniformly from the box: a baseline for all other solvers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RandomSearch {
-    /// Draws an iteration.
+    /// Draws per iteration.
     pub draws: usize,
 }
 
-/// The point that is drawn next.
+/// Storage for the point drawn.
 #[derive(Debug, Clone)]
 pub struct State {
     x: Point,

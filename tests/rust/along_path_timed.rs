@@ -189,7 +189,7 @@ fn courses_know_their_corners_and_places() {
 }
 
 #[test]
-fn noise_of_measured_points_is_no_corner_and_a_sampled_corner_is_one() {
+fn sampled_corners_are_told_from_measurement_noise() {
     let mut rng = rng::stream(4, 0);
     let noisy = |i: usize| {
         let angle = 3.0 * i as f64 / 4000.0;
@@ -212,7 +212,7 @@ fn course_of_circle(points: usize) -> TipPath {
 }
 
 #[test]
-fn a_pause_of_a_path_does_not_matter_and_a_path_of_one_place_is_none() {
+fn a_pause_is_ignored_and_a_path_of_one_point_refused() {
     let times = TipPath::times(1.0, &[]);
     let paused: Vec<[f64; 3]> = times.iter().map(|t| [t.clamp(0.3, 0.6), 0.0, 0.0]).collect();
     let tip_path = TipPath::sampled(times.clone(), paused, None).unwrap();

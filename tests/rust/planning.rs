@@ -221,7 +221,7 @@ fn paths_are_followed_as_quickly_as_measured_before() {
 }
 
 #[test]
-fn every_second_point_of_a_path_is_passed_and_all_between_is_within_the_accuracy() {
+fn tpbso_passes_every_second_point_within_the_accuracy() {
     let robot = Robot::planar(&[1.0, 1.0, 1.0]).unwrap();
     let tip_path = &paths()[0];
     let plan = follow(tip_path, AlongPathOptions { accuracy: Some(0.04), ..Default::default() });

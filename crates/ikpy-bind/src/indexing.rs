@@ -1,4 +1,4 @@
-//! What an index picks from a sequence of ours: as numpy has it.
+//! NumPy-style indexing of result sequences.
 
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyIndexError;
@@ -8,7 +8,7 @@ use pyo3::types::PyIterator;
 
 use crate::convert::summary;
 
-/// What an index asks for.
+/// The items that an index selects.
 pub enum Selection {
     /// One item.
     One(usize),
@@ -16,8 +16,8 @@ pub enum Selection {
     Many(Vec<usize>),
 }
 
-/// The items out of `len` that an index asks for: a whole number, from the end where negative, or whatever picks from a
-/// numpy array of one dimension: a slice, a mask, whole numbers. `what` holds them.
+/// Resolves an index into `len` items: an integer (negative counts from the end), or any index of a one-dimensional numpy
+/// array: a slice, a mask, a list of integers. `what` names the sequence in errors.
 pub fn select(what: &str, index: &Bound<'_, PyAny>, len: usize) -> PyResult<Selection> {
     let py = index.py();
     if let Ok(index) = index.extract::<isize>() {
@@ -32,13 +32,13 @@ pub fn select(what: &str, index: &Bound<'_, PyAny>, len: usize) -> PyResult<Sele
         Err(_) => {
             let got = summary(index);
             Err(PyIndexError::new_err(format!(
-                "{what} has one dimension: a number, slice or mask picks from it, got {got}"
+                "{what} has one dimension: the index must be a number, slice or mask, got {got}"
             )))
         }
     }
 }
 
-/// The items of a sequence, each made when its turn comes.
+/// Iterates over a sequence lazily: each item is made on demand.
 pub fn iterate<'py>(sequence: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyIterator>> {
     let py = sequence.py();
     let builtins = py.import(intern!(py, "builtins"))?;

@@ -1,4 +1,4 @@
-//! The native module `beetle_ik._core`: registration only. Each file converts for one module of the core.
+//! The native module `beetle_ik._core`: registration of classes and functions. Each file wraps one module of the core.
 
 mod batch;
 mod convert;
@@ -57,6 +57,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     planning::register(module)?;
     tracking::register(module)?;
     module.add_class::<trajectory::PyTrajectory>()?;
-    // The package names what is public; a second list here would only go stale.
+    // The package lists what is public; a second list would become outdated.
     module.dict().del_item("__all__")
 }

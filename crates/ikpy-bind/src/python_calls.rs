@@ -1,4 +1,4 @@
-//! The only calls from here up into the Python package: pictures, files and the progress bar.
+//! The only calls into the Python package: plots, files and the progress bar.
 
 use pyo3::prelude::*;
 
@@ -11,22 +11,22 @@ fn call<'py>(
     py.import(module)?.getattr(function)?.call1(arguments)
 }
 
-/// `beetle_ik.plot.<function>(result)`.
+/// Calls `beetle_ik.plot.<function>(result)`.
 pub fn plot<'py>(result: Bound<'py, PyAny>, function: &str) -> PyResult<Bound<'py, PyAny>> {
     call(result.py(), "beetle_ik.plot", function, (result,))
 }
 
-/// `beetle_ik.export.<function>(trajectory, file, ...)`.
+/// Calls `beetle_ik.export.<function>(trajectory, file, ...)`.
 pub fn write<'py>(py: Python<'py>, function: &str, arguments: impl pyo3::call::PyCallArgs<'py>) -> PyResult<()> {
     call(py, "beetle_ik.export", function, arguments).map(|_| ())
 }
 
-/// `beetle_ik.export.<function>(file)`.
+/// Calls `beetle_ik.export.<function>(file)`.
 pub fn read<'py>(function: &str, file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     call(file.py(), "beetle_ik.export", function, (file,))
 }
 
-/// A progress bar on the terminal.
+/// Makes a progress bar on the terminal.
 pub fn progress_bar(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     call(py, "beetle_ik._progress", "Bar", ())
 }

@@ -18,7 +18,7 @@ use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
 
-/// Distinct solutions of one target: a sequence of `Solution`.
+/// The distinct solutions for one target, a sequence of `Solution`.
 #[pyclass(name = "SolutionSet", module = "beetle_ik", frozen, sequence)]
 pub struct PySolutionSet {
     core: ik::SolutionSet,
@@ -32,9 +32,9 @@ pub struct PySolutionSet {
 
 outcome! {
     PySolutionSet = |result|
-    /// Whether there is a solution.
+    /// Whether a solution was found.
     success,
-    /// SOLVED where there is a solution; else why the last search ended.
+    /// SOLVED if a solution was found; otherwise why the last search ended.
     status: result.core.status(),
     message: result.core.message(),
     /// Evaluations of the forward kinematics.
@@ -44,7 +44,7 @@ outcome! {
 
 #[pymethods]
 impl PySolutionSet {
-    /// The best miss, a `Solution`, where there is no solution; else None.
+    /// The best `Solution` that misses the target, if no solution was found; otherwise None.
     #[getter]
     fn miss(&self, py: Python<'_>) -> Option<PySolution> {
         self.core.miss.as_ref().map(|miss| PySolution::new(py, miss.clone(), self.limits.clone_ref(py)))
@@ -54,7 +54,7 @@ impl PySolutionSet {
         self.core.solutions.len()
     }
 
-    /// A `Solution`; for a slice, a mask or several indices a list of them.
+    /// Returns a `Solution`, or a list of them for a slice, a mask or several indices.
     fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let solution = |i: usize| PySolution::new(py, self.core.solutions[i].clone(), self.limits.clone_ref(py));
         match select("a set", index, self.core.solutions.len())? {
@@ -63,7 +63,7 @@ impl PySolutionSet {
         }
     }
 
-    /// Each `Solution`.
+    /// Iterates over the solutions.
     fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyIterator>> {
         iterate(slf.as_any())
     }
@@ -78,7 +78,7 @@ impl PySolutionSet {
         pickling::restored_from::<Self>(py, (core, dof, self.limits.clone_ref(py)))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     fn _restore(py: Python<'_>, bytes: &[u8], dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
         Self::new(py, from_bytes("set of solutions", bytes).map_err(raise)?, dof, limits)
@@ -93,30 +93,30 @@ impl PySolutionSet {
     }
 }
 
-/// Looks for distinct solutions until a hundred in a row were known already, or the budget is spent.
+/// Searches for distinct solutions until a hundred in a row are known already, or the budget is spent.
 ///
-/// Each is returned at the whole turns nearest to the start, without one nearest to the middle of the limits. A redundant arm
-/// has endlessly many solutions: those returned lie at least `separation` apart.
+/// Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
+/// start is given. A redundant arm has infinitely many solutions: those returned are at least `separation` apart.
 ///
 /// Args:
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m).
-///     start: (n,): solutions come nearest to it first, by |q - start| (rad, m). None: in the order in which they were found.
-///     limit: solutions to return at most.
-///     separation: solutions count as one where no joint differs by as much (rad, m), whole turns aside.
-///     task: of `tasks`, what of the target matters; None: all that it says.
-///     solver: None: Levenberg-Marquardt from many starts.
-///     position_tolerance: m.
-///     rotation_tolerance: rad, geodesic angle.
-///     limits: position limits to keep; None keeps the robot's.
+///     start: (n,); solutions are sorted by |q - start| (rad, m). None: they stay in the order in which they were found.
+///     limit: largest number of solutions to return.
+///     separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns.
+///     task: which part of the target counts, one of `tasks`; None: all of it.
+///     solver: the solver; None: Levenberg-Marquardt from many starts.
+///     position_tolerance: largest position error (m).
+///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
+///     limits: position limits; None: the robot's.
 ///     stop: budgets of the whole search; None: as for `solve`.
-///     seed: of the random draws: the same seed, the same bits.
+///     seed: seed of the random draws; the same seed gives the same bits.
 ///
 /// Returns:
-///     A `SolutionSet`; without a solution it is empty and has the best `miss`.
+///     A `SolutionSet`. If no solution is found, it is empty, and `miss` is the best configuration.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform.
+///     InvalidInputError: wrong shape, NaN, or a target that is not a rigid transform.
 ///     LimitError: a start outside the limits.
 #[pyfunction]
 #[pyo3(signature = (robot, target, *, start=None, limit=16, separation=0.1, task=None, solver=None,

@@ -16,30 +16,29 @@ use crate::path::PyPath;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
 
-/// Plans a motion whose tip follows a path, in order.
+/// Plans a motion that moves the tip along a path.
 ///
 /// Args:
 ///     robot: the arm.
-///     path: a `Path`, of which the times are ignored, or points (k, 3) (m) or poses (k, 4, 4), straight in between.
-///     start_q: joint angles (n,) to start from; None: the planner's choice.
-///     limits: positions, velocities and accelerations to keep; None: the robot's.
-///     method: "timed": redundancy and fastest timing in one search; "tpbso" or `TPBSO(...)`: redundancy found by a beetle
-///         swarm, uniform time, splines through every second point (Wang et al. 2019), for planar arms.
-///     objective: what to minimise: "time" or "joint_travel".
-///     accuracy: allowed distance of the tip from the path (m), also between its points, and allowed angle from its
-///         orientation (rad). The trajectory passes as many points as that takes. None: a thousandth of the path's extent,
-///         for "tpbso" 4 %.
-///     solver: the search of "timed", one that needs values alone; None: differential evolution. `TPBSO` has its own.
-///     stop: budget of the search; None: the method's own.
-///     seed: of the random draws: the same seed, the same bits.
-///     progress: True for a bar on the terminal, or a callable of (done, total).
+///     path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
+///     start_q: joint positions (n,) at the start; None: chosen by the planner.
+///     limits: position, velocity and acceleration limits; None: the robot's.
+///     method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
+///         uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
+///     objective: quantity to minimise, "time" or "joint_travel".
+///     accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
+///         decides how many points of the path the motion passes. None: a thousandth of the path's extent; for "tpbso" 4 %.
+///     solver: solver of the search of "timed"; None: differential evolution. `TPBSO` has a solver of its own.
+///     stop: budgets; None: the method's own.
+///     seed: seed of the random draws; the same seed gives the same bits.
+///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
 /// Returns:
-///     A `Plan`. Where no plan keeps everything, its status says so and its trajectory is the least violating one.
+///     A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach.
-///     LimitError: limits that contradict themselves.
+///     InvalidInputError: wrong shape, NaN, fewer than two points, or points out of reach.
+///     LimitError: limits that contradict each other.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
 #[pyo3(signature = (robot, path, *, start_q=None, limits=None, method=None, objective="time", accuracy=None, solver=None,
@@ -78,7 +77,7 @@ pub fn plan_along_path(
     PyPlan::new(plan, robot, in_force, PyTuple::empty(py).unbind())
 }
 
-/// A `Path`, or points (k, 3), or poses (k, 4, 4).
+/// Reads a `Path`, points (k, 3) or poses (k, 4, 4).
 fn read_tip_path(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<TipPath> {
     match path.cast::<PyPath>() {
         Ok(path) => path.get().tip_path(py),
@@ -86,7 +85,7 @@ fn read_tip_path(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<TipPath> {
     }
 }
 
-/// Points (k, 3), or poses (k, 4, 4).
+/// Reads points (k, 3) or poses (k, 4, 4).
 fn read_points(path: &Bound<'_, PyAny>) -> PyResult<Waypoints> {
     let rows = array("path", path)?;
     let numbers = rows.as_slice()?;

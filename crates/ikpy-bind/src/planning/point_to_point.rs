@@ -15,28 +15,29 @@ use crate::obstacle::Obstacles;
 use crate::robot::PyRobot;
 use crate::solver::PyStop;
 
-/// Plans a motion from one end to another, at rest at both.
+/// Plans a motion between two ends, from rest to rest.
 ///
 /// Args:
 ///     robot: the arm.
-///     start, end: position (3,) (m) or pose (4, 4) of the tip; the configuration is the planner's choice.
-///     start_q, end_q: instead of them, joint angles (n,).
-///     limits: positions, velocities and accelerations to keep; None: the robot's.
-///     method: "minmax": the configurations of both ends that are nearest in time, joined as fast as the limits allow;
+///     start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration.
+///     start_q, end_q: joint positions (n,) instead.
+///     limits: position, velocity and acceleration limits; None: the robot's.
+///     method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
 ///         "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
-///     objective: what to minimise: "time", "joint_travel" or "tip_travel".
-///     obstacles: shapes from `bik.obstacles` to avoid. A robot that has capsules avoids itself too.
-///     margin: distance to keep from obstacles and between links (m); None: 1 mm.
-///     stop: budget of the search; None: the method's own.
-///     seed: of the random draws: the same seed, the same bits.
-///     progress: True for a bar on the terminal, or a callable of (done, total).
+///     objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
+///     obstacles: obstacles of `bik.obstacles` that the robot must not touch. A robot with capsules must not touch itself
+///         either.
+///     margin: least distance from obstacles and between links (m); None: 1 mm.
+///     stop: budgets; None: the method's own.
+///     seed: seed of the random draws; the same seed gives the same bits.
+///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
 /// Returns:
-///     A `Plan`. Where no plan keeps everything, its status says so and its trajectory is the least violating one.
+///     A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, an end that cannot be reached (which, and by how much).
-///     LimitError: limits that contradict themselves or exclude an end.
+///     InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance).
+///     LimitError: limits that contradict each other or exclude an end.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
 #[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method=None, objective="time",
@@ -78,7 +79,7 @@ pub fn plan_point_to_point(
     PyPlan::new(plan, robot, in_force, given)
 }
 
-/// An end given as a target or as joint angles.
+/// Reads an end given as a target or as joint positions.
 fn read_end(name: &str, target: Option<&Bound<'_, PyAny>>, q: Option<&Bound<'_, PyAny>>) -> PyResult<Endpoint> {
     match (target, q) {
         (Some(target), None) => match array(name, target)?.shape() {

@@ -1,4 +1,4 @@
-//! `TPBSO`, and planning methods as arguments.
+//! `TPBSO`, and reading of `method` arguments.
 
 use std::str::FromStr;
 
@@ -16,9 +16,9 @@ use crate::solver::{derivative_free_solver, derivative_free_to_python};
 /// `plan_along_path`. The string "tpbso" stands for `TPBSO()`.
 ///
 /// Args:
-///     elbows: the sign of a planar arm's second joint angle at start and end, 1 or -1. Joint angles given as start_q or
-///         end_q decide for themselves. Along a path both must be the same.
-///     solver: the search, one that needs values alone; None: the published beetle swarm.
+///     elbows: sign of the second joint's angle at start and end of a planar arm's motion, 1 or -1. At an end given by
+///         start_q or end_q, those joint positions decide. Along a path both must be equal.
+///     solver: solver of the search, a derivative-free one; None: the published beetle swarm.
 #[pyclass(name = "TPBSO", module = "beetle_ik", frozen, eq)]
 #[derive(Debug, PartialEq)]
 pub struct PyTpbso(Tpbso);
@@ -35,14 +35,14 @@ impl PyTpbso {
         Ok(Self(tpbso))
     }
 
-    /// The sign of a planar arm's second joint angle at start and end.
+    /// Signs of the second joint's angle at start and end.
     #[getter]
     fn elbows(&self) -> (i8, i8) {
         let [start, end] = self.0.elbows.map(|elbow| elbow.sign() as i8);
         (start, end)
     }
 
-    /// The search; None: the published beetle swarm.
+    /// Solver of the search; None: the published beetle swarm.
     #[getter]
     fn solver<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.0.solver.as_ref().map(|solver| derivative_free_to_python(py, solver)).transpose()
@@ -75,7 +75,7 @@ fn read_elbow(name: &str, sign: i128) -> PyResult<Elbow> {
     }
 }
 
-/// A planning method: a name, or a `TPBSO`; None: the default.
+/// Reads a planning method: a name or a `TPBSO`; None: the default.
 pub fn read_method<M>(method: Option<&Bound<'_, PyAny>>) -> PyResult<M>
 where
     M: Default + FromStr<Err = Error> + From<Tpbso>,

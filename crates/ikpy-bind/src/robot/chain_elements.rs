@@ -1,4 +1,4 @@
-//! The elements of a robot's chain, for other libraries' models: what `beetle_ik.interop` reads and writes.
+//! The elements of a robot's chain, which `beetle_ik.interop` reads and writes to convert models of other libraries.
 
 use ikcore::nalgebra::Vector3;
 use ikcore::robot::{ChainBuilder, Drive, Element, Joint, JointKind, Robot};
@@ -10,8 +10,8 @@ use super::PyRobot;
 use crate::convert::{copied, point, pose_array, rigid};
 use crate::error::raise;
 
-/// Everything between base and tip: ("fixed", pose (4, 4)), ("moving", joint, turns, axis (3,), scale, offset) or ("link",
-/// name) each.
+/// Returns the elements between base and tip, each ("fixed", pose (4, 4)), ("moving", joint, turns, axis (3,), scale,
+/// offset) or ("link", name).
 fn elements<'py>(py: Python<'py>, robot: &Robot) -> PyResult<Vec<Bound<'py, PyTuple>>> {
     robot.elements().iter().map(|element| shown(py, element)).collect()
 }
@@ -27,7 +27,7 @@ fn shown<'py>(py: Python<'py>, element: &Element) -> PyResult<Bound<'py, PyTuple
     }
 }
 
-/// Poses of the first link, and of the tip in the frame of the last.
+/// Returns the poses of the first link, and of the tip in the frame of the last link.
 fn ends<'py>(py: Python<'py>, robot: &Robot) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
     Ok([pose_array(py, robot.base())?, pose_array(py, robot.tool())?])
 }
@@ -37,7 +37,7 @@ type JointParts = (String, String, f64, f64, f64);
 /// (joint, turns, axis, scale, offset).
 type MovingParts<'py> = (usize, bool, Bound<'py, PyAny>, f64, f64);
 
-/// The robot made of these joints, and from link `base` on of what [`elements`] shows.
+/// Makes a robot from joints and from the elements that follow link `base`.
 fn built(name: &str, base: &str, joints: Vec<JointParts>, elements: &[Bound<'_, PyTuple>]) -> PyResult<Robot> {
     let mut chain = ChainBuilder::new(name, base);
     for (name, kind, lower, upper, velocity) in joints {

@@ -1,4 +1,4 @@
-//! Where robots come from.
+//! Constructors of `Robot`: URDF, Denavit-Hartenberg tables, planar arms, built-in robots.
 
 use std::path::PathBuf;
 
@@ -13,18 +13,19 @@ use crate::error::{invalid, raise};
 
 #[pymethods]
 impl PyRobot {
-    /// A robot from a URDF, read from a file or from a string of XML.
+    /// Makes a robot from a URDF file or a string of XML.
     ///
     /// Args:
-    ///     path_or_xml: file, or text that contains "<".
-    ///     base: link in whose frame everything is expressed; None takes the root. It need not be an ancestor of `tip`.
-    ///     tip: link that is to be moved; None takes the only leaf.
+    ///     path_or_xml: a file, or text that contains "<".
+    ///     base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
+    ///     tip: link at the end of the chain; None: the only leaf.
     ///
-    /// Revolute, continuous, prismatic, fixed and mimic joints are understood; collision shapes of spheres, cylinders,
-    /// capsules and boxes become `capsules` that hold them; visuals, meshes and unknown tags are passed over. A missing velocity limit is infinite, a zero one locks the joint; `safety_controller` is ignored.
+    /// Joints may be revolute, continuous, prismatic, fixed or mimic. Collision spheres, cylinders, capsules and boxes become
+    /// `capsules` that enclose them; visuals, meshes and unknown tags are ignored, and so is `safety_controller`. A missing
+    /// velocity limit means infinite; zero locks the joint.
     ///
     /// Raises:
-    ///     UrdfError: not XML, no joint, a cycle, two roots, a zero axis, several leaves and no `tip`.
+    ///     UrdfError: not XML, no joint, a cycle, two roots, a zero axis, or several leaves and no `tip`.
     ///     UnknownNameError: no link of that name; the message lists them.
     #[staticmethod]
     #[pyo3(signature = (path_or_xml, *, base=None, tip=None))]
@@ -42,15 +43,15 @@ impl PyRobot {
         Robot::from_urdf(&source, base, tip).map(Self::from).map_err(raise)
     }
 
-    /// A robot from Denavit-Hartenberg parameters, one row per joint.
+    /// Makes a robot from Denavit-Hartenberg parameters, one row per joint.
     ///
     /// Args:
     ///     a, alpha, d: link length (m), twist (rad), offset (m), each (n,).
-    ///     theta: constant offset of a revolute joint, fixed angle of a prismatic one (rad), (n,); None: zeros.
-    ///     kinds: "revolute", "continuous" or "prismatic" per joint; None: all revolute.
-    ///     convention: "modified" (Craig: a and alpha of the link before) or "standard".
+    ///     theta: constant offset of a revolute joint, or fixed angle of a prismatic joint (rad), (n,); None: zeros.
+    ///     kinds: "revolute", "continuous" or "prismatic" for each joint; None: all revolute.
+    ///     convention: "modified" (Craig: a and alpha of the previous link) or "standard".
     ///     lower, upper, velocity: limits (rad, m; rad/s, m/s), a number or (n,); None: no limit.
-    ///     base, tool: poses (4, 4) before the first and behind the last frame.
+    ///     base, tool: poses (4, 4) before the first frame and after the last one.
     ///     name: the robot's name.
     #[staticmethod]
     #[pyo3(signature = (*, a, alpha, d, theta=None, kinds=None, convention="modified", lower=None, upper=None,
@@ -98,7 +99,7 @@ impl PyRobot {
         Robot::from_dh(name.unwrap_or("dh"), &table).map(Self::from).map_err(raise)
     }
 
-    /// A planar arm of revolute joints in the x-y plane, its base at the origin.
+    /// Makes a planar arm of revolute joints in the x-y plane, with its base at the origin.
     ///
     /// Args:
     ///     lengths: link lengths (m), (n,).
@@ -115,7 +116,7 @@ impl PyRobot {
         robot.with_limits(lower, upper, velocity)
     }
 
-    /// A built-in robot; `Robot.names()` lists them.
+    /// Returns a built-in robot; `Robot.names()` lists them.
     ///
     /// Raises:
     ///     UnknownNameError: lists the names and suggests the nearest.
@@ -124,7 +125,7 @@ impl PyRobot {
         Robot::named(name).map(Self::from).map_err(raise)
     }
 
-    /// The names of the built-in robots.
+    /// Returns the names of the built-in robots.
     #[staticmethod]
     fn names() -> Vec<&'static str> {
         Robot::names().collect()

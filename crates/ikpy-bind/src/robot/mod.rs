@@ -1,4 +1,4 @@
-//! `Robot`, its methods by what they are about.
+//! `Robot`: its methods, grouped by topic.
 
 mod chain_elements;
 mod constructors;

@@ -1,4 +1,4 @@
-//! The same robot with something else.
+//! Modified copies of a robot: other tool, base, limits, capsules, or random errors.
 
 use ikcore::rng;
 use ikcore::robot::{Joint, LinkCapsule};
@@ -10,17 +10,17 @@ use crate::error::{invalid, raise};
 
 #[pymethods]
 impl PyRobot {
-    /// The same robot with a tool: `tool` (4, 4) is the pose of the new tip in the frame of the tip link.
+    /// Returns a copy with a tool: `tool` (4, 4) is the pose of the new tip in the frame of the tip link.
     fn with_tool(&self, tool: &Bound<'_, PyAny>) -> PyResult<Self> {
         self.core.with_tool(rigid("tool", tool)?).map(Self::from).map_err(raise)
     }
 
-    /// The same robot standing elsewhere: `base` (4, 4) is the pose of its base link.
+    /// Returns a copy placed elsewhere: `base` (4, 4) is the pose of its base link.
     fn with_base(&self, base: &Bound<'_, PyAny>) -> PyResult<Self> {
         self.core.with_base(rigid("base", base)?).map(Self::from).map_err(raise)
     }
 
-    /// The same robot with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps what it has.
+    /// Returns a copy with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps the present ones.
     #[pyo3(signature = (*, lower=None, upper=None, velocity=None))]
     pub fn with_limits(
         &self,
@@ -39,9 +39,9 @@ impl PyRobot {
         self.core.with_limits(change).map(Self::from).map_err(raise)
     }
 
-    /// The same robot, its links taking up capsules: of this `radius` (m) along every link, or these alone, each (link,
-    /// a, b, radius) with its axis from a (3,) to b (3,) in the frame of the link (m). Along the links they end at the
-    /// tip: set a tool first. The way that a sliding joint opens between two links is part of neither.
+    /// Returns a copy with collision capsules: either one of `radius` (m) along each link, or the given ones, each (link, a,
+    /// b, radius) with its axis from a (3,) to b (3,) in the frame of the link (m). Capsules along the links end at the tip:
+    /// set a tool first. The gap that a prismatic joint opens between two links is not covered.
     ///
     /// Raises:
     ///     UnknownNameError: no link of that name; the message lists them.
@@ -58,9 +58,9 @@ impl PyRobot {
         robot.map(Self::from).map_err(raise)
     }
 
-    /// The same robot with errors of manufacture, drawn at random: every constant offset between two joints is longer or
-    /// shorter by up to `length` (m), every turning joint's zero is off by up to `angle` (rad). As a `KinematicPlant` it
-    /// is an arm whose model is wrong.
+    /// Returns a copy with random manufacturing errors: each constant offset between two joints changes by up to `length`
+    /// (m), and the zero of each revolute joint by up to `angle` (rad). Use it in a `KinematicPlant` to simulate an arm whose
+    /// model is wrong.
     #[pyo3(signature = (*, length=0.0, angle=0.0, seed=0))]
     fn with_errors(&self, length: f64, angle: f64, seed: i128) -> PyResult<Self> {
         let mut rng = rng::stream(count("seed", seed)?, 0);
@@ -68,7 +68,7 @@ impl PyRobot {
     }
 }
 
-/// Numbers for n joints: one for all of them, or one each.
+/// Reads numbers for n joints: one for all, or one per joint.
 pub fn per_joint(what: &str, value: &Bound<'_, PyAny>, n: usize) -> PyResult<Vec<f64>> {
     let (values, _) = scalar_or_vector(what, value)?;
     match values.len() {

@@ -36,7 +36,7 @@ class DualNetwork:
     """mu (1/s): 0 leaves the velocity of least norm."""
     time_constant: float = 1e-3
     """epsilon (s)."""
-    inner_steps: int = 4
+    inner_steps: int = 1
     """Steps of the network in a tick."""
     limit_gain: float = 10.0
     """kappa (1/s)."""
@@ -75,7 +75,7 @@ def track(
     n = robot.dof
     lower = np.full(n, -np.inf) if lower is None else lower
     upper = np.full(n, np.inf) if upper is None else upper
-    time = dt * np.arange(round(path.duration / dt) + 1)
+    time: Array = dt * np.arange(round(path.duration / dt) + 1, dtype=float)
     reference, feedforward = path.position(time), path.velocity(time)
     q, u = np.empty((len(time), n)), np.zeros(_ROWS + n)
     q[0] = start
@@ -90,7 +90,7 @@ def track(
         for _ in range(network.inner_steps):
             u = _step(u, constraint, constraint @ p, box, dt / network.inner_steps / network.time_constant)
         q[k + 1] = at + dt * np.clip(constraint.T @ u - p, low, high)
-    return Tracked(time, q, np.asarray(robot.fk(q)[:, :3, 3]), np.asarray(reference))
+    return Tracked(np.asarray(time), q, np.asarray(robot.fk(q)[:, :3, 3]), np.asarray(reference))
 
 
 def _step(u: Array, constraint: Array, c: Array, box: tuple[Array, Array], ratio: float) -> Array:

@@ -1,9 +1,9 @@
 """
-Round an obstacle
-=================
+Around an obstacle
+==================
 
-The links get capsules, the world gets a box, and the plan keeps every capsule clear of it between the ends: checked
-along the whole motion with certified bounds, not at samples.
+Capsules model the links, and a box models the obstacle. The plan keeps all capsules clear of the box: the clearance is
+certified along the whole motion, not only at samples.
 """
 
 import matplotlib.pyplot as plt
@@ -18,7 +18,7 @@ there = here * [-1, 1, 1, 1, 1, 1, 1]
 limits = bik.Limits(acceleration=5.0)  # rad/s^2; position and velocity limits are the robot's
 
 # %%
-# Straight through would touch it.
+# The straight motion would collide.
 straight = here + np.linspace(0, 1, 201)[:, None] * (there - here)
 print(f"straight: {bik.obstacles.clearance(robot, straight, [wall]).min():.3f} m")
 
@@ -36,6 +36,6 @@ axes.set(xlabel="time [s]", ylabel="clearance [cm]", ylim=(0, None))
 axes.legend()
 
 # %%
-# The plan as the library draws it.
+# The figure of the plan.
 plan.plot()
 plt.show()
