@@ -2119,12 +2119,10 @@ def plan_point_to_point(
     start_q: ArrayLike | None = None,
     end_q: ArrayLike | None = None,
     limits: Limits | None = None,
-    method: Literal["minmax", "tpbso"] = "minmax",
+    method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
-    elbows: Sequence[int] | None = None,
-    solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     progress: _Progress = None,
@@ -2202,9 +2200,8 @@ def plan_along_path(
     *,
     start_q: ArrayLike | None = None,
     limits: Limits | None = None,
-    method: Literal["timed", "tpbso"] = "timed",
+    method: Literal["timed", "tpbso"] | TPBSO = "timed",
     objective: Literal["time", "joint_travel"] = "time",
-    elbow: int | None = None,
     accuracy: float | None = None,
     solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
@@ -2237,6 +2234,17 @@ def plan_along_path(
         LimitError: limits that contradict themselves.
         UnsupportedLimit: jerk limits, or limits that vary in time.
     """
+
+@final
+class TPBSO:
+    def __new__(
+        cls, *, elbows: Sequence[int] = (1, 1), solver: _DerivativeFree | MultiStart | None = None
+    ) -> TPBSO: ...
+    @property
+    def elbows(self) -> tuple[int, int]: ...
+    @property
+    def solver(self) -> _DerivativeFree | MultiStart | None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Plan:
