@@ -11,7 +11,7 @@ use ikcore::math::pose;
 use ikcore::path::{Path, Reference};
 use ikcore::robot::{JointKind, Robot};
 use ikcore::solver::{Status, Stop, Unattended};
-use ikcore::task::{Goal, Kind, Target};
+use ikcore::task::{Goal, Target, TaskKind};
 use ikcore::tracking::{TrackOptions, track};
 
 fn solved(robot: &Robot, target: &Target, options: &SolveOptions) -> Solution {
@@ -298,12 +298,12 @@ fn a_path_may_ask_for_less_than_it_says() {
     let plane = ikcore::path::Plane::xy([0.4, 0.2, 0.7]).unwrap();
     let circle = ikcore::path::Circle::new(plane, 0.1, 5.0).unwrap();
     let path = Path::new(circle).with_orientation(tip.rotation.into_inner()).unwrap();
-    for kind in [Kind::Position, Kind::Pointing { axis: [0.0, 0.0, 1.0] }, Kind::Pose] {
+    for kind in [TaskKind::Position, TaskKind::Pointing { axis: [0.0, 0.0, 1.0] }, TaskKind::Pose] {
         let goals = vec![Goal::Centring { weight: 1.0 }];
         let options = TrackOptions { task: Some(kind.into()), goals, ..TrackOptions::default() };
         let record = track(&robot, &path.sample(0.01).unwrap(), None, &options, &mut Unattended).unwrap();
         assert_eq!(record.status, Status::Solved, "{kind:?}: {}", record.message());
-        assert_eq!(record.rotation_error[5].is_nan(), kind == Kind::Position, "{kind:?}");
+        assert_eq!(record.rotation_error[5].is_nan(), kind == TaskKind::Position, "{kind:?}");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use ikcore::batch::{self, Batch, BatchOptions, Item, OnInvalid, Targets};
+use ikcore::batch::{self, Batch, BatchItem, BatchOptions, OnInvalid, Targets};
 use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
@@ -24,7 +24,7 @@ use crate::solver::PyStop;
 /// batches.
 #[pyclass(name = "BatchSolution", module = "beetle_ik", frozen)]
 pub struct PyBatchSolution {
-    items: Vec<Item>,
+    items: Vec<BatchItem>,
     dof: usize,
     /// The best configurations found (m, n) (rad, m), inside the limits; NaN in rows whose `status` is INVALID.
     #[pyo3(get)]
@@ -137,7 +137,7 @@ impl PyBatchSolution {
     }
 }
 
-fn column<T: Element>(py: Python<'_>, items: &[Item], of: impl Fn(&Item) -> T) -> Py<PyArray1<T>> {
+fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchItem) -> T) -> Py<PyArray1<T>> {
     row(py, items.iter().map(of).collect()).unbind()
 }
 

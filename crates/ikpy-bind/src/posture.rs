@@ -1,6 +1,6 @@
 //! `planar_posture`, `PlanarPosture` and `CircleSwarm`.
 
-use ikcore::posture::{CircleSwarm, Posture, Rectangle, SearchOptions, best_posture};
+use ikcore::posture::{CircleSwarm, Posture, PostureOptions, Rectangle, best_posture};
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -149,7 +149,7 @@ pub fn planar_posture(
     seed: i128,
 ) -> PyResult<PyPlanarPosture> {
     let target = point("target", target)?;
-    let options = SearchOptions {
+    let options = PostureOptions {
         measure: measure.parse().map_err(raise)?,
         region: region.map(read_region).transpose()?,
         swarm: swarm.map(|swarm| swarm.0),

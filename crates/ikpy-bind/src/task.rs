@@ -1,7 +1,7 @@
 //! `tasks`: which part of a target counts.
 
 use ikcore::math::{Pose, pose};
-use ikcore::task::{Kind, Region, Task};
+use ikcore::task::{Region, Task, TaskKind};
 use numpy::{PyArray1, PyArray2};
 use pyo3::PyClass;
 use pyo3::prelude::*;
@@ -61,7 +61,7 @@ impl PyTask {
 
     fn __repr__(&self) -> String {
         let axis = match &self.core.kind {
-            Kind::Pointing { axis } => Some(format!("axis={}", list_text(axis))),
+            TaskKind::Pointing { axis } => Some(format!("axis={}", list_text(axis))),
             _ => None,
         };
         let matrix = |tool: &Pose| format!("tool={:?}", pose::rows(tool).as_chunks::<4>().0);
@@ -83,7 +83,7 @@ impl PyTask {
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let options = PyDict::new(py);
-        if let Kind::Pointing { axis } = self.core.kind {
+        if let TaskKind::Pointing { axis } = self.core.kind {
             options.set_item("axis", axis)?;
         }
         options.set_item("weights", self.weights(py))?;
@@ -99,7 +99,7 @@ type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// Makes an instance of a task's class, which adds no fields to kind, weights, tolerance, tool and region.
 fn made<C>(
-    kind: Kind,
+    kind: TaskKind,
     [weights, tolerance, tool, region]: [Argument<'_, '_>; 4],
     class: C,
 ) -> PyResult<PyClassInitializer<C>>
@@ -155,7 +155,7 @@ task! {
     ///     weights: (6,), for x, y, z and the three components of the rotation vector, along the axes of the target; 0
     ///         leaves a component free.
     ///     tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
-    PyPose, "Pose", Kind::Pose
+    PyPose, "Pose", TaskKind::Pose
 }
 
 task! {
@@ -164,7 +164,7 @@ task! {
     /// Args:
     ///     weights: (3,), for x, y and z of the base; 0 leaves a component free.
     ///     tolerance: (3,) (m), largest error of each component, instead of the tolerance of the call.
-    PyPosition, "Position", Kind::Position
+    PyPosition, "Position", TaskKind::Position
 }
 
 task! {
@@ -173,7 +173,7 @@ task! {
     /// Args:
     ///     weights: (3,), for the components of the rotation vector along the axes of the target; 0 leaves one free.
     ///     tolerance: (3,) (rad), largest error of each component, instead of the tolerance of the call.
-    PyOrientation, "Orientation", Kind::Orientation
+    PyOrientation, "Orientation", TaskKind::Orientation
 }
 
 /// The position, and the direction of one axis of the tip; rotation about that axis is free. `rotation_error` is the angle
@@ -201,7 +201,7 @@ impl PyPointing {
         region: Argument<'_, '_>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let axis = axis.map_or(Ok([0.0, 0.0, 1.0]), |axis| point("axis", axis))?;
-        made(Kind::Pointing { axis }, [weights, tolerance, tool, region], Self)
+        made(TaskKind::Pointing { axis }, [weights, tolerance, tool, region], Self)
     }
 
     /// The axis in the frame of the tip (3,).
@@ -209,7 +209,7 @@ impl PyPointing {
     fn axis<'py>(self_: PyRef<'py, Self>) -> Option<Bound<'py, PyArray1<f64>>> {
         let py = self_.py();
         match self_.as_super().core.kind {
-            Kind::Pointing { axis } => Some(copied(py, &axis)),
+            TaskKind::Pointing { axis } => Some(copied(py, &axis)),
             _ => None,
         }
     }

@@ -1,10 +1,17 @@
 //! Many targets at once, on all cores. The only module that knows threads.
+//!
+//! `solve_batch` is the call. A `job` reads rows, groups them and solves each group; `pool` holds the threads, `monitors` lets
+//! them be stopped. What comes out is in `results`.
 
+mod job;
+mod monitors;
+mod options;
 mod pool;
 mod results;
 mod solve_batch;
 mod targets;
 
-pub use results::{Batch, Item};
-pub use solve_batch::{BatchOptions, OnInvalid, solve_batch};
+pub use options::{BatchOptions, OnInvalid};
+pub use results::{Batch, BatchItem};
+pub use solve_batch::solve_batch;
 pub use targets::Targets;

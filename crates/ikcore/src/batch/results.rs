@@ -11,7 +11,7 @@ use crate::task::TipError;
 
 /// What became of one target; its configuration is a row of [`Batch::q`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Item {
+pub struct BatchItem {
     /// Why the search ended.
     pub status: Status,
     /// Errors by forward kinematics; NaN where nothing was solved.
@@ -28,7 +28,7 @@ pub struct Item {
     pub elapsed: Duration,
 }
 
-impl Item {
+impl BatchItem {
     /// An item that nothing was done about.
     pub(super) fn untouched(status: Status) -> Self {
         let error = TipError { position: f64::NAN, rotation: f64::NAN };
@@ -51,18 +51,18 @@ pub struct Batch {
     /// The best configurations found, (m, n) row after row (rad, m); NaN where nothing was solved.
     pub q: Vec<f64>,
     /// What became of each target (m,).
-    pub items: Vec<Item>,
+    pub items: Vec<BatchItem>,
     /// Time taken in all.
     pub elapsed: Duration,
 }
 
 impl Batch {
     pub(super) fn untouched(dof: usize, len: usize) -> Self {
-        let items = vec![Item::untouched(Status::Interrupted); len];
+        let items = vec![BatchItem::untouched(Status::Interrupted); len];
         Self { dof, q: vec![f64::NAN; dof * len], items, elapsed: Duration::ZERO }
     }
 
-    /// Item `i` on its own; None past the end.
+    /// BatchItem `i` on its own; None past the end.
     pub fn solution(&self, i: usize) -> Option<Solution> {
         self.items.get(i).map(|item| item.solution(&self.q[i * self.dof..(i + 1) * self.dof]))
     }
@@ -72,7 +72,7 @@ impl Batch {
     /// # Panics
     /// If a row is past the end.
     pub fn select(&self, rows: &[usize]) -> Self {
-        let items: Vec<Item> = rows.iter().map(|i| self.items[*i].clone()).collect();
+        let items: Vec<BatchItem> = rows.iter().map(|i| self.items[*i].clone()).collect();
         let q = rows.iter().flat_map(|i| &self.q[i * self.dof..(i + 1) * self.dof]).copied().collect();
         let elapsed = items.iter().map(|item| item.elapsed).sum();
         Self { dof: self.dof, q, items, elapsed }

@@ -19,7 +19,7 @@ use crate::task::{Target, TipError};
 
 /// How to search.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SearchOptions {
+pub struct PostureOptions {
     /// What makes a posture good.
     pub measure: Measure,
     /// Where joint points may be; None: anywhere.
@@ -72,7 +72,7 @@ const EVALUATIONS_A_LINK: usize = 2500;
 pub fn best_posture(
     robot: &Robot,
     target: &[f64; 3],
-    options: &SearchOptions,
+    options: &PostureOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Posture> {
     let stopwatch = Stopwatch::start();

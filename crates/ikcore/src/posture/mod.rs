@@ -10,10 +10,10 @@
 //! | [`circle_swarm`] | particle swarm over joint points, as published |
 //! | [`best_posture`](mod@best_posture) | the call, and our own search over the directions of the links |
 
-pub mod best_posture;
-pub mod circle_swarm;
-pub mod linkage;
+mod best_posture;
+mod circle_swarm;
+mod linkage;
 
-pub use best_posture::{Posture, SearchOptions, best_posture};
+pub use best_posture::{Posture, PostureOptions, best_posture};
 pub use circle_swarm::CircleSwarm;
 pub use linkage::{Linkage, Measure, Rectangle};

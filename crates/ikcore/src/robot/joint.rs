@@ -67,7 +67,7 @@ impl Joint {
     }
 
     /// [`sampling_range`](Self::sampling_range) under other limits (rad or m).
-    pub fn sampling_range_within(&self, lower: f64, upper: f64) -> (f64, f64) {
+    pub(crate) fn sampling_range_within(&self, lower: f64, upper: f64) -> (f64, f64) {
         let reach = if self.kind.turns() { std::f64::consts::PI } else { UNLIMITED_SLIDE };
         interval::finite(lower, upper, reach)
     }

@@ -137,7 +137,7 @@ impl Robot {
     }
 
     /// Whether a whole turn of joint `joint` leaves the pose of every link unchanged.
-    pub fn repeats_every_turn(&self, joint: usize) -> bool {
+    pub(crate) fn repeats_every_turn(&self, joint: usize) -> bool {
         let driven = self.chain.motions.iter().filter(|motion| motion.joint == joint);
         let scales = driven.map(|motion| (motion.turn_scale, motion.slide_scale));
         self.joints()[joint].kind.turns() && scales.into_iter().all(|(turn, slide)| turn.fract() == 0.0 && slide == 0.0)
@@ -157,7 +157,7 @@ impl Robot {
     ///
     /// # Errors
     /// [`Error::OutsideLimits`] names the joint, its value and its limits.
-    pub fn require_within(&self, what: &str, q: &[f64], lower: &[f64], upper: &[f64]) -> Result<()> {
+    pub(crate) fn require_within(&self, what: &str, q: &[f64], lower: &[f64], upper: &[f64]) -> Result<()> {
         match (0..q.len()).find(|j| !(lower[*j] <= q[*j] && q[*j] <= upper[*j])) {
             None => Ok(()),
             Some(j) => Err(Error::OutsideLimits {
@@ -227,7 +227,7 @@ impl Robot {
     /// [`tip_and_jacobian`](Self::tip_and_jacobian) of four configurations at once, to the same bits; `qs` and `columns`
     /// have one entry per joint.
     #[inline]
-    pub fn tips_and_jacobians(&self, qs: &[F64x4], columns: &mut FourColumns) -> Frame<F64x4> {
+    pub(crate) fn tips_and_jacobians(&self, qs: &[F64x4], columns: &mut FourColumns) -> Frame<F64x4> {
         (self.kernels.jacobian_four)(&self.chain, qs, columns)
     }
 

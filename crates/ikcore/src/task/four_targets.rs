@@ -1,7 +1,9 @@
 //! Four targets of one kind, linearized side by side.
 
+use super::criterion::Criterion;
 use super::residual::orientation;
-use super::{Criterion, SquaredError, Target};
+use super::target::Target;
+use super::tip_error::SquaredError;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, Baseline, by_instructions};
 use crate::math::box_step::ROWS;

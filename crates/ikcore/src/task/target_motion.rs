@@ -1,6 +1,6 @@
 //! How a target moves during a tick, for rules that work with velocities.
 
-use super::Target;
+use super::target::Target;
 use crate::math::Frame;
 use crate::math::hermite::Cubic;
 use crate::math::so3::{rotated, rotation_between};
@@ -52,13 +52,6 @@ impl Target {
         let position = self.position().unwrap_or_default();
         let there = std::array::from_fn(|k| position[k] + time * twist.linear[k]);
         self.placed(there, twist.angular.map(|entry| time * entry))
-    }
-
-    pub(super) fn frame(&self) -> Option<&Frame> {
-        match self {
-            Self::Position(_) => None,
-            Self::Pose(frame) | Self::Orientation(frame) | Self::Pointing { frame, .. } => Some(frame),
-        }
     }
 
     /// The same target at `origin` (m), turned by the rotation vector `turn` (rad).

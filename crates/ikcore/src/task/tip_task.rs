@@ -2,8 +2,11 @@
 
 use std::ops::Range;
 
-use super::criterion::{check_tolerances, check_weights};
-use super::{Components, Criterion, Region, Target, Tolerance};
+use super::components::{Components, check_tolerances, check_weights};
+use super::criterion::Criterion;
+use super::region::Region;
+use super::target::Target;
+use super::tip_error::Tolerance;
 use crate::error::{Error, Result, require_finite};
 use crate::math::Pose;
 use crate::math::box_step::ROWS;
@@ -12,7 +15,7 @@ use crate::robot::Robot;
 
 /// Which part of a pose matters.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum TaskKind {
     /// All of it.
     Pose,
     /// The position; the orientation is left free.
@@ -30,7 +33,7 @@ pub enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Task {
     /// Which part of a pose matters.
-    pub kind: Kind,
+    pub kind: TaskKind,
     /// Weights and tolerances by component.
     pub components: Option<Components>,
     /// From the tip to what is to reach the target; None: the tip itself.
@@ -39,7 +42,7 @@ pub struct Task {
     pub region: Option<Region>,
 }
 
-impl Kind {
+impl TaskKind {
     /// The name as Python shows it.
     pub fn name(&self) -> &'static str {
         match self {
@@ -49,9 +52,7 @@ impl Kind {
             Self::Pointing { .. } => "Pointing",
         }
     }
-}
 
-impl Kind {
     /// Where the entries of its weights and tolerances stand among the six components; the angle of a pointing task stands
     /// for three.
     fn rows(&self) -> &'static [Range<usize>] {
@@ -85,8 +86,8 @@ impl Kind {
     }
 }
 
-impl From<Kind> for Task {
-    fn from(kind: Kind) -> Self {
+impl From<TaskKind> for Task {
+    fn from(kind: TaskKind) -> Self {
         Self { kind, components: None, tool: None, region: None }
     }
 }
@@ -98,7 +99,7 @@ impl Task {
     ///
     /// # Errors
     /// [`Error::WrongLength`]; as [`validate`](Self::validate).
-    pub fn new(kind: Kind, weights: Option<&[f64]>, tolerance: Option<&[f64]>, tool: Option<Pose>) -> Result<Self> {
+    pub fn new(kind: TaskKind, weights: Option<&[f64]>, tolerance: Option<&[f64]>, tool: Option<Pose>) -> Result<Self> {
         weights.map_or(Ok(()), check_weights)?;
         tolerance.map_or(Ok(()), check_tolerances)?;
         let ones = vec![1.0; kind.rows().len()];
@@ -147,7 +148,7 @@ impl Task {
     /// [`Error::NotFinite`] or [`Error::OutOfRange`] names the entry; [`Error::Contradiction`] for a region beside weights
     /// that leave some, not all, of a pose's x, y and z free: its axes are the base's, theirs are the target's.
     pub fn validate(&self) -> Result<()> {
-        if let Kind::Pointing { axis } = &self.kind {
+        if let TaskKind::Pointing { axis } = &self.kind {
             require_finite("axis", axis, |i| format!("entry {i}"))?;
             if norm(axis) == 0.0 {
                 return Err(Error::out_of_range("the length of axis", "positive", 0.0));
@@ -156,7 +157,10 @@ impl Task {
         let Some(components) = &self.components else { return Ok(()) };
         components.validate()?;
         let free = components.weights[..3].iter().filter(|weight| **weight == 0.0).count();
-        if self.region.is_some() && matches!(self.kind, Kind::Pose | Kind::Pointing { .. }) && (1..3).contains(&free) {
+        if self.region.is_some()
+            && matches!(self.kind, TaskKind::Pose | TaskKind::Pointing { .. })
+            && (1..3).contains(&free)
+        {
             return Err(Error::Contradiction {
                 problem: "region keeps x, y and z of the base, but weights free some of x, y and z of the target: \
                           free all three or none, or take task Position, whose axes are the base's"
@@ -172,10 +176,10 @@ impl Task {
     /// [`Error::WrongTarget`] for a position where the task needs an orientation too.
     pub fn target(&self, wanted: &Target) -> Result<Target> {
         match (&self.kind, wanted) {
-            (Kind::Position, Target::Pose(frame)) => Ok(Target::Position(frame.origin)),
-            (Kind::Position, Target::Position(_)) | (Kind::Pose, Target::Pose(_)) => Ok(*wanted),
-            (Kind::Orientation, Target::Pose(frame)) => Ok(Target::Orientation(*frame)),
-            (Kind::Pointing { axis }, Target::Pose(frame)) => {
+            (TaskKind::Position, Target::Pose(frame)) => Ok(Target::Position(frame.origin)),
+            (TaskKind::Position, Target::Position(_)) | (TaskKind::Pose, Target::Pose(_)) => Ok(*wanted),
+            (TaskKind::Orientation, Target::Pose(frame)) => Ok(Target::Orientation(*frame)),
+            (TaskKind::Pointing { axis }, Target::Pose(frame)) => {
                 let length = norm(axis);
                 Ok(Target::Pointing { frame: *frame, axis: axis.map(|entry| entry / length) })
             }

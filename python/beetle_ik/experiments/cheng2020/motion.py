@@ -189,7 +189,7 @@ def tracking_claim(stays: dict[str, bool]) -> Claim:
         "Both arms track their circles well, with the variable velocity limits and without.",
         source="Sections IV-A.1 and IV-A.2, Figures 2 and 3",
         rule=f"Every run is in its error band within {_LATEST} steps and stays there.",
-        measured=f"so in {sum(stays.values())} of {len(stays)} cases",
+        measured=f"{sum(stays.values())} of {len(stays)} cases",
         holds=stays,
         reading="Bands, c₁, c₂, n, starts and link lengths are ours; passes go on from the best beetle so far.",
         section=TITLE,

@@ -20,7 +20,7 @@ from .tuning import COMMAND
 
 TITLE = "Convergence, memory and time"
 _TARGETS = 200
-_TARGETS_SHORT = 100
+_TARGETS_SHORT = 50
 _PASSES = (200, 2000)
 _WALKS: tuple[Literal["star", "chain"], ...] = ("star", "chain")
 _C1 = (1.0, 3.0, 10.0)
@@ -107,7 +107,7 @@ def _reached_table(reached: list[Reached]) -> Table:
             *(Column(name=f"within {passes} passes") for passes in _PASSES),
             Column(name="farthest left over", unit="m"),
         ],
-        rows=[[one.walk, one.c1, *one.reached, one.farthest] for one in reached],
+        rows=[[one.walk, f"{one.c1:g}", *one.reached, one.farthest] for one in reached],
     )
 
 

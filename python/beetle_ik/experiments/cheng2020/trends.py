@@ -19,7 +19,7 @@ from ...report import (
     Spread,
     Table,
     draw_error,
-    draw_velocities,
+    draw_velocities_by_joint,
     drawing,
     number,
 )
@@ -64,7 +64,7 @@ class Sweep:
     measured: tuple[float, ...]
     drawn: tuple[float, ...]
     short: tuple[float, ...]
-    """Both measured and drawn in a quick pass: what the claims are about."""
+    """Measured in a quick pass, what the claims are about; the first two are drawn."""
     text: str
 
 
@@ -117,7 +117,7 @@ def trends(context: Context) -> Part:
     found = {sweep.figure: _measure(context, sweep) for sweep in _SWEEPS}
     blocks: list[Block] = [_TEXT]
     for sweep in _SWEEPS:
-        runs = _runs(sweep, context.pick(full=sweep.drawn, short=sweep.short))
+        runs = _runs(sweep, context.pick(full=sweep.drawn, short=sweep.short[:2]))
         blocks += [sweep.text, runs, _table(sweep, found[sweep.figure])]
     if not context.short:  # two points a line, of one seed, show no trend
         blocks.append(_overview(found, len(_seeds(context))))
@@ -233,17 +233,21 @@ def _table(sweep: Sweep, found: Measurements) -> Table:
 def _runs(sweep: Sweep, values: tuple[float, ...]) -> Figure:
     """One run each of the five-link arm, as the paper draws them."""
     setting = STAR[FIVE_LINK.name]
-    with drawing(4.2) as figure:
-        panels = figure.subplots(2, len(values), sharex=True, sharey="row")
-        for (error, velocity), value in zip(panels.T, values, strict=True):
+    joints = FIVE_LINK.on_path.size
+    with drawing(6.0) as figure:
+        panels = figure.subplots(
+            1 + joints, len(values), sharex=True, sharey="row", height_ratios=[2.5] + [1.0] * joints
+        )
+        for (error, *strips), value in zip(panels.T, values, strict=True):
             result = FIVE_LINK.track(sweep.vary(setting, value).solver, band=setting.band)
             draw_error(error, result.time, result.position_error, band=setting.band, color=BLUE)
-            draw_velocities(velocity, result.time[1:], result.qd[1:], result.velocity_limit[1:, 0], linewidth=0.7)
+            draw_velocities_by_joint(strips, result)
             error.set_title(f"{sweep.symbol} = {value:g}: {result.evaluations:,} evaluations")
-            velocity.set(xlabel="time [s]", xlim=(0.0, result.time[-1]))
-        for axes in panels[:, 1:].flat:
+            strips[-1].set_xlabel("time [s]")
+        for axes in panels[0, 1:]:
             axes.set_ylabel("")
-    caption = "Five-link arm, star walk. Above: error, with its band dashed. Below: the velocities of the five joints."
+        panels[joints // 2 + 1, 0].set_ylabel("joint velocity [rad/s]")
+    caption = "Five-link arm, star walk. Above: error, with its band dashed. Below: velocities, a strip a joint."
     return Figure(name=sweep.figure, title=f"{_number_of(sweep)}: {sweep.symbol}", drawing=figure, caption=caption)
 
 

@@ -9,7 +9,7 @@ use crate::kinematics::Wrench;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::cross;
-use crate::task::Target;
+use crate::task::target::Target;
 
 /// E: of a pose over its three axes and position, of other targets over the parts that they ask for.
 #[inline]

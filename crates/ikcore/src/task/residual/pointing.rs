@@ -9,7 +9,7 @@ use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::{cross, norm};
 use crate::objective::Linearization;
-use crate::task::SquaredError;
+use crate::task::tip_error::SquaredError;
 
 /// Squared distance and squared angle between the axes, and the sum of squares r'r.
 #[inline]

@@ -5,7 +5,7 @@ use crate::math::Frame;
 use crate::math::real::Real;
 use crate::math::so3::axes_of;
 use crate::objective::Linearization;
-use crate::task::SquaredError;
+use crate::task::tip_error::SquaredError;
 
 /// Squared distance and squared angle.
 #[inline]
