@@ -183,7 +183,7 @@ class Robot:
         """Returns a copy with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps the present ones."""
     @property
     def capsules(self) -> list[tuple[str, _Array, _Array, float]]:
-        """Collision capsules of the links, each (link, a, b, radius): all points within `radius` (m) of the segment from a (3,)
+        """Collision capsules of the links, each (link, a, b, radius): all points within the radius (m) of the segment from a (3,)
         to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a URDF.
         """
     def with_capsules(
@@ -2042,7 +2042,7 @@ class Box(Obstacle):
 
 @final
 class Capsule(Obstacle):
-    """A capsule: all points within `radius` (m) of the segment from a (3,) to b (3,)."""
+    """A capsule: all points within the radius (m) of the segment from a (3,) to b (3,)."""
 
     def __new__(cls, a: ArrayLike, b: ArrayLike, radius: float) -> Capsule: ...
     @property
