@@ -23,7 +23,7 @@ pub fn known_solver(value: &Bound<'_, PyAny>) -> Option<AnySolver> {
 pub fn derivative_free_solver(method: &str, solver: &Bound<'_, PyAny>) -> PyResult<AnySolver<DerivativeFree>> {
     any_solver(solver)?.into_derivative_free().ok_or_else(|| {
         let (names, got) = (DERIVATIVE_FREE.join(", "), summary(solver));
-        invalid(format!("{method} knows no derivative: solver must be {names} or MultiStart of one of them, got {got}"))
+        invalid(format!("{method} has no derivatives: solver must be {names} or MultiStart of one of them, got {got}"))
     })
 }
 
