@@ -122,14 +122,14 @@ def motion(context: Context) -> Part:
                 drawing=draw_motion(FIVE_LINK, free),
                 caption=(
                     f"Only the approach differs: a joint begins it at {number(float(np.abs(free.qd).max()), 2)} rad/s. "
-                    "On the circle the beetle stays below the limit by itself."
+                    "On the circle the beetle stays below the limit by itself; the first steps leave the strips."
                 ),
             ),
             Figure(
                 name="figure_3",
                 title="Figure 3: the iiwa 14 under 2 + 0.004 sin t rad/s",
                 drawing=draw_motion(IIWA, iiwa.results[0]),
-                caption="Ten times the planar arm's limit, and no joint needs it after the first steps.",
+                caption="No joint needs this limit, ten times the planar arm's, after the first steps: these leave the strips.",
             ),
             _table(cases),
         ],
