@@ -1,4 +1,4 @@
-"""`beetle-ik reproduce`: run a paper's experiments again."""
+"""`beetle-ik reproduce`: repeats a paper's experiments."""
 
 from collections import Counter
 from contextlib import closing
@@ -19,15 +19,16 @@ def reproduce(
     name: Annotated[str, typer.Argument(help=f"One of {', '.join(experiments.names())}, or all.")],
     *,
     out: Annotated[
-        Path, typer.Option(help="Folder for the report, its tables and its figures; an earlier report is replaced.")
+        Path, typer.Option(help="Folder for the report, its tables and figures; an earlier report is replaced.")
     ],
     short: Annotated[bool, typer.Option("--short", help="A quick pass with fewer runs.")] = False,
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Run a paper's experiments again: every table beside the printed one, every figure, every claim with a verdict.
+    """Repeat a paper's experiments: each table next to the printed one, each figure, and a verdict on each claim.
 
-    The exit status is 1 where a check of the library itself fails. A contradicted claim of a paper is a finding.
+    The exit status is 1 if a check of the library itself fails. A contradicted claim of a paper is a finding, not an
+    error.
     """
     with closing(Bar()) as bar:
         done = experiments.reproduce(name, out, short=short, seed=seed, progress=bar.show, option="--out")

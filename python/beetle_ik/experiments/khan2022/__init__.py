@@ -2,9 +2,13 @@
 
 from ...report import Report
 from ..experiment import Context, Experiment
+from .antennae import antennae
+from .constants import constants
 from .figures import figures
-from .replay import replay
-from .sensitivity import sensitivity
+from .other_methods import other_methods
+from .repetition import repetition
+from .sensor import sensor
+from .servo_arm import servo_arm
 from .theorem import theorem
 
 _SUMMARY = """
@@ -20,7 +24,9 @@ the antennae shake the tool by centimetres, because the measured error is that o
 
 def run(context: Context) -> Report:
     """Run all of it."""
-    parts = [part(context) for part in (figures, sensitivity, theorem, replay)]
+    parts = [
+        part(context) for part in (figures, antennae, constants, theorem, other_methods, repetition, sensor, servo_arm)
+    ]
     return Report.of(_SUMMARY, parts)
 
 

@@ -1,0 +1,104 @@
+"""The paper's panels (a) to (f): the arm along its path, coordinates, joints, objective and errors over time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import beetle_ik as bik
+
+from ...report import BLACK, BLUE, GREEN, ORANGE, SKY, VERMILION, drawing, line
+from .settings import STAR, Array, Run, star_as_printed
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
+
+_EVERY = 50  # rows of 1 ms between points that are drawn
+_POSTURES = (0.0, 0.03, 0.25, 0.5, 0.75, 1.0)  # shares of the run at which the arm is drawn
+
+
+def draw_run(run: Run, robot: bik.Robot) -> Drawing:
+    """All panels of one run."""
+    with drawing(10.0) as figure:
+        grid = figure.add_gridspec(3, 2, height_ratios=[2.6, 1.0, 1.0])
+        top = grid[0, :].subgridspec(1, 2, width_ratios=[1.5, 1.0])
+        _draw_arm(figure.add_subplot(top[0], projection="3d"), run, robot)
+        _draw_front(figure.add_subplot(top[1]), run)
+        over_time = [figure.add_subplot(grid[1 + i // 2, i % 2]) for i in range(4)]
+        _draw_over_time(over_time, run)
+        for axes in over_time:
+            axes.set(xlim=(0.0, run.time[-1]), xlabel="time [s]")
+    return figure
+
+
+def _draw_arm(space: Any, run: Run, robot: bik.Robot) -> None:
+    """Panels (a) and (f): postures from home to the end, and the path."""
+    last = len(run.time) - 1
+    shown = run.result.q[[round(share * last) for share in _POSTURES]]
+    postures = np.array([robot.link_poses(q)[:, :3, 3] for q in shown])
+    for i, joints in enumerate(postures):
+        space.plot(*joints.T, color=BLACK, alpha=(i + 2) / (len(postures) + 1), linewidth=2.0, marker="o",
+                   markersize=3.0, label="arm at θ" if i == len(postures) - 1 else None)  # fmt: skip
+    space.plot(*run.result.reference[::_EVERY].T, color=VERMILION, linewidth=3.0, alpha=0.6, label="path")
+    space.plot(*run.tip[::_EVERY].T, color=BLUE, linewidth=0.8, label="tool at θ")
+    everything = np.vstack((postures.reshape(-1, 3), run.tip))
+    low, high = everything.min(axis=0), everything.max(axis=0)
+    for name, least, most in zip("xyz", low, high, strict=True):
+        space.set(**{f"{name}lim": (least, most), f"{name}label": f"{name} [m]"})
+    space.locator_params(nbins=4)
+    space.set_box_aspect(high - low, zoom=1.05)
+    space.view_init(elev=16.0, azim=-25.0)
+    space.legend(loc="upper right", fontsize="small")
+
+
+def _draw_front(front: Any, run: Run) -> None:
+    """The path as seen along x, with the tool where it is commanded."""
+    rows = slice(None, None, _EVERY)
+    reference = run.result.reference
+    front.plot(*run.result.position[rows, 1:].T, color=SKY, linewidth=0.4, label="commanded tool")
+    front.plot(*reference[rows, 1:].T, color=VERMILION, linewidth=4.0, alpha=0.45, label="path")
+    front.plot(*run.tip[rows, 1:].T, color=BLUE, linewidth=0.9, label="tool at θ")
+    low, high = reference[:, 1:].min(axis=0), reference[:, 1:].max(axis=0)
+    margin = 0.5 * float((high - low).max())
+    front.set(xlabel="y [m]", ylabel="z [m]", title="seen along x")
+    front.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal")
+    front.legend(loc="upper left", fontsize="small")
+
+
+def _draw_over_time(panels: list[Any], run: Run) -> None:
+    coordinates, joints, objective, errors = panels
+    rows = slice(None, None, _EVERY)
+    time, tip, reference = run.time[rows], run.tip[rows], run.result.reference[rows]
+    for k, (name, colour) in enumerate(zip("xyz", (BLUE, GREEN, ORANGE), strict=True)):
+        coordinates.plot(time, reference[:, k], color=colour, linewidth=4.0, alpha=0.3)
+        coordinates.plot(time, tip[:, k], color=colour, label=name)
+        errors.plot(time, tip[:, k] - reference[:, k], color=colour, label=name)
+    for j, q in enumerate(run.result.q[rows].T):
+        joints.plot(time, q, label=f"{j + 1}", **line(j))
+    objective.semilogy(time, run.sent_h[rows], color=SKY, linewidth=0.4, label="h(θ′), commanded")
+    objective.semilogy(time, run.h[rows], color=BLUE, label="h(θ)")
+    errors.set_ylim(-0.1, 0.1)
+    coordinates.set_ylabel("position at θ [m]")
+    joints.set_ylabel("joints [rad]")
+    errors.set_ylabel("error at θ [m]")
+    objective.set_ylabel("objective [m²]")
+    for axes in (coordinates, joints, errors):
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    objective.legend(loc="upper right", fontsize="small")
+
+
+def draw_stars() -> Drawing:
+    """Eq. (20) as printed beside the hypotrochoid."""
+    time = np.linspace(0.0, STAR.duration, 1001)
+    curves: tuple[tuple[str, Array], ...] = (
+        ("as printed", np.array([star_as_printed(t) for t in time])),
+        ("as it must be meant", np.asarray(STAR.position(time))),
+    )
+    with drawing(3.4) as figure:
+        panels = figure.subplots(1, 2, sharex=True, sharey=True)
+        for axes, (name, points) in zip(panels, curves, strict=True):
+            axes.plot(points[:, 1], points[:, 2], color=BLUE)
+            axes.set(title=name, xlabel="y [m]", aspect="equal")
+        panels[0].set_ylabel("z [m]")
+    return figure
