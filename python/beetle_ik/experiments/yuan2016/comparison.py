@@ -47,11 +47,11 @@ with a small fixed step it stands millimetres to a decimetre away after 4000 ite
 turns the tip by {turn}° and θ₁, θ₄ and θ₆ by {joints}° together: far away in the joints, not in orientation.
 """
 _TEXT_CURVES = """
-What a descent down a gradient costs shows in the curves: the published rate is close to where a descent
-becomes unstable, and still takes hundreds of iterations, because E curves {least} to {most} times as much in one
-direction as in another. The automatic rate is not bound by that. Methods that use the Jacobian need a handful of
-iterations; some settle on another branch of the wrist, with the same pose of the tip. All are free to turn past the
-limits of Table 1 here, which is what APPS does until eq. (12) brings it back. **Kept within the limits from step to step, the
+What a descent down a gradient costs shows in the curves: the published rate is close to where a descent becomes
+unstable, and still takes hundreds of iterations, because E curves {least} to {most} times as much in one direction
+as in another. The automatic rate is not bound by that. Methods that use the Jacobian need a handful of iterations;
+some settle on another branch of the wrist, with the same pose of the tip. All are free to turn past the limits of
+Table 1 here, which is what APPS does until eq. (12) brings it back. **Kept within the limits from step to step, the
 last motion is out of reach of the three others from this start:** its fourth joint has to go past 350°
 (Levenberg-Marquardt then stops {stuck} mm away). That freedom is what APPS has to teach.
 """
