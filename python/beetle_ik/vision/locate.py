@@ -1,8 +1,9 @@
 """Joint angles of a planar arm from a picture of it.
 
 A contour of the arm is found, by a threshold or by an active contour, and the joint angles are fitted to it: every
-point of the contour should be half a link's width from the nearest link. The contour energy of "Trajectory tracking of
-redundant manipulator based on PSO algorithm optimization", eq. (19) to (21), is not that of scikit-image.
+point of the contour should be half a link's width from the nearest link. The active contour of scikit-image has the
+energy of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", eq. (19) to (21), with the
+squares put back that eq. (20) lacks: alpha is its l1, beta its l2, and the strength of edges its E_con.
 """
 
 from __future__ import annotations
