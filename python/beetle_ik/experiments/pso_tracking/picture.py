@@ -25,7 +25,7 @@ _Method: TypeAlias = Literal["threshold", "snake"]
 _NAMES: dict[_Method, str] = {"snake": "active contour", "threshold": "plain threshold"}
 _NEAR = 0.01  # rad: as good as found
 _ASTRAY = 0.02  # rad: not to be returned as right
-_SHARE = 0.9
+_SHARE = 0.8
 _OUTSIDE = 6.0  # pixels from the guess, where an active contour begins
 
 _TEXT = """
@@ -112,7 +112,7 @@ def _trials(method: _Method, context: Context) -> Trials:
     rng = np.random.default_rng(context.seed)
     near = lies = 0
     seconds = 0.0
-    seeds = context.seeds(context.pick(full=50, short=3))
+    seeds = context.seeds(context.pick(full=50, short=5))
     for seed in context.each(f"pso-tracking: pictures, {_NAMES[method]}", seeds):
         q = np.array([rng.uniform(-np.pi, np.pi), *rng.uniform(-2.0, 2.0, 2)])
         view = vision.render(ARM, q, noise=NOISE, seed=seed)

@@ -224,9 +224,9 @@ def _over_length(context: Context) -> Figure:
         name="over_length",
         title="What the paper says of q₂ and of balance, over the length that it does not give",
         drawing=figure,
-        caption="Left: where the tip's ellipse is largest, q₂ is small only while the links barely reach E. Right: what "
-        "“balanced” may mean; below 0.4 m the tip's posture has more of it, above the whole arm's, by little. The thin "
-        "line is 0.5 m.",
+        caption="Left: where the tip's ellipse is largest, q₂ is small only while the links barely reach E. Right: "
+        "what “balanced” may mean; below 0.4 m the tip's posture has more of it, above the whole arm's, by little. "
+        "The thin line is 0.5 m.",
     )
 
 

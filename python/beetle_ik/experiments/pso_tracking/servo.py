@@ -95,21 +95,6 @@ def simulate(
     return errors
 
 
-def pid(motion: Motion, _context: Context) -> _Array:
-    """A PID by hand."""
-    return simulate(motion, Gains())
-
-
-def tuned_pid(motion: Motion, context: Context) -> _Array:
-    """A PID whose gains are the best of a grid."""
-    return simulate(motion, best_on_grid(motion, context))
-
-
-def fed_forward_pid(motion: Motion, context: Context) -> _Array:
-    """The same with the wanted velocity added, which the pseudo-inverse has too."""
-    return simulate(motion, best_on_grid(motion, context), feedforward=True)
-
-
 def best_on_grid(motion: Motion, context: Context) -> Gains:
     """The gains of least rms error over the first two seconds; as many trials as the bee colony has."""
     per_axis = context.pick(full=(10, 8, 5), short=(5, 4, 3))
@@ -143,13 +128,16 @@ def genetic_network(motion: Motion, context: Context) -> _Array:
     return simulate(motion, gains, weights=found, basis=features(motion), adaptation=ADAPTATION)
 
 
-CONTROLLERS: dict[str, Callable[[Motion, Context], _Array]] = {
-    "PID, by hand": pid,
-    "PID, tuned": tuned_pid,
-    "PID, tuned, fed forward": fed_forward_pid,
-    "artificial bee colony": bee_pid,
-    "GA-RBF": genetic_network,
-}
+def controllers(motion: Motion, context: Context) -> dict[str, _Array]:
+    """Errors (steps,) (rad) of each controller."""
+    tuned = best_on_grid(motion, context)
+    return {
+        "PID, by hand": simulate(motion, Gains()),
+        "PID, tuned": simulate(motion, tuned),
+        "PID, tuned, fed forward": simulate(motion, tuned, feedforward=True),  # as the pseudo-inverse is
+        "artificial bee colony": bee_pid(motion, context),
+        "GA-RBF": genetic_network(motion, context),
+    }
 
 
 def _cost(errors: _Array) -> float:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ... import Limits, Robot, TrackResult, Trajectory, WeightedPseudoInverse, paths, track
 from ...report import Block, Cell, Column, Figure, Part, Printed, Section, Table, drawing, line, not_given
 from ..experiment import Context
-from .servo import CONTROLLERS, paper_motion, settled
+from .servo import controllers, paper_motion, settled
 from .servo_pseudo_inverse import null_space_cost, on_servos
 from .tracking_claims import (
     PRINTED_OWN,
@@ -98,10 +98,7 @@ def tracking(context: Context) -> Part:
     rules = _rules()
     results = {name: _follow(*rules[name]) for name in context.each("pso-tracking: Figure 8", list(rules))}
     motion = paper_motion(context.pick(full=8.0, short=4.0))
-    errors = {
-        name: CONTROLLERS[name](motion, context)
-        for name in context.each("pso-tracking: controllers", list(CONTROLLERS))
-    }
+    errors = controllers(motion, context)
     held = results[_HELD]
     kinematic, driven = _joint_error(held)[:, 0], on_servos(ARM, wanted, wanted_velocity, DURATION)[:, 0]
     # All over the two seconds of the path; the controllers run longer, which the figures show.
