@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench coverage docs
+.PHONY: help demo test lint bench coverage docs papers
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "%-10s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -46,6 +46,11 @@ coverage: $(VENV)/with-test  ## lines that the tests reach, of Rust and of Pytho
 docs: $(VENV)/with-docs  ## the site in docs/build/html, the Rust pages in target/doc
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs docs/build/html
+
+papers: $(VENV)/with-test  ## the papers run again, reports in target/papers/; the tables that README and site quote
+	$(BIN)/beetle-ik reproduce all --out target/papers
+	cd docs/papers/tables && for table in */*.csv; do \
+	    cp ../../../target/papers/$${table%/*}/tables/$${table#*/} $$table || exit 1; done
 
 SOURCES := Cargo.toml Cargo.lock pyproject.toml README.md \
     $(shell find crates python -type f -not -name '*.pyc' -not -name '*.so' -not -name '*.pyd')

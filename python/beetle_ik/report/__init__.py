@@ -15,7 +15,7 @@
 from .._style import BLACK, BLUE, FORBIDDEN, GREEN, ORANGE, PALETTE, PURPLE, SKY, VERMILION, line
 from .claim import Check, Claim, Printed, Verdict, not_given
 from .content import Block, CarriedOver, Cell, Column, Figure, Part, Report, Section, Spread, Table, Value
-from .drawing import draw_error, draw_velocities, drawing
+from .drawing import draw_arm_in_space, draw_error, draw_velocities, draw_velocities_by_joint, drawing, scale_alike
 from .folder import report_folder
 from .needs import check_installed
 from .numbers import number
@@ -49,13 +49,16 @@ __all__ = [
     "Verdict",
     "check_installed",
     "described",
+    "draw_arm_in_space",
     "draw_error",
     "draw_velocities",
+    "draw_velocities_by_joint",
     "drawing",
     "line",
     "not_given",
     "number",
     "report_folder",
+    "scale_alike",
     "write_index",
     "write_report",
 ]

@@ -48,7 +48,7 @@ class Column:
     name: str
     unit: str = ""
     compared: bool = False
-    digits: int = 3
+    digits: int = 4
 
     @property
     def header(self) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import itertools
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -10,13 +11,19 @@ import numpy as np
 
 from .._style import FORBIDDEN, VERMILION, line, style
 from .log_axes import label_log_axes
+from .numbers import number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from .._core import Robot, TrackResult
+
 WIDTH = 9.0  # inches: the width of the page
+_NEAR = 0.4  # of the limit: from here on it is worth its room
+_ROD, _SHINE, _JOINT = "#7F8C99", "#C3CBD3", "#3B4650"  # an arm of steel
+_SAME = 1e-6  # m
 
 
 @contextmanager
@@ -45,13 +52,67 @@ def draw_error(axes: Axes, time: ArrayLike, error: ArrayLike, *, band: float | N
 def draw_velocities(
     axes: Axes, time: NDArray[np.float64], velocity: NDArray[np.float64], limit: ArrayLike, *, linewidth: float = 0.9
 ) -> None:
-    """Joint velocities (k, n) in rad/s over time; shaded is what lies beyond `limit`: a number, or (k,)."""
+    """Joint velocities (k, n) in rad/s over time, and their `limit`: a number, or (k,).
+
+    What lies beyond the limit is shaded. Where the joints stay far below it, the axes show the joints and name it.
+    """
     for j, joint in enumerate(velocity.T):
         axes.plot(time, joint, label=f"joint {j + 1}", linewidth=linewidth, **line(j))
     bound = np.broadcast_to(np.asarray(limit, dtype=float), time.shape)
-    if np.isfinite(bound).all():
-        top = 1.15 * bound.max()
+    peak, top = float(np.abs(velocity).max()), 1.15 * float(bound.max())
+    if np.isfinite(top) and peak >= _NEAR * top:
         axes.fill_between(time, bound, top, color=FORBIDDEN, linewidth=0)
         axes.fill_between(time, -bound, -top, color=FORBIDDEN, linewidth=0)
         axes.set_ylim(-top, top)
+    elif np.isfinite(top):
+        axes.set_ylim(-1.3 * peak, 1.3 * peak)
+        told = f"limit ±{number(float(bound.max()), 2)} rad/s"
+        axes.text(0.99, 0.97, told, transform=axes.transAxes, ha="right", va="top", fontsize="small")
     axes.set_ylabel("joint velocity [rad/s]")
+
+
+def draw_velocities_by_joint(strips: Sequence[Axes], result: TrackResult) -> None:
+    """The velocity of each joint (rad/s) in axes of its own, the same for all; shaded is what lies beyond its limit.
+
+    The second half of the motion sets the scale: an approach from afar may leave the axes.
+    """
+    time, bound = result.time[1:], result.velocity_limit[1:]
+    settled, limit = float(np.abs(result.qd[len(result.qd) // 2 :]).max()), float(bound.max())
+    near = settled >= _NEAR * limit
+    top = 1.15 * limit if near else 1.5 * settled
+    for j, axes in enumerate(strips):
+        axes.plot(time, result.qd[1:, j], linewidth=0.8, **line(j))
+        if near:
+            axes.fill_between(time, bound[:, j], top, color=FORBIDDEN, linewidth=0)
+            axes.fill_between(time, -bound[:, j], -top, color=FORBIDDEN, linewidth=0)
+        axes.set(xlim=(0.0, time[-1]), ylim=(-top, top))
+        named = {"transform": axes.transAxes, "va": "top", "fontsize": "small"}
+        axes.text(0.02, 0.93, f"joint {j + 1}", color=line(j)["color"], **named)
+    if not near and np.isfinite(limit):
+        strips[0].text(0.98, 0.93, f"limit ±{number(limit, 2)} rad/s", ha="right", **named)
+
+
+def draw_arm_in_space(axes: Any, robot: Robot, q: NDArray[np.float64], *, alpha: float = 1.0) -> None:
+    """The arm at `q` as a body of rods and joints in 3-D axes, one scale along all of them."""
+    corners = _corners(robot.link_poses(q)[:, :3, 3])
+    for i, (a, b) in enumerate(itertools.pairwise(corners)):
+        width = 13.0 - 7.0 * i / len(corners)
+        axes.plot(*np.array([a, b]).T, color=_ROD, linewidth=width, solid_capstyle="round", alpha=alpha, zorder=2)
+        axes.plot(*np.array([a, b]).T, color=_SHINE, linewidth=0.35 * width, alpha=alpha, zorder=2.1)
+    axes.plot(*corners.T, color=_JOINT, marker="o", markersize=6.0, linestyle="none", alpha=alpha, zorder=3)
+    axes.computed_zorder = False
+    axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+    axes.locator_params(nbins=5)
+
+
+def scale_alike(axes: Any, *, zoom: float = 0.95) -> None:
+    """One scale along all three axes, so that a circle looks like one."""
+    spans = [np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())]
+    axes.set_box_aspect(spans, zoom=zoom)
+
+
+def _corners(origins: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The places where the arm bends, each once."""
+    apart = np.linalg.norm(np.diff(origins, axis=0), axis=1) > _SAME
+    bends: NDArray[np.float64] = origins[np.concatenate([[True], apart])]
+    return bends

@@ -7,7 +7,8 @@ import numpy as np
 import beetle_ik as bik
 
 from ...report import Spread
-from .methods import Method, evaluations_a_step, missed_steps
+from .boxes import evaluations_a_step, missed_steps
+from .methods import Method
 from .settings import STEADY, excess_velocity, roughness, steady_error
 
 

@@ -8,7 +8,17 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import BLUE, SKY, VERMILION, draw_error, draw_velocities, drawing, line
+from ...report import (
+    BLUE,
+    SKY,
+    VERMILION,
+    draw_arm_in_space,
+    draw_error,
+    draw_velocities_by_joint,
+    drawing,
+    line,
+    scale_alike,
+)
 from .settings import FIVE_LINK, Task
 
 if TYPE_CHECKING:
@@ -19,22 +29,30 @@ _POSTURES = 6
 
 
 def draw_motion(task: Task, result: bik.TrackResult) -> Drawing:
-    """Arm and circle, joint positions, error and velocities within their limit."""
+    """Arm and circle, large; joint positions and error beside them; below, the velocity of each joint in its limit."""
     planar = task is FIVE_LINK
-    with drawing(6.2) as figure:
-        grid = figure.add_gridspec(2, 2, width_ratios=[1.0, 1.15])
-        space = figure.add_subplot(grid[0, 0], projection=None if planar else "3d")
+    count = result.q.shape[1]
+    with drawing(8.2) as figure:
+        parts: Any = figure.subfigures(2, 1, height_ratios=[1.7, 1.0])
+        above, below = parts
+        grid = above.add_gridspec(2, 2, width_ratios=[1.3, 1.0])
+        space = above.add_subplot(grid[:, 0], projection=None if planar else "3d")
         (_draw_planar_arm if planar else _draw_arm)(space, result)
-        joints, error, velocities = (figure.add_subplot(grid[place]) for place in ((0, 1), (1, 0), (1, 1)))
+        joints, error = (above.add_subplot(grid[row, 1]) for row in range(2))
         for j, q in enumerate(result.q.T):
             joints.plot(result.time, q, label=f"joint {j + 1}", **line(j))
         joints.set_ylabel("joint position [rad]")
-        joints.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
         draw_error(error, result.time, result.position_error, band=result.position_tolerance, color=BLUE)
         error.legend(loc="upper right")
-        draw_velocities(velocities, result.time[1:], result.qd[1:], result.velocity_limit[1:, 0])
-        for axes in (joints, error, velocities):
-            axes.set(xlim=(0.0, result.time[-1]), xlabel="time [s]")
+        error.set_xlabel("time [s]")
+        for axes in (joints, error):
+            axes.set_xlim(0.0, result.time[-1])
+        strips = below.subplots(2, (count + 1) // 2, sharex=True, sharey=True)
+        draw_velocities_by_joint(strips.ravel()[:count], result)
+        for axes in strips.ravel()[count:]:
+            axes.axis("off")
+        below.supylabel("joint velocity [rad/s]", fontsize="medium")
+        below.supxlabel("time [s]", fontsize="medium")
     return figure
 
 
@@ -54,12 +72,12 @@ def _draw_planar_arm(axes: Axes, result: bik.TrackResult) -> None:
 
 
 def _draw_arm(axes: Any, result: bik.TrackResult) -> None:
-    for i, origins in enumerate(_postures(result)):
-        axes.plot(*origins.T, color=SKY, marker="o", markersize=3, linewidth=1.0, label=None if i else "arm")
-    axes.plot(*result.reference.T, color=VERMILION, linewidth=4.0, alpha=0.45, label="circle")
-    axes.plot(*result.position.T, color=BLUE, label="tip")
-    axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
-    spans = [np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())]
-    axes.set_box_aspect(spans, zoom=0.9)  # one scale along all axes, and room for the labels
-    axes.locator_params(nbins=4)
-    axes.legend(loc="upper left", bbox_to_anchor=(-0.1, 1.0))
+    middle = len(result.q) // 2
+    draw_arm_in_space(axes, result.robot, result.q[middle], alpha=0.3)
+    draw_arm_in_space(axes, result.robot, result.q[0])
+    axes.plot(*result.reference.T, color=VERMILION, linewidth=4.0, alpha=0.45, label="circle", zorder=5)
+    axes.plot(*result.position.T, color=BLUE, label="tip", zorder=6)
+    axes.set_zlim(0.0, None)
+    axes.view_init(elev=18, azim=-55)
+    scale_alike(axes, zoom=1.15)
+    axes.legend(loc="upper left")

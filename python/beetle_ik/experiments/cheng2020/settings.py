@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 import beetle_ik as bik
 
+from ...report import Printed
+
 Solver: TypeAlias = bik.BAS | bik.Firefly | bik.Genetic | bik.PSO | bik.QPSO
 Run: TypeAlias = bik.TrackResult | bik.ModelFreeResult
 
@@ -21,6 +23,22 @@ STEPS = round(DURATION / DT)
 STEADY = slice(STEPS // 2 + 1, None)  # rows of the second half, when the approach is over
 ROUNDING = 1e-12  # rad/s, by which a velocity may exceed its limit
 _RIPPLE = 0.004  # rad/s, W of eq. (7); omega is 1 rad/s
+
+
+# What the sentences of the paper depend on, and what it says of it.
+PARAMETERS: dict[str, float | Printed] = {
+    "T [s]": DURATION,
+    "Ts [s]": DT,
+    "c₁": Printed.NOT_IN_COPY,  # Figure 5 may give those that it compares
+    "c₂": Printed.NOT_IN_COPY,  # Figure 6
+    "n": Printed.NOT_IN_COPY,  # Figure 4
+    "error band": Printed.NOT_STATED,
+    "link lengths of the planar arm": Printed.NOT_STATED,
+    "start": Printed.NOT_STATED,
+    "pₘᵢₙ and pₘₐₓ": Printed.NOT_STATED,
+    "options of the swarms": Printed.NOT_STATED,
+    "evaluations in 15 s": Printed.NOT_STATED,
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +59,11 @@ class Task:
     def limits(self) -> bik.Limits:
         """Eq. (7): H + W sin(t); positions as the robot has them."""
         return bik.Limits(velocity=bik.Sinusoid(mean=self.velocity, amplitude=_RIPPLE, angular_frequency=1.0))
+
+    def velocity_limit(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Eq. (7) as numbers: rad/s at these times (s)."""
+        limit: NDArray[np.float64] = self.velocity + _RIPPLE * np.sin(time)
+        return limit
 
     def track(
         self,

@@ -5,6 +5,7 @@ from ..experiment import Context, Experiment
 from .comparison import comparison
 from .motions import motions, replay
 from .rates import rates, reach
+from .singularities import singularities
 from .typos import typos
 
 _SUMMARY = """
@@ -20,7 +21,14 @@ With a rate taken from the gradients themselves it gets to most of them.
 def run(context: Context) -> Report:
     """Run all of it."""
     runs = replay()
-    parts = [motions(runs), comparison(context, runs), rates(runs), reach(context), typos(runs)]
+    parts = [
+        motions(runs),
+        comparison(context, runs),
+        singularities(context, runs),
+        rates(runs),
+        reach(context),
+        typos(runs),
+    ]
     return Report.of(_SUMMARY, parts)
 
 

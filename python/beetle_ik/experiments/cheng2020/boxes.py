@@ -1,0 +1,125 @@
+"""The boxes in which a step is searched, and what a method costs in each."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+import beetle_ik as bik
+
+from .methods import PATIENCE
+from .settings import DT, FIVE_LINK, IIWA, STEPS, Run, Solver, Task
+
+
+@dataclass(frozen=True, kw_only=True)
+class ErrorBox:
+    """A solver that searches a box as long as the error: drawn anew after a few generations, about the best so far.
+
+    It has what BAS has by eq. (12): a search that contracts with the error.
+    """
+
+    solver: Solver
+    """What searches each box; its generations are those of one box."""
+    reach: float
+    """Half the width of the box over the error (rad/m), as c1 of eq. (12)."""
+
+
+Setting: TypeAlias = Solver | ErrorBox
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a run needed for its error band."""
+
+    evaluations: float
+    """A step, on average."""
+    missed: int
+    """Steps that ended outside."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Box:
+    """An arm that starts on its circle, and what a step searches."""
+
+    name: str
+    run: Callable[[Setting, int, float], Cost]
+    """Follow the circle with a setting, a seed and a band (m)."""
+
+
+def track(
+    task: Task, solver: Solver | None, *, seed: int, band: float, limits: bik.Limits | None = None
+) -> bik.TrackResult:
+    """Follow the circle from a start on it."""
+    return task.track(solver, band=band, seed=seed, start=task.on_path, limits=limits)
+
+
+def evaluations_a_step(result: Run) -> float:
+    """On average."""
+    return result.evaluations / (len(result.time) - 1)
+
+
+def missed_steps(result: bik.TrackResult) -> int:
+    """Steps that ended outside the band."""
+    return int((result.position_error[1:] > result.position_tolerance).sum())
+
+
+def _within(task: Task, limits: bik.Limits | None = None) -> Callable[[Setting, int, float], Cost]:
+    def run(setting: Setting, seed: int, band: float) -> Cost:
+        if isinstance(setting, ErrorBox):
+            return _follow(task, setting, seed, band)
+        result = track(task, setting, seed=seed, band=band, limits=limits)
+        return Cost(evaluations_a_step(result), missed_steps(result))
+
+    return run
+
+
+def _follow(task: Task, setting: ErrorBox, seed: int, band: float) -> Cost:
+    """The circle, step by step."""
+    q, random = task.on_path, np.random.default_rng(seed)
+    targets = task.circle.position(np.arange(1, STEPS + 1) * DT)
+    evaluations = missed = 0
+    for target in targets:
+        q, error, spent = _step(task, setting, q, target, band, random)
+        evaluations += spent
+        missed += error > band
+    return Cost(evaluations / STEPS, missed)
+
+
+def _step(
+    task: Task,
+    setting: ErrorBox,
+    start: NDArray[np.float64],
+    target: NDArray[np.float64],
+    band: float,
+    random: np.random.Generator,
+) -> tuple[NDArray[np.float64], float, int]:
+    """Search boxes until the error is within the band: configuration, error and evaluations."""
+    lower = np.maximum(start - DT * task.velocity, task.robot.lower)
+    upper = np.minimum(start + DT * task.velocity, task.robot.upper)
+    q, error, spent = start, float(np.linalg.norm(task.robot.fk(start)[:3, 3] - target)), 1
+    while error > band and spent < PATIENCE:
+        half = setting.reach * error
+        found = bik.solve(
+            task.robot,
+            target,
+            task=bik.tasks.Position(),
+            start=q,
+            solver=setting.solver,
+            limits=bik.Limits(lower=np.maximum(q - half, lower), upper=np.minimum(q + half, upper)),
+            position_tolerance=band,
+            seed=int(random.integers(2**31)),
+        )
+        q, error = found.q, found.position_error
+        spent += found.evaluations - 1  # the error where a box begins is known
+    return q, error, spent
+
+
+WHOLE = Box(name="whole box", run=_within(IIWA))
+# The circle asks for no more than 0.02 rad a step.
+TRUST = Box(name="trust box", run=_within(IIWA, bik.Limits(velocity=0.1)))
+SCALED = Box(name="box as long as the error", run=_within(IIWA))
+PLANAR = Box(name="five-link arm", run=_within(FIVE_LINK))
+BANDS = (1e-3, 1e-4, 1e-5)  # m
+BOXES = (WHOLE, TRUST, SCALED, PLANAR)

@@ -1,0 +1,138 @@
+"""Singular configurations: where the motions come near one, and where a search begins at one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import beetle_ik as bik
+
+from ...report import VERMILION, Claim, Figure, Part, Section, drawing, line, number
+from ..experiment import Context
+from .published import BUDGET, MOTIONS, Array
+from .task import ROBOT, TOLERANCE, Motion, reach
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
+
+TITLE = "Singularities"
+_RARE = 5.0  # %, of random configurations: what counts as near a singularity
+_AS_MANY = 5.0  # percentage points by which shares of targets may differ
+_WRIST = 4  # row of the fifth joint, whose zero aligns the fourth with the sixth
+
+_TEXT = """
+The paper names the motions I-1 and 5-6 as singular. How near a configuration is to a singularity, the smallest singular
+value of its Jacobian says. Its 5th percentile over {count} random configurations is {rare}. On the way of APPS it falls
+to {first} in I-1, where the fifth joint passes zero and the wrist is stretched; in 5-6, where that joint stays near
+34°, to no less than {other}. Below the percentile come {near}.
+"""
+
+
+@dataclass(frozen=True)
+class Approach:
+    """How near a motion comes to a singularity."""
+
+    name: str
+    smallest: Array
+    """Smallest singular value, by iteration."""
+    solved: bool
+
+
+def singularities(context: Context, runs: list[Motion]) -> Part:
+    """The motions' ways, and searches that begin at a singularity."""
+    every = context.pick(full=2, short=20)
+    approaches = [_approach(run, every) for run in runs]
+    count = context.pick(full=2000, short=200)
+    random = ROBOT.random_configurations(count, seed=context.seed)
+    rare = float(np.percentile([_smallest(q) for q in random], _RARE))
+    by_name = {one.name: float(one.smallest.min()) for one in approaches}
+    text = _TEXT.format(
+        count=count,
+        rare=number(rare, 2),
+        first=number(by_name["I-1"], 2),
+        other=number(by_name["5-6"], 2),
+        near=" and ".join(name for name, smallest in by_name.items() if smallest < rare),
+    )
+    figure = Figure(
+        name="singularities",
+        title="Smallest singular value of the Jacobian on the way of APPS",
+        drawing=_draw(approaches, rare, every),
+        caption=f"Below the dashed line are {_RARE:g} % of random configurations.",
+    )
+    goals = ROBOT.fk(ROBOT.random_configurations(count, seed=context.seed + 1))
+    straight = random.copy()
+    straight[:, _WRIST] = 0.0
+    shares = _share(goals, random), _share(goals, straight)
+    solved = {one.name: one.solved for one in approaches}
+    return Section(TITLE, [text, figure]), [
+        *(motion_claim(name, by_name[name], rare, solved=solved[name]) for name in ("I-1", "5-6")),
+        start_claim(*shares),
+    ]
+
+
+def motion_claim(name: str, smallest: float, rare: float, *, solved: bool) -> Claim:
+    """Smallest singular value on the way of a motion, beside that of a rare configuration."""
+    return Claim.judged(
+        f"APPS performs well when a singularity exists, such as in motion {name}.",
+        source="Text on Table 6",
+        rule=f"The smallest singular value falls below the {_RARE:g}th percentile of random configurations, and APPS "
+        "solves the motion.",
+        measured=f"smallest singular value {number(smallest, 2)} (percentile: {number(rare, 2)}); "
+        f"{'solved' if solved else 'not solved'}",
+        holds=smallest < rare and solved,
+        reading="η and E₀ as for the seven motions.",
+        section=TITLE,
+    )
+
+
+def start_claim(elsewhere: float, straight: float) -> Claim:
+    """Shares of targets (%) that converge from random starts, and from the same with a stretched wrist."""
+    return Claim.judged(
+        "Since APPS does not involve the Jacobian, it converges even when a singularity exists.",
+        source="Introduction",
+        rule=f"From starts with a stretched wrist as many random targets converge within {BUDGET} iterations as from "
+        f"others, to {_AS_MANY:g} percentage points.",
+        measured=f"{number(straight, 3)} % against {number(elsewhere, 3)} %",
+        holds=straight >= elsewhere - _AS_MANY,
+        reading="The automatic learning rate. Its gradient is the transposed Jacobian times the error; only no inverse "
+        "is needed.",
+        section=TITLE,
+    )
+
+
+def _approach(run: Motion, every: int) -> Approach:
+    ends = range(0, run.solution.iterations + 1, every)
+    ways = [run.start, *(reach(run.goal, run.start, bik.APPS.paper(), budget=end).q for end in ends[1:])]
+    return Approach(run.name, np.array([_smallest(q) for q in ways]), run.solution.success)
+
+
+def _smallest(q: Array) -> float:
+    return float(np.linalg.svd(ROBOT.jacobian(q), compute_uv=False)[-1])
+
+
+def _share(goals: Array, starts: Array) -> float:
+    found = bik.solve_batch(
+        ROBOT,
+        goals,
+        starts=starts,
+        solver=bik.APPS(),
+        limits=bik.Limits(lower=-np.inf, upper=np.inf),
+        position_tolerance=TOLERANCE,
+        rotation_tolerance=TOLERANCE,
+        stop=bik.Stop(max_iterations=BUDGET, max_evaluations=2 * BUDGET),
+    )
+    return 100.0 * float(np.mean(found.success))
+
+
+def _draw(approaches: list[Approach], rare: float, every: int) -> Drawing:
+    with drawing(3.2) as figure:
+        axes = figure.subplots()
+        for i, one in enumerate(approaches):
+            iterations = every * np.arange(len(one.smallest))
+            axes.semilogy(iterations, one.smallest, label=MOTIONS[i], **line(i))
+        axes.axhline(rare, color=VERMILION, linestyle="--", linewidth=1.0)
+        axes.set(xlabel="iteration", ylabel="smallest singular value")
+        axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
+    return figure
