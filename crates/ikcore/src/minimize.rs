@@ -54,9 +54,9 @@ impl Minimum {
         }
         let found = format!("best value {value:.6e} after {evaluations} evaluations");
         match self.status {
-            Status::Solved => format!("{found}, below the value asked for"),
-            Status::Stalled => format!("{found}, and no further gain: try another start or seed, or MultiStart"),
-            Status::BudgetSpent => format!("{found}, all that the budget allows: raise it in stop=Stop(...)"),
+            Status::Solved => format!("{found}, below the requested value"),
+            Status::Stalled => format!("{found}, no further progress: try another start or seed, or MultiStart"),
+            Status::BudgetSpent => format!("{found}, when the budget was spent: raise it in stop=Stop(...)"),
             Status::TimeUp => format!("{found}, when the time was up: raise max_time"),
             _ => format!("{found}, when it was stopped: run again to finish"),
         }

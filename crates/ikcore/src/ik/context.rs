@@ -47,11 +47,11 @@ impl<'a> SolveContext<'a> {
         options.goals.iter().try_for_each(|goal| goal.validate(robot))?;
         if options.prefer == Prefer::Nearest && !options.goals.is_empty() {
             return Err(Error::Contradiction {
-                problem: "prefer=\"nearest\" is a goal itself: leave goals out".into(),
+                problem: "prefer=\"nearest\" takes no goals: the distance to the start is its goal".into(),
             });
         }
         if options.prefer == Prefer::Best && options.goals.is_empty() {
-            return Err(Error::Contradiction { problem: "prefer=\"best\" needs goals: best for what?".into() });
+            return Err(Error::Contradiction { problem: "prefer=\"best\" needs goals to compare solutions by".into() });
         }
         let bounds = position_box(robot, options.limits.as_ref())?;
         let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?.map(Box::new);
@@ -111,9 +111,9 @@ impl<'a> SolveContext<'a> {
     /// [`Error::Contradiction`].
     pub(crate) fn require_reference(&self, start: Option<&[f64]>) -> Result<()> {
         match (self.options.prefer, start) {
-            (Prefer::Nearest, None) => {
-                Err(Error::Contradiction { problem: "prefer=\"nearest\" needs a start: nearest to what?".into() })
-            }
+            (Prefer::Nearest, None) => Err(Error::Contradiction {
+                problem: "prefer=\"nearest\" needs a start to measure distances from".into(),
+            }),
             _ => Ok(()),
         }
     }

@@ -61,7 +61,7 @@ impl SolutionSet {
     /// How many there are, or why there are none.
     pub fn message(&self) -> String {
         match (self.solutions.len(), &self.miss) {
-            (0, Some(miss)) => format!("none found; the best miss: {}", miss.message()),
+            (0, Some(miss)) => format!("no solution; best miss: {}", miss.message()),
             (1, _) => "1 solution".into(),
             (count, _) => format!("{count} distinct solutions"),
         }
