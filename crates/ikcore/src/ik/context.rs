@@ -25,7 +25,7 @@ pub(crate) struct Query<'a> {
 #[derive(Debug)]
 pub(crate) struct SolveContext<'a> {
     robot: &'a Robot,
-    /// The robot with the tool of the task, where it has one; boxed, since what is prepared is moved about.
+    /// The robot with the tool of the task, if there is one; boxed to keep the context small.
     with_tool: Option<Box<Robot>>,
     options: &'a SolveOptions,
     criterion: Criterion,
@@ -34,7 +34,7 @@ pub(crate) struct SolveContext<'a> {
 }
 
 impl<'a> SolveContext<'a> {
-    /// Checks what all targets have in common, but for [`SolveOptions::start`]: that is an argument of each.
+    /// Checks robot and options, except [`SolveOptions::start`], which each query carries.
     ///
     /// # Errors
     /// Any [`Error`] for wrong options.
@@ -87,7 +87,7 @@ impl<'a> SolveContext<'a> {
         Problem::new(self.robot(), target, self.criterion).disregarding_turns()
     }
 
-    /// What of `wanted` the task asks for, checked.
+    /// Returns the part of `wanted` that the task asks for, checked.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::WrongTarget`].
@@ -105,7 +105,7 @@ impl<'a> SolveContext<'a> {
         self.robot().require_within("start", q, self.bounds.lower(), self.bounds.upper())
     }
 
-    /// Checks that there is a start where the nearest solution is asked for.
+    /// Checks that the nearest solution is asked for with a start.
     ///
     /// # Errors
     /// [`Error::Contradiction`].
@@ -118,7 +118,7 @@ impl<'a> SolveContext<'a> {
         }
     }
 
-    /// The caller's start, or the best that is known of.
+    /// The caller's start, or the indexed configuration nearest to the target.
     pub(super) fn first_start(&self, problem: &mut Problem<'_>, start: Option<&[f64]>, rng: &mut LazyRng) -> Point {
         if let Some(start) = start {
             return Point::from_slice(start);
