@@ -2,8 +2,8 @@
 Around an obstacle
 ==================
 
-The links are modelled by capsules and the obstacle by a box. The plan keeps all capsules clear of the box: the clearance
-is certified along the whole motion, not only at samples.
+Capsules model the links, and a box models the obstacle. The plan keeps all capsules clear of the box: the clearance is
+certified along the whole motion, not only at samples.
 """
 
 import matplotlib.pyplot as plt

@@ -1,7 +1,7 @@
 """An arm that differs from its model, tracked with the model and without any.
 
-The simulated iiwa (MuJoCo: position servos, gravity, a sensor with 0.05 mm of noise on each axis) has a link 2 cm longer
-than its model, and joints that are 2 degrees off. Joint positions computed with the model miss the circle by
+The simulated iiwa (MuJoCo: position servos, gravity, a sensor with 0.05 mm of noise on each axis) has a link 2 cm
+longer than its model, and joints that are 2 degrees off. Joint positions computed with the model miss the circle by
 centimetres. `BroydenBAS` uses no model: it sends one command per tick, measures the tip, and stays within a millimetre.
 
     pip install 'beetle-ik[plot,sim]'

@@ -155,7 +155,7 @@ def test_printed_numbers_are_shown_as_they_are_printed() -> None:
     assert [(cell.text, cell.kind) for cell in ga] == [
         ("GA", "text"),
         ("not in our copy", "absent"),
-        (f"25.0{NBSP}±{NBSP}10.2", "number measured"),
+        (f"25.00{NBSP}±{NBSP}10.20", "number measured"),
         ("–", "number"),
     ]
 

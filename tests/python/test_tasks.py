@@ -114,7 +114,7 @@ def test_the_nearest_solution_is_nearest() -> None:
     np.testing.assert_array_equal(batch.q[0], nearest.q)
 
 
-def test_goals_are_served() -> None:
+def test_goals_change_the_solution_as_asked() -> None:
     posture = Q + 0.2
     plain = bik.solve(IIWA, POSE, start=Q)
     near = bik.solve(IIWA, POSE, start=Q, goals=goals.Posture(posture))

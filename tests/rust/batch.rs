@@ -130,7 +130,7 @@ fn side_by_side_a_target_gets_the_bits_that_it_gets_alone() {
 /// More targets than a thread takes at once, wrong ones on both sides of where one group ends and the next begins, and one that takes
 /// its whole budget when all others have ended.
 #[test]
-fn groups_do_not_show() {
+fn lane_groups_do_not_change_results() {
     let robot = robot("panda");
     let mut targets = poses(&robot, 600);
     for wrong in [255, 256, 512] {

@@ -59,7 +59,7 @@ fn whole_turns_inside_the_limits_are_counted() {
 }
 
 #[test]
-fn a_solution_known_to_be_near_is_not_passed_by_for_one_far_away() {
+fn nearest_finds_a_solution_known_to_be_near() {
     for name in ["ur3e", "ur5e", "ur10"] {
         let robot = robot(name);
         for (i, start) in configurations(&robot, 150).iter().enumerate() {
@@ -73,7 +73,7 @@ fn a_solution_known_to_be_near_is_not_passed_by_for_one_far_away() {
 }
 
 #[test]
-fn on_a_redundant_arm_the_nearest_is_a_minimum_along_the_self_motion() {
+fn nearest_is_a_minimum_along_the_self_motion() {
     let robot = robot("iiwa14");
     for q in configurations(&robot, 10) {
         let inside: Vec<f64> = q.iter().map(|angle| 0.8 * angle).collect();
@@ -155,7 +155,7 @@ fn all_solutions_of_a_six_joint_arm_are_found() {
 }
 
 #[test]
-fn the_limit_cuts_the_farthest_and_no_solution_is_told_with_the_best_miss() {
+fn limit_keeps_the_nearest_and_a_miss_is_returned() {
     let robot = robot("iiwa14");
     let q = [0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1];
     let each = SolveOptions { start: Some(q.to_vec()), ..SolveOptions::default() };

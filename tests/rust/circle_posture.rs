@@ -37,7 +37,7 @@ fn cases() -> impl Iterator<Item = (f64, Measure, Option<Rectangle>, f64)> {
 }
 
 #[test]
-fn our_own_search_finds_the_optima_anywhere_and_in_the_first_quadrant() {
+fn the_default_search_finds_the_optima_of_both_regions() {
     for (length, measure, region, optimum) in cases() {
         let arm = Robot::planar(&[length; 3]).unwrap();
         let found = search(&arm, PostureOptions { measure, region, ..PostureOptions::default() });
@@ -89,7 +89,7 @@ fn longer_arms_are_searched_too() {
 }
 
 #[test]
-fn what_cannot_be_has_a_status() {
+fn impossible_targets_end_in_a_status() {
     let arm = Robot::planar(&[0.2; 3]).unwrap();
     for swarm in [None, Some(CircleSwarm::default())] {
         let found = search(&arm, PostureOptions { swarm, ..PostureOptions::default() });

@@ -118,7 +118,7 @@ fn a_target_off_the_plane_of_a_planar_arm_is_said_to_be() {
 }
 
 #[test]
-fn an_orientation_that_parallel_axes_cannot_turn_to_is_said_to_be_one() {
+fn an_orientation_off_parallel_axes_is_out_of_reach() {
     // A SCARA arm: two links, a slide along their axes and a wrist, with its tool upside down.
     let table = DhTable {
         kinds: vec![JointKind::Revolute, JointKind::Revolute, JointKind::Prismatic, JointKind::Revolute],

@@ -66,7 +66,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 #[test]
-fn secants_follow_the_circle_to_a_nanometre_in_four_measurements_a_step() {
+fn broyden_tracks_to_a_nanometre_in_four_measurements() {
     let record = on_circle(&mut exact_plant(), &options(0));
     assert_eq!(record.track.status, Status::Solved, "{}", record.message());
     assert!(record.track.position_error.iter().all(|error| *error <= 1e-9));
@@ -103,7 +103,7 @@ fn noise_of_the_sensor_is_not_much_more_than_passed_on() {
 }
 
 #[test]
-fn noise_does_not_send_an_arm_with_one_measurement_a_step_astray() {
+fn one_measurement_per_step_withstands_noise() {
     let reference = circle_at(0.05);
     let mut largest: Vec<f64> = (0..SEEDS)
         .map(|seed| {
@@ -129,7 +129,7 @@ fn ninetieth(arm: &Robot, record: &ModelFreeRecord) -> f64 {
 }
 
 #[test]
-fn outliers_of_the_sensor_do_not_throw_it_off() {
+fn outliers_of_the_sensor_are_withstood() {
     for seed in 0..SEEDS {
         let (wrong, mut rng) = (wrong_arm(seed), rng::stream(seed, 2));
         // One measurement in a hundred is wrong by a decimetre.
@@ -179,7 +179,7 @@ fn one_measurement_a_step_is_enough_for_a_tenth_of_a_millimetre() {
 }
 
 #[test]
-fn it_joins_the_circle_from_the_singular_home_position() {
+fn tracking_starts_from_the_singular_home_position() {
     for limits in [None, Some(circle_limits(&robot("iiwa14")))] {
         let options = ModelFreeOptions { limits, ..ModelFreeOptions::default() };
         let record = track_model_free(&mut exact_plant(), &circle(), &[0.0; 7], &options, &mut Unattended).unwrap();

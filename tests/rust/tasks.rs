@@ -94,7 +94,7 @@ fn the_error_of_a_pointing_task_is_the_angle_between_the_axes() {
 }
 
 #[test]
-fn a_component_of_weight_zero_is_left_free_in_the_frame_of_the_target() {
+fn weight_zero_frees_a_component_in_the_target_frame() {
     let robot = robot("iiwa14");
     // Anywhere along the z axis of the target, with any spin about it.
     let components = Components { weights: [1.0, 1.0, 0.0, 1.0, 1.0, 0.0], tolerance: None };

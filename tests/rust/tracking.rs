@@ -96,7 +96,7 @@ fn the_model_tracks_to_a_micrometre_in_one_evaluation_a_step() {
 }
 
 #[test]
-fn the_model_keeps_no_motion_alive_that_the_path_does_not_ask_for() {
+fn the_model_based_rule_damps_unneeded_self_motion() {
     // Extrapolated joint velocities would: after a start beside the path the arm would go on turning about its elbow.
     let rms = |rule: TickRule| {
         let record = iiwa().track(rule, 1e-9, 0);

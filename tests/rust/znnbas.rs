@@ -89,7 +89,7 @@ fn antennae_that_follow_the_error_converge_to_1e_5_and_below() {
 }
 
 #[test]
-fn within_the_limits_of_the_arm_the_first_stroke_is_out_of_reach() {
+fn the_first_stroke_is_out_of_reach_within_the_limits() {
     for seed in 0..SEEDS {
         let run = Run::new(&Znnbas::published(), &letter(), Some(position_limits(&robot("iiwa14"))), seed);
         assert!((11.0..=13.0).contains(&run.arrival()), "seed {seed}: {} s", run.arrival());

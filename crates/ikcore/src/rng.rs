@@ -82,7 +82,7 @@ impl LazyRng {
     /// Two independent uniforms in [0, 1) from one draw: 26 bits for the first, 27 for the second. Enough for weights, at
     /// half the cost.
     #[inline]
-    pub fn uniform_pair(&mut self) -> [f64; 2] {
+    fn uniform_pair(&mut self) -> [f64; 2] {
         split(self.uniform())
     }
 

@@ -15,7 +15,7 @@
 from .._style import BLACK, BLUE, FORBIDDEN, GREEN, ORANGE, PALETTE, PURPLE, SKY, VERMILION, line
 from .claim import Check, Claim, Printed, Verdict, not_given
 from .content import Block, CarriedOver, Cell, Column, Figure, Part, Report, Section, Spread, Table, Value
-from .drawing import draw_arm_in_space, draw_error, draw_velocities, drawing, scale_alike
+from .drawing import draw_arm_in_space, draw_error, draw_velocities, draw_velocities_by_joint, drawing, scale_alike
 from .folder import report_folder
 from .needs import check_installed
 from .numbers import number
@@ -52,6 +52,7 @@ __all__ = [
     "draw_arm_in_space",
     "draw_error",
     "draw_velocities",
+    "draw_velocities_by_joint",
     "drawing",
     "line",
     "not_given",

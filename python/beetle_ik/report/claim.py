@@ -42,6 +42,10 @@ class Printed(Enum):
     NOT_STATED = "not stated"  # the paper does not give it
 
 
+# Where readings differ, and where all agree.
+_HOLDS = ("Holds", "Holds under each reading")
+_FAILS = ("Does not hold", "Holds under no reading")
+
 Readings: TypeAlias = Mapping[str, bool]
 """Whether a claim holds under each reading that the text leaves open."""
 
@@ -134,9 +138,9 @@ class Claim:
         """What stands below the measured values: readings, missing quantities, the reason."""
         notes = [f"Reading: {self.reading}"] if self.reading else []
         if isinstance(self.holds, Mapping):
-            for word, met in (("Holds", True), ("Does not hold", False)):
+            for words, met in ((_HOLDS, True), (_FAILS, False)):
                 names = [name for name, holds in self.holds.items() if holds is met]
-                notes += [f"{word}: {'; '.join(names)}."] if names else []
+                notes += [f"{words[len(names) == len(self.holds)]}: {'; '.join(names)}."] if names else []
         notes += [f"Not given: {', '.join(self.missing)}."] if self.missing else []
         return notes + ([self.reason] if self.reason else [])
 

@@ -58,6 +58,7 @@ def _templates() -> Environment:
         inline=lambda text: Markup(inline(text)),
         slug=slug,
         rows=shown_rows,
+        breadth=lambda table: sum(2 if column.compared else 1 for column in table.columns),
         pixels=lambda inches: round(inches * _INCHES),
         kind=lambda verdict: verdict.name.lower().replace("_", "-"),
     )

@@ -30,7 +30,7 @@ mod torques;
 mod wide_frame;
 
 pub use fixed_direction::FixedDirection;
-pub use four_jacobians::FourColumns;
+pub(crate) use four_jacobians::FourColumns;
 pub use jacobian::Columns;
 pub use reach::{Beyond, Reach};
 pub use screws::{Screw, Screws};

@@ -9,13 +9,10 @@ use crate::kinematics::Columns;
 use crate::math::MAX_DOF;
 use crate::robot::Robot;
 
-/// The largest number of moving links.
-pub const MAX_LINKS: usize = MAX_DOF;
-
 /// The indices of all moving links, base to tip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinkIndices {
-    values: [f64; MAX_LINKS],
+    values: [f64; MAX_DOF],
     count: usize,
 }
 
@@ -36,7 +33,7 @@ impl Manipulability {
     /// moved by the joints before it, k_m w_i the area or volume of its ellipsoid.
     pub fn link_indices(&self, robot: &Robot, q: &[f64]) -> LinkIndices {
         let screws = robot.screws(q);
-        let mut indices = LinkIndices { values: [0.0; MAX_LINKS], count: screws.len() };
+        let mut indices = LinkIndices { values: [0.0; MAX_DOF], count: screws.len() };
         for (i, link) in screws.iter().enumerate() {
             let mut columns: Columns = [[0.0; 6]; MAX_DOF];
             for screw in &screws[..=i] {

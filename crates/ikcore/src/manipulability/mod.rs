@@ -21,5 +21,5 @@ mod motion;
 
 pub use ellipsoid::Ellipsoid;
 pub use index::{Manipulability, manipulability, manipulability_all};
-pub use links::{LinkIndices, MAX_LINKS};
+pub use links::LinkIndices;
 pub use motion::Motion;

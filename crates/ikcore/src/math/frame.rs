@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use super::arithmetic::Arithmetic;
 use super::f64x4::F64x4;
-use super::pose::{self, Pose};
+use super::{Pose, pose};
 
 /// A rigid transform: the columns of its rotation (its axes, seen from the base) and its origin (m). Over
 /// [`F64x4`], four of them, lane by lane.
@@ -19,7 +19,7 @@ pub struct Frame<T = f64> {
 impl Frame<F64x4> {
     /// These frames, one per lane.
     #[inline(always)]
-    pub fn of(frames: [&Frame; 4]) -> Self {
+    pub(crate) fn of(frames: [&Frame; 4]) -> Self {
         let mut all = Self { axes: [[F64x4::ZERO; 3]; 3], origin: [F64x4::ZERO; 3] };
         for (lane, frame) in frames.into_iter().enumerate() {
             for k in 0..3 {
@@ -39,14 +39,14 @@ impl Frame {
 
     /// Rotates a vector from this frame into the base: R v.
     #[inline(always)]
-    pub fn turn<A: Arithmetic>(&self, v: &[f64; 3]) -> [f64; 3] {
+    pub(crate) fn turn<A: Arithmetic>(&self, v: &[f64; 3]) -> [f64; 3] {
         let [x, y, z] = &self.axes;
         std::array::from_fn(|k| A::mul_add(z[k], v[2], A::mul_add(y[k], v[1], x[k] * v[0])))
     }
 
     /// Maps a point from this frame into the base: R p + t.
     #[inline(always)]
-    pub fn place<A: Arithmetic>(&self, p: &[f64; 3]) -> [f64; 3] {
+    pub(crate) fn place<A: Arithmetic>(&self, p: &[f64; 3]) -> [f64; 3] {
         let [x, y, z] = &self.axes;
         // Two short chains instead of one long one: the latency of this sum is what a chain of joints costs.
         std::array::from_fn(|k| A::mul_add(x[k], p[0], self.origin[k]) + A::mul_add(y[k], p[1], z[k] * p[2]))
@@ -54,7 +54,7 @@ impl Frame {
 
     /// self * next.
     #[inline(always)]
-    pub fn then<A: Arithmetic>(&self, next: &Self) -> Self {
+    pub(crate) fn then<A: Arithmetic>(&self, next: &Self) -> Self {
         let axes = std::array::from_fn(|column| self.turn::<A>(&next.axes[column]));
         Self { axes, origin: self.place::<A>(&next.origin) }
     }
@@ -68,7 +68,7 @@ impl Frame {
 
     /// This frame turned about its own z axis, given sine and cosine of the angle.
     #[inline(always)]
-    pub fn turned<A: Arithmetic>(&self, sine: f64, cosine: f64) -> Self {
+    pub(crate) fn turned<A: Arithmetic>(&self, sine: f64, cosine: f64) -> Self {
         let [x, y, z] = self.axes;
         let new_x = std::array::from_fn(|k| A::mul_add(sine, y[k], cosine * x[k]));
         let new_y = std::array::from_fn(|k| A::mul_add(-sine, x[k], cosine * y[k]));

@@ -8,38 +8,40 @@
 //! | `pose`, `frame` | rigid transforms: checked ones of callers, plain ones of kernels |
 //! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
 //! | `arithmetic`, `f64x4`, `real` | instructions and lanes |
-//! | `sincos`, `arctangent`, `logarithm`, `ordered` | functions without branches |
-//! | `gram`, `ldl`, `box_step`, `four_box_steps`, `secant`, `singular` | small linear systems, and the bounded step |
-//! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `interval` | functions of one variable |
+//! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
+//! | `gram`, `ldl`, `box_step`, `four_box_steps`, `secant`, `singular_values` | small linear systems, and the bounded step |
+//! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `sampling_range` | functions of one variable |
 
-pub mod arctangent;
-pub mod arithmetic;
+pub(crate) mod arctangent;
+pub(crate) mod arithmetic;
 pub mod box_step;
-pub mod cubic_spline;
-pub mod f64x4;
-pub mod four_box_steps;
-pub mod frame;
-pub mod gram;
-pub mod hermite;
-pub mod interval;
-pub mod knots;
-pub mod ldl;
-pub mod logarithm;
-pub mod ordered;
+pub(crate) mod comparison;
+pub(crate) mod cubic_spline;
+pub(crate) mod f64x4;
+pub(crate) mod four_box_steps;
+mod frame;
+pub(crate) mod gram;
+pub(crate) mod hermite;
+mod knots;
+pub(crate) mod ldl;
+pub(crate) mod logarithm;
 pub mod polynomial;
 pub mod pose;
-pub mod real;
-pub mod secant;
-pub mod sincos;
-pub mod singular;
+pub(crate) mod real;
+pub(crate) mod sampling_range;
+pub(crate) mod secant;
+pub(crate) mod sincos;
+pub(crate) mod singular_values;
 pub mod so3;
 pub mod ticks;
-pub mod vec3;
-pub mod vector;
+pub(crate) mod vec3;
+pub(crate) mod vector;
 
 pub use frame::Frame;
 pub use knots::Knots;
-pub use pose::Pose;
 
 /// The largest number of independent joints, and of moving elements, of a robot.
 pub const MAX_DOF: usize = 32;
+
+/// A rigid transform: rotation matrix and translation (m).
+pub type Pose = nalgebra::IsometryMatrix3<f64>;

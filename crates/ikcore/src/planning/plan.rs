@@ -27,6 +27,8 @@ pub struct Plan {
     /// Largest distance (m) of the tip from the path that it was to follow, at its points and between them; None from end
     /// to end.
     pub accuracy: Option<f64>,
+    /// Positions that the tip was to follow (m), straight in between; None from end to end.
+    pub reference: Option<Vec<[f64; 3]>>,
     /// The orientations that a planar arm was free to choose, at every point of the path, from the tip's link down; empty
     /// where there is no such choice.
     pub redundancy: Vec<Orientations>,

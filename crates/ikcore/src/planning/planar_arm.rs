@@ -41,7 +41,8 @@ pub enum Elbow {
 }
 
 impl Elbow {
-    fn sign(self) -> f64 {
+    /// The sign of the second joint's angle: 1 or -1.
+    pub fn sign(self) -> f64 {
         match self {
             Self::Positive => 1.0,
             Self::Negative => -1.0,

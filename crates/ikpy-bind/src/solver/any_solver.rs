@@ -1,9 +1,9 @@
-//! Reads solver arguments: an algorithm, or `MultiStart` of one.
+//! Solver arguments: an algorithm, or `MultiStart` of one.
 
-use ikcore::solver::{AnySolver, DerivativeFree};
+use ikcore::solver::{Algorithm, AnySolver, DerivativeFree, MultiStart};
 use pyo3::prelude::*;
 
-use super::algorithm::{DERIVATIVE_FREE, algorithm, not_a_solver};
+use super::algorithm::{DERIVATIVE_FREE, algorithm, not_a_solver, to_python};
 use super::multi_start::PyMultiStart;
 use crate::convert::summary;
 use crate::error::invalid;
@@ -23,6 +23,19 @@ pub fn known_solver(value: &Bound<'_, PyAny>) -> Option<AnySolver> {
 pub fn derivative_free_solver(method: &str, solver: &Bound<'_, PyAny>) -> PyResult<AnySolver<DerivativeFree>> {
     any_solver(solver)?.into_derivative_free().ok_or_else(|| {
         let (names, got) = (DERIVATIVE_FREE.join(", "), summary(solver));
-        invalid(format!("{method} knows no derivative: solver must be {names} or MultiStart of one of them, got {got}"))
+        invalid(format!("{method} has no derivatives: solver must be {names} or MultiStart of one of them, got {got}"))
     })
+}
+
+/// Returns the Python value of a solver that needs values alone.
+pub fn derivative_free_to_python<'py>(
+    py: Python<'py>,
+    solver: &AnySolver<DerivativeFree>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match solver.clone() {
+        AnySolver::Single(solver) => to_python(py, &Algorithm::DerivativeFree(solver)),
+        AnySolver::MultiStart(MultiStart { solver, rule }) => {
+            Ok(Bound::new(py, PyMultiStart(MultiStart { solver: Algorithm::DerivativeFree(solver), rule }))?.into_any())
+        }
+    }
 }

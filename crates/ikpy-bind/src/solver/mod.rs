@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 
 use algorithm::add_classes;
 pub use algorithm::solver_names;
-pub use any_solver::{any_solver, derivative_free_solver, known_solver};
+pub use any_solver::{any_solver, derivative_free_solver, derivative_free_to_python, known_solver};
 pub use broyden_bas::PyBroydenBas;
 use multi_start::PyMultiStart;
 pub use stop::{PyStop, status};

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import InvalidInputError, plan_point_to_point
+from ... import TPBSO, InvalidInputError, plan_point_to_point
 from ...obstacles import Ellipse
 from ..options import (
     Acceleration,
@@ -19,7 +19,7 @@ from ..options import (
     load_robot,
     numbers,
 )
-from .planned import Animated, Budget, Out, Solver, options, report
+from .planned import Animated, Budget, Out, SearchName, Solver, options, report, search
 
 
 class Method(StrEnum):
@@ -80,13 +80,12 @@ def point_to_point(
     """Plan a motion between two positions, from rest to rest."""
     arm = load_robot(robot, urdf, base, tip)
     ends = _end("start", start, start_q) | _end("end", end, end_q)
-    chosen = options(velocity, acceleration, solver, max_evaluations)
+    chosen = {"method": _method(method, solver)} | options(velocity, acceleration, max_evaluations)
     obstacles = [_ellipse(text) for text in ellipses or ()]
     report(
         lambda: plan_point_to_point(
             arm,
             **ends,
-            method=method.value,
             objective=objective.value,
             obstacles=obstacles,
             seed=seed,
@@ -111,6 +110,15 @@ def _end(name: str, place: str | None, configuration: str | None) -> dict[str, A
         case None, None:
             raise InvalidInputError(f"no {name} was given: use --{name} X,Y,Z or --{name}-q Q1,Q2,...")
     raise InvalidInputError(f"both --{name} and --{name}-q were given: give one of them")
+
+
+def _method(method: Method, solver: SearchName | None) -> Any:
+    """Returns the method as `plan_point_to_point` takes it."""
+    if method is Method.TPBSO:
+        return TPBSO(solver=search(solver))
+    if solver is not None:
+        raise InvalidInputError(f"--solver is the search of --method tpbso; {method} has its own: leave it out")
+    return method.value
 
 
 def _ellipse(text: str) -> Any:

@@ -53,7 +53,7 @@ def hardware(context: Context) -> Part:
         title="Figure 9: the circle read back from the simulated arm",
         drawing=_draw(resolved, tips),
         caption="Left: arm, circle and the tip as it was. Right: how far the tip was from its target, and from the "
-        "circle's radius: the servos sag by a constant, so the path is a circle a little lower.",
+        "circle's radius. The servos sag, which moves the circle by a millimetre or two.",
     )
     return Section(TITLE, [_TEXT, figure]), [circle_claim(_radii(tips))]
 
@@ -98,7 +98,7 @@ def _draw(resolved: bik.TrackResult, tips: NDArray[np.float64]) -> Drawing:
         space.plot(*resolved.reference.T, color=VERMILION, linewidth=4.0, alpha=0.45, label="circle", zorder=5)
         space.plot(*tips.T, color=BLUE, label="tip", zorder=6)
         space.set_zlim(0.0, None)
-        scale_alike(space)
+        scale_alike(space, zoom=1.1)
         space.legend(loc="upper left")
         error, radius = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
         error.plot(resolved.time, 1e3 * np.linalg.norm(tips - resolved.reference, axis=1), color=BLUE)

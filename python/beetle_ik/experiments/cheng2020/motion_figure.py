@@ -8,7 +8,17 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import BLUE, SKY, VERMILION, draw_arm_in_space, draw_error, draw_velocities, drawing, line, scale_alike
+from ...report import (
+    BLUE,
+    SKY,
+    VERMILION,
+    draw_arm_in_space,
+    draw_error,
+    draw_velocities_by_joint,
+    drawing,
+    line,
+    scale_alike,
+)
 from .settings import FIVE_LINK, Task
 
 if TYPE_CHECKING:
@@ -19,23 +29,30 @@ _POSTURES = 6
 
 
 def draw_motion(task: Task, result: bik.TrackResult) -> Drawing:
-    """Arm and circle, large; joint positions, error and velocities within their limit beside them."""
+    """Arm and circle, large; joint positions and error beside them; below, the velocity of each joint in its limit."""
     planar = task is FIVE_LINK
-    with drawing(7.0) as figure:
-        grid = figure.add_gridspec(3, 2, width_ratios=[1.2, 1.0])
-        space = figure.add_subplot(grid[:, 0], projection=None if planar else "3d")
+    count = result.q.shape[1]
+    with drawing(8.2) as figure:
+        parts: Any = figure.subfigures(2, 1, height_ratios=[1.7, 1.0])
+        above, below = parts
+        grid = above.add_gridspec(2, 2, width_ratios=[1.3, 1.0])
+        space = above.add_subplot(grid[:, 0], projection=None if planar else "3d")
         (_draw_planar_arm if planar else _draw_arm)(space, result)
-        joints, error, velocities = (figure.add_subplot(grid[row, 1]) for row in range(3))
+        joints, error = (above.add_subplot(grid[row, 1]) for row in range(2))
         for j, q in enumerate(result.q.T):
             joints.plot(result.time, q, label=f"joint {j + 1}", **line(j))
         joints.set_ylabel("joint position [rad]")
-        joints.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, fontsize="small")
         draw_error(error, result.time, result.position_error, band=result.position_tolerance, color=BLUE)
         error.legend(loc="upper right")
-        draw_velocities(velocities, result.time[1:], result.qd[1:], result.velocity_limit[1:, 0])
-        for axes in (joints, error, velocities):
+        error.set_xlabel("time [s]")
+        for axes in (joints, error):
             axes.set_xlim(0.0, result.time[-1])
-        velocities.set_xlabel("time [s]")
+        strips = below.subplots(2, (count + 1) // 2, sharex=True, sharey=True)
+        draw_velocities_by_joint(strips.ravel()[:count], result)
+        for axes in strips.ravel()[count:]:
+            axes.axis("off")
+        below.supylabel("joint velocity [rad/s]", fontsize="medium")
+        below.supxlabel("time [s]", fontsize="medium")
     return figure
 
 
@@ -62,5 +79,5 @@ def _draw_arm(axes: Any, result: bik.TrackResult) -> None:
     axes.plot(*result.position.T, color=BLUE, label="tip", zorder=6)
     axes.set_zlim(0.0, None)
     axes.view_init(elev=18, azim=-55)
-    scale_alike(axes)
+    scale_alike(axes, zoom=1.15)
     axes.legend(loc="upper left")

@@ -107,7 +107,7 @@ def _reached_table(reached: list[Reached]) -> Table:
             *(Column(name=f"within {passes} passes") for passes in _PASSES),
             Column(name="farthest left over", unit="m"),
         ],
-        rows=[[one.walk, one.c1, *one.reached, one.farthest] for one in reached],
+        rows=[[one.walk, f"{one.c1:g}", *one.reached, one.farthest] for one in reached],
     )
 
 

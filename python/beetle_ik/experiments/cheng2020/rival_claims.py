@@ -15,15 +15,15 @@ def rival_claims(section: str, precise: list[Compared], budgeted: list[Compared]
     """All of them; `section` shows them. BAS comes first in both lists."""
     errors = {one.name: one.error.mean for one in budgeted}
     return [
-        more_accurate(section, errors),
-        levels(section, errors),
-        order(section, {one.name: one.evaluations.mean for one in precise}),
-        oscillations(section, {one.name: one.roughness.mean for one in precise}),
+        more_accurate_claim(section, errors),
+        levels_claim(section, errors),
+        order_claim(section, {one.name: one.evaluations.mean for one in precise}),
+        oscillations_claim(section, {one.name: one.roughness.mean for one in precise}),
         _limits(section, [*precise, *budgeted]),
     ]
 
 
-def more_accurate(section: str, errors: dict[str, float]) -> Claim:
+def more_accurate_claim(section: str, errors: dict[str, float]) -> Claim:
     """The order of the errors (m) of Figure 7, by method."""
     return Claim.judged(
         "In the same running time BAS is more accurate than GA, PSO, FA and QPSO.",
@@ -36,7 +36,7 @@ def more_accurate(section: str, errors: dict[str, float]) -> Claim:
     )
 
 
-def levels(section: str, errors: dict[str, float]) -> Claim:
+def levels_claim(section: str, errors: dict[str, float]) -> Claim:
     """The errors (m) themselves."""
     return Claim.judged(
         "In the same running time the error of BAS is at the level of 10⁻⁵ m, that of PSO 10⁻⁴ m, that of GA 10⁻³ m.",
@@ -54,7 +54,7 @@ def is_level(error: float, level: float) -> bool:
     return level / 10**0.5 <= error <= level * 10**0.5
 
 
-def order(section: str, evaluations: dict[str, float]) -> Claim:
+def order_claim(section: str, evaluations: dict[str, float]) -> Claim:
     """From fast to slow, by the evaluations a step."""
     found = sorted(evaluations, key=evaluations.__getitem__)
     return Claim.judged(
@@ -69,7 +69,7 @@ def order(section: str, evaluations: dict[str, float]) -> Claim:
     )
 
 
-def oscillations(section: str, roughness: dict[str, float]) -> Claim:
+def oscillations_claim(section: str, roughness: dict[str, float]) -> Claim:
     """How the joint velocities change from step to step (rad/s, rms), by method."""
     beetle = roughness[BEETLE]
     return Claim.judged(

@@ -78,7 +78,7 @@ def search_box(context: Context, whole: dict[str, Spent]) -> Part:
         _table(costs),
         _settings_table(),
     ]
-    return Section(TITLE, blocks), [*claims(costs), *_checks(costs)]
+    return Section(TITLE, blocks), [*lead_claims(costs), *_checks(costs)]
 
 
 def _spent(box: Box, band: float, name: str, seeds: range) -> Spent:
@@ -112,7 +112,7 @@ def _finding(costs: Costs) -> str:
     )
 
 
-def claims(costs: Costs) -> list[Claim]:
+def lead_claims(costs: Costs) -> list[Claim]:
     """Both claims that the paper makes over the four rivals at equal precision."""
     return [
         Claim.judged(

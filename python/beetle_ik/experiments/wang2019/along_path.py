@@ -51,6 +51,7 @@ _PATHS: dict[str, tuple[bik.Path | NDArray[np.float64], float]] = {
 }  # accuracy in m
 _ALIKE = 2.0  # times, that iterations may differ
 _NOT_MUCH = 1.1  # times the fastest timing, that uniform timing may take
+_ROUNDING = 1e-9  # a plan may use all of the accuracy
 
 _TEXT = f"""
 An arm of three links of 1 m follows 51 points of a path. How the last link stands is free within a range that follows
@@ -143,7 +144,7 @@ def follows(path: str, cases: Sequence[Case]) -> Claim:
             "time (eq. 24)."
         ),
         measured=f"{kept} of {len(mine)} plans; at worst {number(1e3 * worst, 4)} mm",
-        holds=kept == len(mine) and worst <= accuracy,
+        holds=kept == len(mine) and worst <= accuracy * (1.0 + _ROUNDING),
         reading="Path, links, limits and accuracy are ours; eq. (25) needs weights, which it lacks.",
         section=TITLE,
     )

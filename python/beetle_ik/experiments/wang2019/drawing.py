@@ -77,10 +77,12 @@ def draw_positions(axes: Axes, plan: bik.Plan) -> None:
 
 
 def draw_velocities(axes: Axes, plan: bik.Plan, limit: float) -> None:
-    """Joint velocities over time; shaded is what lies beyond `limit` (rad/s)."""
+    """Joint velocities over time; shaded, where the axis reaches so far, is what lies beyond `limit` (rad/s)."""
     time = np.linspace(0.0, plan.trajectory.duration, _POINTS)
-    for j, velocity in enumerate(plan.trajectory.at(time)[1].T):
+    velocities = plan.trajectory.at(time)[1]
+    for j, velocity in enumerate(velocities.T):
         axes.plot(time, velocity, **line(j))
+    top = 1.15 * min(limit, float(np.abs(velocities).max()))
     for sign in (-1.0, 1.0):
         axes.axhspan(sign * limit, sign * 1.15 * limit, color=FORBIDDEN, linewidth=0)
-    axes.set(xlabel="time [s]", ylabel="joint velocity [rad/s]", ylim=(-1.15 * limit, 1.15 * limit))
+    axes.set(xlabel="time [s]", ylabel="joint velocity [rad/s]", ylim=(-top, top))

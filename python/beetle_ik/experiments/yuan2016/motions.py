@@ -160,7 +160,7 @@ def _claims(runs: list[Motion], angles: Array, positions: Array, rounded: Array,
     corrected = POSITION_1.copy()
     corrected[-1, 1] = 0.00002
     return [
-        iterations_claim([run.solution.iterations for run in runs], solved=all(run.solution.success for run in runs)),
+        counts_claim([run.solution.iterations for run in runs], solved=all(run.solution.success for run in runs)),
         angles_claim(float(np.abs(angles - R1_CORRECTED).max()), int((rounded == R2).sum())),
         positions_claim(
             float(np.abs(np.round(positions, 5) - corrected).max()),
@@ -171,7 +171,7 @@ def _claims(runs: list[Motion], angles: Array, positions: Array, rounded: Array,
     ]
 
 
-def iterations_claim(counts: Sequence[int], *, solved: bool) -> Claim:
+def counts_claim(counts: Sequence[int], *, solved: bool) -> Claim:
     """Iterations of the seven motions."""
     return Claim.judged(
         "APPS needs 438, 256, 316, 618, 278, 233 and 281 iterations.",

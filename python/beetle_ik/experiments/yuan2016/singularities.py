@@ -26,7 +26,7 @@ _TEXT = """
 The paper names the motions I-1 and 5-6 as singular. How near a configuration is to a singularity, the smallest singular
 value of its Jacobian says. Its 5th percentile over {count} random configurations is {rare}. On the way of APPS it falls
 to {first} in I-1, where the fifth joint passes zero and the wrist is stretched; in 5-6, where that joint stays near
-34°, it stays above {other}.
+34°, to no less than {other}. Below the percentile come {near}.
 """
 
 
@@ -49,7 +49,11 @@ def singularities(context: Context, runs: list[Motion]) -> Part:
     rare = float(np.percentile([_smallest(q) for q in random], _RARE))
     by_name = {one.name: float(one.smallest.min()) for one in approaches}
     text = _TEXT.format(
-        count=count, rare=number(rare, 2), first=number(by_name["I-1"], 2), other=number(by_name["5-6"], 2)
+        count=count,
+        rare=number(rare, 2),
+        first=number(by_name["I-1"], 2),
+        other=number(by_name["5-6"], 2),
+        near=" and ".join(name for name, smallest in by_name.items() if smallest < rare),
     )
     figure = Figure(
         name="singularities",

@@ -195,6 +195,7 @@ fn finish(
         history,
         clearance,
         accuracy: None,
+        reference: None,
         redundancy: vec![],
         violations,
         status,

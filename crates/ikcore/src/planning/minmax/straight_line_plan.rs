@@ -35,6 +35,7 @@ pub fn without_obstacles(search: &mut PairSearch, objective: Cost, monitor: &mut
         history,
         clearance: None,
         accuracy: None,
+        reference: None,
         redundancy: vec![],
         violations,
         status,
