@@ -80,7 +80,7 @@ const KNOWN_CIRCLES: &[&str] = &[
 ];
 
 /// Types that may still have the name of another.
-const KNOWN_TYPES_NAMED_TWICE: &[&str] = &["Acceptance", "Place", "Segment", "Step", "Verdict"];
+const KNOWN_TYPES_NAMED_TWICE: &[&str] = &[];
 
 /// Names that three files or more may still have.
 const KNOWN_FILE_NAMES: &[&str] = &[];

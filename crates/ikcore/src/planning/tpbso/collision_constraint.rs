@@ -3,8 +3,8 @@
 use crate::error::Result;
 use crate::obstacle::{Obstacle, Scene, Shape, Sweep};
 use crate::planning::collision_checks::{self, TimedMotion, refuse_collision, too_near};
-use crate::planning::options::PointToPointOptions;
 use crate::planning::planar_arm::PlanarArm;
+use crate::planning::planner_options::PointToPointOptions;
 use crate::planning::violation::Violation;
 use crate::robot::Robot;
 use crate::trajectory::Trajectory;

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::ik::{Query, Solution, SolveContext, SolveOptions, solve_query};
 use crate::planning::endpoint::Endpoint;
 use crate::planning::motion_limits::MotionLimits;
-use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Place, PlanarArm};
+use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, PlanarArm, PlanarTarget};
 use crate::rng;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
@@ -22,7 +22,7 @@ pub enum EndConfigurations {
         /// The arm.
         arm: PlanarArm,
         /// Where its tip is to be.
-        place: Place,
+        place: PlanarTarget,
         /// Which way it bends.
         elbow: Elbow,
     },
@@ -112,9 +112,9 @@ impl EndConfigurations {
 }
 
 /// The closed form, where there is one.
-fn planar(robot: &Robot, target: &Target) -> Option<(PlanarArm, Place)> {
+fn planar(robot: &Robot, target: &Target) -> Option<(PlanarArm, PlanarTarget)> {
     let arm = PlanarArm::of(robot)?;
-    let place = arm.place(target)?;
+    let place = arm.planar_target(target)?;
     (arm.dof() >= ELBOW_LINKS + usize::from(place.orientation.is_some())).then_some((arm, place))
 }
 

@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 use crate::error::{Error, Result};
 use crate::math::cubic_spline::CubicSpline;
 use crate::path::Waypoints;
-use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Orientation, Orientations, Place, PlanarArm, wrapped};
+use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Orientation, Orientations, PlanarArm, PlanarTarget, wrapped};
 use crate::task::Target;
 use crate::wording::number;
 
@@ -19,7 +19,7 @@ pub const NODES: usize = 5;
 pub struct Redundancy {
     arm: PlanarArm,
     elbow: Elbow,
-    places: Vec<Place>,
+    places: Vec<PlanarTarget>,
     nodes: CubicSpline,
 }
 
@@ -36,7 +36,7 @@ impl Redundancy {
     }
 
     /// Where the tip is to be at point `i` of the path.
-    pub fn place(&self, i: usize) -> &Place {
+    pub fn place(&self, i: usize) -> &PlanarTarget {
         &self.places[i]
     }
 
@@ -56,7 +56,7 @@ impl Redundancy {
     /// # Errors
     /// The cosine of eq. (1) where there is no configuration.
     pub fn configuration(&self, i: usize, x: &[f64], curvatures: &[f64], q: &mut [f64]) -> Result<Orientations, f64> {
-        let Place { mut position, orientation } = self.places[i];
+        let PlanarTarget { mut position, orientation } = self.places[i];
         let mut link = self.arm.dof() - 1;
         let mut absolute: SmallVec<[f64; 8]> = SmallVec::new();
         if let Some(given) = orientation {
@@ -86,7 +86,7 @@ impl Redundancy {
     /// # Errors
     /// [`Error::InvalidPath`] where the tip is elsewhere at `q`.
     pub fn shares_of(&self, q: &[f64]) -> Result<Vec<f64>> {
-        let Place { mut position, orientation } = self.places[0];
+        let PlanarTarget { mut position, orientation } = self.places[0];
         let tip = self.arm.corners(q).last().unwrap_or(position);
         let absolute = self.arm.orientations(q);
         let mut link = self.arm.dof() - 1;
@@ -128,14 +128,14 @@ const START_TOLERANCE: f64 = 1e-6;
 /// Stands for a cosine where not even its triangle exists.
 const OUT_OF_REACH: f64 = 2.0;
 
-fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<Place> {
+fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<PlanarTarget> {
     let target = match path.pose(i) {
         Some(pose) => Target::from(&pose),
         None => Target::Position(path.position(i)),
     };
     let unreachable = |problem: String| Error::Unreachable { what: format!("point {i} of the path"), problem };
     let beside = || unreachable("it lies beside the plane that the arm moves in".into());
-    let place = arm.place(&target).ok_or_else(beside)?;
+    let place = arm.planar_target(&target).ok_or_else(beside)?;
     let held = usize::from(place.orientation.is_some());
     if arm.dof() < ELBOW_LINKS + held {
         return Err(unreachable("an arm of two links cannot choose its orientation".into()));

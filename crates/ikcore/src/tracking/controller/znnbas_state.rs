@@ -1,7 +1,7 @@
 //! ZNNBAS at work: Algorithm 1, tick by tick.
 
-use super::control_tick::{ControlTick, Verdict};
-use super::znnbas::{Acceptance, Antenna, Delay, Znnbas};
+use super::control_tick::{ControlTick, TickProgress};
+use super::znnbas::{Antenna, Delay, UpdateRule, Znnbas};
 use crate::math::ordered::sign;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
@@ -17,7 +17,7 @@ pub struct ZnnbasState {
     gain: f64,
     antenna: Antenna,
     delay: Delay,
-    accept: Acceptance,
+    accept: UpdateRule,
     /// theta, the state of the integrator.
     theta: Point,
     /// Where the tip was at the last theta that was measured (m).
@@ -93,8 +93,8 @@ impl ZnnbasState {
         let Self { theta, sent, antenna, .. } = self;
         rng.symmetric(sent); // b, line 14
         let error = match self.accept {
-            Acceptance::Always => self.value,
-            Acceptance::Improving => squared_distance(&tick.target, &self.standing),
+            UpdateRule::Always => self.value,
+            UpdateRule::Improving => squared_distance(&tick.target, &self.standing),
         };
         let lengths = match antenna {
             Antenna::Constant(lengths) => &lengths[..],
@@ -106,25 +106,25 @@ impl ZnnbasState {
         tick.bounds.clip(sent); // (11)
     }
 
-    pub fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> Verdict {
+    pub fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
         self.position = position;
         self.answered.copy_from_slice(&self.sent);
         let target = self.on_the_way.swap(&mut self.answered, tick.target);
         self.value = squared_distance(&target, &position); // h of (12)
         match self.accept {
-            Acceptance::Always => self.move_theta(),
-            Acceptance::Improving
+            UpdateRule::Always => self.move_theta(),
+            UpdateRule::Improving
                 if squared_distance(&tick.target, &position) < squared_distance(&tick.target, &self.standing) =>
             {
                 self.theta.copy_from_slice(&self.answered);
                 self.standing = position;
             }
-            Acceptance::Improving => {}
+            UpdateRule::Improving => {}
         }
         // A limit may have closed in since the command.
         tick.bounds.clip(&mut self.theta);
         self.past.push(&self.answered, self.value);
-        Verdict::TickOver
+        TickProgress::TickOver
     }
 
     /// One Euler step of eq. (14).
