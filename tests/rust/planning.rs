@@ -7,7 +7,7 @@ use ikcore::math::Frame;
 use ikcore::obstacle::Obstacle;
 use ikcore::path::{Path, Plane, Polyline, Waypoints};
 use ikcore::planning::{
-    AlongPathOptions, Cost, Elbow, Endpoint, Plan, PointToPointMethod, PointToPointOptions, TipPath, Tpbso,
+    AlongPathOptions, Cost, Elbow, Endpoint, Plan, PlanarArm, PointToPointMethod, PointToPointOptions, TipPath, Tpbso,
     plan_along_path, plan_point_to_point,
 };
 use ikcore::rng;

@@ -78,7 +78,7 @@ impl Varying {
 
 impl TickBox {
     /// The box of an arm that begins to move at `q`, to be narrowed for every tick by the same limits.
-    pub fn around(q: &[f64], limits: &Limits) -> Self {
+    pub(crate) fn around(q: &[f64], limits: &Limits) -> Self {
         let Limits { lower, upper, velocity, acceleration, .. } = limits;
         let fields = [velocity, lower, upper];
         let [velocity, floor, ceiling] = fields.map(|field| field.iter().map(|limit| limit.at(0.0)).collect::<Point>());

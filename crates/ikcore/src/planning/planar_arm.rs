@@ -51,7 +51,7 @@ impl Elbow {
 }
 
 /// Links further along than these two are the redundancy.
-pub const ELBOW_LINKS: usize = 2;
+pub(super) const ELBOW_LINKS: usize = 2;
 
 const HOLE: &str = "inside the hole that the arm leaves about its base";
 
@@ -265,7 +265,7 @@ pub struct Orientation {
 pub type Orientations = SmallVec<[Orientation; 4]>;
 
 /// The angle (rad) in (-pi, pi] that differs by whole turns.
-pub fn wrapped(angle: f64) -> f64 {
+pub(super) fn wrapped(angle: f64) -> f64 {
     let wrapped = angle - TAU * (angle / TAU).round();
     if wrapped <= -PI { wrapped + TAU } else { wrapped }
 }

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 const NULL: f64 = 1e-6;
 
 /// An orthonormal basis of what the Jacobian maps to zero.
-pub fn null_space(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+pub(super) fn null_space(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
     let gram = jacobian.transpose() * jacobian;
     let eigen = gram.symmetric_eigen();
     let largest = eigen.eigenvalues.amax();
@@ -17,7 +17,7 @@ pub fn null_space(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
 
 /// A basis of the space of `null` near `before`, with `count` columns: where a singularity adds a direction, it is left
 /// out.
-pub fn turned(null: &DMatrix<f64>, before: &DMatrix<f64>, count: usize) -> DMatrix<f64> {
+pub(super) fn turned(null: &DMatrix<f64>, before: &DMatrix<f64>, count: usize) -> DMatrix<f64> {
     let shadow = null * (null.transpose() * before);
     let mut basis = DMatrix::zeros(before.nrows(), count);
     for k in 0..count {

@@ -12,11 +12,11 @@ use crate::task::Target;
 use crate::wording::number;
 
 /// Numbers in \[0, 1\] by which the path of each free orientation is given: the paper's x_phi.
-pub const NODES: usize = 5;
+pub(super) const NODES: usize = 5;
 
 /// A planar arm along the points of a path.
 #[derive(Debug, Clone)]
-pub struct Redundancy {
+pub(super) struct Redundancy {
     arm: PlanarArm,
     elbow: Elbow,
     places: Vec<PlanarTarget>,
@@ -29,24 +29,24 @@ impl Redundancy {
     /// # Errors
     /// [`Error::Unreachable`] for a point beside the arm's plane or out of its reach, or a path of poses for an arm of two
     /// links.
-    pub fn new(arm: PlanarArm, path: &Waypoints, elbow: Elbow) -> Result<Self> {
+    pub(super) fn new(arm: PlanarArm, path: &Waypoints, elbow: Elbow) -> Result<Self> {
         let nodes = CubicSpline::natural((0..NODES).map(|i| i as f64 / (NODES - 1) as f64).collect());
         let places = (0..path.len()).map(|i| place(&arm, path, i)).collect::<Result<Vec<_>>>()?;
         Ok(Self { arm, elbow, places, nodes })
     }
 
     /// Where the tip is to be at point `i` of the path.
-    pub fn place(&self, i: usize) -> &PlanarTarget {
+    pub(super) fn place(&self, i: usize) -> &PlanarTarget {
         &self.places[i]
     }
 
     /// Number of points of the path.
-    pub fn points(&self) -> usize {
+    pub(super) fn points(&self) -> usize {
         self.places.len()
     }
 
     /// Number of orientations that are free.
-    pub fn links(&self) -> usize {
+    pub(super) fn links(&self) -> usize {
         self.arm.dof() - ELBOW_LINKS - usize::from(self.places[0].orientation.is_some())
     }
 
@@ -55,7 +55,13 @@ impl Redundancy {
     ///
     /// # Errors
     /// The cosine of eq. (1) where there is no configuration.
-    pub fn configuration(&self, i: usize, x: &[f64], curvatures: &[f64], q: &mut [f64]) -> Result<Orientations, f64> {
+    pub(super) fn configuration(
+        &self,
+        i: usize,
+        x: &[f64],
+        curvatures: &[f64],
+        q: &mut [f64],
+    ) -> Result<Orientations, f64> {
         let PlanarTarget { mut position, orientation } = self.places[i];
         let mut link = self.arm.dof() - 1;
         let mut absolute: SmallVec<[f64; 8]> = SmallVec::new();
@@ -85,7 +91,7 @@ impl Redundancy {
     ///
     /// # Errors
     /// [`Error::InvalidPath`] where the tip is elsewhere at `q`.
-    pub fn shares_of(&self, q: &[f64]) -> Result<Vec<f64>> {
+    pub(super) fn shares_of(&self, q: &[f64]) -> Result<Vec<f64>> {
         let PlanarTarget { mut position, orientation } = self.places[0];
         let tip = self.arm.corners(q).last().unwrap_or(position);
         let absolute = self.arm.orientations(q);
@@ -115,7 +121,7 @@ impl Redundancy {
     }
 
     /// Writes the second derivatives of the splines through the nodes `x`.
-    pub fn curvatures(&self, x: &[f64], curvatures: &mut [f64]) {
+    pub(super) fn curvatures(&self, x: &[f64], curvatures: &mut [f64]) {
         for (values, curvatures) in x.chunks_exact(NODES).zip(curvatures.chunks_exact_mut(NODES)) {
             self.nodes.curvatures(values, curvatures);
         }
@@ -147,6 +153,6 @@ fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<PlanarTarget> {
 }
 
 /// `angle` by whole turns nearest to `other`.
-pub fn nearest_turn(angle: f64, other: f64) -> f64 {
+pub(super) fn nearest_turn(angle: f64, other: f64) -> f64 {
     angle + TAU * ((other - angle) / TAU).round()
 }

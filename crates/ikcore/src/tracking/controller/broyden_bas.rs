@@ -68,7 +68,7 @@ enum Purpose {
 }
 
 impl BroydenBasState {
-    pub fn new(options: BroydenBas, start: &[f64], tolerance: f64) -> Box<Self> {
+    pub(super) fn new(options: BroydenBas, start: &[f64], tolerance: f64) -> Box<Self> {
         Box::new(Self {
             options,
             tolerance,
@@ -88,24 +88,24 @@ impl BroydenBasState {
         })
     }
 
-    pub fn begin(&mut self, position: [f64; 3]) {
+    pub(super) fn begin(&mut self, position: [f64; 3]) {
         self.position = position;
         self.next = Purpose::Repeat { first: position, second: None };
     }
 
-    pub fn accepted(&self) -> &[f64] {
+    pub(super) fn accepted(&self) -> &[f64] {
         &self.q
     }
 
-    pub fn measured(&self) -> (&[f64], [f64; 3]) {
+    pub(super) fn measured(&self) -> (&[f64], [f64; 3]) {
         (&self.q, self.position)
     }
 
-    pub fn sent(&self) -> &[f64] {
+    pub(super) fn sent(&self) -> &[f64] {
         &self.sent
     }
 
-    pub fn choose_command(&mut self, tick: ControlTick<'_>) {
+    pub(super) fn choose_command(&mut self, tick: ControlTick<'_>) {
         if self.due > 0 {
             tick.bounds.clip(&mut self.sent);
             return;
@@ -165,7 +165,7 @@ impl BroydenBasState {
         self.damping + doubt * doubt / self.jacobian.size(self.q.len()).max(f64::MIN_POSITIVE)
     }
 
-    pub fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
+    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
         self.measurements += 1;
         let spent = self.measurements >= self.options.max_evaluations_per_step;
         self.due -= 1;

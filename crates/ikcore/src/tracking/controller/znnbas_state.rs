@@ -12,7 +12,7 @@ const LONGEST: f64 = 0.5;
 
 /// What the controller remembers from tick to tick.
 #[derive(Debug)]
-pub struct ZnnbasState {
+pub(super) struct ZnnbasState {
     /// k dt.
     gain: f64,
     antenna: Antenna,
@@ -49,7 +49,7 @@ struct Past {
 }
 
 impl ZnnbasState {
-    pub fn new(options: &Znnbas, start: &[f64], dt: f64) -> Box<Self> {
+    pub(super) fn new(options: &Znnbas, start: &[f64], dt: f64) -> Box<Self> {
         let (n, delay) = (start.len(), options.delay_steps);
         Box::new(Self {
             gain: options.gain * dt,
@@ -71,25 +71,25 @@ impl ZnnbasState {
         })
     }
 
-    pub fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {
+    pub(super) fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {
         (self.position, self.standing, self.value) = (position, position, squared_distance(&target, &position));
         // Until the first answer comes, the arm stands at the start.
         self.on_the_way.targets.fill(target);
     }
 
-    pub fn accepted(&self) -> &[f64] {
+    pub(super) fn accepted(&self) -> &[f64] {
         &self.theta
     }
 
-    pub fn measured(&self) -> (&[f64], [f64; 3]) {
+    pub(super) fn measured(&self) -> (&[f64], [f64; 3]) {
         (&self.answered, self.position)
     }
 
-    pub fn sent(&self) -> &[f64] {
+    pub(super) fn sent(&self) -> &[f64] {
         &self.sent
     }
 
-    pub fn choose_command(&mut self, tick: ControlTick<'_>, rng: &mut LazyRng) {
+    pub(super) fn choose_command(&mut self, tick: ControlTick<'_>, rng: &mut LazyRng) {
         let Self { theta, sent, antenna, .. } = self;
         rng.symmetric(sent); // b, line 14
         let error = match self.accept {
@@ -106,7 +106,7 @@ impl ZnnbasState {
         tick.bounds.clip(sent); // (11)
     }
 
-    pub fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
+    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
         self.position = position;
         self.answered.copy_from_slice(&self.sent);
         let target = self.on_the_way.swap(&mut self.answered, tick.target);
