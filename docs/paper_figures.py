@@ -1,4 +1,4 @@
-"""Draws the figures of the papers' pages when the site is built: quick passes of `beetle-ik reproduce`."""
+"""Draws the figures of the papers' pages when the site is built, by quick passes of `beetle-ik reproduce`."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ FIGURES = {
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Called by Sphinx."""
+    """Registers the Sphinx extension."""
     app.connect("builder-inited", lambda _app: draw_all())
     return {"parallel_read_safe": True}
 
 
 def draw_all() -> None:
-    """Draw what is missing, or older than the package."""
+    """Draws figures that are missing or older than the package."""
     package = Path(beetle_ik.__file__).parent
     changed = max(file.stat().st_mtime for file in package.rglob("*") if file.suffix in (".py", ".so", ".pyd"))
     FOLDER.mkdir(exist_ok=True)

@@ -232,7 +232,7 @@ MISTAKES: list[Case] = [
     (
         lambda: minimize(solver=bik.LevenbergMarquardt()),
         Invalid,
-        f"minimize knows no derivative: solver must be {NAMES}, got LevenbergMarquardt(initial_damping=0.05)",
+        f"minimize has no derivatives: solver must be {NAMES}, got LevenbergMarquardt(initial_damping=0.05)",
     ),
     (
         lambda: bik.PSO(form="swarm"),  # type: ignore[arg-type]

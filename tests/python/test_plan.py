@@ -286,7 +286,7 @@ def test_the_command_plans_along_a_path() -> None:
             ["point-to-point", "planar5", "--start", "3,0,0", "--start-q", "0,0,0,0,0", "--end", "2,2,0"],
             "both --start and --start-q were given: give one of them",
         ),
-        (["along-path", "planar5"], "give one of --path FILE and --curve with one of circle"),
+        (["along-path", "planar5"], "give either --path FILE or --curve with one of circle"),
     ],
 )
 def test_the_command_names_mistakes(arguments: list[str], message: str) -> None:

@@ -13,7 +13,7 @@ const MAX_THREADS: usize = 1024;
 ///
 /// # Errors
 /// [`Error::OutOfRange`].
-pub fn thread_count(wanted: Option<usize>) -> Result<usize> {
+pub(super) fn thread_count(wanted: Option<usize>) -> Result<usize> {
     match wanted {
         None => Ok(std::thread::available_parallelism().map_or(1, |count| count.get().min(MAX_THREADS))),
         Some(count) if (1..=MAX_THREADS).contains(&count) => Ok(count),
@@ -29,7 +29,7 @@ static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 ///
 /// # Errors
 /// [`Error::NoThreads`].
-pub fn pool(threads: usize) -> Result<Arc<ThreadPool>> {
+pub(super) fn pool(threads: usize) -> Result<Arc<ThreadPool>> {
     // Without waiting: when this process was forked, another thread of the parent may have held the lock.
     let Ok(mut kept) = POOL.try_lock() else { return new_pool(threads) };
     let process = std::process::id();

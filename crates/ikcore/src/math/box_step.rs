@@ -1,9 +1,9 @@
 //! The bounded step: damped least squares on six rows; joints that hit a bound are fixed, and the step is solved again.
 
 use super::arithmetic::{Arithmetic, by_instructions};
+use super::comparison::{larger, smaller};
 use super::gram::gram;
 use super::ldl::Ldl;
-use super::ordered::{larger, smaller};
 use super::real::{One, Real};
 use super::vector::squared_size;
 

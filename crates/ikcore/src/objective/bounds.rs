@@ -1,8 +1,8 @@
 //! The box that a search is confined to.
 
 use crate::error::{Error, Result};
-use crate::math::interval;
-use crate::math::ordered::{larger, smaller};
+use crate::math::comparison::{larger, smaller};
+use crate::math::sampling_range;
 use crate::rng::LazyRng;
 
 use super::point::Point;
@@ -94,7 +94,7 @@ impl Bounds {
 
     /// The ranges to draw from; an open side reaches one turn from the other bound, or half a turn from zero.
     pub fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.lower.iter().zip(&self.upper).map(|(lower, upper)| interval::finite(*lower, *upper, HALF_TURN))
+        self.lower.iter().zip(&self.upper).map(|(lower, upper)| sampling_range::finite(*lower, *upper, HALF_TURN))
     }
 
     /// A uniform draw from the [`ranges`](Self::ranges).

@@ -35,7 +35,7 @@ pub trait LeastSquares: Residual {
 
 /// Four linearizations side by side: each number for all four in one register.
 #[derive(Debug, Clone)]
-pub struct FourLinearizations {
+pub(crate) struct FourLinearizations {
     /// As [`Linearization::residual`].
     pub residual: [F64x4; ROWS],
     /// As [`Linearization::columns`].
@@ -50,7 +50,7 @@ impl Default for FourLinearizations {
 
 /// Objectives that are linearized faster four at a time than one after another. They differ in what is asked of one and the same
 /// system: for a robot, in the targets, which are of one kind.
-pub trait SideBySide: LeastSquares + Sized {
+pub(crate) trait SideBySide: LeastSquares + Sized {
     /// [`linearize`](LeastSquares::linearize) of each objective at its lane of `xs`, to the same bits.
     fn linearize_four(objectives: [&Self; 4], xs: &[F64x4], out: &mut FourLinearizations) -> [Score; 4];
 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::violation::Violation;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
-use crate::math::interval;
+use crate::math::sampling_range;
 use crate::robot::{JointKind, Robot};
 use crate::trajectory::Trajectory;
 
@@ -69,7 +69,7 @@ impl MotionLimits {
 
     /// Positions of a joint that a search may use (rad, m): its limits, half a turn to either side where there are none.
     pub(crate) fn finite_range(&self, joint: usize) -> (f64, f64) {
-        interval::finite(self.lower[joint], self.upper[joint], PI)
+        sampling_range::finite(self.lower[joint], self.upper[joint], PI)
     }
 
     /// Time (s) that the slowest joint takes through its range, at full speed or from rest to rest at full acceleration.

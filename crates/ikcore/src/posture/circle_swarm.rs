@@ -38,7 +38,7 @@ const DRAWS: usize = 10_000;
 
 /// What a search has found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FoundPosture {
+pub(super) struct FoundPosture {
     /// The best posture (n,).
     pub q: Vec<f64>,
     /// Its index.
@@ -96,7 +96,12 @@ impl CircleSwarm {
     }
 
     /// The best posture of `linkage` that the swarm meets; None where it meets none.
-    pub fn search(&self, linkage: &Linkage, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Option<FoundPosture> {
+    pub(super) fn search(
+        &self,
+        linkage: &Linkage,
+        rng: &mut LazyRng,
+        monitor: &mut dyn Monitor,
+    ) -> Option<FoundPosture> {
         let n = linkage.links();
         let best = (f64::NEG_INFINITY, vec![], vec![]);
         let mut swarm = Swarm { options: self, linkage, rng, monitor, q: vec![0.0; n], best, evaluations: 0 };

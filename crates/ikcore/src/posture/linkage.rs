@@ -124,7 +124,7 @@ impl Linkage {
 
     /// `points` moved onto their circles: each in the direction in which it was seen from the one before, the last where the
     /// circles of the last two links meet, the nearer of the two places. None where they do not meet.
-    pub fn repair(&self, points: &mut [Point2]) -> Option<()> {
+    pub(super) fn repair(&self, points: &mut [Point2]) -> Option<()> {
         let mut end = self.base;
         let last = points.len() - 1;
         for (point, length) in points[..last].iter_mut().zip(&self.lengths) {

@@ -70,17 +70,17 @@ impl AnySolver {
 
     /// Whether, along a path, a step that beats the last one is enough (line 16 of Algorithm 1 in Cheng et al. 2020). A
     /// random search could otherwise go on for long; a descent reaches its end in a few iterations.
-    pub fn settles_for_improvement(&self) -> bool {
+    pub(crate) fn settles_for_improvement(&self) -> bool {
         matches!(self.algorithm(), Algorithm::DerivativeFree(_))
     }
 
     /// Whether it comes to an end without a budget, solved or not.
-    pub fn ends_by_itself(&self) -> bool {
+    pub(crate) fn ends_by_itself(&self) -> bool {
         matches!(self, Self::Single(Algorithm::DerivativeFree(_) | Algorithm::LevenbergMarquardt(_)))
     }
 
     /// The descent that is begun again and again, where this is one.
-    pub fn restarted_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
+    pub(crate) fn restarted_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
         match *self {
             Self::MultiStart(MultiStart { solver: Algorithm::LevenbergMarquardt(solver), rule }) => {
                 Some(MultiStart { solver, rule })
@@ -100,7 +100,7 @@ impl AnySolver<DerivativeFree> {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] names the population and the budget.
-    pub fn require_affordable(&self, stop: &Stop) -> Result<()> {
+    pub(crate) fn require_affordable(&self, stop: &Stop) -> Result<()> {
         match self.algorithm().population() {
             Some(population) if population > stop.max_evaluations => {
                 let requirement = format!("at most max_evaluations = {}", stop.max_evaluations);

@@ -17,7 +17,7 @@ use super::driver::Solver;
 use super::evaluator::Evaluator;
 use super::status::Status;
 use crate::error::{Error, Result, require_positive};
-use crate::math::ordered::sign;
+use crate::math::comparison::sign;
 use crate::objective::{Objective, Point};
 use crate::wording::words;
 

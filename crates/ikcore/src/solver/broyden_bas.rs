@@ -35,13 +35,13 @@ impl Default for BroydenBas {
 const NOISELESS_ANTENNA: f64 = 1e-6;
 
 /// Damping after a step that failed, over the squared size of the Jacobian; then ten times more for each failure.
-pub const FIRST_DAMPING: f64 = 1e-3;
+pub(crate) const FIRST_DAMPING: f64 = 1e-3;
 
 /// Damping beyond which no step of any use is left.
-pub const LARGEST_DAMPING: f64 = 1e2;
+pub(crate) const LARGEST_DAMPING: f64 = 1e2;
 
 /// Steps that leave more than half of the residual, in a row, before antennae are put out again.
-pub const SLOW_STEPS: usize = 3;
+pub(crate) const SLOW_STEPS: usize = 3;
 
 impl BroydenBas {
     /// Checks the options.

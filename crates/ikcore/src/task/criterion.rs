@@ -58,7 +58,7 @@ impl Criterion {
     }
 
     /// Where the tip is led: the `target`, or the nearest place that the region allows.
-    pub fn aim(&self, target: &Target) -> Target {
+    pub(crate) fn aim(&self, target: &Target) -> Target {
         match &self.region {
             Some(region) => target.with_position(|wanted| region.nearest(wanted, self.margin())),
             None => *target,

@@ -8,7 +8,7 @@ use crate::math::so3::{rotated, rotation_between};
 /// A target on its way: from where it is at the beginning of a tick to where it is at the end. Positions follow the cubic
 /// that meets both velocities, or a straight line where those are not known; orientations turn at constant speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TargetMotion {
+pub(crate) struct TargetMotion {
     /// At the beginning.
     pub begin: Target,
     /// At the end, of the same kind.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::step::Step;
 use crate::kinematics::Beyond;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
-use crate::math::ordered::larger;
+use crate::math::comparison::larger;
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::wording::{number, time};

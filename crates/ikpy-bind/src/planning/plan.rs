@@ -16,7 +16,7 @@ use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::trajectory::PyTrajectory;
 
-/// A planned motion, and what became of the search for it.
+/// A planned motion, and how its search ended.
 #[pyclass(name = "Plan", module = "beetle_ik", frozen)]
 pub struct PyPlan {
     core: Plan,

@@ -12,7 +12,7 @@ use super::record::{Columns, record};
 use crate::convert::{count, table, vector};
 use crate::error::raise;
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
-use crate::monitor::{Watcher, attended};
+use crate::monitor::{Watcher, watched_with_interpreter};
 use crate::outcome::outcome;
 use crate::path::PyPath;
 use crate::pickling::{self, Reduced};
@@ -159,7 +159,8 @@ pub fn track_model_free(
         tolerance: position_tolerance,
         seed: count("seed", seed)?,
     };
-    let (core, exception) = attended(py, progress, |watcher| run(plant, &reference, &start, &options, watcher))?;
+    let (core, exception) =
+        watched_with_interpreter(py, progress, |watcher| run(plant, &reference, &start, &options, watcher))?;
     PyModelFreeResult::new(py, core, in_force, exception)
 }
 

@@ -10,7 +10,7 @@ use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
-use crate::math::ordered::sign;
+use crate::math::comparison::sign;
 use crate::objective::Objective;
 use crate::solver::Status;
 use crate::solver::driver::Solver;

@@ -13,14 +13,14 @@ use crate::task::target::Target;
 
 /// E: of a pose over its three axes and position, of other targets over the parts that they ask for.
 #[inline]
-pub fn error(target: &Target, tip: &Frame) -> f64 {
+pub(crate) fn error(target: &Target, tip: &Frame) -> f64 {
     let away = target.position().map_or(0.0, |wanted| position::error(&wanted, &tip.origin));
     0.5 * (axes(target, tip).map(|(r, d)| position::error(&d, &r)).sum::<f64>() + away)
 }
 
 /// The wrench (f, m), minus the derivative of E.
 #[inline]
-pub fn wrench(target: &Target, tip: &Frame) -> Wrench {
+pub(crate) fn wrench(target: &Target, tip: &Frame) -> Wrench {
     let [fx, fy, fz] = target.position().map_or([0.0; 3], |wanted| position::residual(&tip.origin, &wanted));
     let mut moment = [0.0; 3];
     for (r, d) in axes(target, tip) {

@@ -11,14 +11,14 @@ use crate::math::vec3::Vec3;
 
 /// The squared geodesic angle.
 #[inline(always)]
-pub fn error(target: &Frame, tip: &Frame) -> f64 {
+pub(crate) fn error(target: &Frame, tip: &Frame) -> f64 {
     let [x, y, z] = rotation_between(target, tip);
     x * x + y * y + z * z
 }
 
 /// Angular rows of residual and derivative from the tip's geometric Jacobian, which stands in `columns`; the squared angle.
 #[inline(always)]
-pub fn linearize<R: Real>(
+pub(crate) fn linearize<R: Real>(
     target: &Axes<R>,
     tip: &Axes<R>,
     residual: &mut [R::Stored; ROWS],

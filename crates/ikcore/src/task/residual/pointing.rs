@@ -13,13 +13,13 @@ use crate::task::tip_error::SquaredError;
 
 /// Squared distance and squared angle between the axes, and the sum of squares r'r.
 #[inline]
-pub fn error(target: &Frame, axis: &[f64; 3], tip: &Frame) -> (SquaredError, f64) {
+pub(crate) fn error(target: &Frame, axis: &[f64; 3], tip: &Frame) -> (SquaredError, f64) {
     errors(target, tip, &difference(target, axis, tip))
 }
 
 /// Residual and derivative from the tip's geometric Jacobian, which stands in `out`.
 #[inline]
-pub fn linearize(
+pub(crate) fn linearize(
     target: &Frame,
     axis: &[f64; 3],
     tip: &Frame,

@@ -2,7 +2,7 @@
 
 use super::control_tick::{ControlTick, TickProgress};
 use super::znnbas::{Antenna, Delay, UpdateRule, Znnbas};
-use crate::math::ordered::sign;
+use crate::math::comparison::sign;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::rng::LazyRng;
