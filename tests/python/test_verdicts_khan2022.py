@@ -117,7 +117,7 @@ def test_rises_are_counted() -> None:
     assert rises(np.array([3.0, 2.0, 2.5, 1.0, 1.0])) == 25.0
 
 
-def test_the_network_finds_the_velocity_of_least_norm_within_its_bounds() -> None:
+def test_the_network_finds_the_bounded_least_norm_velocity() -> None:
     """Let to settle, it gives what a general solver gives for the same quadratic program."""
     path = circle(4.0)
     network = dual_network.DualNetwork(feedback=0.0, time_constant=1e-7, inner_steps=60)

@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn short_ticks_come_near_the_braking_distance_of_continuous_time() {
+    fn short_ticks_approach_the_continuous_braking_distance() {
         let (distance, acceleration, dt) = (0.4, 3.0, 1e-5);
         let speed = longest_step(distance, acceleration * dt * dt) / dt;
         assert!((speed - (2.0_f64 * acceleration * distance).sqrt()).abs() < 1e-4);
