@@ -20,12 +20,13 @@ test: lint  ## all checks and tests, of Rust and of Python
 	$(BIN)/python -m mypy.stubtest beetle_ik._core
 	$(BIN)/python -m pytest
 
-lint: $(VENV)/with-test  ## formatting, clippy, ruff and types
+lint: $(VENV)/with-test  ## formatting, clippy, ruff, types and the docstrings that editors show
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked -- -D warnings
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+	$(BIN)/python tools/stub_docstrings.py --check
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked --quiet
 
 bench: $(VENV)/wheel  ## criterion benchmarks of the core, then the comparison with other libraries in target/compare/

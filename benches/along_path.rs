@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::path::{Path, Plane, Polyline, Reference};
+use ikcore::path::{Path, Plane, Polyline, Waypoints};
 use ikcore::planning::{AlongPathMethod, AlongPathOptions, TipPath, plan_along_path};
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
@@ -21,7 +21,7 @@ fn trefoil() -> TipPath {
         let r = 0.6 / 1.35 * (1.0 + 0.35 * (3.0 * u).cos());
         [1.0 + r * u.cos(), 1.0 + r * u.sin(), 0.0]
     };
-    TipPath::through(&Reference::new(1.0, (0..=50).map(point).collect(), None).expect("points")).expect("a tip_path")
+    TipPath::through(&Waypoints::new((0..=50).map(point).collect(), None).expect("points")).expect("a tip_path")
 }
 
 fn plans(criterion: &mut Criterion) {

@@ -8,7 +8,7 @@ use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::path::{Circle, Path, Plane, Polyline, Reference};
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
-use ikcore::tracking::controller::Znnbas;
+use ikcore::tracking::Znnbas;
 use ikcore::tracking::{Controller, KinematicPlant, ModelFreeOptions, track_model_free};
 
 fn letter() -> Reference {

@@ -81,7 +81,7 @@ fn index(c: &mut Criterion) {
             b.iter_batched_ref(
                 fresh,
                 |robot| {
-                    black_box(robot.seeds_near_pose(&Frame::IDENTITY));
+                    black_box(robot.starts_near_pose(&Frame::IDENTITY));
                 },
                 BatchSize::LargeInput,
             );

@@ -12,8 +12,8 @@ use ikcore::problem::Problem;
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{
-    Algorithm, AnySolver, Bas, BeeColony, BeetleSwarm, DifferentialEvolution, Evaluator, Firefly, Genetic, Pso, Qpso,
-    Schedule, Stop, Unattended, Variant, pso::Form,
+    Algorithm, AnySolver, Bas, BasVariant, BeeColony, BeetleSwarm, DifferentialEvolution, Evaluator, Firefly, Genetic,
+    Pso, PsoForm, Qpso, Schedule, Stop, Unattended,
 };
 use ikcore::task::{Target, Tolerance};
 
@@ -95,16 +95,16 @@ fn swarms() -> Vec<(&'static str, Algorithm)> {
     let bas = |variant| Bas { max_passes: usize::MAX, ..Bas::of(variant) };
     vec![
         ("PSO constriction", Pso { schedule, ..Pso::default() }.into()),
-        ("PSO inertia", Pso { schedule, ..Pso::of(Form::Inertia(0.729)) }.into()),
+        ("PSO inertia", Pso { schedule, ..Pso::of(PsoForm::Inertia(0.729)) }.into()),
         ("QPSO", Qpso { schedule, ..Qpso::default() }.into()),
         ("beetle swarm", BeetleSwarm { schedule, ..BeetleSwarm::default() }.into()),
         ("bee colony", BeeColony { schedule, ..BeeColony::default() }.into()),
         ("firefly", Firefly { schedule, ..Firefly::default() }.into()),
         ("genetic", Genetic { schedule, ..Genetic::default() }.into()),
         ("differential evolution", DifferentialEvolution { schedule, ..DifferentialEvolution::default() }.into()),
-        ("BAS star", bas(Variant::Star).into()),
-        ("BAS chain", bas(Variant::Chain).into()),
-        ("BAS greedy", bas(Variant::Greedy).into()),
+        ("BAS star", bas(BasVariant::Star).into()),
+        ("BAS chain", bas(BasVariant::Chain).into()),
+        ("BAS greedy", bas(BasVariant::Greedy).into()),
     ]
 }
 

@@ -9,7 +9,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::robot::Robot;
-use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, Unattended, Variant};
+use ikcore::solver::{Algorithm, AnySolver, Bas, BasVariant, LevenbergMarquardt, Unattended};
 use ikcore::task::Tolerance;
 use ikcore::tracking::{Integrator, TickRule, TrackOptions, WeightedPseudoInverse, track};
 
@@ -63,7 +63,7 @@ fn weighted_pseudo_inverse(integrator: Integrator) -> TickRule {
     TickRule::WeightedPseudoInverse(WeightedPseudoInverse { integrator, ..WeightedPseudoInverse::default() })
 }
 
-fn beetle(variant: Variant, c1: f64, explorations: usize) -> TickRule {
+fn beetle(variant: BasVariant, c1: f64, explorations: usize) -> TickRule {
     each_tick(Algorithm::from(Bas { variant, c1, explorations, ..Bas::default() }))
 }
 
@@ -73,13 +73,13 @@ fn circles(c: &mut Criterion) {
     let mut group = c.benchmark_group("circle");
     group.throughput(Throughput::Elements(SEEDS));
     for (name, scene, rule, band) in [
-        ("iiwa14 chain 1 mm", &iiwa14, beetle(Variant::Chain, 1.0, 30), 1e-3),
-        ("iiwa14 star 1 mm", &iiwa14, beetle(Variant::Star, 3.0, 20), 1e-3),
-        ("iiwa14 chain 22 um", &iiwa14, beetle(Variant::Chain, 1.0, 30), 2.2e-5),
-        ("iiwa14 star 17 um", &iiwa14, beetle(Variant::Star, 3.0, 50), 1.7e-5),
+        ("iiwa14 chain 1 mm", &iiwa14, beetle(BasVariant::Chain, 1.0, 30), 1e-3),
+        ("iiwa14 star 1 mm", &iiwa14, beetle(BasVariant::Star, 3.0, 20), 1e-3),
+        ("iiwa14 chain 22 um", &iiwa14, beetle(BasVariant::Chain, 1.0, 30), 2.2e-5),
+        ("iiwa14 star 17 um", &iiwa14, beetle(BasVariant::Star, 3.0, 50), 1.7e-5),
         ("iiwa14 Levenberg-Marquardt 1 nm", &iiwa14, lm.clone(), 1e-9),
-        ("planar5 chain 50 um", &planar5, beetle(Variant::Chain, 0.3, 30), 5e-5),
-        ("planar5 star 40 um", &planar5, beetle(Variant::Star, 1.0, 50), 4e-5),
+        ("planar5 chain 50 um", &planar5, beetle(BasVariant::Chain, 0.3, 30), 5e-5),
+        ("planar5 star 40 um", &planar5, beetle(BasVariant::Star, 1.0, 50), 4e-5),
         ("planar5 Levenberg-Marquardt 1 nm", &planar5, lm, 1e-9),
         ("iiwa14 model-based 1 nm", &iiwa14, TickRule::MidStep, 1e-9),
         ("planar5 model-based 1 nm", &planar5, TickRule::MidStep, 1e-9),

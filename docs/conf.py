@@ -45,8 +45,8 @@ sphinx_gallery_conf = {
     "examples_dirs": "../examples",
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
-    "ignore_pattern": r"wrong_model\.py$",  # a program for MuJoCo, with an argument
-    "within_subsection_order": "gallery_order.NewcomersFirst",
+    "ignore_pattern": r"15_wrong_model\.py$",  # a program for MuJoCo, with an argument
+    "within_subsection_order": "FileNameSortKey",
     "capture_repr": (),
     "remove_config_comments": True,
     "show_memory": False,

@@ -1,17 +1,17 @@
-//! A solver in one sitting: random search, run on the position of an arm's tip. `cargo run --example random_search`.
+//! A complete solver: random search, applied to the tip position of an arm. `cargo run --example random_search`.
 
 use ikcore::objective::{Bounds, Objective, Point};
 use ikcore::rng;
-use ikcore::solver::{Evaluator, Halt, Solver, Stop, Unattended, run};
+use ikcore::solver::{Evaluator, Solver, Status, Stop, Unattended, run};
 
-/// Uniform draws from the box, so many in each iteration: a yardstick for everything else.
+/// Draws points uniformly from the box: a baseline for all other solvers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RandomSearch {
-    /// Draws an iteration.
+    /// Draws per iteration.
     pub draws: usize,
 }
 
-/// The point that is drawn next.
+/// Storage for the point drawn.
 #[derive(Debug, Clone)]
 pub struct State {
     x: Point,
@@ -20,13 +20,13 @@ pub struct State {
 impl<O: Objective + ?Sized> Solver<O> for RandomSearch {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let mut x = Point::from_slice(x0);
         evaluator.evaluate(&mut x)?;
         Ok(State { x })
     }
 
-    fn step(&self, State { x }: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, State { x }: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let bounds = evaluator.bounds();
         for _ in 0..self.draws {
             for (x, (lower, upper)) in x.iter_mut().zip(bounds.lower().iter().zip(bounds.upper())) {
@@ -62,8 +62,8 @@ fn main() -> ikcore::Result<()> {
     let (mut objective, mut rng, mut monitor) = (Reach, rng::stream(0, 0), Unattended);
     let stop = Stop { max_evaluations: 100_000, ..Stop::default() };
     let mut evaluator = Evaluator::new(&mut objective, &bounds, stop, &mut rng, &mut monitor);
-    let outcome = run(&RandomSearch { draws: 100 }, &mut evaluator, &[0.0; 3]);
-    let (best, status) = (evaluator.best(), outcome.status());
+    let status = run(&RandomSearch { draws: 100 }, &mut evaluator, &[0.0; 3]);
+    let best = evaluator.best();
     println!("{status:?} after {} evaluations: value {:.2e} at {:.3?}", evaluator.evaluations(), best.value, best.x);
     Ok(())
 }

@@ -20,7 +20,8 @@ LIMIT_SLACK = 1e-9  # rad or m: what a library may lose in rounding at a limit
 class Times:
     """One library on one robot and task."""
 
-    solved: float  # percent of the calls
+    solved: int  # calls, of all below
+    calls: int
     median: float  # µs, as the next two; failures count with the time that they took
     mean: float
     p99: float
@@ -81,9 +82,7 @@ def judge(chain: Chain, targets: np.ndarray, calls: Calls, tolerance: float) -> 
         for q, target in zip(answers, targets, strict=True)
     ]
     times = np.median(calls.times, axis=0)
-    return Times(
-        100.0 * float(np.mean(solved)), *map(float, (np.median(times), times.mean(), np.quantile(times, 0.99)))
-    )
+    return Times(sum(solved), len(solved), *map(float, (np.median(times), times.mean(), np.quantile(times, 0.99))))
 
 
 def _reaches(chain: Chain, q: np.ndarray, target: np.ndarray, tolerance: float) -> bool:

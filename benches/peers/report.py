@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from .measure import Times
-from .tracking import STEPS, Followed
+from .tracking import STEPS, BeetleIkTrack, BeetleIkTracker, Followed
 
 REFERENCE = "beetle-ik"
 Cells = dict[tuple[str, str], "Row"]  # by library and robot
@@ -35,16 +35,16 @@ def write_table(path: Path, columns: list[str], lines: list[list[str]]) -> None:
         csv.writer(file).writerows([columns, *lines])
 
 
-ROW_COLUMNS = ["task", "order", "robot", "library", "solved_percent", "median_us", "mean_us", "p99_us", "note"]
+ROW_COLUMNS = ["task", "order", "robot", "library", "solved", "calls", "median_us", "mean_us", "p99_us", "note"]
 
 
 def row_line(row: Row) -> list[str]:
-    figures = [f"{x:.4g}" for x in asdict(row.times).values()] if row.times else [""] * 4
+    figures = [f"{x:.4g}" for x in asdict(row.times).values()] if row.times else [""] * 5
     return [row.task, row.order, row.robot, row.library, *figures, row.note]
 
 
 def summary_columns(orders: Iterable[str]) -> list[str]:
-    return ["library", "arms", "solved [%]", *(f"time over ours, {order}" for order in orders)]
+    return ["library", "arms", "calls solved on an arm", *(f"time over ours, {order}" for order in orders)]
 
 
 def summary_lines(rows: list[Row], task: str, orders: Iterable[str], versions: dict[str, str]) -> list[list[str]]:
@@ -52,18 +52,21 @@ def summary_lines(rows: list[Row], task: str, orders: Iterable[str], versions: d
     measured = [row for row in rows if row.task == task and row.times]
     lines = []
     for library in dict.fromkeys(row.library for row in rows if row.task == task):
-        solved = [row.times.solved for row in measured if row.library == library]
-        if not solved:
+        mine = [row for row in measured if row.library == library]
+        if not mine:
             continue
-        lowest, highest = f"{min(solved):.3g}", f"{max(solved):.3g}"
-        lines.append(
-            [f"{library} ({versions[library]})", str(len({row.robot for row in measured if row.library == library}))]
-        )
-        lines[-1].append(highest if lowest == highest else f"{lowest} to {highest}")
+        lines.append([f"{library} ({versions[library]})", str(len({row.robot for row in mine})), _solved(mine)])
         for order in orders:
             cells = {(row.library, row.robot): row for row in measured if row.order == order}
             lines[-1].append(_rounded(_geometric_mean(_ratios(cells, library, "mean"))))
     return lines
+
+
+def _solved(rows: list[Row]) -> str:
+    """The fewest and the most calls solved on an arm, of how many: "599 to 600 of 600"."""
+    times = [row.times for row in rows if row.times]
+    lowest, highest = min(each.solved for each in times), max(each.solved for each in times)
+    return f"{lowest if lowest == highest else f'{lowest} to {highest}'} of {times[0].calls}"
 
 
 def times_section(task: str, order: str, rows: list[Row]) -> str:
@@ -71,7 +74,7 @@ def times_section(task: str, order: str, rows: list[Row]) -> str:
     cells = {(row.library, row.robot): row for row in rows if (row.task, row.order) == (task, order)}
     libraries = list(dict.fromkeys(library for library, _ in cells))
     robots = list(dict.fromkeys(robot for _, robot in cells))
-    lines = [f"## {task}, {order}", "", "Solved % / median / mean / p99 in µs.", ""]
+    lines = [f"## {task}, {order}", "", "Calls solved / median / mean / p99 in µs.", ""]
     lines += _header(["library", *robots, f"mean ÷ {REFERENCE}", f"p99 ÷ {REFERENCE}"])
     for library in libraries:
         of_library = [cells.get((library, robot)) for robot in robots]
@@ -85,7 +88,7 @@ def _cell(row: Row | None) -> str:
     if row is None or row.times is None:
         return "-"
     times = row.times
-    return f"{times.solved:.1f} / {times.median:.3g} / {times.mean:.3g} / {times.p99:.3g}"
+    return f"{times.solved} of {times.calls} / {times.median:.3g} / {times.mean:.3g} / {times.p99:.3g}"
 
 
 def _ratio(cells: Cells, library: str, figure: str) -> str:
@@ -110,21 +113,26 @@ def _geometric_mean(values: list[float]) -> float:
 
 TRACKING_COLUMNS = ["library"]
 for _steps in STEPS:
-    TRACKING_COLUMNS += [f"{_steps} steps [ms]", "largest error [m]", "time over ours"]
+    TRACKING_COLUMNS += [f"{_steps} steps [ms]", "largest error [m]", "over Tracker.step", "over track"]
 
 
 def tracking_lines(followed: list[Followed]) -> list[list[str]]:
-    """Time and largest error of each library round the circle, and its time over that of the first."""
+    """Time and largest error of each library round the circle, and its time over that of both of ours.
+
+    `Tracker.step` is called once a point, as the other libraries are; `track` once for the whole path.
+    """
     cells = {(row.library, row.steps): row for row in followed}
     libraries = list(dict.fromkeys(row.library for row in followed))
     lines = []
     for library in libraries:
         lines.append([library])
         for steps in STEPS:
-            row, reference = cells[library, steps], cells[libraries[0], steps]
+            row = cells[library, steps]
             missed = f" ({row.missed} missed)" if row.missed else ""
-            ratio = row.milliseconds / reference.milliseconds
-            lines[-1] += [_rounded(row.milliseconds), f"{row.largest_error:.0e}{missed}", _rounded(ratio)]
+            ratios = [
+                row.milliseconds / cells[ours.name, steps].milliseconds for ours in (BeetleIkTracker, BeetleIkTrack)
+            ]
+            lines[-1] += [_rounded(row.milliseconds), f"{row.largest_error:.0e}{missed}", *map(_rounded, ratios)]
     return lines
 
 
@@ -152,7 +160,7 @@ def plot(rows: list[Row], task: str, order: str, title: str, path: Path) -> None
     figure, axes = plt.subplots(figsize=(9.0, 5.0), layout="constrained")
     for library, colour in zip(libraries, plt.get_cmap("tab20")(np.arange(len(libraries))), strict=True):
         times = [row.times for row in measured if row.library == library]
-        means, solved = np.array([t.mean for t in times]), np.array([t.solved for t in times])
+        means, solved = np.array([t.mean for t in times]), np.array([100.0 * t.solved / t.calls for t in times])
         axes.scatter(means, solved, color=colour, s=22, alpha=0.7)
         axes.scatter(
             np.exp(np.log(means).mean()), solved.mean(), color=colour, s=110, edgecolor="black", label=library, zorder=3

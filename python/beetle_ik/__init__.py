@@ -1,8 +1,7 @@
 """Inverse kinematics, trajectory tracking and planning for robot manipulators.
 
 SI units, radians and numpy float64 throughout. Poses are 4x4 homogeneous matrices in the frame of the robot's base.
-Every result says whether it succeeded (`success`, `status`) and, in a sentence, what happened and what to try
-(`message`).
+Every result has `success`, `status` and `message`: a sentence that says what happened and what to try.
 
     import beetle_ik as bik
 

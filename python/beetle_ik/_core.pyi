@@ -1,4 +1,5 @@
-# Types of the native module. Documentation lives in its docstrings (Rust), not here.
+# Types of the native module, written by hand. The docstrings are copied from it: edit them in crates/ikpy-bind and the
+# core, then build and run `python tools/stub_docstrings.py`.
 #
 # Letters in the shape comments: n = degrees of freedom, m = items of a batch, k = samples in time.
 # SI units and radians throughout; results are read-only.
@@ -42,38 +43,57 @@ class _AsMatrix(Protocol):  # scipy's RigidTransform and Rotation
 class _Mover(Protocol):
     def move(self, q: _Array, /) -> ArrayLike: ...  # (n,) -> (3,)
 
-@type_check_only
-class _Outcome:  # of every call that searches
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    @property
-    def message(self) -> str: ...
-    @property
-    def evaluations(self) -> int: ...
-    @property
-    def elapsed(self) -> float: ...  # s
-    @property
-    def limits(self) -> Limits: ...  # those in force
-
 # --- errors -------------------------------------------------------------------------------------
 
-class BeetleIkError(Exception): ...
-class InvalidInputError(BeetleIkError, ValueError): ...
-class UnknownNameError(BeetleIkError, LookupError): ...
-class UrdfError(InvalidInputError): ...
-class LimitError(InvalidInputError): ...
-class UnsupportedLimit(LimitError): ...
-class InfeasibleError(InvalidInputError): ...
+class BeetleIkError(Exception):
+    """Any error of this library."""
+
+class InvalidInputError(BeetleIkError, ValueError):
+    """An argument with a wrong value, shape or unit; the message says what would be right."""
+
+class UnknownNameError(BeetleIkError, LookupError):
+    """No robot, link or option of that name; the message lists them."""
+
+class UrdfError(InvalidInputError):
+    """A robot description that cannot be read; the message names line and joint."""
+
+class LimitError(InvalidInputError):
+    """Limits that contradict themselves or exclude the start."""
+
+class UnsupportedLimit(LimitError):
+    """A limit that the method cannot honour. No method ignores one."""
+
+class InfeasibleError(InvalidInputError):
+    """A question without an answer: what it asks for contradicts itself; the message says what stands against what."""
 
 # --- robots -------------------------------------------------------------------------------------
 
 @final
 class Robot:
-    def __new__(cls, *_arguments: Never, **_options: Never) -> Robot: ...  # raises: use one of the makers below
+    """A robot arm: the chain of joints from a base link to a tip link. Immutable; make one with `from_urdf`, `from_dh`,
+    `planar` or `named`.
+
+    Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow theirs. Poses are 4x4
+    matrices in the frame of the robot's base.
+    """
+
+    def __new__(cls, *_arguments: Never, **_options: Never) -> Robot: ...
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None) -> Robot: ...
+    def from_urdf(path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None) -> Robot:
+        """A robot from a URDF, read from a file or from a string of XML.
+
+        Args:
+            path_or_xml: file, or text that contains "<".
+            base: link in whose frame everything is expressed; None takes the root. It need not be an ancestor of `tip`.
+            tip: link that is to be moved; None takes the only leaf.
+
+        Revolute, continuous, prismatic, fixed and mimic joints are understood; collision shapes of spheres, cylinders,
+        capsules and boxes become `capsules` that hold them; visuals, meshes and unknown tags are passed over. A missing velocity limit is infinite, a zero one locks the joint; `safety_controller` is ignored.
+
+        Raises:
+            UrdfError: not XML, no joint, a cycle, two roots, a zero axis, several leaves and no `tip`.
+            UnknownNameError: no link of that name; the message lists them.
+        """
     @staticmethod
     def from_dh(
         *,
@@ -89,7 +109,18 @@ class Robot:
         base: _Pose | None = None,
         tool: _Pose | None = None,
         name: str | None = None,
-    ) -> Robot: ...
+    ) -> Robot:
+        """A robot from Denavit-Hartenberg parameters, one row per joint.
+
+        Args:
+            a, alpha, d: link length (m), twist (rad), offset (m), each (n,).
+            theta: constant offset of a revolute joint, fixed angle of a prismatic one (rad), (n,); None: zeros.
+            kinds: "revolute", "continuous" or "prismatic" per joint; None: all revolute.
+            convention: "modified" (Craig: a and alpha of the link before) or "standard".
+            lower, upper, velocity: limits (rad, m; rad/s, m/s), a number or (n,); None: no limit.
+            base, tool: poses (4, 4) before the first and behind the last frame.
+            name: the robot's name.
+        """
     @staticmethod
     def planar(
         lengths: ArrayLike,
@@ -97,71 +128,146 @@ class Robot:
         lower: ArrayLike | None = None,
         upper: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
-    ) -> Robot: ...
+    ) -> Robot:
+        """A planar arm of revolute joints in the x-y plane, its base at the origin.
+
+        Args:
+            lengths: link lengths (m), (n,).
+            lower, upper, velocity: limits (rad, rad/s), a number or (n,); None: -pi, pi and no velocity limit.
+        """
     @staticmethod
-    def named(name: str) -> Robot: ...
+    def named(name: str) -> Robot:
+        """A built-in robot; `Robot.names()` lists them.
+
+        Raises:
+            UnknownNameError: lists the names and suggests the nearest.
+        """
     @staticmethod
-    def names() -> list[str]: ...
+    def names() -> list[str]:
+        """The names of the built-in robots."""
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """The robot's name."""
     @property
-    def dof(self) -> int: ...
+    def dof(self) -> int:
+        """Degrees of freedom, n: the number of independent joints."""
     @property
-    def joint_names(self) -> list[str]: ...
+    def joint_names(self) -> list[str]:
+        """Names of the independent joints, in the order of q."""
     @property
-    def joint_kinds(self) -> list[str]: ...  # "revolute", "continuous" or "prismatic"
+    def joint_kinds(self) -> list[str]:
+        """ "revolute", "continuous" or "prismatic" per independent joint."""
     @property
-    def link_names(self) -> list[str]: ...  # along the chain, base first, tip last
+    def link_names(self) -> list[str]:
+        """Names of the links along the chain, base first, tip last."""
     @property
-    def lower(self) -> _Array: ...  # (n,), -inf where there is no limit
+    def lower(self) -> _Array:
+        """Lower position limits (n,) (rad, m); -inf where there is none."""
     @property
-    def upper(self) -> _Array: ...  # (n,), inf where there is no limit
+    def upper(self) -> _Array:
+        """Upper position limits (n,) (rad, m); inf where there is none."""
     @property
-    def velocity_limit(self) -> _Array: ...  # (n,), inf where unknown
+    def velocity_limit(self) -> _Array:
+        """Velocity limits (n,) (rad/s, m/s); inf where unknown, 0 for a locked joint."""
     @property
-    def limits(self) -> Limits: ...
-    def with_tool(self, tool: _Pose) -> Robot: ...
-    def with_base(self, base: _Pose) -> Robot: ...
+    def limits(self) -> Limits:
+        """All limits of the robot."""
+    def with_tool(self, tool: _Pose) -> Robot:
+        """The same robot with a tool: `tool` (4, 4) is the pose of the new tip in the frame of the tip link."""
+    def with_base(self, base: _Pose) -> Robot:
+        """The same robot standing elsewhere: `base` (4, 4) is the pose of its base link."""
     def with_limits(
         self, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None, velocity: ArrayLike | None = None
-    ) -> Robot: ...
+    ) -> Robot:
+        """The same robot with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps what it has."""
     @property
-    def capsules(self) -> list[tuple[str, _Array, _Array, float]]: ...  # link, a (3,), b (3,), radius in m
+    def capsules(self) -> list[tuple[str, _Array, _Array, float]]:
+        """The room that the links take up: (link, a, b, radius) each, all points within `radius` (m) of the segment from a
+        (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to a URDF's collision shapes.
+        """
     def with_capsules(
         self, capsules: list[tuple[str, ArrayLike, ArrayLike, float]] | None = None, *, radius: float | None = None
-    ) -> Robot: ...
-    def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot: ...  # up to, m and rad
+    ) -> Robot:
+        """The same robot, its links taking up capsules: of this `radius` (m) along every link, or these alone, each (link,
+        a, b, radius) with its axis from a (3,) to b (3,) in the frame of the link (m). Along the links they end at the
+        tip: set a tool first. The way that a sliding joint opens between two links is part of neither.
+
+        Raises:
+            UnknownNameError: no link of that name; the message lists them.
+        """
+    def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot:
+        """The same robot with errors of manufacture, drawn at random: every constant offset between two joints is longer or
+        shorter by up to `length` (m), every turning joint's zero is off by up to `angle` (rad). As a `KinematicPlant` it
+        is an arm whose model is wrong.
+        """
     # For interop. Elements: ("fixed", pose), ("moving", joint, turns, axis, scale, offset) or ("link", name).
-    def _chain(self) -> tuple[_Array, list[tuple[Any, ...]], _Array]: ...  # base, elements, tool
+    def _chain(self) -> tuple[_Array, list[tuple[Any, ...]], _Array]:  # base, elements, tool
+        """For `beetle_ik.interop`: (base (4, 4), elements, tool (4, 4)), as in `_from_chain`."""
     @staticmethod
     def _from_chain(
         name: str,
         base: str,
         joints: Sequence[tuple[str, str, float, float, float]],  # name, kind, lower, upper, velocity
         elements: Sequence[tuple[object, ...]],
-    ) -> Robot: ...
-    def fk(self, q: ArrayLike) -> _Array: ...  # (n,) -> (4, 4); (m, n) -> (m, 4, 4)
-    def clip(self, q: ArrayLike) -> _Array: ...  # (n,) or (m, n)
-    def link_poses(self, q: ArrayLike) -> _Array: ...  # (links, 4, 4), in the order of link_names
-    def jacobian(self, q: ArrayLike) -> _Array: ...  # (n,) -> (6, n); (m, n) -> (m, 6, n)
-    def random_configurations(self, m: int, seed: int = 0) -> _Array: ...  # (m, n)
-    def manipulability(self, q: ArrayLike, *, motion: _Motion = "pose") -> Any: ...  # (n,) -> float; (m, n) -> (m,)
-    def manipulability_gradient(self, q: ArrayLike, *, motion: _Motion = "pose") -> _Array: ...  # (n,)
-    def link_manipulability(self, q: ArrayLike, *, motion: _Motion = "position") -> _Array: ...  # (links,)
-    def velocity_ellipsoid(self, q: ArrayLike, *, motion: _Motion = "position") -> VelocityEllipsoid: ...
+    ) -> Robot:
+        """For `beetle_ik.interop`: joints are (name, kind, lower, upper, velocity), elements ("fixed", pose (4, 4)), ("moving",
+        joint, turns, axis (3,), scale, offset) or ("link", name).
+        """
+    def fk(self, q: ArrayLike) -> _Array:
+        """Forward kinematics: the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n)."""
+    def clip(self, q: ArrayLike) -> _Array:
+        """The nearest configuration inside the position limits: each joint brought to the limit that it is beyond. (n,) for q (n,),
+        (m, n) for q (m, n).
+        """
+    def link_poses(self, q: ArrayLike) -> _Array:
+        """Poses of all links at q (n,), in the order of `link_names`: (links, 4, 4)."""
+    def jacobian(self, q: ArrayLike) -> _Array:
+        """Geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m), then
+        angular rows, in the axes of the base.
+        """
+    def random_configurations(self, m: int, seed: int = 0) -> _Array:
+        """m configurations drawn uniformly between the limits, (m, n). Without limits: one turn, or 2 m, around zero."""
+    def manipulability(self, q: ArrayLike, *, motion: _Motion = "pose") -> Any:
+        """Yoshikawa's manipulability at q (n,) or (m, n): sqrt(det(J J')), the product of the singular values of the
+        Jacobian, one per direction in which the tip can move at all.
+
+        Args:
+            motion: what counts, "pose", "position" or "rotation".
+        """
+    def manipulability_gradient(self, q: ArrayLike, *, motion: _Motion = "pose") -> _Array:
+        """Gradient (n,) of the manipulability at q (n,), exact; `motion` as there."""
+    def link_manipulability(self, q: ArrayLike, *, motion: _Motion = "position") -> _Array:
+        """Manipulability of the tip of every moving link, moved by the joints before it, times the volume of the unit ball
+        (pi in the plane): (links,), the last one the tip's. Their sum is a measure of the whole arm.
+
+        Links with fewer joints before them than there are directions have zero. `motion` as in `manipulability`.
+        """
+    def velocity_ellipsoid(self, q: ArrayLike, *, motion: _Motion = "position") -> VelocityEllipsoid:
+        """The ellipsoid of tip velocities at q (n,) for unit joint speeds; `motion` as in `manipulability`."""
 
 @final
 class VelocityEllipsoid:
+    """The tip velocities that unit joint speeds give, |q'| = 1: an ellipsoid with one semi-axis per direction in which the
+    tip can move, the longest first.
+    """
+
     @property
-    def lengths(self) -> _Array: ...  # (directions,), longest first
+    def lengths(self) -> _Array:
+        """Lengths of the semi-axes (directions,) (m/s, rad/s): the singular values of the Jacobian."""
     @property
-    def axes(self) -> _Array: ...  # (directions, 6): linear, then angular part
+    def axes(self) -> _Array:
+        """Unit vectors along them (directions, 6): linear, then angular part, in the base's axes."""
     @property
-    def index(self) -> float: ...
+    def index(self) -> float:
+        """Yoshikawa's index: the product of the lengths."""
     @property
-    def condition(self) -> float: ...
+    def condition(self) -> float:
+        """The longest over the shortest; inf where a direction is lost."""
     @property
-    def isotropy(self) -> float: ...
+    def isotropy(self) -> float:
+        """Geometric over arithmetic mean of the squared lengths (Kim and Khosla 1991): 1 for a sphere, 0 where a direction
+        is lost.
+        """
 
 def pose(
     position: ArrayLike,
@@ -171,27 +277,64 @@ def pose(
     rpy: ArrayLike | None = None,
     rotvec: ArrayLike | None = None,
     matrix: _Pose | None = None,
-) -> _Array: ...
+) -> _Array:
+    """A pose (4, 4) from a position (3,) (m) and one description of the orientation, whose keyword names its order.
+
+    Args:
+        position: (3,).
+        xyzw, wxyz: quaternion (4,), of any length but zero.
+        rpy: fixed-axis roll, pitch, yaw (rad): Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
+        rotvec: rotation vector (rad).
+        matrix: rotation matrix (3, 3).
+
+    Without a description of the orientation the axes are those of the base.
+    """
 
 # --- limits -------------------------------------------------------------------------------------
 
 @final
 class Sinusoid:
+    """A limit that oscillates: mean + amplitude sin(angular_frequency t + phase), eq. (7) of Cheng et al. (2020) with its
+    sign mended.
+
+    Args:
+        mean, amplitude: in the unit of the limit; a number for all joints, or (n,).
+        angular_frequency: rad/s; a number or (n,).
+        phase: rad at t = 0; a number or (n,).
+    """
+
     def __new__(
         cls, *, mean: ArrayLike, amplitude: ArrayLike, angular_frequency: ArrayLike, phase: ArrayLike | None = None
     ) -> Sinusoid: ...
     @property
-    def mean(self) -> Any: ...  # what was given: a float or (n,)
+    def mean(self) -> Any:
+        """Mean, as given."""
     @property
-    def amplitude(self) -> Any: ...
+    def amplitude(self) -> Any:
+        """Amplitude, as given."""
     @property
-    def angular_frequency(self) -> Any: ...  # rad/s
+    def angular_frequency(self) -> Any:
+        """Angular frequency (rad/s), as given."""
     @property
-    def phase(self) -> Any: ...
+    def phase(self) -> Any:
+        """Phase at t = 0 (rad), as given."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Limits:
+    """Limits on joint motion. A field that is given replaces the robot's, a field left None is the robot's, np.inf
+    switches one off.
+
+    Args:
+        lower, upper: positions (rad, m).
+        velocity: rad/s or m/s.
+        acceleration, jerk: rad/s^2 or m/s^2, rad/s^3 or m/s^3.
+
+    Each is a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
+    are sampled at the ends and in the middle of every tick. A method that cannot honour a field raises
+    `UnsupportedLimit`; none ignores one.
+    """
+
     def __new__(
         cls,
         *,
@@ -202,20 +345,43 @@ class Limits:
         jerk: _LimitIn | None = None,
     ) -> Limits: ...
     @property
-    def lower(self) -> _LimitOut: ...
+    def lower(self) -> _LimitOut:
+        """Lower position limits (rad, m), as given."""
     @property
-    def upper(self) -> _LimitOut: ...
+    def upper(self) -> _LimitOut:
+        """Upper position limits (rad, m), as given."""
     @property
-    def velocity(self) -> _LimitOut: ...
+    def velocity(self) -> _LimitOut:
+        """Velocity limits (rad/s, m/s), as given."""
     @property
-    def acceleration(self) -> _LimitOut: ...
+    def acceleration(self) -> _LimitOut:
+        """Acceleration limits (rad/s^2, m/s^2), as given."""
     @property
-    def jerk(self) -> _LimitOut: ...
+    def jerk(self) -> _LimitOut:
+        """Jerk limits (rad/s^3, m/s^3), as given."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- solvers ------------------------------------------------------------------------------------
 
 class Status(IntEnum):
+    """How a solve, one item of a batch or one step of a track ended. `SOLVED` alone is success.
+
+    - `SOLVED`: Within the tolerances.
+    - `IMPROVED`: A step of a track: nearer than the step before, not yet within the tolerance. Or a search ended by `value_below`.
+    - `CAPPED`: A step of a track: neither within the tolerance nor nearer than the step before; the best found is kept.
+    - `STALLED`: The solver's own rule gave up: nothing more to gain from here.
+    - `BUDGET_SPENT`: The evaluation or iteration budget is spent.
+    - `TIME_UP`: The time limit is over.
+    - `INTERRUPTED`: It was asked to stop before its end.
+    - `LOST`: A track that did not stay within its tolerance.
+    - `INVALID`: An item of a batch whose target or start is wrong: nothing was solved.
+    - `OUT_OF_REACH`: Beyond doubt, no configuration reaches so far: the target is farther than the arm is long, or off its plane.
+    - `PLANT_FAILED`: A plant that raised an error, or returned what is no position: the run ended with what was recorded.
+    - `BELOW_THRESHOLD`: The solver's own threshold was met before the tolerances were.
+    - `OUTSIDE_LIMITS`: The search arrived outside the limits, and whole turns do not bring it inside; the best inside is kept.
+    - `HELD_IN_REGION`: The region of the task keeps the tip from the target; the tip is in it, as near as it may come.
+    """
+
     SOLVED = 0
     IMPROVED = 1
     CAPPED = 2
@@ -233,57 +399,117 @@ class Status(IntEnum):
 
 @final
 class APPS:
+    """Autonomous path planning solution (Yuan et al. 2016): descent down the gradient of the error by steps that are cut off
+    joint by joint. No Jacobian and no inverse.
+
+    The error is E of eq. (11): half the sum of squared differences between the entries of the target's matrix and the
+    tip's (of the positions, for a position). The search may leave the limits; whole turns bring revolute joints back,
+    eq. (12). Where they cannot, the status is `OUTSIDE_LIMITS` and the best configuration inside is returned.
+
+    Args:
+        learning_rate: eta of eq. (13); "auto": from the curvature along the last step (Barzilai and Borwein 1988).
+        step_limit: largest change of a joint in an iteration, eq. (20) (rad or m).
+        error_threshold: E_0; the search ends after the first update from an E of at most this much, whether the
+            tolerances of the call are met or not. None: it ends when they are met.
+    """
+
     def __new__(
         cls,
         *,
         learning_rate: float | Literal["auto"] = "auto",
-        step_limit: float = 0.2,  # rad or m
+        step_limit: float = 0.2,
         error_threshold: float | None = None,
     ) -> APPS: ...
     @staticmethod
-    def paper() -> APPS: ...
+    def paper() -> APPS:
+        """The paper's parameters, in the scale of its eq. (11): rate 0.2, step limit one degree, threshold 5e-10. Its budget
+        is `Stop(max_iterations=1000)`.
+        """
     @property
-    def learning_rate(self) -> float | Literal["auto"]: ...
+    def learning_rate(self) -> float | Literal["auto"]:
+        """eta of eq. (13), or "auto"."""
     @property
-    def step_limit(self) -> float: ...
+    def step_limit(self) -> float:
+        """Largest change of a joint in an iteration (rad or m)."""
     @property
-    def error_threshold(self) -> float | None: ...
+    def error_threshold(self) -> float | None:
+        """E_0, or None."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class BAS:
+    """Beetle antennae search (Cheng et al. 2020, Algorithm 1): uses values of the error alone, no derivative.
+
+    Args:
+        variant: "star", each exploration of a pass from the same point (eq. 8-11 to the letter); "chain", from where
+            the beetle went (the original beetle search, faster); "greedy", from the better of the two, the antennae
+            following the error at once (fastest for small tolerances).
+        c1: antenna length over error, eq. (12) (rad per m); None: what suits the variant (3, 1 and 3).
+        c2: step length over antenna length, eq. (13); None: 1.
+        explorations: per pass, the paper's n; None: what suits the variant (50, 30 and 5).
+        max_passes: after so many it gives up; the paper would go on for ever.
+
+    The error band of the paper is the tolerance of the call.
+    """
+
     def __new__(
         cls,
         *,
         variant: Literal["star", "chain", "greedy"] = "star",
-        c1: float | None = None,  # None: what suits the variant; likewise c2 and explorations
+        c1: float | None = None,
         c2: float | None = None,
         explorations: int | None = None,
         max_passes: int = 200,
     ) -> BAS: ...
     @property
-    def variant(self) -> str: ...
+    def variant(self) -> str:
+        """ "star", "chain" or "greedy"."""
     @property
-    def c1(self) -> float: ...
+    def c1(self) -> float:
+        """Antenna length over error (rad per m)."""
     @property
-    def c2(self) -> float: ...
+    def c2(self) -> float:
+        """Step length over antenna length."""
     @property
-    def explorations(self) -> int: ...
+    def explorations(self) -> int:
+        """Explorations per pass."""
     @property
-    def max_passes(self) -> int: ...
+    def max_passes(self) -> int:
+        """Passes after which it gives up."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class BroydenBAS:
+    """Antenna differences as secants: f(q + antenna) - f(q) is a column of the Jacobian, and every step made is an antenna
+    too (Broyden 1965). It needs what the tip did, not a model.
+
+    As the controller of `track_model_free` it is the one to choose: the Jacobian estimate is carried along the path, and
+    antennae are put out again where steps stop predicting. A measurement that surprises is asked for again before it is
+    believed, so that noise and outliers of the sensor do no harm. As a solver, in `solve` and `track`, it serves
+    where residuals are cheap and a Jacobian is not; `LevenbergMarquardt` needs fewer evaluations.
+
+    Defaults: `BroydenBAS(antenna_length=0.01, max_evaluations_per_step=20, sensor_delay=0)`.
+
+    Args:
+        antenna_length: of the controller's antennae (rad, m): well above the noise of the sensor once the arm has levered
+            it up. A solver, without noise to be afraid of, uses 1e-6.
+        max_evaluations_per_step: measurements after which a step of a path ends; 1: one command a tick.
+        sensor_delay: measurements by which the plant's sensor is late: every command is sent so many times more, and the
+            last answer counts.
+    """
+
     def __new__(
         cls, *, antenna_length: float = ..., max_evaluations_per_step: int = 20, sensor_delay: int = 0
     ) -> BroydenBAS: ...
     @property
-    def antenna_length(self) -> float: ...  # rad, m
+    def antenna_length(self) -> float:
+        """Length of the controller's antennae (rad, m)."""
     @property
-    def max_evaluations_per_step(self) -> int: ...
+    def max_evaluations_per_step(self) -> int:
+        """Measurements after which a step ends."""
     @property
-    def sensor_delay(self) -> int: ...  # in measurements
+    def sensor_delay(self) -> int:
+        """Measurements by which the sensor is late."""
     def session(
         self,
         start: ArrayLike,
@@ -292,18 +518,40 @@ class BroydenBAS:
         limits: Limits | None = None,
         position_tolerance: float = 1e-9,
         seed: int = 0,
-    ) -> ControlSession: ...
+    ) -> ControlSession:
+        """The controller at work in your own loop, from `start` (n,) and t = 0: see `ControlSession`."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class JacobianTranspose:
+    """Jacobian transpose: the steepest descent on the squared error, on the box of the limits. No inverse, so that singular
+    configurations do no harm; many small steps instead.
+
+    Args:
+        step_size: how far a step goes along the transposed Jacobian times the error; "auto": where the linearised error
+            is smallest (Buss 2004).
+    """
+
     def __new__(cls, *, step_size: float | Literal["auto"] = "auto") -> JacobianTranspose: ...
     @property
-    def step_size(self) -> float | Literal["auto"]: ...
+    def step_size(self) -> float | Literal["auto"]:
+        """How far a step goes, or "auto"."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class BeeColony:
+    """Artificial bee colony (Karaboga 2005): uses values alone.
+
+    Defaults: `BeeColony(population=20, limit=None, max_generations=None, stall_generations=50)`.
+
+    Args:
+        population: food sources; there are as many employed bees, and as many onlookers.
+        limit: trials in vain after which a source is abandoned; None: sources times dimensions.
+        max_generations: after so many it gives up; None: as many as the budget allows.
+        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
+            never.
+    """
+
     def __new__(
         cls,
         *,
@@ -313,17 +561,44 @@ class BeeColony:
         stall_generations: int | None = ...,
     ) -> BeeColony: ...
     @property
-    def population(self) -> int: ...
+    def population(self) -> int:
+        """Members of a generation."""
     @property
-    def limit(self) -> int | None: ...
+    def limit(self) -> int | None:
+        """Trials in vain after which a source is abandoned; None: sources times dimensions."""
     @property
-    def max_generations(self) -> int | None: ...
+    def max_generations(self) -> int | None:
+        """Generations after which it gives up; None: as many as the budget allows."""
     @property
-    def stall_generations(self) -> int | None: ...
+    def stall_generations(self) -> int | None:
+        """Generations without gain after which it gives up; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class BeetleSwarm:
+    """Beetle swarm optimisation (Wang et al. 2019, eq. 26-32), particles with antennae: uses values alone. The equations
+    need an inertia weight and a limit on velocities to converge; with inertia=1 and velocity_limit=1 they are literal.
+
+    Defaults: `BeetleSwarm(population=50, inertia=0.729, c1=1.494, c2=1.494, velocity_limit=0.2, velocity_share=0.9,
+    step=1.0, step_decay=0.97, step_over_antennae=5.0, direction='printed', max_generations=None,
+    stall_generations=50)`.
+
+    Args:
+        population: beetles; each takes three evaluations a generation.
+        inertia: weight of the old velocity.
+        c1: attraction to the beetle's own best place, eq. (27).
+        c2: attraction to the swarm's best place.
+        velocity_limit: largest velocity, as a share of the box's width a generation.
+        velocity_share: lambda of eq. (26), the share of the velocity in a move.
+        step: delta at first, eq. (28).
+        step_decay: eta of eq. (32).
+        step_over_antennae: c of eq. (31).
+        direction: the sign of eq. (28), as "printed" or "downhill".
+        max_generations: after so many it gives up; None: as many as the budget allows.
+        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
+            never.
+    """
+
     def __new__(
         cls,
         *,
@@ -341,33 +616,61 @@ class BeetleSwarm:
         stall_generations: int | None = ...,
     ) -> BeetleSwarm: ...
     @property
-    def population(self) -> int: ...
+    def population(self) -> int:
+        """Members of a generation."""
     @property
-    def inertia(self) -> float: ...
+    def inertia(self) -> float:
+        """Weight of the old velocity."""
     @property
-    def c1(self) -> float: ...
+    def c1(self) -> float:
+        """Attraction to the beetle's own best place."""
     @property
-    def c2(self) -> float: ...
+    def c2(self) -> float:
+        """Attraction to the swarm's best place."""
     @property
-    def velocity_limit(self) -> float: ...
+    def velocity_limit(self) -> float:
+        """Largest velocity, as a share of the box's width."""
     @property
-    def velocity_share(self) -> float: ...
+    def velocity_share(self) -> float:
+        """Share of the velocity in a move."""
     @property
-    def step(self) -> float: ...
+    def step(self) -> float:
+        """delta at first."""
     @property
-    def step_decay(self) -> float: ...
+    def step_decay(self) -> float:
+        """What delta is multiplied by in a generation."""
     @property
-    def step_over_antennae(self) -> float: ...
+    def step_over_antennae(self) -> float:
+        """delta over the distance of the antennae."""
     @property
-    def direction(self) -> str: ...
+    def direction(self) -> str:
+        """ "printed" or "downhill"."""
     @property
-    def max_generations(self) -> int | None: ...
+    def max_generations(self) -> int | None:
+        """Generations after which it gives up; None: as many as the budget allows."""
     @property
-    def stall_generations(self) -> int | None: ...
+    def stall_generations(self) -> int | None:
+        """Generations without gain after which it gives up; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class DifferentialEvolution:
+    """Differential evolution, DE/rand/1/bin (Storn and Price 1997): uses values alone.
+
+    Defaults: `DifferentialEvolution(population=50, weight=0.5, crossover_rate=0.9,
+    update='generation', max_generations=None, stall_generations=50)`.
+
+    Args:
+        population: vectors.
+        weight: F, weight of the difference of two vectors.
+        crossover_rate: CR, probability that a coordinate comes from the mutant.
+        update: "generation", better trials take their vectors' places after all of them, evaluated together (as
+            published); "immediate", at once: fewer evaluations, but one by one.
+        max_generations: after so many it gives up; None: as many as the budget allows.
+        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
+            never.
+    """
+
     def __new__(
         cls,
         *,
@@ -379,21 +682,43 @@ class DifferentialEvolution:
         stall_generations: int | None = ...,
     ) -> DifferentialEvolution: ...
     @property
-    def population(self) -> int: ...
+    def population(self) -> int:
+        """Members of a generation."""
     @property
-    def weight(self) -> float: ...
+    def weight(self) -> float:
+        """Weight of the difference of two vectors."""
     @property
-    def crossover_rate(self) -> float: ...
+    def crossover_rate(self) -> float:
+        """Probability that a coordinate comes from the mutant."""
     @property
-    def update(self) -> str: ...
+    def update(self) -> str:
+        """ "generation" or "immediate"."""
     @property
-    def max_generations(self) -> int | None: ...
+    def max_generations(self) -> int | None:
+        """Generations after which it gives up; None: as many as the budget allows."""
     @property
-    def stall_generations(self) -> int | None: ...
+    def stall_generations(self) -> int | None:
+        """Generations without gain after which it gives up; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Firefly:
+    """Firefly algorithm (Yang 2009): uses values alone. Fireflies have turns to attract all that are less bright.
+
+    Defaults: `Firefly(population=25, attractiveness=1.0, absorption=1.0, randomness=0.2, randomness_decay=0.97,
+    max_generations=None, stall_generations=50)`.
+
+    Args:
+        population: fireflies.
+        attractiveness: beta_0, at no distance.
+        absorption: gamma, with distances in widths of the box.
+        randomness: alpha, size of the random part, as a share of the box's width.
+        randomness_decay: what alpha is multiplied by with every turn.
+        max_generations: after so many it gives up; None: as many as the budget allows.
+        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
+            never.
+    """
+
     def __new__(
         cls,
         *,
@@ -406,23 +731,49 @@ class Firefly:
         stall_generations: int | None = ...,
     ) -> Firefly: ...
     @property
-    def population(self) -> int: ...
+    def population(self) -> int:
+        """Members of a generation."""
     @property
-    def attractiveness(self) -> float: ...
+    def attractiveness(self) -> float:
+        """Attractiveness at no distance."""
     @property
-    def absorption(self) -> float: ...
+    def absorption(self) -> float:
+        """Absorption of light."""
     @property
-    def randomness(self) -> float: ...
+    def randomness(self) -> float:
+        """Size of the random part at first, as a share of the box's width."""
     @property
-    def randomness_decay(self) -> float: ...
+    def randomness_decay(self) -> float:
+        """What it is multiplied by with every turn."""
     @property
-    def max_generations(self) -> int | None: ...
+    def max_generations(self) -> int | None:
+        """Generations after which it gives up; None: as many as the budget allows."""
     @property
-    def stall_generations(self) -> int | None: ...
+    def stall_generations(self) -> int | None:
+        """Generations without gain after which it gives up; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Genetic:
+    """Genetic algorithm with the operators of MATLAB's `ga`: elite, tournaments, scattered crossover, Gaussian mutation.
+    Uses values alone.
+
+    Defaults: `Genetic(population=50, elite_share=0.05, crossover_share=0.8, tournament=2,
+    mutation_rate=1.0, mutation_scale=0.1, mutation_decay=0.97, max_generations=None, stall_generations=50)`.
+
+    Args:
+        population: members of a generation.
+        elite_share: share that survives unchanged, rounded up.
+        crossover_share: share of the others that is born by crossover; the rest by mutation.
+        tournament: members of a tournament, the best of which becomes a parent.
+        mutation_rate: probability that a coordinate of a mutant moves, one in any case; 1 moves all, as MATLAB does.
+        mutation_scale: standard deviation of mutations at first, as a share of the box's width.
+        mutation_decay: what it is multiplied by in a generation.
+        max_generations: after so many it gives up; None: as many as the budget allows.
+        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
+            never.
+    """
+
     def __new__(
         cls,
         *,
@@ -437,33 +788,63 @@ class Genetic:
         stall_generations: int | None = ...,
     ) -> Genetic: ...
     @property
-    def population(self) -> int: ...
+    def population(self) -> int:
+        """Members of a generation."""
     @property
-    def elite_share(self) -> float: ...
+    def elite_share(self) -> float:
+        """Share that survives unchanged."""
     @property
-    def crossover_share(self) -> float: ...
+    def crossover_share(self) -> float:
+        """Share of the others that is born by crossover."""
     @property
-    def tournament(self) -> int: ...
+    def tournament(self) -> int:
+        """Members of a tournament."""
     @property
-    def mutation_rate(self) -> float: ...
+    def mutation_rate(self) -> float:
+        """Probability that a coordinate of a mutant moves."""
     @property
-    def mutation_scale(self) -> float: ...
+    def mutation_scale(self) -> float:
+        """Standard deviation of mutations at first, as a share of the box's width."""
     @property
-    def mutation_decay(self) -> float: ...
+    def mutation_decay(self) -> float:
+        """What it is multiplied by in a generation."""
     @property
-    def max_generations(self) -> int | None: ...
+    def max_generations(self) -> int | None:
+        """Generations after which it gives up; None: as many as the budget allows."""
     @property
-    def stall_generations(self) -> int | None: ...
+    def stall_generations(self) -> int | None:
+        """Generations without gain after which it gives up; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class PSO:
+    """Particle swarm optimisation: uses values alone.
+
+    Defaults: `PSO(population=40, form='constriction', c1=2.05, c2=2.05, velocity_limit=0.5, accept='always',
+    walls='absorbing', max_generations=None, stall_generations=50)`.
+
+    Args:
+        population: particles.
+        form: "constriction", the whole velocity shrinks by a factor that follows from c1 + c2 > 4 (Clerc and Kennedy
+            2002); "inertia", the old velocity has a weight (Shi and Eberhart 1998).
+        inertia: that weight; None: 0.729. Only with form "inertia".
+        c1: attraction to the particle's own best place; None: 2.05 with constriction, 1.49445 with inertia.
+        c2: attraction to the swarm's best place; None: as c1's.
+        velocity_limit: largest velocity, as a share of the box's width a generation; `inf`: none.
+        accept: "always", a particle stays where it went (as published); "improving", it returns to its best place if that
+            is better.
+        walls: "absorbing", a coordinate that would leave the box stops at the wall, and has no velocity left; "random", it
+            is drawn anew in the box, and keeps its velocity (compared by Helwig, Branke and Mostaghim 2013).
+        max_generations: after so many it gives up; None: as many as the budget allows.
+        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None: never.
+    """
+
     def __new__(
         cls,
         *,
         population: int = ...,
         form: Literal["constriction", "inertia"] = "constriction",
-        inertia: float | None = None,  # 0.729 with form "inertia"
+        inertia: float | None = None,
         c1: float | None = None,
         c2: float | None = None,
         velocity_limit: float = ...,
@@ -473,29 +854,51 @@ class PSO:
         stall_generations: int | None = ...,
     ) -> PSO: ...
     @property
-    def population(self) -> int: ...
+    def population(self) -> int:
+        """Members of a generation."""
     @property
-    def form(self) -> str: ...
+    def form(self) -> str:
+        """ "constriction" or "inertia"."""
     @property
-    def inertia(self) -> float | None: ...
+    def inertia(self) -> float | None:
+        """Weight of the old velocity; None with constriction."""
     @property
-    def c1(self) -> float: ...
+    def c1(self) -> float:
+        """Attraction to the particle's own best place."""
     @property
-    def c2(self) -> float: ...
+    def c2(self) -> float:
+        """Attraction to the swarm's best place."""
     @property
-    def velocity_limit(self) -> float: ...
+    def velocity_limit(self) -> float:
+        """Largest velocity, as a share of the box's width a generation."""
     @property
-    def accept(self) -> str: ...
+    def accept(self) -> str:
+        """ "always" or "improving"."""
     @property
-    def walls(self) -> str: ...
+    def walls(self) -> str:
+        """ "absorbing" or "random"."""
     @property
-    def max_generations(self) -> int | None: ...
+    def max_generations(self) -> int | None:
+        """Generations after which it gives up; None: as many as the budget allows."""
     @property
-    def stall_generations(self) -> int | None: ...
+    def stall_generations(self) -> int | None:
+        """Generations without gain after which it gives up; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class QPSO:
+    """Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): uses values alone.
+
+    Defaults: `QPSO(population=40, expansion=0.75, max_generations=None, stall_generations=50)`.
+
+    Args:
+        population: particles.
+        expansion: contraction-expansion coefficient alpha; 0.75 is the fixed value of Sun et al. (2012).
+        max_generations: after so many it gives up; None: as many as the budget allows.
+        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
+            never.
+    """
+
     def __new__(
         cls,
         *,
@@ -505,66 +908,138 @@ class QPSO:
         stall_generations: int | None = ...,
     ) -> QPSO: ...
     @property
-    def population(self) -> int: ...
+    def population(self) -> int:
+        """Members of a generation."""
     @property
-    def expansion(self) -> float: ...
+    def expansion(self) -> float:
+        """Contraction-expansion coefficient."""
     @property
-    def max_generations(self) -> int | None: ...
+    def max_generations(self) -> int | None:
+        """Generations after which it gives up; None: as many as the budget allows."""
     @property
-    def stall_generations(self) -> int | None: ...
+    def stall_generations(self) -> int | None:
+        """Generations without gain after which it gives up; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class LevenbergMarquardt:
+    """Levenberg-Marquardt on the box of the limits, by the analytic Jacobian: joints at a bound are held and the step is
+    solved again for the others.
+
+    Defaults: `LevenbergMarquardt(initial_damping=0.05)`.
+
+    Args:
+        initial_damping: damping over squared error at the start; larger is more careful far from the target.
+    """
+
     def __new__(cls, *, initial_damping: float = ...) -> LevenbergMarquardt: ...
     @property
-    def initial_damping(self) -> float: ...
+    def initial_damping(self) -> float:
+        """Damping over squared error at the start."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class MultiStart:
+    """A solver begun again from random starts when it stalls, or when its attempt is hopeless: a few steps that bring
+    little.
+
+    Args:
+        solver: any other, such as `BAS` or `LevenbergMarquardt`.
+        max_starts: starts in all; None: as many as the evaluation budget allows.
+    """
+
     def __new__(cls, solver: _Single, *, max_starts: int | None = None) -> MultiStart: ...
     @property
-    def solver(self) -> _Single: ...
+    def solver(self) -> _Single:
+        """The solver that is begun again."""
     @property
-    def max_starts(self) -> int | None: ...
+    def max_starts(self) -> int | None:
+        """Starts in all; None: as many as the evaluation budget allows."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class NewtonRaphson:
+    """Newton-Raphson by the pseudo-inverse of the Jacobian, on the box of the limits. Very quick from a start that is near
+    enough; from others it may jump about until its budget is spent.
+
+    Defaults: `NewtonRaphson(step_fraction=1.0)`.
+
+    Args:
+        step_fraction: share of the full step that is taken, above 0 and at most 1.
+    """
+
     def __new__(cls, *, step_fraction: float = ...) -> NewtonRaphson: ...
     @property
-    def step_fraction(self) -> float: ...
+    def step_fraction(self) -> float:
+        """Share of the full step that is taken."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class WeightedPseudoInverse:
+    """Resolved motion rate, a tick rule for `track` and `Tracker`: joint velocities from the velocity of the target by the
+    weighted pseudo-inverse of the Jacobian, inside the limits,
+
+    q' = Jw+ (x' + gain (x - f(q))) + (I - Jw+ J) q0',  Jw+ = W^-1 J' (J W^-1 J')^-1,
+
+    with q0' down the gradient of the goals and towards `posture`. Joints at a limit leave their share to the others.
+
+    Defaults: `WeightedPseudoInverse(gain=None, integrator='euler', weights=None, posture=None, posture_gain=20.0,
+    damping=0.0)`.
+
+    Args:
+        gain: share of the error that is taken back per second (1/s); below 2 / dt. None: half of it in every tick.
+        integrator: "euler", the velocity at the beginning of a tick, or "rk4", four evaluations a tick and far smaller
+            errors.
+        weights: W (n,), the cost of each joint's squared velocity. None: 1 / (vU - vL)^2 from the velocity limits.
+        posture: a `Trajectory` for the joints to follow, as far as the target leaves them free.
+        posture_gain: share of the distance from it that is taken back per second (1/s).
+        damping: over the squared size of the weighted Jacobian; 0 is the pseudo-inverse itself, which near a singular
+            posture asks for all the speed that there is.
+    """
+
     def __new__(
         cls,
         *,
-        gain: float | None = None,  # 1/s
+        gain: float | None = None,
         integrator: Literal["euler", "rk4"] = "euler",
-        weights: ArrayLike | None = None,  # (n,)
+        weights: ArrayLike | None = None,
         posture: Trajectory | None = None,
-        posture_gain: float = ...,  # 1/s
+        posture_gain: float = ...,
         damping: float = 0.0,
     ) -> WeightedPseudoInverse: ...
     @property
-    def gain(self) -> float | None: ...
+    def gain(self) -> float | None:
+        """Share of the error that is taken back per second (1/s); None: half of it in every tick."""
     @property
-    def integrator(self) -> str: ...
+    def integrator(self) -> str:
+        """ "euler" or "rk4"."""
     @property
-    def weights(self) -> _Array | None: ...
+    def weights(self) -> _Array | None:
+        """The cost of each joint's squared velocity (n,); None: from the velocity limits."""
     @property
-    def posture(self) -> Trajectory | None: ...
+    def posture(self) -> Trajectory | None:
+        """What the joints follow, as far as the target leaves them free."""
     @property
-    def posture_gain(self) -> float: ...
+    def posture_gain(self) -> float:
+        """Share of the distance from it that is taken back per second (1/s)."""
     @property
-    def damping(self) -> float: ...
+    def damping(self) -> float:
+        """Damping over the squared size of the weighted Jacobian."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Stop:
+    """When to stop; whichever comes first. None leaves the default, a count of evaluations that keeps a 7-joint arm under
+    about 10 ms.
+
+    Args:
+        max_evaluations: evaluations of the forward kinematics, the start included.
+        max_iterations: iterations of the solver; passes of BAS.
+        max_time: seconds. Setting it gives up repeatability.
+        value_below: a value that is good enough: of the function in `minimize`, where reaching it is success; elsewhere of
+            the weighted sum of squared errors (m, rad), where a search that stops there ends as IMPROVED.
+    """
+
     def __new__(
         cls,
         *,
@@ -574,31 +1049,58 @@ class Stop:
         value_below: float | None = None,
     ) -> Stop: ...
     @property
-    def max_evaluations(self) -> int | None: ...
+    def max_evaluations(self) -> int | None:
+        """See the class."""
     @property
-    def max_iterations(self) -> int | None: ...
+    def max_iterations(self) -> int | None:
+        """See the class."""
     @property
-    def max_time(self) -> float | None: ...  # s
+    def max_time(self) -> float | None:
+        """See the class (s)."""
     @property
-    def value_below(self) -> float | None: ...
+    def value_below(self) -> float | None:
+        """See the class."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- tasks and goals ----------------------------------------------------------------------------
 
 @disjoint_base
 class Task:
+    """What of a target matters: one of `Pose`, `Position`, `Orientation` and `Pointing`.
+
+    With a `region`, the tip is kept in a box, p_min < p < p_max: eq. (5) of Cheng et al. (2020). A target outside is approached
+    as far as the box allows, and the status is `HELD_IN_REGION`. No solution is `SOLVED` or `HELD_IN_REGION` with the tip
+    outside; a track never leaves the box at the end of a tick, whatever its solver. Between two ticks the joints move in straight
+    lines, the tip does not quite.
+    """
+
     @property
-    def weights(self) -> _Array | None: ...
+    def weights(self) -> _Array | None:
+        """Factors on the components; None: all one. A component of weight zero is left free."""
     @property
-    def tolerance(self) -> _Array | None: ...  # m, rad
+    def tolerance(self) -> _Array | None:
+        """Largest error of each component (m, rad); None: the tolerances of the call."""
     @property
-    def tool(self) -> _Array | None: ...  # (4, 4)
+    def tool(self) -> _Array | None:
+        """From the tip to what is to reach the target (4, 4); None: the tip itself."""
     @property
-    def region(self) -> _Array | None: ...  # (2, 3) m
+    def region(self) -> _Array | None:
+        """The corners of the box that the tip is kept in (2, 3) (m); None: anywhere."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Pose(Task):
+    """The whole pose.
+
+    Args:
+        weights: (6,), factors on x, y, z and on the three components of the rotation vector, along the axes of the target;
+            zero leaves a component free.
+        tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
+        tool: (4, 4), from the tip to what is to reach the target.
+        region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
+            infinite where it is open. See `Task`.
+    """
+
     def __new__(
         cls,
         *,
@@ -610,6 +1112,16 @@ class Pose(Task):
 
 @final
 class Position(Task):
+    """The position alone; the orientation is left free. Takes the position of a target that is a pose.
+
+    Args:
+        weights: (3,), factors on x, y and z of the base; zero leaves a component free.
+        tolerance: (3,) (m), largest error of each component, instead of the tolerance of the call.
+        tool: (4, 4), from the tip to what is to reach the target.
+        region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
+            infinite where it is open. See `Task`.
+    """
+
     def __new__(
         cls,
         *,
@@ -621,6 +1133,16 @@ class Position(Task):
 
 @final
 class Orientation(Task):
+    """The orientation alone; the position is left free.
+
+    Args:
+        weights: (3,), factors on the components of the rotation vector along the axes of the target; zero leaves one free.
+        tolerance: (3,) (rad), largest error of each component, instead of the tolerance of the call.
+        tool: (4, 4), from the tip to what is to reach the target.
+        region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
+            infinite where it is open. See `Task`.
+    """
+
     def __new__(
         cls,
         *,
@@ -632,50 +1154,97 @@ class Orientation(Task):
 
 @final
 class Pointing(Task):
+    """The position, and the direction of one axis of the tip; the spin about it is left free. `rotation_error` is the angle
+    between that axis and the same one of the target.
+
+    Args:
+        axis: (3,), in the tip's coordinates, of any length but zero.
+        weights: (4,), factors on x, y and z along the axes of the target, and on the angle; zero leaves a component free.
+        tolerance: (4,) (m, m, m, rad), largest error of each component, instead of the tolerances of the call.
+        tool: (4, 4), from the tip to what is to reach the target.
+        region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
+            infinite where it is open. See `Task`.
+    """
+
     def __new__(
         cls,
         *,
-        axis: ArrayLike | None = None,  # None: (0, 0, 1)
+        axis: ArrayLike | None = None,
         weights: ArrayLike | None = None,
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
     ) -> Pointing: ...
     @property
-    def axis(self) -> _Array: ...  # (3,)
+    def axis(self) -> _Array:
+        """In the tip's coordinates (3,)."""
 
 @disjoint_base
 class Goal:
+    """What the joints should do where the task leaves them free: one of `Posture`, `Centring`, `Manipulability` and
+    `LinkManipulability`.
+    """
+
     @property
-    def weight(self) -> float: ...
+    def weight(self) -> float:
+        """Share among several goals."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Posture(Goal):
+    """Near a posture: lowers |q - posture|^2.
+
+    Args:
+        posture: (n,) (rad, m).
+        weight: share among several goals.
+    """
+
     def __new__(cls, posture: ArrayLike, *, weight: float = 1.0) -> Posture: ...
     @property
-    def posture(self) -> _Array: ...  # (n,)
+    def posture(self) -> _Array:
+        """(n,) (rad, m)."""
 
 @final
 class Centring(Goal):
+    """Away from the limits: lowers the sum of ((q - middle) / range)^2 over the joints that have limits.
+
+    Args:
+        weight: share among several goals.
+    """
+
     def __new__(cls, *, weight: float = 1.0) -> Centring: ...
 
 @final
 class Manipulability(Goal):
+    """Far from singularities: lowers -ln w, with w Yoshikawa's index.
+
+    Args:
+        motion: of the tip, as in `Robot.manipulability`: "pose", "position" or "rotation".
+        weight: share among several goals.
+    """
+
     def __new__(cls, *, motion: _Motion = "pose", weight: float = 1.0) -> Manipulability: ...
 
 @final
 class LinkManipulability(Goal):
+    """The whole arm far from singularities: lowers -ln of the sum of `Robot.link_manipulability`, so that no link comes near
+    a straight line with the one before it.
+
+    Args:
+        motion: of the links' tips, as in `Robot.manipulability`: "pose", "position" or "rotation".
+        weight: share among several goals.
+    """
+
     def __new__(cls, *, motion: _Motion = "position", weight: float = 1.0) -> LinkManipulability: ...
 
 # --- inverse kinematics -------------------------------------------------------------------------
 
 def solve(
     robot: Robot,
-    target: _Pose,  # (4, 4) pose or (3,) position
+    target: _Pose,
     *,
     task: Task | None = None,
-    start: ArrayLike | None = None,  # (n,)
+    start: ArrayLike | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
@@ -684,43 +1253,143 @@ def solve(
     limits: Limits | None = None,
     stop: Stop | None = None,
     seed: int = 0,
-) -> Solution: ...
+) -> Solution:
+    """Finds a configuration that brings the tip of `robot` to `target`, inside the limits.
+
+    Args:
+        robot: the arm.
+        target: pose (4, 4), or position (3,) (m) with the orientation left free.
+        task: of `tasks`, what of the target matters; None: all that it says.
+        start: (n,), where to begin; None begins at stored configurations of the robot whose tip is near the target.
+        solver: None: Levenberg-Marquardt from many starts.
+        position_tolerance: m.
+        rotation_tolerance: rad, geodesic angle.
+        goals: of `goals`, one or several: the solution found is moved along the self-motion to where they are best near it.
+        prefer: "any" solution, or the "nearest" to the start: of those found until 24 in a row were no nearer, each moved
+            along the self-motion and by whole turns inside the limits towards the start, the one with the smallest
+            |q - start| (rad, m); or the "best" for the goals, of those found all over, each moved along the self-motion, until
+            40 in a row were no better; an arm with one joint more than its task needs is led once along every curve of
+            solutions, past the limits that cut it.
+        limits: position limits to keep; None keeps the robot's.
+        stop: budgets; None: a count of evaluations that keeps a 7-joint arm under about 10 ms.
+        seed: of the random draws: the same seed, the same bits.
+
+    Returns:
+        A `Solution`. A target that is not reached is a status beside the best configuration found, not an error.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN, a target that is not a rigid transform.
+        LimitError: a start outside the limits.
+    """
 
 @final
-class Solution(_Outcome):
+class Solution:
+    """The best configuration found, and what became of the search."""
+
     @property
-    def q(self) -> _Array: ...  # (n,)
+    def success(self) -> bool:
+        """Whether the target was reached within the tolerances."""
     @property
-    def position_error(self) -> float: ...  # m
+    def status(self) -> Status:
+        """Why the search ended, a `Status`."""
     @property
-    def rotation_error(self) -> float: ...  # rad; NaN where no orientation was asked
+    def message(self) -> str:
+        """What happened, and what to try."""
     @property
-    def iterations(self) -> int: ...
+    def evaluations(self) -> int:
+        """Evaluations of the forward kinematics."""
     @property
-    def restarts(self) -> int: ...
+    def elapsed(self) -> float:
+        """Time taken (s)."""
+    @property
+    def limits(self) -> Limits:
+        """The limits in force."""
+    @property
+    def q(self) -> _Array:
+        """The configuration (n,) (rad, m), inside the limits."""
+    @property
+    def position_error(self) -> float:
+        """Distance of the tip from the target (m), by forward kinematics of `q`."""
+    @property
+    def rotation_error(self) -> float:
+        """Geodesic angle to the target's orientation (rad); NaN where none was asked for."""
+    @property
+    def iterations(self) -> int:
+        """Iterations over all starts."""
+    @property
+    def restarts(self) -> int:
+        """Starts beyond the first."""
 
 def solve_all(
     robot: Robot,
-    target: _Pose,  # (4, 4) pose or (3,) position
+    target: _Pose,
     *,
-    start: ArrayLike | None = None,  # (n,)
+    start: ArrayLike | None = None,
     limit: int = 16,
-    separation: float = 0.1,  # rad, m
+    separation: float = 0.1,
     task: Task | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
     rotation_tolerance: float = 1e-6,
     limits: Limits | None = None,
-    stop: Stop | None = None,  # budgets of the whole search
+    stop: Stop | None = None,
     seed: int = 0,
-) -> SolutionSet: ...
+) -> SolutionSet:
+    """Looks for distinct solutions until a hundred in a row were known already, or the budget is spent.
+
+    Each is returned at the whole turns nearest to the start, without one nearest to the middle of the limits. A redundant arm
+    has endlessly many solutions: those returned lie at least `separation` apart.
+
+    Args:
+        robot: the arm.
+        target: pose (4, 4), or position (3,) (m).
+        start: (n,): solutions come nearest to it first, by |q - start| (rad, m). None: in the order in which they were found.
+        limit: solutions to return at most.
+        separation: solutions count as one where no joint differs by as much (rad, m), whole turns aside.
+        task: of `tasks`, what of the target matters; None: all that it says.
+        solver: None: Levenberg-Marquardt from many starts.
+        position_tolerance: m.
+        rotation_tolerance: rad, geodesic angle.
+        limits: position limits to keep; None keeps the robot's.
+        stop: budgets of the whole search; None: as for `solve`.
+        seed: of the random draws: the same seed, the same bits.
+
+    Returns:
+        A `SolutionSet`; without a solution it is empty and has the best `miss`.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN, a target that is not a rigid transform.
+        LimitError: a start outside the limits.
+    """
 
 @final
-class SolutionSet(_Outcome):
+class SolutionSet:
+    """Distinct solutions of one target: a sequence of `Solution`."""
+
     @property
-    def q(self) -> _Array: ...  # (k, n)
+    def success(self) -> bool:
+        """Whether there is a solution."""
     @property
-    def miss(self) -> Solution | None: ...
+    def status(self) -> Status:
+        """SOLVED where there is a solution; else why the last search ended."""
+    @property
+    def message(self) -> str:
+        """What happened, and what to try."""
+    @property
+    def evaluations(self) -> int:
+        """Evaluations of the forward kinematics."""
+    @property
+    def elapsed(self) -> float:
+        """Time taken (s)."""
+    @property
+    def limits(self) -> Limits:
+        """The limits in force."""
+    @property
+    def q(self) -> _Array:
+        """The configurations (k, n) (rad, m), inside the limits."""
+    @property
+    def miss(self) -> Solution | None:
+        """The best miss, a `Solution`, where there is no solution; else None."""
     def __len__(self) -> int: ...
     @overload
     def __getitem__(self, index: int | np.integer, /) -> Solution: ...
@@ -730,10 +1399,10 @@ class SolutionSet(_Outcome):
 
 def solve_batch(
     robot: Robot,
-    targets: _Pose,  # (m, 4, 4) poses or (m, 3) positions
+    targets: _Pose,
     *,
-    starts: ArrayLike | None = None,  # (m, n), or (n,) for all
-    threads: int | None = None,  # None: one per core
+    starts: ArrayLike | None = None,
+    threads: int | None = None,
     on_invalid: Literal["raise", "skip"] = "raise",
     progress: _Progress = None,
     task: Task | None = None,
@@ -743,34 +1412,78 @@ def solve_batch(
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
     limits: Limits | None = None,
-    stop: Stop | None = None,  # budgets of each target
+    stop: Stop | None = None,
     seed: int = 0,
-) -> BatchSolution: ...
+) -> BatchSolution:
+    """Solves many targets at once, on all cores.
+
+    The result is the same, to the bit, for any number of threads; an item does not depend on the items behind it, and
+    item 0 is what `solve` finds.
+
+    Args:
+        robot: the arm.
+        targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free.
+        starts: where to begin, (m, n), or (n,) for all; None begins at stored configurations of the robot whose tip is near.
+        threads: None: one per core. With 1, nothing leaves the calling thread.
+        on_invalid: what to do about a target or start that is wrong: "raise" names its row; "skip" solves the others
+            and marks the row `Status.INVALID`, its q NaN.
+        progress: True for a bar on the terminal, or a callable of (done, total).
+        task: as for `solve`.
+        solver: None: Levenberg-Marquardt from many starts.
+        position_tolerance: m.
+        rotation_tolerance: rad, geodesic angle.
+        goals, prefer: as for `solve`.
+        limits: position limits to keep; None keeps the robot's.
+        stop: budgets of each target; None: as for `solve`.
+        seed: of the random draws: the same seed, the same bits.
+
+    Returns:
+        A `BatchSolution`. A target that is not reached is a status beside the best configuration found, not an error.
+
+    Raises:
+        InvalidInputError: wrong shape; NaN or a target that is not a rigid transform, with its row.
+        LimitError: a start outside the limits, with its row.
+    """
 
 @final
 class BatchSolution:
+    """Solutions in the order of the targets, as columns; `b[i]` is one of them as a `Solution`, `b[10:20]` and
+    `b[~b.success]` are batches of some of them.
+    """
+
     @property
-    def q(self) -> _Array: ...  # (m, n); NaN where INVALID
+    def q(self) -> _Array:
+        """The best configurations found (m, n) (rad, m), inside the limits; NaN where `status` is INVALID."""
     @property
-    def success(self) -> NDArray[np.bool_]: ...  # (m,)
+    def success(self) -> NDArray[np.bool_]:
+        """Whether each target was reached within the tolerances (m,)."""
     @property
-    def status(self) -> NDArray[np.uint8]: ...  # (m,), values of Status
+    def status(self) -> NDArray[np.uint8]:
+        """Why each search ended (m,), values of `Status`."""
     @property
-    def message(self) -> str: ...
+    def message(self) -> str:
+        """How many were solved, and what to try for the others."""
     @property
-    def position_error(self) -> _Array: ...  # (m,), m
+    def position_error(self) -> _Array:
+        """Distances of the tip from its targets (m,) (m), by forward kinematics of `q`."""
     @property
-    def rotation_error(self) -> _Array: ...  # (m,), rad; NaN where no orientation was asked
+    def rotation_error(self) -> _Array:
+        """Geodesic angles to the targets' orientations (m,) (rad); NaN where none was asked for."""
     @property
-    def iterations(self) -> NDArray[np.int64]: ...  # (m,)
+    def iterations(self) -> NDArray[np.int64]:
+        """Iterations over all starts (m,)."""
     @property
-    def restarts(self) -> NDArray[np.int64]: ...  # (m,)
+    def restarts(self) -> NDArray[np.int64]:
+        """Starts beyond the first (m,)."""
     @property
-    def evaluations(self) -> NDArray[np.int64]: ...  # (m,)
+    def evaluations(self) -> NDArray[np.int64]:
+        """Evaluations of the forward kinematics (m,)."""
     @property
-    def elapsed(self) -> float: ...  # s, in all
+    def elapsed(self) -> float:
+        """Time taken in all (s)."""
     @property
-    def limits(self) -> Limits: ...  # those in force
+    def limits(self) -> Limits:
+        """The limits in force."""
     def __len__(self) -> int: ...
     @overload
     def __getitem__(self, index: int | np.integer, /) -> Solution: ...
@@ -781,35 +1494,97 @@ class BatchSolution:
 # --- minimisation of any function ----------------------------------------------------------------
 
 def minimize(
-    function: Callable[[_Array], Any],  # (n,) -> a number; vectorized: (m, n) -> (m,)
+    function: Callable[[_Array], Any],
     lower: ArrayLike,
     upper: ArrayLike,
     *,
     solver: _DerivativeFree | MultiStart,
-    start: ArrayLike | None = None,  # (n,)
+    start: ArrayLike | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     vectorized: bool = False,
     progress: _Progress = None,
-) -> Minimum: ...
+) -> Minimum:
+    """Searches a box for the least value of a function of which nothing but values is known.
+
+    Args:
+        function: takes x (n,) and returns a number; NaN and infinities count as the worst value.
+        lower: (n,), finite.
+        upper: (n,), finite.
+        solver: one that needs values alone, such as `PSO` or `BAS`, or `MultiStart` of one. BAS has antennae as long as
+            c1 times the root of the value: it suits functions whose least value is zero.
+        start: (n,), where to begin; None draws it. It is a member of the first generation of swarms.
+        stop: budgets; None: 30000 evaluations. `Stop(value_below=...)` says what is good enough.
+        seed: of the random draws: the same seed, the same bits.
+        vectorized: the function takes (m, n) and returns (m,), whole generations at once.
+        progress: True for a bar on the terminal, or a callable of (done, total), evaluations.
+
+    Returns:
+        A `Minimum`, its `success` only where a value was asked for and found.
+
+    Raises:
+        InvalidInputError: wrong shape, an open or an empty box, a start outside it, a population larger than the budget, a
+            function that returns something else than numbers.
+
+    What the function raises comes out as it is, and so does KeyboardInterrupt; both have the best point so far, a
+    `Minimum`, as attribute `best`, and a note that says so.
+    """
 
 @final
-class Minimum(_Outcome):
+class Minimum:
+    """The best point found by `minimize`, and what became of the search."""
+
     @property
-    def x(self) -> _Array: ...  # (n,)
+    def success(self) -> bool:
+        """Whether the value is below the one asked for by `Stop(value_below=...)`; without one, nothing is known to be good
+        enough, and this is False.
+        """
     @property
-    def value(self) -> float: ...
+    def status(self) -> Status:
+        """SOLVED as `success`; STALLED by the solver's own rule; BUDGET_SPENT, TIME_UP or INTERRUPTED."""
     @property
-    def history(self) -> _Array: ...  # (k, 2): evaluations, best value
+    def message(self) -> str:
+        """What happened, and what to try."""
     @property
-    def iterations(self) -> int: ...
+    def evaluations(self) -> int:
+        """Evaluations of the function."""
     @property
-    def restarts(self) -> int: ...
+    def elapsed(self) -> float:
+        """Time taken (s)."""
+    @property
+    def limits(self) -> Limits:
+        """The box, as `lower` and `upper`."""
+    @property
+    def x(self) -> _Array:
+        """The point (n,), inside the box."""
+    @property
+    def value(self) -> float:
+        """The function's value at `x`; inf where it was finite nowhere."""
+    @property
+    def history(self) -> _Array:
+        """(k, 2): evaluations made, and the best value then. A row for the start, for every improvement and for the end."""
+    @property
+    def iterations(self) -> int:
+        """Iterations over all starts: generations of swarms, passes of BAS."""
+    @property
+    def restarts(self) -> int:
+        """Starts beyond the first."""
 
 # --- postures -----------------------------------------------------------------------------------
 
 @final
 class CircleSwarm:
+    """The particle swarm of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization": over joint
+    points on circles, with a constriction factor (eq. 17, 18).
+
+    Args:
+        population: particles.
+        generations: the first draw included.
+        c1, c2: attraction to the particle's own best place and to the swarm's; together above 4.
+        velocity_limit: largest velocity of a coordinate (m a generation); not published.
+        signed: random factors from [-1, 1], as printed, instead of [0, 1].
+    """
+
     def __new__(
         cls,
         *,
@@ -817,59 +1592,123 @@ class CircleSwarm:
         generations: int = 10,
         c1: float = 2.05,
         c2: float = 2.05,
-        velocity_limit: float = 0.2,  # m a generation
+        velocity_limit: float = 0.2,
         signed: bool = False,
     ) -> CircleSwarm: ...
     @property
-    def population(self) -> int: ...
+    def population(self) -> int:
+        """Particles."""
     @property
-    def generations(self) -> int: ...
+    def generations(self) -> int:
+        """Generations, the first draw included."""
     @property
-    def c1(self) -> float: ...
+    def c1(self) -> float:
+        """Attraction to the particle's own best place."""
     @property
-    def c2(self) -> float: ...
+    def c2(self) -> float:
+        """Attraction to the swarm's best place."""
     @property
-    def velocity_limit(self) -> float: ...
+    def velocity_limit(self) -> float:
+        """Largest velocity of a coordinate (m a generation)."""
     @property
-    def signed(self) -> bool: ...
+    def signed(self) -> bool:
+        """Whether random factors come from [-1, 1]."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 def planar_posture(
     robot: Robot,
-    target: ArrayLike,  # (3,)
+    target: ArrayLike,
     *,
     measure: Literal["tip", "overall"] = "tip",
-    region: ArrayLike | None = None,  # (2, 2): least and largest x, y (m)
+    region: ArrayLike | None = None,
     swarm: CircleSwarm | None = None,
     seed: int = 0,
-) -> PlanarPosture: ...
+) -> PlanarPosture:
+    """The posture of a planar arm with the best manipulability for a tip position, of all that there are.
+
+    For any arm, and for poses: `solve(robot, target, goals=goals.Manipulability(...), prefer="best")`.
+
+    Args:
+        robot: an arm of 3 or more joints that turn about z in one plane, such as `Robot.planar([...])`.
+        target: position of the tip (3,) (m).
+        measure: "tip", Yoshikawa's index of the tip, or "overall", the sum of those of all links.
+        region: ((x, y), (x, y)), least and largest coordinates of the joint points (m); None: anywhere.
+        swarm: a `CircleSwarm` to search as published; None: differential evolution over the directions of the links.
+        seed: of the random draws: the same seed, the same bits.
+
+    Returns:
+        A `PlanarPosture`. A target out of reach is a status, not an error.
+
+    Raises:
+        InvalidInputError: an arm that is not planar or has fewer than 3 links, wrong shape, NaN.
+    """
 
 @final
-class PlanarPosture(_Outcome):
+class PlanarPosture:
+    """The best posture of a planar arm for a tip position."""
+
     @property
-    def q(self) -> _Array: ...  # (n,)
+    def success(self) -> bool:
+        """Whether a posture was found."""
     @property
-    def index(self) -> float: ...
+    def status(self) -> Status:
+        """Why the search ended, a `Status`."""
     @property
-    def history(self) -> _Array: ...  # (generations,), or empty
+    def message(self) -> str:
+        """What happened, and what to try."""
     @property
-    def position_error(self) -> float: ...  # m
+    def evaluations(self) -> int:
+        """Postures whose index was computed."""
+    @property
+    def elapsed(self) -> float:
+        """Time taken (s)."""
+    @property
+    def limits(self) -> Limits:
+        """The limits in force: the robot's."""
+    @property
+    def q(self) -> _Array:
+        """The configuration (n,) (rad); as near as the tip gets where there is no posture."""
+    @property
+    def index(self) -> float:
+        """Its index: `Robot.manipulability(q, motion="position")`, or for measure "overall" the sum of
+        `Robot.link_manipulability(q)`; NaN where there is no posture.
+        """
+    @property
+    def history(self) -> _Array:
+        """The best index after each generation of a `CircleSwarm` (generations,); empty for the library's own search."""
+    @property
+    def position_error(self) -> float:
+        """Distance of the tip from the target (m)."""
 
 # --- reference paths (public as beetle_ik.paths) ------------------------------------------------
 
 @final
 class Path:
+    """A reference for the tip: a position for every time in [0, duration], and an orientation where one was given. Times
+    outside are clamped.
+    """
+
     @property
-    def duration(self) -> float: ...  # s
-    def position(self, t: ArrayLike) -> _Array: ...  # number -> (3,); (k,) -> (k, 3)
-    def velocity(self, t: ArrayLike) -> _Array: ...  # number -> (3,); (k,) -> (k, 3)
-    def pose(self, t: ArrayLike) -> _Array: ...  # number -> (4, 4); (k,) -> (k, 4, 4)
-    def sample(self, dt: float) -> tuple[_Array, _Array]: ...  # time (k,), positions (k, 3)
-    def with_orientation(self, orientation: _Pose | Callable[[float], _Pose]) -> Path: ...  # (3, 3)
+    def duration(self) -> float:
+        """How long the path lasts (s)."""
+    def position(self, t: ArrayLike) -> _Array:
+        """Position (m): (3,) for a number t (s), (k, 3) for t (k,)."""
+    def velocity(self, t: ArrayLike) -> _Array:
+        """Velocity (m/s): (3,) for a number t (s), (k, 3) for t (k,). Of a Python function, by central differences."""
+    def pose(self, t: ArrayLike) -> _Array:
+        """Pose: (4, 4) for a number t (s), (k, 4, 4) for t (k,). The path must have an orientation."""
+    def sample(self, dt: float) -> tuple[_Array, _Array]:
+        """Times (k,) (s) from 0 in steps of dt, and the positions (k, 3) (m) there: what a tracker follows."""
+    def with_orientation(self, orientation: _Pose | Callable[[float], _Pose]) -> Path:
+        """The same path with an orientation: a rotation matrix (3, 3), or a callable of t (s) that returns one."""
 
 def circle(
     center: ArrayLike, diameter: float, duration: float, *, a: ArrayLike = (1, 0, 0), b: ArrayLike = (0, 1, 0)
-) -> Path: ...
+) -> Path:
+    """A circle about `center` (3,) (m) of this diameter (m), once around in `duration` (s), from the side of `a` towards
+    `b`: eq. (14) of Cheng et al. (2020). `a` and `b` (3,) are orthonormal.
+    """
+
 def letter_m(
     center: ArrayLike,
     duration: float,
@@ -878,7 +1717,11 @@ def letter_m(
     height: float,
     a: ArrayLike = (0, 1, 0),
     b: ArrayLike = (0, 0, 1),
-) -> Path: ...
+) -> Path:
+    """The letter M about `center` (3,), `width` along `a` and `height` along `b` (m), its four segments equally long in
+    time (Khan et al. 2022).
+    """
+
 def hypotrochoid(
     center: ArrayLike,
     duration: float,
@@ -888,10 +1731,18 @@ def hypotrochoid(
     distance: float,
     a: ArrayLike = (0, 1, 0),
     b: ArrayLike = (0, 0, 1),
-) -> Path: ...
+) -> Path:
+    """A hypotrochoid about `center` (3,): the path of a point at `distance` from the centre of a circle that rolls inside
+    another (m). Eq. (20) of Khan et al. (2022) as it was meant; the ratio of the radii is one of small whole numbers.
+    """
+
 def pentagram(
     center: ArrayLike, duration: float, *, radius: float, a: ArrayLike = (1, 0, 0), b: ArrayLike = (0, 1, 0)
-) -> Path: ...
+) -> Path:
+    """A five-pointed star about `center` (3,), its points `radius` (m) away, drawn in five segments at constant speed from
+    the point on the side of `b`.
+    """
+
 def rose(
     center: ArrayLike,
     duration: float,
@@ -900,17 +1751,28 @@ def rose(
     k: int,
     a: ArrayLike = (1, 0, 0),
     b: ArrayLike = (0, 1, 0),
-) -> Path: ...
-def polyline(points: ArrayLike, duration: float) -> Path: ...
-def from_samples(time: ArrayLike, positions_or_poses: _Pose) -> Path: ...  # (k,) and (k, 3) or (k, 4, 4)
-def from_function(function: Callable[[float], ArrayLike], duration: float) -> Path: ...
+) -> Path:
+    """A rose about `center` (3,): at angle u the distance is radius cos(k u) (m). Odd k gives k petals, even k 2 k."""
+
+def polyline(points: ArrayLike, duration: float) -> Path:
+    """Straight segments through `points` (k, 3) (m) at constant speed, `duration` (s) in all."""
+
+def from_samples(time: ArrayLike, positions_or_poses: _Pose) -> Path:
+    """The path through samples: `time` (k,) (s) from 0, and positions (k, 3) (m) or poses (k, 4, 4). Straight in between,
+    rotations along the shortest turn.
+    """
+
+def from_function(function: Callable[[float], ArrayLike], duration: float) -> Path:
+    """The path that `function(t)` describes: t (s) in [0, duration] to a position (3,) (m). It is called before a tracker
+    runs, at the times of its ticks.
+    """
 
 # --- tracking -----------------------------------------------------------------------------------
 
 def track(
     robot: Robot,
     path: Path,
-    start: ArrayLike | None = None,  # None solves for the path's first point
+    start: ArrayLike | None = None,
     *,
     dt: float,
     task: Task | None = None,
@@ -922,49 +1784,142 @@ def track(
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
     progress: _Progress = None,
-) -> TrackResult: ...
+) -> TrackResult:
+    """Follows `path` with the tip of `robot`, tick by tick, inside the limits.
+
+    In every tick the joints may move within the position limits and within what the velocity limits let the last
+    accepted configuration reach, so that neither can be broken (Cheng et al. 2020, Algorithm 1). Acceleration limits narrow
+    that further, with room left to brake before position limits; the arm starts at rest.
+
+    Args:
+        robot: the arm.
+        path: positions or poses over time.
+        start: (n,), configuration at t = 0; None solves for the path's first point, for the configuration that is best for
+            the goals or, without goals, far from singularities and limits.
+        dt: time step (s).
+        task: of `tasks`, what of the path matters; None: all that it says.
+        solver: what runs in every tick: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule, which
+            needs one or two evaluations a step.
+        limits: None: the robot's.
+        goals: of `goals`, one or several: in every tick the freedom that the task leaves goes down their gradient by weight times
+            dt. They need the library's own rule, or `WeightedPseudoInverse`.
+        position_tolerance: the error band (m).
+        rotation_tolerance: the same for orientations (rad).
+        seed: of the random draws: the same seed, the same bits.
+        limit_at: a tick's velocity limit is its smallest over the "interval", or, as in the paper, that at its "start".
+        progress: True for a bar on the terminal, or a callable of (done, total).
+
+    Returns:
+        A `TrackResult`. A path that cannot be followed is a status, not an error.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN, dt not positive.
+        LimitError: a start outside its limits, a limit below zero.
+        UnsupportedLimit: jerk limits, which this tracker does not keep.
+    """
 
 @final
-class TrackResult(_Outcome):
+class TrackResult:
+    """The record of a track: k = steps + 1 rows; row 0 is the start at t = 0, row i the tick that ends at t_i = i dt."""
+
     @property
-    def time(self) -> _Array: ...  # (k,)
+    def success(self) -> bool:
+        """Whether the tip came into the error band and stayed there."""
     @property
-    def q(self) -> _Array: ...  # (k, n)
+    def status(self) -> Status:
+        """SOLVED as `success`; LOST if the tip left its band again; else how the last step ended."""
     @property
-    def qd(self) -> _Array: ...  # (k, n), row 0 zero
+    def message(self) -> str:
+        """What happened, and what to try."""
     @property
-    def velocity_limit(self) -> _Array: ...  # (k, n): what each qd was held against; row 0 NaN, inf where none
+    def evaluations(self) -> int:
+        """Evaluations of the forward kinematics in all."""
     @property
-    def position(self) -> _Array: ...  # (k, 3)
+    def elapsed(self) -> float:
+        """Time taken (s)."""
     @property
-    def reference(self) -> _Array: ...  # (k, 3)
+    def limits(self) -> Limits:
+        """The limits in force."""
     @property
-    def position_error(self) -> _Array: ...  # (k,), m
+    def time(self) -> _Array:
+        """Times (k,) (s)."""
     @property
-    def rotation_error(self) -> _Array: ...  # (k,), rad; NaN where no orientation was asked
+    def q(self) -> _Array:
+        """Configurations (k, n) (rad, m)."""
     @property
-    def position_tolerance(self) -> float: ...  # m, as asked
+    def qd(self) -> _Array:
+        """Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt, zero in row 0."""
     @property
-    def rotation_tolerance(self) -> float: ...  # rad, as asked
+    def velocity_limit(self) -> _Array:
+        """The limit that each velocity was held against (k, n); NaN in row 0, inf where there is none."""
     @property
-    def step_status(self) -> NDArray[np.uint8]: ...  # (k,), values of Status
+    def position(self) -> _Array:
+        """Positions of the tip (k, 3) (m)."""
     @property
-    def step_evaluations(self) -> NDArray[np.int64]: ...  # (k,)
+    def reference(self) -> _Array:
+        """Wanted positions (k, 3) (m)."""
     @property
-    def step_iterations(self) -> NDArray[np.int64]: ...  # (k,): passes of BAS, steps of Levenberg-Marquardt
+    def position_error(self) -> _Array:
+        """Distances between the two (k,) (m)."""
     @property
-    def max_violation(self) -> float: ...  # rad or m; 0 within rounding
+    def rotation_error(self) -> _Array:
+        """Angles to the wanted orientations (k,) (rad); NaN where none was asked for."""
     @property
-    def limit_margin(self) -> float: ...  # rad/s: smallest velocity_limit - |qd| of all; inf where no limit
+    def position_tolerance(self) -> float:
+        """The error band (m), as asked."""
     @property
-    def robot(self) -> Robot: ...
+    def rotation_tolerance(self) -> float:
+        """The error band of orientations (rad), as asked."""
     @property
-    def trajectory(self) -> Trajectory: ...  # straight lines between the ticks: its velocities are exactly qd
-    def plot(self) -> Figure: ...
+    def step_status(self) -> NDArray[np.uint8]:
+        """How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED
+        neither.
+        """
+    @property
+    def step_evaluations(self) -> NDArray[np.int64]:
+        """Evaluations of the forward kinematics in each step (k,)."""
+    @property
+    def step_iterations(self) -> NDArray[np.int64]:
+        """Iterations in each step (k,): passes of BAS, steps of Levenberg-Marquardt."""
+    @property
+    def max_violation(self) -> float:
+        """Largest excess of a displacement over its limit times dt, or of a position over its limit (rad, m); 0 within
+        rounding.
+        """
+    @property
+    def limit_margin(self) -> float:
+        """Smallest distance of a speed from its limit (rad/s, m/s); inf without limits."""
+    @property
+    def robot(self) -> Robot:
+        """The robot that was tracked."""
+    @property
+    def trajectory(self) -> Trajectory:
+        """The joint motion, straight between the ticks: its velocities are exactly `qd`."""
+    def plot(self) -> Figure:
+        """A matplotlib figure: the tip's path, the error, joint angles, velocities with their limits, evaluations."""
     def __len__(self) -> int: ...
 
 @final
 class Tracker:
+    """One control loop, one call a tick: the same as `track`, for targets that come one at a time.
+
+    A target may jump farther than a tick reaches: the model-based rule then moves all joints in proportion, the first of them at
+    its velocity limit, and brakes in time where accelerations are limited.
+
+    Args:
+        robot: the arm.
+        start: (n,), configuration at t = 0.
+        dt: time step (s).
+        task: as in `track`.
+        solver: what runs in every step: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule.
+        limits: None: the robot's. Numbers and `Sinusoid`s; a callable has no end to be sampled to.
+        goals: as in `track`.
+        position_tolerance: m.
+        rotation_tolerance: rad.
+        seed: of the random draws.
+        limit_at: as in `track`.
+    """
+
     def __new__(
         cls,
         robot: Robot,
@@ -980,235 +1935,529 @@ class Tracker:
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
     ) -> Tracker: ...
-    def step(self, target: _Pose, *, velocity: ArrayLike | None = None) -> Step: ...  # (4, 4) or (3,); m/s
-    def reset(self, q: ArrayLike) -> None: ...
+    def step(self, target: _Pose, *, velocity: ArrayLike | None = None) -> Step:
+        """Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
+
+        Args:
+            target: where the tip is to be at the end of the tick.
+            velocity: (3,) (m/s), that of the target then, for `WeightedPseudoInverse`; None: the way from where it was.
+                Other rules need none.
+        """
+    def reset(self, q: ArrayLike) -> None:
+        """Back to rest in q (n,), at t = 0."""
     @property
-    def q(self) -> _Array: ...  # (n,)
+    def q(self) -> _Array:
+        """The configuration accepted last (n,) (rad, m)."""
     @property
-    def time(self) -> float: ...  # s
+    def time(self) -> float:
+        """Time of that configuration (s)."""
     @property
-    def dt(self) -> float: ...  # s
+    def dt(self) -> float:
+        """Time step (s)."""
     @property
-    def robot(self) -> Robot: ...
+    def robot(self) -> Robot:
+        """The robot that is moved."""
     @property
-    def limits(self) -> Limits: ...  # those in force
+    def limits(self) -> Limits:
+        """The limits in force."""
 
 @final
-class Step(_Outcome):
+class Step:
+    """What became of one step of a `Tracker` or a `ControlSession`."""
+
     @property
-    def q(self) -> _Array: ...  # (n,): what to command
+    def success(self) -> bool:
+        """Whether the tip is within the tolerances."""
     @property
-    def qd(self) -> _Array: ...  # (n,): the velocity that leads there
+    def status(self) -> Status:
+        """SOLVED within the tolerances, IMPROVED nearer than the step before, CAPPED neither."""
     @property
-    def position_error(self) -> float: ...  # m
+    def message(self) -> str:
+        """What happened, and what to try."""
     @property
-    def rotation_error(self) -> float: ...  # rad; NaN where no orientation was asked
+    def evaluations(self) -> int:
+        """Evaluations of the forward kinematics."""
     @property
-    def inside_limits(self) -> bool: ...  # False: a joint cannot be within its position limits yet
+    def elapsed(self) -> float:
+        """Time taken (s)."""
+    @property
+    def limits(self) -> Limits:
+        """The limits in force."""
+    @property
+    def q(self) -> _Array:
+        """The configuration to command (n,) (rad, m)."""
+    @property
+    def qd(self) -> _Array:
+        """The velocity that leads there (n,) (rad/s, m/s)."""
+    @property
+    def position_error(self) -> float:
+        """Distance of the tip from the target (m)."""
+    @property
+    def rotation_error(self) -> float:
+        """Geodesic angle to the target's orientation (rad); NaN where none was asked for."""
+    @property
+    def inside_limits(self) -> bool:
+        """False where a joint cannot be brought within its position limits in this step."""
 
 # --- obstacles ----------------------------------------------------------------------------------
 
 @disjoint_base
 class Obstacle:
+    """A convex body that stands still in the frame of the robot's base: what all obstacles have in common."""
+
     @property
-    def triangles(self) -> _Array: ...  # (t, 3, 3) m, for drawing
+    def triangles(self) -> _Array:
+        """Corners (t, 3, 3) (m) of triangles that show its surface, for drawing; those of round shapes touch it with their
+        corners.
+        """
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Sphere(Obstacle):
+    """A ball: centre (3,) and radius (m)."""
+
     def __new__(cls, center: ArrayLike, radius: float) -> Sphere: ...
     @property
-    def center(self) -> _Array: ...
+    def center(self) -> _Array:
+        """Centre (3,) (m)."""
     @property
-    def radius(self) -> float: ...
+    def radius(self) -> float:
+        """Radius (m)."""
 
 @final
 class Box(Obstacle):
+    """A box: centre (3,), edges (3,) along its own axes (m), and how those are turned (3, 3)."""
+
     def __new__(cls, center: ArrayLike, size: ArrayLike, rotation: _Pose | None = None) -> Box: ...
     @property
-    def center(self) -> _Array: ...
+    def center(self) -> _Array:
+        """Centre (3,) (m)."""
     @property
-    def size(self) -> _Array: ...
+    def size(self) -> _Array:
+        """Edges (3,) (m)."""
     @property
-    def rotation(self) -> _Array: ...  # (3, 3)
+    def rotation(self) -> _Array:
+        """Its axes as columns (3, 3)."""
 
 @final
 class Capsule(Obstacle):
+    """All points within `radius` (m) of the segment from a (3,) to b (3,)."""
+
     def __new__(cls, a: ArrayLike, b: ArrayLike, radius: float) -> Capsule: ...
     @property
-    def a(self) -> _Array: ...
+    def a(self) -> _Array:
+        """One end of its axis (3,) (m)."""
     @property
-    def b(self) -> _Array: ...
+    def b(self) -> _Array:
+        """The other end (3,) (m)."""
     @property
-    def radius(self) -> float: ...
+    def radius(self) -> float:
+        """Radius (m)."""
 
 @final
 class Ellipsoid(Obstacle):
+    """An ellipsoid: centre (3,), semi-axes (3,) (m), and how they are turned (3, 3)."""
+
     def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, rotation: _Pose | None = None) -> Ellipsoid: ...
     @property
-    def center(self) -> _Array: ...
+    def center(self) -> _Array:
+        """Centre (3,) (m)."""
     @property
-    def semi_axes(self) -> _Array: ...
+    def semi_axes(self) -> _Array:
+        """Semi-axes (3,) (m)."""
     @property
-    def rotation(self) -> _Array: ...  # (3, 3)
+    def rotation(self) -> _Array:
+        """Its axes as columns (3, 3)."""
 
 @final
 class Ellipse(Obstacle):
+    """An ellipse in the plane z = 0, for planar arms: centre (2,), semi-axes (2,) (m), angle of the first one (rad)."""
+
     def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, angle: float = 0.0) -> Ellipse: ...
     @property
-    def center(self) -> _Array: ...  # (2,)
+    def center(self) -> _Array:
+        """Centre (2,) (m)."""
     @property
-    def semi_axes(self) -> _Array: ...  # (2,)
+    def semi_axes(self) -> _Array:
+        """Semi-axes (2,) (m)."""
     @property
-    def angle(self) -> float: ...
+    def angle(self) -> float:
+        """Angle of the first semi-axis (rad)."""
 
 @final
 class ConvexMesh(Obstacle):
-    def __new__(cls, points: ArrayLike) -> ConvexMesh: ...  # (k, 3)
-    @property
-    def points(self) -> _Array: ...
+    """The smallest convex body that holds points (k, 3) (m), at least four that do not lie in a plane."""
 
-# A number for q (n,), (m,) for q (m, n).
-def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any: ...
+    def __new__(cls, points: ArrayLike) -> ConvexMesh: ...
+    @property
+    def points(self) -> _Array:
+        """The points as given (k, 3) (m)."""
+
+def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any:
+    """Distance between `robot` and what it is nearest to, at q (n,) or (m, n): a number or (m,) (m). Negative by the depth
+    of the deepest overlap; inf where nothing can touch.
+
+    Args:
+        robot: an arm with capsules.
+        q: joint angles.
+        obstacles: in the frame of the robot's base. Links that no joint moves are not held against them.
+
+    Of the links' own capsules those are compared that have another one between them and do not touch with all joints in
+    the middle of their ranges.
+
+    Raises:
+        InvalidInputError: a robot without capsules, an obstacle of another kind.
+    """
 
 # --- planning -----------------------------------------------------------------------------------
 
 def plan_point_to_point(
     robot: Robot,
-    start: _Pose | None = None,  # (4, 4) pose or (3,) position
+    start: _Pose | None = None,
     end: _Pose | None = None,
     *,
-    start_q: ArrayLike | None = None,  # (n,), instead of start
+    start_q: ArrayLike | None = None,
     end_q: ArrayLike | None = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
     obstacles: Iterable[Obstacle] | None = None,
-    margin: float | None = None,  # m
+    margin: float | None = None,
     elbows: Sequence[int] | None = None,
     solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     progress: _Progress = None,
-) -> Plan: ...
+) -> Plan:
+    """Plans a motion from one end to another, at rest at both.
+
+    Args:
+        robot: the arm.
+        start, end: position (3,) (m) or pose (4, 4) of the tip; the configuration is the planner's choice.
+        start_q, end_q: instead of them, joint angles (n,).
+        limits: positions, velocities and accelerations to keep; None: the robot's.
+        method: "minmax": the ends' configurations that are nearest in time, joined at the limits' pace; "tpbso":
+            polynomials through a via point, searched by a beetle swarm (Wang et al. 2019).
+        objective: what to minimise: "time", "joint_travel" or "tip_travel".
+        obstacles: what the robot may not touch, from `bik.obstacles`; it may never touch itself if it has capsules.
+        margin: distance to keep from obstacles and between links (m); None: 1 mm.
+        elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1; None: (1, 1).
+        solver: what searches; None: the method's own.
+        stop: budgets; None: the method's own.
+        seed: of the random draws: the same seed, the same bits.
+        progress: True for a bar on the terminal, or a callable of (done, total).
+
+    Returns:
+        A `Plan`. That no plan keeps everything is a status beside the least violating trajectory, not an error.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN, an end that cannot be reached (which, and by how much).
+        LimitError: limits that contradict themselves or exclude an end.
+        UnsupportedLimit: jerk limits, or limits that vary in time.
+    """
+
 def time_optimal(
-    waypoints_q: ArrayLike,  # (k, n)
+    waypoints_q: ArrayLike,
     limits: Limits,
     *,
-    knots: ArrayLike | None = None,  # (k,), None: uniform in [0, 1]
+    knots: ArrayLike | None = None,
     spline: Literal["natural", "not-a-knot", "clamped", "polyline"] = "natural",
     blend: float | None = None,
     gridpoints: int | None = None,
     start_speed: float = 0.0,
     end_speed: float = 0.0,
     joint_names: list[str] | None = None,
-) -> Trajectory: ...
+) -> Trajectory:
+    """The fastest motion through waypoints on a given path: its shape is kept, its timing is found.
+
+    By reachability analysis (Pham and Pham 2018), with acceleration limits imposed on whole segments instead of grid
+    points alone: velocity and acceleration limits hold at every instant, on any grid. Jerk limits, where there are any, are
+    kept by smoothing the fastest motion in time: all limits hold, but it is no longer the fastest of all.
+
+    Args:
+        waypoints_q: (k, n), joint positions to pass (rad, m).
+        limits: constant ones: `acceleration` for all joints; `velocity`, `jerk`, `lower`, `upper` as wanted.
+        knots: (k,), the path parameter of each waypoint, increasing; None: uniform in [0, 1].
+        spline: how the path's ends are shaped: "natural" without curvature, "not-a-knot" as their neighbours, "clamped"
+            without slope; "polyline": straight lines, see `blend`.
+        blend: of a polyline: its corners are rounded from so far before to so far after them (distance in joint space, at
+            most half a line); None or 0: the joints stop at each corner.
+        gridpoints: where the acceleration along the path may change; None refines until it makes no difference.
+        start_speed, end_speed: Euclidean length of the joint velocity at the ends (rad/s, m/s).
+        joint_names: n names; None: "q1", "q2", ...
+
+    Returns:
+        A `Trajectory`, exactly on the path: a polynomial of degree 6 between grid points. With jerk limits quintic pieces
+        that meet the path at their ends.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN, fewer than two waypoints, a waypoint that repeats the one before it.
+        InfeasibleError: the path leaves the position limits, a joint must move that may not, too high speeds at the ends.
+        UnsupportedLimit: limits that vary in time, no acceleration limit, jerk limits on a polyline.
+    """
+
 def plan_along_path(
     robot: Robot,
-    path: Path | _Pose,  # or (k, 3) points or (k, 4, 4) poses
+    path: Path | _Pose,
     *,
-    start_q: ArrayLike | None = None,  # (n,)
+    start_q: ArrayLike | None = None,
     limits: Limits | None = None,
     method: Literal["timed", "tpbso"] = "timed",
     objective: Literal["time", "joint_travel"] = "time",
     elbow: int | None = None,
-    accuracy: float | None = None,  # m
+    accuracy: float | None = None,
     solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     progress: _Progress = None,
-) -> Plan: ...
+) -> Plan:
+    """Plans a motion whose tip follows a path, in order.
+
+    Args:
+        robot: the arm.
+        path: a `Path`, whose times do not matter here, or points (k, 3) (m) or poses (k, 4, 4), straight in between.
+        start_q: joint angles (n,) to start from; None: the planner's choice.
+        limits: positions, velocities and accelerations to keep; None: the robot's.
+        method: "timed": redundancy and the fastest timing found together; "tpbso": redundancy by a beetle swarm, uniform
+            time, splines through every second point (Wang et al. 2019).
+        objective: what to minimise: "time" or "joint_travel".
+        elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it; None: 1.
+        accuracy: how far the tip may be from the path (m), between its points too, and how far turned from it (rad); as
+            many points are passed as that takes. None: a thousandth of the path's extent, for "tpbso" 4 %.
+        solver: what searches; None: the method's own.
+        stop: budgets; None: the method's own.
+        seed: of the random draws: the same seed, the same bits.
+        progress: True for a bar on the terminal, or a callable of (done, total).
+
+    Returns:
+        A `Plan`. That no plan keeps everything is a status beside the least violating trajectory, not an error.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach.
+        LimitError: limits that contradict themselves.
+        UnsupportedLimit: jerk limits, or limits that vary in time.
+    """
 
 @final
-class Plan(_Outcome):
+class Plan:
+    """A planned motion, and what became of the search for it."""
+
     @property
-    def trajectory(self) -> Trajectory: ...
+    def success(self) -> bool:
+        """Whether the trajectory keeps everything that was asked."""
     @property
-    def objective(self) -> str: ...
+    def status(self) -> Status:
+        """SOLVED as `success`; else why the search ended."""
     @property
-    def cost(self) -> float: ...  # of the objective on the trajectory: s, rad or m
+    def message(self) -> str:
+        """What happened, and what to try."""
     @property
-    def history(self) -> _Array: ...  # (h, 2): evaluations, lowest cost from then on
+    def evaluations(self) -> int:
+        """Evaluations of the cost."""
     @property
-    def clearance(self) -> float: ...  # m; NaN without obstacles
+    def elapsed(self) -> float:
+        """Time taken (s)."""
     @property
-    def violations(self) -> list[Violation]: ...
+    def limits(self) -> Limits:
+        """The limits in force."""
     @property
-    def accuracy(self) -> float: ...  # m, from the points of the path; NaN from end to end
+    def trajectory(self) -> Trajectory:
+        """The motion: the best that keeps everything, else the least violating one."""
     @property
-    def redundancy(self) -> _Array: ...  # (points, links, 3): orientation chosen, lowest, highest (rad)
+    def objective(self) -> str:
+        """What was minimised: "time", "joint_travel" or "tip_travel"."""
     @property
-    def reference(self) -> _Array | None: ...  # (k, 3): the path asked for
+    def cost(self) -> float:
+        """Its value on the trajectory (s, rad or m)."""
     @property
-    def robot(self) -> Robot: ...
+    def history(self) -> _Array:
+        """How the search came to its best: rows (evaluations, lowest cost from then on), (h, 2); with penalties as long as
+        the plan breaks something.
+        """
     @property
-    def obstacles(self) -> tuple[Obstacle, ...]: ...
-    def plot(self) -> Figure: ...
+    def clearance(self) -> float:
+        """Smallest distance between robot and obstacles on the trajectory (m); NaN without obstacles."""
+    @property
+    def violations(self) -> list[Violation]:
+        """What the trajectory breaks, a list of `Violation`; empty for a plan that succeeded."""
+    @property
+    def accuracy(self) -> float:
+        """Largest distance of the tip from the path (m), at its points and between them; NaN for a plan from end to end."""
+    @property
+    def redundancy(self) -> _Array:
+        """The absolute orientations that a planar arm was free to choose along the path (points, links, 3): value, lowest
+        and highest possible (rad), from the tip's link down; without such a choice (0, 0, 3).
+        """
+    @property
+    def reference(self) -> _Array | None:
+        """Positions (k, 3) (m) that the tip was to follow, straight in between; None for a plan from end to end."""
+    @property
+    def robot(self) -> Robot:
+        """The robot that was planned for."""
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """What the robot was not to touch, as given."""
+    def plot(self) -> Figure:
+        """A matplotlib figure: the arm along its way, the cost against evaluations, the joints' motion with their limits."""
 
 @final
 class Violation:
+    """A bound that a planned trajectory breaks; `str` says it in words."""
+
     @property
-    def what(self) -> str: ...
+    def what(self) -> str:
+        """What breaks it, such as "velocity of joint 'elbow'"."""
     @property
-    def value(self) -> float: ...
+    def value(self) -> float:
+        """How far the trajectory goes, in `unit`."""
     @property
-    def bound(self) -> float: ...
+    def bound(self) -> float:
+        """How far it may go, in `unit`."""
     @property
-    def unit(self) -> str: ...
+    def unit(self) -> str:
+        """ "rad/s" and so on."""
 
 # --- tracking without a model -------------------------------------------------------------------
 
 def track_model_free(
     plant: _Plant,
     path: Path,
-    start: ArrayLike,  # (n,)
+    start: ArrayLike,
     *,
     dt: float,
-    controller: BroydenBAS | ZNNBAS | None = None,  # None: BroydenBAS()
-    limits: Limits | None = None,  # None: none
+    controller: BroydenBAS | ZNNBAS | None = None,
+    limits: Limits | None = None,
     position_tolerance: float = 1e-9,
     seed: int = 0,
     progress: _Progress = None,
-) -> ModelFreeResult: ...
+) -> ModelFreeResult:
+    """Follows `path` with whatever `plant` moves, knowing nothing of it but what it returns.
+
+    Args:
+        plant: a callable q (n,) -> position of the tip (3,) (m), an object with move(q) that returns one, or a
+            `KinematicPlant`, which needs no Python in the loop. One that raises, or returns what is no position, ends
+            the run with what was recorded (at the very start, where nothing was: its exception comes out).
+        path: positions over time.
+        start: (n,), configuration at t = 0 (rad, m).
+        dt: time step (s). Where it does not divide the path's duration, the last step ends after it, at its end.
+        controller: `BroydenBAS` (None) or `ZNNBAS`.
+        limits: lower, upper and velocity, kept by every command, probes included: all commands of a step lie within reach of
+            the configuration accepted at its start. Fields left None do not limit: there is no robot whose they could be.
+        position_tolerance: the error band (m).
+        seed: of the controller's random draws: the same seed, the same bits.
+        progress: True for a bar on the terminal, or a callable of (done, total).
+
+    Returns:
+        A `ModelFreeResult`. A path that cannot be followed is a status, not an error.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN, dt not positive, a delay longer than the run.
+        LimitError: a start outside the limits, a limit below zero.
+        UnsupportedLimit: acceleration or jerk limits, which no controller keeps.
+    """
 
 @final
-class ModelFreeResult(_Outcome):
+class ModelFreeResult:
+    """The record of a track without a model: k rows, row 0 the start at t = 0, row i the tick that ends at t_i = i dt; fewer than
+    the path has where the plant failed.
+    """
+
     @property
-    def time(self) -> _Array: ...  # (k,)
+    def success(self) -> bool:
+        """Whether the tip came into the error band and stayed there."""
     @property
-    def q(self) -> _Array: ...  # (k, n), accepted
+    def status(self) -> Status:
+        """SOLVED as `success`; LOST if the tip left its band again; PLANT_FAILED where the plant ended the run; else how the last
+        step ended.
+        """
     @property
-    def qd(self) -> _Array: ...  # (k, n), row 0 zero
+    def message(self) -> str:
+        """What happened, and what to try."""
     @property
-    def command(self) -> _Array: ...  # (k, n), where each position was measured
+    def evaluations(self) -> int:
+        """Measurements of the plant in all."""
     @property
-    def position(self) -> _Array: ...  # (k, 3), as measured
+    def elapsed(self) -> float:
+        """Time taken (s)."""
     @property
-    def reference(self) -> _Array: ...  # (k, 3)
+    def limits(self) -> Limits:
+        """The limits in force."""
     @property
-    def position_error(self) -> _Array: ...  # (k,), m
+    def time(self) -> _Array:
+        """Times (k,) (s)."""
     @property
-    def position_tolerance(self) -> float: ...  # m, as asked
+    def q(self) -> _Array:
+        """Configurations that the controller accepted (k, n) (rad, m)."""
     @property
-    def step_status(self) -> NDArray[np.uint8]: ...  # (k,), values of Status
+    def qd(self) -> _Array:
+        """Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt, zero in row 0."""
     @property
-    def step_evaluations(self) -> NDArray[np.int64]: ...  # (k,), measurements
+    def command(self) -> _Array:
+        """The command at which each row's position was measured (k, n) (rad, m): q itself for `BroydenBAS`, an antenna away
+        from it for `ZNNBAS`.
+        """
     @property
-    def max_violation(self) -> float: ...  # rad or m, of all commands; 0 within rounding
+    def position(self) -> _Array:
+        """Positions of the tip as measured (k, 3) (m)."""
     @property
-    def settled_error(self) -> float: ...  # m, root mean square over the second half
+    def reference(self) -> _Array:
+        """Wanted positions (k, 3) (m)."""
     @property
-    def exception(self) -> BaseException | None: ...  # what the plant raised
-    def plot(self) -> Figure: ...
+    def position_error(self) -> _Array:
+        """Distances between the two (k,) (m)."""
+    @property
+    def position_tolerance(self) -> float:
+        """The error band (m), as asked."""
+    @property
+    def step_status(self) -> NDArray[np.uint8]:
+        """How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED
+        neither.
+        """
+    @property
+    def step_evaluations(self) -> NDArray[np.int64]:
+        """Measurements of the plant in each step (k,)."""
+    @property
+    def max_violation(self) -> float:
+        """Largest excess of a command over a limit (rad, m), probes included; 0 within rounding."""
+    @property
+    def settled_error(self) -> float:
+        """Root mean square of the measured error over the second half of the rows (m)."""
+    @property
+    def exception(self) -> BaseException | None:
+        """What the plant raised, if it did."""
+    def plot(self) -> Figure:
+        """A matplotlib figure: the tip's path, the error, joint angles, measurements."""
     def __len__(self) -> int: ...
 
 @final
 class ZNNBAS:
+    """Zeroing neural network with beetle antennae search (Khan et al. 2022, eq. 10 to 16): a controller that measures once a
+    tick, a random antenna away from where it is, and moves by the sign of what that brought.
+
+    It is here to repeat the paper, and for plants that answer a thousand times a second: it learns nothing, its error grows
+    with the speed of the target (about 3.5 v / (gain c1)), and its antennae shake the tool. `BroydenBAS` is better
+    by orders of magnitude in all three.
+
+    Args:
+        gain: k of eq. (14) (1/s), positive. The paper's listing has -10, the gain of a block that takes in the minus of
+            eq. (14): a negative gain is allowed here, and diverges. gain * dt should not exceed 0.3.
+        antenna_length: lambda of eq. (10) (rad), a number or (n,); 0.1 in the paper.
+        c1: instead, an antenna of c1 sqrt(h), eq. (16) (rad per m), up to 0.5 rad. None for both: c1 = 0.3.
+        delay_steps: alpha of eq. (13), in ticks (10 in the paper); gain * dt * delay_steps should stay below 1.
+        delay: "sliding", the measurement so many ticks before; "held", one that is taken anew every so many ticks, as in
+            the paper's listing.
+        accept: "always", eq. (15); "improving", the algorithm of the proof of Theorem 1: the arm stays at an antenna that is
+            nearer, and else goes back. Gain and delay have no part in that.
+        sensor_delay: ticks by which the plant's sensor is late.
+
+    The constants of the paper: `ZNNBAS(gain=10, antenna_length=0.1, delay_steps=10)`.
+    """
+
     def __new__(
         cls,
         *,
         gain: float = 100.0,
-        antenna_length: ArrayLike | None = None,  # constant; or c1; None for both: c1 = 0.3
+        antenna_length: ArrayLike | None = None,
         c1: float | None = None,
         delay_steps: int = 1,
         delay: Literal["sliding", "held"] = "sliding",
@@ -1216,19 +2465,26 @@ class ZNNBAS:
         sensor_delay: int = 0,
     ) -> ZNNBAS: ...
     @property
-    def gain(self) -> float: ...  # 1/s
+    def gain(self) -> float:
+        """k of eq. (14) (1/s)."""
     @property
-    def antenna_length(self) -> Any: ...  # what was given: None, a float or (n,)
+    def antenna_length(self) -> Any:
+        """The constant antenna (rad), as given; None where it follows the error."""
     @property
-    def c1(self) -> float | None: ...  # rad per m; None where the antenna is constant
+    def c1(self) -> float | None:
+        """Antenna length over error (rad per m); None where it is constant."""
     @property
-    def delay_steps(self) -> int: ...
+    def delay_steps(self) -> int:
+        """alpha, in ticks."""
     @property
-    def delay(self) -> str: ...
+    def delay(self) -> str:
+        """ "sliding" or "held"."""
     @property
-    def accept(self) -> str: ...
+    def accept(self) -> str:
+        """ "always" or "improving"."""
     @property
-    def sensor_delay(self) -> int: ...  # in ticks
+    def sensor_delay(self) -> int:
+        """Ticks by which the sensor is late."""
     def session(
         self,
         start: ArrayLike,
@@ -1237,43 +2493,85 @@ class ZNNBAS:
         limits: Limits | None = None,
         position_tolerance: float = 1e-9,
         seed: int = 0,
-    ) -> ControlSession: ...
+    ) -> ControlSession:
+        """The controller at work in your own loop, from `start` (n,) and t = 0: see `ControlSession`."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class ControlSession:
-    def command(self, target: ArrayLike) -> _Array: ...  # (3,) -> (n,)
-    def observe(self, position: ArrayLike) -> Step | None: ...  # None while the tick goes on
+    """A controller in your own loop, with your own hardware.
+
+        session = bik.BroydenBAS(max_evaluations_per_step=1).session(q0, dt=0.01, limits=limits)
+        while session.time < path.duration:
+            q = session.command(path.position(session.time + session.dt))
+            session.observe(measure_tip_after(q))
+
+    The first command is the start itself: it only tells where the tip is, and time stands still. From then on a tick is over,
+    and time advances by dt, when the controller has no more to ask: after every measurement for `ZNNBAS`, for
+    `BroydenBAS` once it is in its band or has made max_evaluations_per_step.
+    """
+
+    def command(self, target: ArrayLike) -> _Array:
+        """Where to send the arm (n,) (rad, m), so that its tip comes to `target` (3,) (m) by the end of the tick. Within the
+        limits, and within what the velocity limits let the configuration accepted last reach.
+        """
+    def observe(self, position: ArrayLike) -> Step | None:
+        """The tip was at `position` (3,) (m) at the last command. Returns what became of the tick, a `Step`; None while it
+        goes on.
+        """
     @property
-    def q(self) -> _Array: ...  # (n,), accepted
+    def q(self) -> _Array:
+        """The configuration accepted last (n,) (rad, m)."""
     @property
-    def time(self) -> float: ...  # s
+    def time(self) -> float:
+        """Time of that configuration (s)."""
     @property
-    def dt(self) -> float: ...  # s
+    def dt(self) -> float:
+        """Time step (s)."""
     @property
-    def limits(self) -> Limits: ...  # those in force
+    def limits(self) -> Limits:
+        """The limits in force."""
 
 @final
 class KinematicPlant:
+    """A robot that goes at once where it is sent, with a sensor at its tip; it runs without Python in the loop. Give it
+    another robot than the one you have in mind, such as `robot.with_errors(...)`, and it is an arm with a wrong model.
+
+    Args:
+        robot: what moves.
+        noise: standard deviation of the sensor on each axis (m).
+        seed: of the noise. Every run of `track_model_free` begins the noise anew.
+    """
+
     def __new__(cls, robot: Robot, *, noise: float = 0.0, seed: int = 0) -> KinematicPlant: ...
     @property
-    def robot(self) -> Robot: ...
+    def robot(self) -> Robot:
+        """What moves."""
     @property
-    def noise(self) -> float: ...  # m, standard deviation on each axis
+    def noise(self) -> float:
+        """Standard deviation of the sensor on each axis (m)."""
     @property
-    def seed(self) -> int: ...
-    def move(self, q: ArrayLike) -> _Array: ...  # (n,) -> (3,)
+    def seed(self) -> int:
+        """Seed of the noise."""
+    def move(self, q: ArrayLike) -> _Array:
+        """Sends the arm to q (n,) (rad, m), and returns the measured position of its tip (3,) (m)."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- trajectories -------------------------------------------------------------------------------
 
 @final
 class Trajectory:
-    # coefficients[i, j, p] multiplies (t - time[i])**p: (k - 1, n, degree + 1)
+    """Joint motion in time, a polynomial between knots: q_j(t) = sum over p of coefficients[i, j, p] (t - time[i])^p.
+
+    Args:
+        time: the knots (k,) (s), from 0.
+        coefficients: (k - 1, n, degree + 1), degree at most 6, in ascending powers.
+        joint_names: n names; None: "q1", "q2", ...
+    """
+
     def __new__(
         cls, time: ArrayLike, coefficients: ArrayLike, *, joint_names: list[str] | None = None
     ) -> Trajectory: ...
-    # Straight lines through q; cubics where qd is given too, quintics where qdd is.
     @staticmethod
     def from_samples(
         time: ArrayLike,
@@ -1282,33 +2580,57 @@ class Trajectory:
         qd: ArrayLike | None = None,
         qdd: ArrayLike | None = None,
         joint_names: list[str] | None = None,
-    ) -> Trajectory: ...
+    ) -> Trajectory:
+        """The motion through samples q (k, n) at `time` (k,) (s): straight in between; cubic where velocities qd (k, n)
+        are given too, quintic where accelerations qdd (k, n) are.
+        """
     @property
-    def time(self) -> _Array: ...  # (k,): the knots
+    def time(self) -> _Array:
+        """The knots (k,) (s)."""
     @property
-    def coefficients(self) -> _Array: ...  # (k - 1, n, degree + 1)
+    def coefficients(self) -> _Array:
+        """(k - 1, n, degree + 1), in ascending powers of the time since the knot."""
     @property
-    def q(self) -> _Array: ...  # (k, n), at the knots; likewise qd and qdd (of the piece that ends there)
+    def q(self) -> _Array:
+        """Positions at the knots (k, n) (rad, m)."""
     @property
-    def qd(self) -> _Array: ...
+    def qd(self) -> _Array:
+        """Velocities at the knots (k, n) (rad/s, m/s), of the piece that begins there."""
     @property
-    def qdd(self) -> _Array: ...
+    def qdd(self) -> _Array:
+        """Accelerations at the knots (k, n) (rad/s^2, m/s^2), of the piece that begins there."""
     @property
-    def duration(self) -> float: ...  # s
+    def duration(self) -> float:
+        """How long the motion lasts (s)."""
     @property
-    def joint_names(self) -> list[str]: ...
-    def max_velocity(self) -> _Array: ...  # (n,), exact over all t
-    def max_acceleration(self) -> _Array: ...  # (n,), exact inside the pieces
-    def max_jerk(self) -> _Array: ...  # (n,), exact inside the pieces
-    def at(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...  # q, qd, qdd: (n,) each, or (k, n) for (k,)
-    def sample(self, dt: float) -> tuple[_Array, _Array, _Array, _Array]: ...  # time, q, qd, qdd
-    def then(self, motion: Trajectory, *, pause: float = 0.0) -> Trajectory: ...  # s
-    # Every dt (s) and at the end; None: at the knots.
-    def to_csv(self, file: str | os.PathLike[str], *, dt: float | None = None) -> None: ...
-    def to_npz(self, file: str | os.PathLike[str]) -> None: ...
+    def joint_names(self) -> list[str]:
+        """Names of the joints, in the order of q."""
+    def max_velocity(self) -> _Array:
+        """The largest speed of each joint (n,) (rad/s, m/s), exact over all times."""
+    def max_acceleration(self) -> _Array:
+        """The largest acceleration of each joint (n,) (rad/s^2, m/s^2), exact inside the pieces; jumps of the velocity at
+        knots are not in it.
+        """
+    def max_jerk(self) -> _Array:
+        """The largest jerk of each joint (n,) (rad/s^3, m/s^3), exact inside the pieces; jumps of the acceleration at knots
+        are not in it.
+        """
+    def at(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]:
+        """(q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside are clamped."""
+    def sample(self, dt: float) -> tuple[_Array, _Array, _Array, _Array]:
+        """(time, q, qd, qdd) every dt seconds and at the end: (k,) and (k, n) each."""
+    def then(self, motion: Trajectory, *, pause: float = 0.0) -> Trajectory:
+        """This motion, a rest of `pause` (s), and then `motion`, of the same joints, which begins where this one ends."""
+    def to_csv(self, file: str | os.PathLike[str], *, dt: float | None = None) -> None:
+        """Writes samples as CSV, whole or not at all: every `dt` (s) and at the end; None: at the knots."""
+    def to_npz(self, file: str | os.PathLike[str]) -> None:
+        """Writes knots and coefficients as npz, whole or not at all."""
     @staticmethod
-    def from_csv(file: str | os.PathLike[str]) -> Trajectory: ...
+    def from_csv(file: str | os.PathLike[str]) -> Trajectory:
+        """Reads what `to_csv` wrote, or any CSV with a column `time` and one column per joint."""
     @staticmethod
-    def from_npz(file: str | os.PathLike[str]) -> Trajectory: ...
-    def plot(self) -> Figure: ...
+    def from_npz(file: str | os.PathLike[str]) -> Trajectory:
+        """Reads what `to_npz` wrote."""
+    def plot(self) -> Figure:
+        """A matplotlib figure of positions, velocities and accelerations."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...

@@ -1,4 +1,4 @@
-"""Tables of numbers as CSV: a header of column names, then one row of numbers a line."""
+"""Reads and writes tables of numbers as CSV: a header of column names, then one row of numbers per line."""
 
 import csv
 import io
@@ -13,7 +13,7 @@ from ._files import path_of, whole_file
 
 
 def write_table(file: str | os.PathLike[str], columns: Sequence[str], rows: NDArray[np.float64]) -> None:
-    """Write `rows` (lines, columns) so that reading gives the same bits back."""
+    """Write `rows` (lines, columns) so that they read back bit for bit."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)
@@ -26,8 +26,8 @@ def read_table(file: str | os.PathLike[str], required: Sequence[str]) -> dict[st
     """Read the columns of `file` by name, in the file's order.
 
     Raises:
-        InvalidInputError: the file is no CSV in UTF-8, a column of `required` is missing, or an entry is no finite
-            number: names line and column.
+        InvalidInputError: the file is not CSV in UTF-8, a column of `required` is missing, or an entry is not a finite
+            number. Names line and column.
     """
     lines = csv.reader(io.StringIO(_text(file), newline=""), skipinitialspace=True, strict=True)
     try:
@@ -66,7 +66,7 @@ def _check_header(file: str | os.PathLike[str], columns: list[str], required: Se
 
 
 def _header_advice(columns: list[str]) -> str:
-    """What may be wrong with a header that lacks a column."""
+    """Suggests how to repair a header that lacks a column."""
     if len(columns) == 1 and any(mark in columns[0] for mark in ";\t"):
         return "; separate them by commas"
     if columns and all(_is_number(name) for name in columns):

@@ -1,4 +1,4 @@
-"""Files and folders that are either whole or not there."""
+"""Atomic writing: a file or folder appears complete, or not at all."""
 
 import errno
 import os
@@ -12,10 +12,10 @@ from ._core import InvalidInputError
 
 
 def path_of(file: str | os.PathLike[str]) -> Path:
-    """The path that an argument `file` names.
+    """Returns the argument `file` as a path.
 
     Raises:
-        InvalidInputError: it names none.
+        InvalidInputError: the argument is not the path of a file.
     """
     try:
         path = Path(file)
@@ -28,7 +28,7 @@ def path_of(file: str | os.PathLike[str]) -> Path:
 
 @contextmanager
 def whole_file(file: str | os.PathLike[str]) -> Iterator[BinaryIO]:
-    """Open `file` for writing: it appears when the block ends well; otherwise what was there before stays."""
+    """Opens `file` for writing. It is replaced when the block succeeds; if the block raises, the old file stays."""
     path = path_of(file)
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "No such folder", str(path.parent))
@@ -44,10 +44,10 @@ def whole_file(file: str | os.PathLike[str]) -> Iterator[BinaryIO]:
 
 @contextmanager
 def whole_folder(folder: Path, *, option: str = "out") -> Iterator[Path]:
-    """Yield a place to write; what is in it moves into `folder` when the block ends well and vanishes otherwise.
+    """Yields a temporary folder. Its files move into `folder` when the block succeeds; if it raises, they are deleted.
 
     Raises:
-        InvalidInputError: on entering, where `folder` cannot be written: no work is done for nothing. Names `option`.
+        InvalidInputError: `folder` is not writable. Raised on entry, before any work is done; names `option`.
     """
     created = [place for place in (folder, *folder.parents) if not place.exists()]
     try:
@@ -63,7 +63,7 @@ def whole_folder(folder: Path, *, option: str = "out") -> Iterator[Path]:
 
 
 def _staging(folder: Path, option: str) -> tempfile.TemporaryDirectory[str]:
-    """A temporary folder in `folder`: on the same disk, so that moving its files cannot fail half-way through one."""
+    """Makes a temporary folder inside `folder`: on the same disk, each file moves atomically."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         return tempfile.TemporaryDirectory(prefix=".beetle-ik-", dir=folder)

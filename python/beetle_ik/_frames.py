@@ -1,4 +1,4 @@
-"""What moves in a figure, apart from the figure itself."""
+"""Animation frames, separate from the figure that they are drawn in."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Frames:
-    """A moving picture: one thing moves, all else in the figure stands still."""
+    """An animation in which one artist moves and the rest of the figure stays."""
 
     moving: Artist
     show: Callable[[int], None]
-    """Puts what moves where it is in the frame of this number, from 0."""
+    """Moves the artist to its place in the given frame, counted from 0."""
     count: int
     rate: int
-    """Frames a second."""
+    """Frames per second."""
 
     def animation(self, figure: Figure) -> FuncAnimation:
-        """The same as matplotlib has it."""
+        """Returns the frames as a matplotlib animation."""
         from matplotlib.animation import FuncAnimation
 
         def draw(frame: int) -> tuple[Artist]:

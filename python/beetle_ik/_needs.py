@@ -1,4 +1,4 @@
-"""Libraries that are asked for only when something needs them."""
+"""Optional dependencies, imported on first use."""
 
 from importlib import import_module
 from typing import Any
@@ -7,7 +7,7 @@ from ._core import BeetleIkError
 
 
 def library(module: str, package: str, purpose: str, *, extra: str | None = None) -> Any:
-    """The module, or an error that says what to install; one that is broken speaks for itself."""
+    """Imports a module, or raises an error that says what to install. Errors from within the module pass through."""
     try:
         return import_module(module)
     except ModuleNotFoundError as error:

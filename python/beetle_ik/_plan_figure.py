@@ -1,4 +1,4 @@
-"""A planned motion in pictures: the arm on its way, the search, the joints; and the arm moving."""
+"""Figure and animation of a planned motion: the arm along its path, the search history, the joints over time."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 _SAMPLES = 801
 _SNAPSHOTS = 6
 _FLAT = 1e-9  # m
-_FEW = 60  # points of a path that are marked
+_FEW = 60  # a path of at most this many points gets a marker on each
 _FRAMES_A_SECOND = 15
 _PAUSE = 10  # frames at the end
 _TITLE_WIDTH = 120  # letters a line
 
 
 class Scene:
-    """The way of the arm in axes that suit it: flat for an arm that stays in a plane, else in space."""
+    """The arm and the path of its tip, in 2-D axes if the motion stays in a horizontal plane, else in 3-D axes."""
 
     def __init__(self, figure: Any, place: Any, plan: Plan | TrackResult) -> None:
-        """Make the axes at `place`, a cell of a grid."""
+        """Adds the axes at `place`, a cell of a grid."""
         self._plan = plan
         self._obstacles = getattr(plan, "obstacles", [])
         time = np.linspace(0.0, plan.trajectory.duration, _SAMPLES)
@@ -42,7 +42,7 @@ class Scene:
         self.axes = figure.add_subplot(place, projection=None if self._flat else "3d")
 
     def draw_way(self) -> None:
-        """Obstacles, the tip's way with beginning and end, and the path that it was to follow."""
+        """Draws the obstacles, the path of the tip with its start and end, and the reference path."""
         if self._plan.reference is not None:
             points = np.asarray(self._plan.reference)
             few = {"marker": "x", "markersize": 4} if len(points) <= _FEW else {}
@@ -53,11 +53,11 @@ class Scene:
         self._scale()
 
     def draw_arm(self, share: float, **style: Any) -> Any:
-        """The arm after this share of the time."""
+        """Draws the arm at this fraction of the duration."""
         return self._plot(self._origins(self._at(share)), marker="o", markersize=3, **style)
 
     def move_arm(self, drawn: Any, share: float) -> None:
-        """Put an arm that was drawn where it is after this share of the time."""
+        """Moves a drawn arm to its configuration at this fraction of the duration."""
         corners = self._origins(self._at(share)).T
         if self._flat:
             drawn.set_data(corners[0], corners[1])
@@ -76,7 +76,7 @@ class Scene:
     def _scale(self) -> None:
         if self._flat:
             draw_from_above(self.axes, self._obstacles)
-            # The arm may go where none of its pictures is.
+            # Between its snapshots the arm may leave the region that they span.
             self.axes.update_datalim(self._corners.reshape(-1, 3)[:, :2])
             self.axes.autoscale_view()
             self.axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
@@ -85,7 +85,7 @@ class Scene:
 
 
 def draw(figure: Figure, plan: Plan) -> None:
-    """The arm on its way, and the search where there was one, on the left; motions of the joints on the right."""
+    """Draws the arm along its path (left), the search history below if there is one, and the joint motions (right)."""
     grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.15])
     searched = len(plan.history) > 1
     scene = Scene(figure, grid[: 2 if searched else 3, 0], plan)
@@ -117,7 +117,7 @@ def _draw_search(axes: Axes, plan: Plan) -> None:
 
 
 def animate(figure: Figure, plan: Plan | TrackResult) -> Frames:
-    """The arm on its way, in its own time."""
+    """Returns the frames of the moving arm, in real time."""
     scene = Scene(figure, figure.add_gridspec(1, 1)[0], plan)
     scene.draw_arm(0.0, color=SKY, alpha=0.4, label="arm at the start")
     scene.draw_arm(1.0, color=SKY, alpha=0.4)

@@ -2,10 +2,10 @@
 
 
 class Bar:
-    """A bar on standard error; where that is no terminal, nothing."""
+    """A bar on standard error if that is a terminal; otherwise nothing is drawn."""
 
     def __init__(self) -> None:
-        """Draw the bar, empty until the first `update`."""
+        """Draws the bar, empty until the first `update`."""
         from rich.console import Console
         from rich.progress import (
             BarColumn,
@@ -29,13 +29,13 @@ class Bar:
         self._progress.start()
 
     def update(self, done: int, total: int) -> None:
-        """Show that `done` of `total` steps are done."""
+        """Shows that `done` of `total` steps are done."""
         self._progress.update(self._task, completed=done, total=total)
 
     def show(self, what: str, done: int, total: int) -> None:
-        """Show what is being done, and that `done` of its `total` items are."""
+        """Shows the current activity, and that `done` of its `total` items are done."""
         self._progress.update(self._task, description=what, completed=done, total=total)
 
     def close(self) -> None:
-        """Leave the bar as it stands and give the terminal back."""
+        """Stops the bar and releases the terminal."""
         self._progress.stop()

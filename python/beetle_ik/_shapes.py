@@ -1,4 +1,4 @@
-"""Obstacles and the room that links take up, in pictures."""
+"""Draws obstacles and link capsules."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from ._core import Obstacle, Robot
 
 _FROM_ABOVE = "#F3D58C"  # orange on white, without showing what is below
-_SEEN_BEYOND = 0.3  # of the arm's extent, round it
+_SEEN_BEYOND = 0.3  # margin around the arm, as a fraction of its extent
 
 
 def draw_from_above(axes: Any, obstacles: Iterable[Obstacle]) -> None:
-    """Shades `obstacles` into flat axes, as seen from above."""
+    """Shades the outlines of `obstacles`, seen from above, in 2-D axes."""
     from matplotlib.collections import PolyCollection
 
     for obstacle in obstacles:
@@ -29,7 +29,7 @@ def draw_from_above(axes: Any, obstacles: Iterable[Obstacle]) -> None:
 
 
 def draw_in_space(axes: Any, points: NDArray[np.float64], obstacles: Sequence[Obstacle] = ()) -> None:
-    """Scales 3-D axes to `points` (k, 3), so that a circle looks like one, and shades what is near of `obstacles`."""
+    """Scales 3-D axes equally to `points` (k, 3), and draws the parts of `obstacles` inside them."""
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped, unused-ignore]
 
     low, high = _surroundings(points, obstacles)
@@ -39,7 +39,7 @@ def draw_in_space(axes: Any, points: NDArray[np.float64], obstacles: Sequence[Ob
     axes.set_box_aspect((1, 1, 1), zoom=0.9)  # room for the labels, which the layout overlooks
     axes.locator_params(nbins=5)
     for obstacle in obstacles:
-        # What is beyond the axes would be drawn over the figure.
+        # matplotlib does not clip surfaces to 3-D axes.
         surface = [inside(triangle, middle - reach, middle + reach) for triangle in obstacle.triangles]
         seen = [polygon for polygon in surface if len(polygon)]
         if seen:
@@ -47,7 +47,7 @@ def draw_in_space(axes: Any, points: NDArray[np.float64], obstacles: Sequence[Ob
 
 
 def _surroundings(points: NDArray[np.float64], obstacles: Sequence[Obstacle]) -> NDArray[np.float64]:
-    """Corners (2, 3) of a box round `points` and what of `obstacles` is near: a floor would leave the arm a speck."""
+    """Returns the corners (2, 3) of a box around `points` and nearby obstacles: a whole floor would dwarf the arm."""
     low, high = points.min(axis=0), points.max(axis=0)
     beyond = _SEEN_BEYOND * float((high - low).max())
     everything = np.vstack((points, *(obstacle.triangles.reshape(-1, 3) for obstacle in obstacles)))
@@ -57,7 +57,7 @@ def _surroundings(points: NDArray[np.float64], obstacles: Sequence[Obstacle]) ->
 
 
 def inside(polygon: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The part of a convex polygon (k, 3) inside a box, by Sutherland and Hodgman's algorithm; (0, 3) for none."""
+    """Clips a convex polygon (k, 3) to a box by the Sutherland-Hodgman algorithm; (0, 3) if nothing is left."""
     for axis in range(3):
         for inward, wall in ((1.0, low[axis]), (-1.0, high[axis])):
             depth = inward * (polygon[:, axis] - wall)
@@ -77,7 +77,7 @@ def inside(polygon: NDArray[np.float64], low: NDArray[np.float64], high: NDArray
 
 
 def draw_capsules(axes: Any, robot: Robot, q: ArrayLike) -> None:
-    """The room that the links take up at `q` (n,), translucent, in 3-D axes."""
+    """Draws the link capsules at `q` (n,), translucent, in 3-D axes."""
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped, unused-ignore]
 
     poses = dict(zip(robot.link_names, robot.link_poses(q), strict=True))

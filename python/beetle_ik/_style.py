@@ -1,4 +1,4 @@
-"""How all figures look: one palette, one set of sizes."""
+"""The common style of all figures: palette and sizes."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK = PALETTE = (
     "#56B4E9",
     "#000000",
 )
-FORBIDDEN = "#D9D9D9"  # shade of where nothing may go
+FORBIDDEN = "#D9D9D9"  # shade of regions beyond a limit
 _DASHES = ("-", "--", ":", "-.")
 
 
 def line(i: int) -> dict[str, Any]:
-    """Colour and dash of line `i`; the next round of colours is dashed."""
+    """Returns colour and dash pattern of line `i`; when the colours repeat, the dash pattern changes."""
     return {"color": PALETTE[i % len(PALETTE)], "linestyle": _DASHES[i // len(PALETTE) % len(_DASHES)]}
 
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Figures made inside look like all of ours."""
+    """Applies the common style to figures made inside the block."""
     mpl = library("matplotlib", "matplotlib", "a figure", extra="plot")
     settings: dict[str, Any] = {
         "axes.grid": True,

@@ -1,6 +1,6 @@
-"""Words for numbers."""
+"""Counts with nouns."""
 
 
 def counted(number: int, thing: str) -> str:
-    """`1 step`, `2 steps`."""
+    """Returns "1 step" or "2 steps"."""
     return f"{number} {thing}" if number == 1 else f"{number} {thing}s"

@@ -1,9 +1,9 @@
-"""Trajectories to and from files.
+"""Writes trajectories to files and reads them.
 
-npz keeps the polynomial pieces themselves. CSV keeps samples at the knots, with as many derivatives as determine the
-pieces: positions for straight lines, velocities too up to cubics, accelerations too up to quintics. Samples at knots do
-not determine pieces of degree 6, such as the fastest timing of a spline has: CSV then keeps positions and velocities,
-and reads back as the cubics that meet them.
+npz stores the polynomial segments themselves. CSV stores samples at the knots, with the derivatives that determine the
+segments: positions for degree 1, velocities too up to degree 3, accelerations too up to degree 5. Samples at knots do
+not determine segments of degree 6, which `time_optimal` produces: CSV then stores positions and velocities, and reads
+back as cubics.
 """
 
 import os
@@ -24,12 +24,12 @@ _PREFIXES = tuple(f"{derivative}:" for derivative in _DERIVATIVES)
 
 
 def to_csv(trajectory: Trajectory, file: str | os.PathLike[str], dt: float | None = None) -> None:
-    """Write samples as CSV: time (s), then positions and what derivatives the trajectory's degree needs.
+    """Writes samples as CSV: time (s), then positions and the derivatives that the trajectory's degree needs.
 
     Args:
         trajectory: the motion.
-        file: what to write, whole or not at all.
-        dt: time between samples (s), the end beside; None: its knots.
+        file: the file to write; it appears complete or not at all.
+        dt: time between samples (s); the end is always included. None: samples at the knots.
     """
     degree = trajectory.coefficients.shape[2] - 1
     kept = _DERIVATIVES[: max(degree, 1) // 2 + 1 if degree <= _QUINTIC else 2]
@@ -40,12 +40,12 @@ def to_csv(trajectory: Trajectory, file: str | os.PathLike[str], dt: float | Non
 
 
 def from_csv(file: str | os.PathLike[str]) -> Trajectory:
-    """Read a trajectory from CSV; the columns present decide the degree of its pieces.
+    """Reads a trajectory from CSV; the columns present decide the degree of its segments.
 
-    Positions are in columns `q:joint`. A file without any has them under the plain names of the joints.
+    Positions are in columns `q:joint`. In a file without such columns, every column but `time` is a joint.
 
     Raises:
-        InvalidInputError: a column is missing or an entry is no number: names line and column.
+        InvalidInputError: a column is missing or an entry is not a number. Names line and column.
     """
     table = read_table(file, ["time"])
     joints, q = joint_positions(file, table)
@@ -56,10 +56,10 @@ def from_csv(file: str | os.PathLike[str]) -> Trajectory:
 def joint_positions(
     file: str | os.PathLike[str], table: dict[str, NDArray[np.float64]]
 ) -> tuple[list[str], NDArray[np.float64]]:
-    """Joints and their positions (k, n) in the columns `q:joint`, or without any, in those named by the joint alone.
+    """Returns joint names and positions (k, n), from columns `q:joint` or else from columns named after the joints.
 
     Raises:
-        InvalidInputError: there are neither.
+        InvalidInputError: there are no such columns.
     """
     columns = {column.removeprefix("q:"): column for column in table if column.startswith("q:")}
     if not columns:
@@ -67,7 +67,7 @@ def joint_positions(
     if not columns:
         raise InvalidInputError(
             f"{os.fspath(file)}, line 1: no joint positions: expected a column for each joint, "
-            f"named 'q:joint' or by the joint alone; columns found: {', '.join(table)}"
+            f"named 'q:joint' or 'joint'; columns found: {', '.join(table)}"
         )
     return list(columns), np.column_stack([table[column] for column in columns.values()])
 
@@ -75,7 +75,7 @@ def joint_positions(
 def _joint_columns(
     file: str | os.PathLike[str], table: dict[str, NDArray[np.float64]], derivative: str, joints: list[str]
 ) -> NDArray[np.float64] | None:
-    """The columns of one derivative, None where the file has none of them."""
+    """Returns the columns of one derivative, or None if the file has none of them."""
     columns = [f"{derivative}:{joint}" for joint in joints]
     present = [column for column in columns if column in table]
     if not present:
@@ -89,7 +89,7 @@ def _joint_columns(
 
 
 def to_npz(trajectory: Trajectory, file: str | os.PathLike[str]) -> None:
-    """Write the trajectory's knots, coefficients and joint names as npz."""
+    """Writes the trajectory's knots, coefficients and joint names as npz."""
     with whole_file(file) as stream:
         np.savez(
             stream,
@@ -100,10 +100,10 @@ def to_npz(trajectory: Trajectory, file: str | os.PathLike[str]) -> None:
 
 
 def from_npz(file: str | os.PathLike[str]) -> Trajectory:
-    """Read a trajectory that `to_npz` wrote.
+    """Reads a trajectory that `to_npz` wrote.
 
     Raises:
-        InvalidInputError: the file is no npz, or one of another kind: says what it lacks.
+        InvalidInputError: the file is not an npz file, or lacks an array of a trajectory. Names the array.
     """
     stored = _arrays(file)
     for name in ("time", "coefficients", "joint_names"):

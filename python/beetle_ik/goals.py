@@ -1,4 +1,4 @@
-"""What the joints should do where the task leaves them free."""
+"""Secondary objectives for redundant arms: what the joints do in the null space of the task."""
 
 from ._core import Centring, Goal, LinkManipulability, Manipulability, Posture
 

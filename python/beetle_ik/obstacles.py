@@ -1,6 +1,6 @@
-"""Obstacles, in the frame of the robot's base, and how near a robot is to them.
+"""Obstacles, in the frame of the robot's base, and the clearance of a robot from them.
 
-Plans keep clear of them with all capsules of the robot's links:
+A plan keeps all link capsules of the robot clear of the obstacles:
 
     robot = bik.Robot.named("panda").with_capsules(radius=0.06)
     crate = bik.obstacles.Box(center=(0.5, 0, 0.2), size=(0.2, 0.6, 0.4))

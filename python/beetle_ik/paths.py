@@ -1,4 +1,4 @@
-"""Reference paths: where the tip should be at which time."""
+"""Reference paths: the desired tip position as a function of time."""
 
 from ._core import (
     circle,

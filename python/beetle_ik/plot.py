@@ -1,6 +1,6 @@
 """Figures of results. Each function returns a matplotlib Figure and never shows it.
 
-`figure.savefig("result.png")` writes it, `matplotlib.pyplot.show()` opens a window, a notebook shows it by itself.
+`figure.savefig("result.png")` writes it, `matplotlib.pyplot.show()` opens a window, and a notebook displays it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["animation", "model_free", "plan", "robot", "saturation", "track", "trajectory"]
 
-_ROW_HEIGHT = 2.4  # inches, of a panel over time
+_ROW_HEIGHT = 2.4  # inches per panel over time
 _VELOCITY_PANELS_A_ROW = 7
 _VELOCITY_ROW_HEIGHT = 2.0
 _LEGEND_ROWS = 10
@@ -33,7 +33,7 @@ _TRAJECTORY_SAMPLES = 2001
 
 
 def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = None) -> Figure:
-    """The robot as a stick figure at the configuration `q` (n,), with its capsules, among `obstacles`."""
+    """Draws the robot as a stick figure at configuration `q` (n,), with its capsules and `obstacles`."""
     _require("robot", robot, _core.Robot)
     obstacles = () if obstacles is None else obstacles
     _require("obstacles", obstacles, Iterable)
@@ -54,7 +54,7 @@ def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = 
 
 
 def track(result: TrackResult) -> Figure:
-    """A tracked path: tip and target in space, errors, joint positions, evaluations, velocities within their limits."""
+    """Draws a tracked path: tip and target in space, errors, joint positions, evaluations, velocities with limits."""
     _require("result", result, _core.TrackResult)
     panels = [_draw_position_error, _draw_joint_positions, _draw_evaluations]
     if np.isfinite(result.rotation_error).any():
@@ -79,7 +79,7 @@ def track(result: TrackResult) -> Figure:
 
 
 def model_free(result: ModelFreeResult) -> Figure:
-    """A path tracked without a model: tip and target in space, error, joint positions, measurements."""
+    """Draws a path tracked without a model: tip and target in space, error, joint positions, measurements."""
     _require("result", result, _core.ModelFreeResult)
     names = [f"joint {j + 1}" for j in range(result.q.shape[1])]
     with style():
@@ -102,7 +102,7 @@ def model_free(result: ModelFreeResult) -> Figure:
 
 
 def plan(plan: Plan) -> Figure:
-    """A planned motion: the arm on its way, the search, and the joints over time."""
+    """Draws a planned motion: the arm along its path, the search history, and the joints over time."""
     _require("plan", plan, _core.Plan)
     with style():
         figure = _new_figure(13.0, 3 * _ROW_HEIGHT + 0.4)
@@ -111,7 +111,7 @@ def plan(plan: Plan) -> Figure:
 
 
 def animation(result: Plan | TrackResult) -> FuncAnimation:
-    """The arm on its way, in its own time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
+    """Animates the arm in real time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
     _require("result", result, _core.Plan, _core.TrackResult)
     with style():
         figure = _new_figure(5.0, 5.0)
@@ -119,7 +119,7 @@ def animation(result: Plan | TrackResult) -> FuncAnimation:
 
 
 def trajectory(trajectory: Trajectory) -> Figure:
-    """Position, velocity and, where the pieces are curved, acceleration of each joint over time."""
+    """Draws position, velocity and, unless the segments are straight, acceleration of each joint over time."""
     _require("trajectory", trajectory, _core.Trajectory)
     curved = trajectory.coefficients.shape[2] > 2
     labels = ["position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]"][: 3 if curved else 2]
@@ -137,9 +137,9 @@ def trajectory(trajectory: Trajectory) -> Figure:
 
 
 def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
-    """Velocity, acceleration and jerk of each joint as shares of their limits: 1 is all that is allowed.
+    """Draws velocity, acceleration and jerk of each joint as fractions of their limits.
 
-    Of the fastest timing of a path some joint is always at 1; `limits` are numbers, as `time_optimal` takes them.
+    In a time-optimal motion some joint is at 1 at any time. `limits` are constant, as `time_optimal` takes them.
     """
     _require("trajectory", trajectory, _core.Trajectory)
     _require("limits", limits, _core.Limits)
@@ -175,7 +175,7 @@ def _require(name: str, value: object, *kinds: type) -> None:
 
 
 def _slopes(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Derivatives by time between samples, as many as there are samples."""
+    """Returns time derivatives by differences; the last one is repeated, so that there are as many as samples."""
     slopes = np.diff(values, axis=0) / np.diff(time)[:, None]
     return np.vstack((slopes, slopes[-1:]))
 
@@ -219,7 +219,7 @@ def _draw_evaluations(axes: Axes, result: TrackResult) -> None:
 
 
 def _draw_velocities(figure: Any, result: TrackResult, rows: int) -> None:
-    """One small panel a joint, each with its own limit: shaded is where the joint may not go."""
+    """Draws one small panel per joint; velocities beyond the limit are shaded."""
     names = result.robot.joint_names
     panels = figure.subplots(rows, min(len(names), _VELOCITY_PANELS_A_ROW), sharex=True, sharey=True, squeeze=False)
     time, velocity, limit = result.time[1:], result.qd[1:], result.velocity_limit[1:]
@@ -228,7 +228,7 @@ def _draw_velocities(figure: Any, result: TrackResult, rows: int) -> None:
         if j >= len(names):
             axes.set_visible(False)
             continue
-        bound = np.minimum(limit[:, j], 2.0 * top)  # an infinite limit shades nothing within view
+        bound = np.minimum(limit[:, j], 2.0 * top)  # an infinite limit shades nothing in view
         axes.fill_between(time, bound, 2.0 * top, color=FORBIDDEN, linewidth=0)
         axes.fill_between(time, -bound, -2.0 * top, color=FORBIDDEN, linewidth=0)
         axes.plot(time, velocity[:, j], color=line(j)["color"])
@@ -249,7 +249,7 @@ def _legend_columns(names: list[str]) -> int:
 
 
 def _highest(values: NDArray[np.float64]) -> float:
-    """The largest finite magnitude; 1 where all is still, so that axes keep a height."""
+    """Returns the largest finite magnitude, or 1 if all values are zero, so that axes keep a height."""
     return float(np.abs(values[np.isfinite(values)]).max(initial=0.0)) or 1.0
 
 
@@ -258,7 +258,7 @@ def _all_turn(robot: Robot) -> bool:
 
 
 def _new_figure(width: float, height: float) -> Figure:
-    """A figure of this size (inches), which `matplotlib.pyplot.show()` knows of."""
+    """Makes a figure of this size (inches) that `matplotlib.pyplot.show()` displays."""
     import matplotlib.pyplot as plt
 
     return plt.figure(figsize=(width, height), layout="constrained", dpi=120)

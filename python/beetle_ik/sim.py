@@ -1,7 +1,7 @@
-"""A simulated arm to try controllers on: MuJoCo, position servos, gravity, and a sensor at the tip.
+"""A simulated arm for testing controllers: MuJoCo with position servos, gravity and a sensor at the tip.
 
-It needs the extra `sim`. Only the kinematics is the robot's own: descriptions without masses or meshes will
-do, since every link is a rod of a stated mass.
+It needs the extra `sim`. Only the kinematics comes from the robot: every link is simulated as a rod, so that a
+description needs no masses or meshes.
 
     from beetle_ik.sim import MujocoPlant
 
@@ -27,29 +27,29 @@ if TYPE_CHECKING:
 
 _TIMESTEP = 1e-3  # s, of the simulation
 _RADIUS = 0.035  # m, of the rods
-_SHORTEST = 1e-3  # m: a rod is no shorter
-_SAME = 1e-9  # m and rad: how exactly the simulated arm must stand where the robot does
+_SHORTEST = 1e-3  # m, least length of a rod
+_SAME = 1e-9  # m, tolerance between the tips of the simulated arm and of the robot
 _COLOURS = ("0.90 0.62 0.00 1", "0.75 0.75 0.78 1")
 
 
 class MujocoPlant:
-    """An arm in MuJoCo that is moved by position servos, and a sensor that says where its tip is.
+    """An arm in MuJoCo with position servos and a sensor that measures its tip.
 
-    A servo gives way under gravity, so the arm does not come to rest where it is sent: that, besides errors of its
-    model, is what a controller without a model has to get along with.
+    The servos yield under gravity, so the arm settles beside the commanded configuration. A model-free controller must
+    compensate for that, as for errors of the model.
 
     Args:
-        robot: the arm as it is, which need not be the arm as it was drawn.
+        robot: the arm as built, which may differ from the model that a controller uses.
         dt: time from a command to its measurement (s).
-        stiffness: of the servos (N m/rad, N/m).
-        mass: of the arm (kg), shared out to the links by their lengths.
-        gravity: m/s^2, downwards.
+        stiffness: stiffness of the servos (N m/rad, N/m).
+        mass: mass of the arm (kg), distributed over the links by length.
+        gravity: gravity, downwards (m/s^2).
         noise: standard deviation of the sensor on each axis (m).
-        seed: of the noise.
+        seed: seed of the noise.
 
     Raises:
         BeetleIkError: MuJoCo is not installed.
-        InvalidInputError: a number out of range, or a robot with joints that move several elements.
+        InvalidInputError: a number out of range, or a robot with mimic joints.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class MujocoPlant:
         noise: float = 0.0,
         seed: int = 0,
     ) -> None:
-        """At rest at zero, or at the limit nearest to it."""
+        """Starts at rest at zero, or at the limit nearest to it."""
         for name, value in (("dt", dt), ("stiffness", stiffness), ("mass", mass)):
             if not (np.isfinite(value) and value > 0.0):
                 raise InvalidInputError(f"{name} must be positive and finite, got {value}")
@@ -82,18 +82,18 @@ class MujocoPlant:
     def from_urdf(
         cls, path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None, **options: Any
     ) -> MujocoPlant:
-        """The arm of a URDF; its meshes, if it names any, are not looked for.
+        """Makes a plant from a URDF; meshes are ignored.
 
         Args:
             path_or_xml: file, or text that contains "<".
-            base: link in whose frame everything is; None takes the root.
-            tip: link that is moved; None takes the only leaf.
-            **options: those of the class.
+            base: link whose frame is the reference frame; None takes the root.
+            tip: link at the end of the chain; None takes the only leaf.
+            **options: the options of the class.
         """
         return cls(Robot.from_urdf(path_or_xml, base=base, tip=tip), **options)
 
     def reset(self, q: ArrayLike) -> None:
-        """Stand at rest at `q` (n,), and let the arm settle under gravity."""
+        """Places the arm at rest at `q` (n,) and lets it settle under gravity."""
         command = self._command(q)
         self._mujoco.mj_resetData(self._model, self._data)
         self._data.qpos[:] = command
@@ -101,19 +101,19 @@ class MujocoPlant:
         self._run(2.0)
 
     def move(self, q: ArrayLike) -> NDArray[np.float64]:
-        """Send the servos to `q` (n,), wait for `dt`, and measure the tip (3,) (m)."""
+        """Commands the servos to `q` (n,), waits for `dt`, and returns the measured tip position (3,) (m)."""
         self._data.ctrl[:] = self._command(q)
         self._run(self.dt)
         return self.tip + self.noise * self._random.standard_normal(3)
 
     @property
     def tip(self) -> NDArray[np.float64]:
-        """Where the tip is (3,) (m), without noise."""
+        """Position of the tip (3,) (m), without noise."""
         return np.array(self._data.site_xpos[0])
 
     @property
     def q(self) -> NDArray[np.float64]:
-        """Where the joints are (n,) (rad, m), which is not quite where they were sent."""
+        """Actual joint positions (n,) (rad, m), which differ from the command by the deflection of the servos."""
         return np.array(self._data.qpos)
 
     @property
@@ -133,17 +133,17 @@ class MujocoPlant:
         trail: ArrayLike = (),
         target: ArrayLike = (),
     ) -> NDArray[np.uint8]:
-        """The arm as it stands, (height, width, 3), drawn without a screen.
+        """Renders the arm off screen as an image (height, width, 3).
 
         Args:
-            width: pixels.
-            height: pixels.
-            azimuth: direction to look in (degrees about the vertical).
-            elevation: of that direction (degrees); negative looks down.
-            distance: from where to look (m); None: far enough to see all of the arm.
-            look_at: the point in the middle (3,) (m); None: that of the arm.
-            trail: points (k, 3) where the tip was, drawn in blue.
-            target: points (k, 3) of the path it follows, drawn in red.
+            width: width in pixels.
+            height: height in pixels.
+            azimuth: viewing direction about the vertical (degrees).
+            elevation: viewing direction above the horizontal (degrees); negative looks down.
+            distance: distance of the camera (m); None: far enough to see the whole arm.
+            look_at: the point in the centre of the image (3,) (m); None: the centre of the arm.
+            trail: past tip positions (k, 3), drawn in blue.
+            target: points (k, 3) of the reference path, drawn in red.
         """
         mujoco = self._mujoco
         camera = mujoco.MjvCamera()
@@ -175,30 +175,28 @@ class MujocoPlant:
 
     def _run(self, seconds: float) -> None:
         self._mujoco.mj_step(self._model, self._data, max(1, round(seconds / _TIMESTEP)))
-        # Where the joints are now, the tip's position follows only in the next step.
+        # mj_step leaves the kinematics one step behind the joints.
         self._mujoco.mj_kinematics(self._model, self._data)
 
     def _check(self) -> None:
-        """The simulated chain is the robot's: seen at two configurations that have nothing in common."""
+        """Checks at two random configurations that the simulated chain has the robot's kinematics."""
         for q in self.robot.random_configurations(2, seed=1):
             self._data.qpos[:] = q
             self._mujoco.mj_kinematics(self._model, self._data)
             if not np.allclose(self.tip, self.robot.fk(q)[:3, 3], rtol=0.0, atol=_SAME):
-                raise InvalidInputError(
-                    f"robot '{self.robot.name}' has joints that move several elements, which is not simulated"
-                )
+                raise InvalidInputError(f"robot '{self.robot.name}' has mimic joints, which cannot be simulated")
         self.reset(np.clip(np.zeros(self.robot.dof), self.robot.lower, self.robot.upper))
 
 
 def _mujoco() -> Any:
-    # Without a screen only EGL can draw; MuJoCo asks when it is loaded.
+    # Without a display only EGL can render; MuJoCo reads the variable when it is loaded.
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         os.environ.setdefault("MUJOCO_GL", "egl")
     return library("mujoco", "mujoco", "simulation", extra="sim")
 
 
 def _description(robot: Robot, stiffness: float, mass: float, gravity: float) -> str:
-    """The robot in MuJoCo's own format: a rod from each joint to the next, all frames parallel to the base at q = 0."""
+    """Writes the robot as MJCF: a rod from each joint to the next, all frames parallel to the base at q = 0."""
     kinds, axes, anchors, tip = _joints(robot)
     ends = [*anchors[1:], tip]
     lengths = [max(float(np.linalg.norm(end - start)), _SHORTEST) for start, end in zip(anchors, ends, strict=True)]
@@ -216,7 +214,7 @@ def _description(robot: Robot, stiffness: float, mass: float, gravity: float) ->
     for i, (kind, axis, anchor, end) in enumerate(zip(kinds, axes, anchors, ends, strict=True)):
         body = SubElement(body, "body", pos=_text(anchor - origin))
         origin = anchor
-        # Reflected inertia of the gears, and damping that lets the servo arrive without overshooting.
+        # Reflected inertia of the gears, and critical damping, so that the servo does not overshoot.
         inertia = 0.1
         lever = float(np.linalg.norm(tip - anchor)) + 0.1
         critical = 2.0 * np.sqrt(stiffness * (inertia + mass * lever**2 / 3.0))
@@ -234,7 +232,7 @@ def _description(robot: Robot, stiffness: float, mass: float, gravity: float) ->
 def _joints(
     robot: Robot,
 ) -> tuple[list[str], list[NDArray[np.float64]], list[NDArray[np.float64]], NDArray[np.float64]]:
-    """Kinds, axes and points on them, and the tip, at q = 0: from the Jacobian, which knows of no format of files."""
+    """Returns joint kinds, joint axes, a point on each axis, and the tip at q = 0, all from the Jacobian."""
     zero = np.zeros(robot.dof)
     jacobian, tip = robot.jacobian(zero), robot.fk(zero)[:3, 3]
     origins = robot.link_poses(zero)[:, :3, 3]

@@ -1,4 +1,4 @@
-"""What of a target matters: its pose, position or orientation, or where an axis points; weights, tolerances, tools."""
+"""Tasks: which part of a target counts (pose, position, orientation or pointing axis), with weights and tolerances."""
 
 from ._core import Orientation, Pointing, Pose, Position, Task
 

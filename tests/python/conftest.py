@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import signal
 from collections.abc import Iterator
 
 import matplotlib as mpl
@@ -16,6 +17,14 @@ def _close_figures() -> Iterator[None]:
 
     yield
     plt.close("all")
+
+
+@pytest.fixture
+def ctrl_c_raises() -> Iterator[None]:
+    """Python's own handler of Ctrl-C. A process that inherits an ignored SIGINT, as under nohup, starts without it."""
+    inherited = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, inherited)
 
 
 @pytest.fixture(scope="session")

@@ -44,7 +44,7 @@ SOLVERS = [
 
 
 @pytest.mark.parametrize("result", RESULTS, ids=lambda result: type(result).__name__)
-def test_results(result: object) -> None:
+def test_all_results_share_the_same_properties(result: object) -> None:
     assert [name for name in IN_COMMON if not hasattr(result, name)] == []
     assert result.message  # type: ignore[attr-defined]
     assert result.elapsed >= 0.0  # type: ignore[attr-defined]

@@ -45,7 +45,7 @@ def test_any_number_of_threads_gives_the_same_bits(threads: int | None) -> None:
 
 
 @pytest.mark.parametrize("m", [1, 2, 50])
-def test_items_do_not_depend_on_those_behind_them(m: int) -> None:
+def test_items_do_not_depend_on_later_ones(m: int) -> None:
     np.testing.assert_array_equal(bik.solve_batch(PANDA, TARGETS[:m]).q, bik.solve_batch(PANDA, TARGETS).q[:m])
 
 
@@ -123,7 +123,7 @@ def test_several_items_are_a_batch(index: Any) -> None:
 
 
 @pytest.mark.parametrize("index", [None, ..., (0, 1), 1.0, "q", [True], [9], np.zeros((2, 2), dtype=int)], ids=repr)
-def test_what_picks_no_items_is_refused(index: Any) -> None:
+def test_an_invalid_index_is_refused(index: Any) -> None:
     batch = bik.solve_batch(PANDA, TARGETS[:3])
     if index is ...:
         assert len(batch[index]) == 3
@@ -289,9 +289,10 @@ def test_what_progress_raises_stops_a_batch(threads: int) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no process can send itself Ctrl-C on Windows")
+@pytest.mark.usefixtures("ctrl_c_raises")
 @pytest.mark.parametrize("threads", [1, 2])
 @pytest.mark.parametrize("budget", [10**4, 10**12], ids=["many short searches", "endless searches"])
-def test_ctrl_c_stops_a_batch_that_leaves_python_to_other_threads(threads: int, budget: int) -> None:
+def test_ctrl_c_stops_a_batch_while_other_threads_run(threads: int, budget: int) -> None:
     turns, sent = 0, 0.0
 
     def interrupt() -> None:

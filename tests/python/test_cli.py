@@ -47,7 +47,7 @@ def run_json(*arguments: str) -> Any:
     return json.loads(result.stdout)
 
 
-def test_robots() -> None:
+def test_robots_lists_all_built_in_robots() -> None:
     robots = {robot["name"]: robot for robot in run_json("robots")}
     assert set(robots) == set(bik.Robot.names())
     assert len(robots["iiwa14"]["joints"]) == robots["iiwa14"]["dof"] == 7
@@ -88,7 +88,7 @@ def test_one_step_is_no_plural() -> None:
     assert "planar5, 1 step of 0.2 s: " in run(*TRACK, "--duration", "0.2").stdout
 
 
-def test_version() -> None:
+def test_version_is_printed() -> None:
     result = run("--version")
     assert (result.exit_code, result.stdout) == (0, f"beetle-ik {bik.__version__}\n")
 
@@ -160,7 +160,7 @@ def test_a_limit_above_the_real_arm_is_told() -> None:
     )
 
 
-def test_points_from_a_file(tmp_path: Path) -> None:
+def test_a_path_file_may_have_times_or_a_duration(tmp_path: Path) -> None:
     timed, untimed = tmp_path / "timed.csv", tmp_path / "untimed.csv"
     timed.write_text("time,x,y,z\n0,4,1,0\n2,4,0.9,0\n")
     untimed.write_text("x,y,z\n4,1,0\n4,0.9,0\n")
@@ -192,7 +192,7 @@ def test_points_from_a_file(tmp_path: Path) -> None:
         ),
         (
             ["fk", "iiwa14", "--tip", "x", "--q", "0"],
-            "--base and --tip belong to --urdf; a built-in robot has its own",
+            "--base and --tip can only be used with --urdf: a built-in robot has its own base and tip",
         ),
         (["fk", "planar5", "--q", "0,0,x,0,0"], "--q: 'x' is not a number"),
         (
@@ -213,7 +213,7 @@ def test_points_from_a_file(tmp_path: Path) -> None:
         ),
         (
             [*TRACK, "--velocity-limit", "1", "--velocity-sinusoid", "1,0.1,1"],
-            "--velocity-limit and --velocity-sinusoid are two ways to say the same: leave one out",
+            "both --velocity-limit and --velocity-sinusoid were given: give one of them",
         ),
         (
             [*TRACK, "--velocity-sinusoid", "1,2"],
@@ -239,13 +239,11 @@ def test_wrong_input_is_told_exactly(arguments: list[str], message: str) -> None
         ["track", "planar5", "--curve", "spiral"],
     ],
 )
-def test_what_the_core_refuses_exits_with_2(arguments: list[str]) -> None:
+def test_errors_of_the_core_exit_with_2(arguments: list[str]) -> None:
     assert "Error" in refused(*arguments)
 
 
-def test_a_folder_that_cannot_be_written_is_refused_before_any_work(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_unwritable_folder_is_refused_before_any_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("beetle_ik.cli.track.track_path", lambda *_, **__: pytest.fail("work was done"))
     blocked = tmp_path / "file"
     blocked.touch()
@@ -288,7 +286,7 @@ def test_the_module_runs_and_a_pipe_gets_no_progress_bar() -> None:
 
 
 @pytest.mark.parametrize("command", ["", "robots", "fk", "solve", "track", "plan", "reproduce"])
-def test_help(command: str) -> None:
+def test_every_command_has_help(command: str) -> None:
     result = run(*command.split(), "--help")
     assert result.exit_code == 0
     assert "Usage: " in result.stdout

@@ -96,7 +96,7 @@ def test_the_classes_of_errors() -> None:
         ),
     ]
 )
-def test_solving(call: Callable[[], object], error: type[Exception], message: str) -> None:
+def test_wrong_solve_arguments_are_named(call: Callable[[], object], error: type[Exception], message: str) -> None:
     assert_told(call, error, message)
 
 
@@ -127,7 +127,7 @@ def test_solving(call: Callable[[], object], error: type[Exception], message: st
         (lambda: bik.Stop(max_time=np.nan), Invalid, "max_time must be zero or more seconds, got NaN"),
     ]
 )
-def test_solvers_and_budgets(call: Callable[[], object], error: type[Exception], message: str) -> None:
+def test_wrong_solver_options_are_named(call: Callable[[], object], error: type[Exception], message: str) -> None:
     assert_told(call, error, message)
 
 
@@ -181,7 +181,7 @@ def test_solvers_and_budgets(call: Callable[[], object], error: type[Exception],
         ),
     ]
 )
-def test_tracking(call: Callable[[], object], error: type[Exception], message: str) -> None:
+def test_wrong_track_arguments_are_named(call: Callable[[], object], error: type[Exception], message: str) -> None:
     assert_told(call, error, message)
 
 
@@ -211,7 +211,7 @@ def test_tracking(call: Callable[[], object], error: type[Exception], message: s
         ),
     ]
 )
-def test_limits(call: Callable[[], object], error: type[Exception], message: str) -> None:
+def test_wrong_limits_are_named(call: Callable[[], object], error: type[Exception], message: str) -> None:
     assert_told(call, error, message)
 
 
@@ -275,7 +275,7 @@ def test_limits(call: Callable[[], object], error: type[Exception], message: str
         ),
     ]
 )
-def test_paths(call: Callable[[], object], error: type[Exception], message: str) -> None:
+def test_wrong_paths_are_named(call: Callable[[], object], error: type[Exception], message: str) -> None:
     assert_told(call, error, message)
 
 
@@ -317,7 +317,9 @@ def test_paths(call: Callable[[], object], error: type[Exception], message: str)
         ),
     ]
 )
-def test_poses_and_trajectories(call: Callable[[], object], error: type[Exception], message: str) -> None:
+def test_wrong_poses_and_trajectories_are_named(
+    call: Callable[[], object], error: type[Exception], message: str
+) -> None:
     assert_told(call, error, message)
 
 

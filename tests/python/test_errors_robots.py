@@ -64,7 +64,7 @@ def dh(**fields: object) -> bik.Robot:
         ),
     ]
 )
-def test_joint_angles(call: Callable[[], object], error: type[Exception], message: str) -> None:
+def test_wrong_joint_positions_are_named(call: Callable[[], object], error: type[Exception], message: str) -> None:
     assert_told(call, error, message)
 
 
@@ -144,7 +144,7 @@ def test_joint_angles(call: Callable[[], object], error: type[Exception], messag
         ),
     ]
 )
-def test_robots(call: Callable[[], object], error: type[Exception], message: str) -> None:
+def test_wrong_robots_are_named(call: Callable[[], object], error: type[Exception], message: str) -> None:
     assert_told(call, error, message)
 
 
@@ -217,18 +217,18 @@ def load(old: str = "", new: str = "", **links: str) -> bik.Robot:
         (lambda: load(base="hand", tip="hand"), Urdf, "URDF: base and tip are both 'hand': a chain needs two links"),
     ]
 )
-def test_urdf(call: Callable[[], object], error: type[Exception], message: str) -> None:
+def test_wrong_urdf_is_named_with_its_line(call: Callable[[], object], error: type[Exception], message: str) -> None:
     assert_told(call, error, message)
 
 
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+def test_a_missing_urdf_file_is_named(tmp_path: Path) -> None:
     file = tmp_path / "none.urdf"
     with pytest.raises(Invalid) as caught:
         bik.Robot.from_urdf(file)
     assert str(caught.value).startswith(f"cannot read '{file}': ")  # then the operating system's reason
 
 
-def test_a_file_in_another_encoding(tmp_path: Path) -> None:
+def test_urdf_in_another_encoding_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
     file.write_bytes("<?xml version='1.0'?>\n<robot name='Müller'/>".encode("latin-1"))
     message = "URDF line 2: byte 0xfc is not UTF-8; save the file with the encoding UTF-8"

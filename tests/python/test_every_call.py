@@ -227,13 +227,13 @@ def test_results_cannot_be_made_by_hand(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [name for name in WITH_ARGUMENTS if name not in ONLY_WRONG])
-def test_what_is_needed_is_enough(name: str) -> None:
+def test_required_arguments_are_sufficient(name: str) -> None:
     arguments = {key: value for key, value in needed(name).items() if key in arguments_of(name)}
     assert refusal(CALLS[name], arguments) is None
 
 
 @pytest.mark.parametrize("name", WITH_ARGUMENTS)
-def test_wrong_arguments(name: str) -> None:
+def test_wrong_arguments_are_named(name: str) -> None:
     names = arguments_of(name)
     right = {key: value for key, value in needed(name).items() if key in names}
     for argument in names:
@@ -245,7 +245,7 @@ def test_wrong_arguments(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [name for name in CALLS if name not in MADE_BY_THE_LIBRARY])
-def test_unknown_options(name: str) -> None:
+def test_unknown_options_are_refused(name: str) -> None:
     told = refusal(CALLS[name], {**{k: v for k, v in needed(name).items() if k != "."}, "no_such_option": 1})
     assert told is not None
     assert re.search(r"no_such_option|takes no (keyword )?arguments|unexpected keyword", told), told

@@ -51,7 +51,7 @@ def test_csv_names_its_columns(tmp_path: Path) -> None:
     assert (tmp_path / "motion.csv").read_text().splitlines()[0] == 'time,q:shoulder,"q:elbow, left"'
 
 
-def test_csv_with_plain_joint_names(tmp_path: Path) -> None:
+def test_csv_columns_may_be_plain_joint_names(tmp_path: Path) -> None:
     file = tmp_path / "motion.csv"
     file.write_text("time,b,a,qd:a,qd:b\n0,1,2,0,0\n1,3,4,5,6\n")
     read = bik.Trajectory.from_csv(file)
@@ -60,13 +60,13 @@ def test_csv_with_plain_joint_names(tmp_path: Path) -> None:
     np.testing.assert_allclose(read.qd, [[0.0, 0.0], [6.0, 5.0]], atol=1e-12)
 
 
-def test_csv_beside_prefixed_positions_plain_columns_are_no_joints(tmp_path: Path) -> None:
+def test_plain_columns_are_ignored_next_to_prefixed_ones(tmp_path: Path) -> None:
     file = tmp_path / "motion.csv"
     file.write_text("time,q:a,temperature\n0,1,20\n1,2,21\n")
     assert bik.Trajectory.from_csv(file).joint_names == ["a"]
 
 
-def test_csv_in_another_encoding(tmp_path: Path) -> None:
+def test_csv_in_another_encoding_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "motion.csv"
     file.write_bytes("time,gelenk_für_arm\n0,1\n".encode("latin-1"))
     with pytest.raises(bik.InvalidInputError, match="line 1: byte 0xfc is not UTF-8; save the file as CSV"):
@@ -93,14 +93,14 @@ def test_a_tracked_path_survives_csv(tmp_path: Path, tracked: bik.TrackResult) -
         ("t,q:a\n0,1\n", ", line 1: column 'time' is missing; columns found: t, q:a"),
         (
             "time,qd:a\n0,1\n",
-            ", line 1: no joint positions: expected a column for each joint, named 'q:joint' or by the joint alone; "
+            ", line 1: no joint positions: expected a column for each joint, named 'q:joint' or 'joint'; "
             "columns found: time, qd:a",
         ),
         ("time,a,b,qd:a\n0,1,2,3\n", ", line 1: column 'qd:b' is missing, though 'qd:a' is there"),
         ("time,q:a,q:b,qd:a\n0,1,2,3\n", ", line 1: column 'qd:b' is missing, though 'qd:a' is there"),
     ],
 )
-def test_csv_that_is_no_trajectory(tmp_path: Path, text: str, problem: str) -> None:
+def test_csv_without_a_trajectory_is_refused(tmp_path: Path, text: str, problem: str) -> None:
     file = tmp_path / "motion.csv"
     file.write_text(text)
     with pytest.raises(bik.InvalidInputError) as caught:
@@ -108,7 +108,7 @@ def test_csv_that_is_no_trajectory(tmp_path: Path, text: str, problem: str) -> N
     assert str(caught.value) == f"{file}{problem}"
 
 
-def test_npz_that_is_no_trajectory(tmp_path: Path) -> None:
+def test_npz_without_a_trajectory_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "other.npz"
     np.savez(file, time=TIME, data=TIME)
     with pytest.raises(bik.InvalidInputError) as caught:
@@ -116,7 +116,7 @@ def test_npz_that_is_no_trajectory(tmp_path: Path) -> None:
     assert str(caught.value) == (f"{file}: not a trajectory: 'coefficients' is missing; the file holds: time, data")
 
 
-def test_npz_with_one_name_for_all_joints(tmp_path: Path, tracked: bik.TrackResult) -> None:
+def test_npz_with_a_single_joint_name_is_refused(tmp_path: Path, tracked: bik.TrackResult) -> None:
     file = tmp_path / "other.npz"
     np.savez(file, time=TIME, coefficients=tracked.trajectory.coefficients, joint_names="a")
     with pytest.raises(bik.InvalidInputError) as caught:
@@ -125,7 +125,7 @@ def test_npz_with_one_name_for_all_joints(tmp_path: Path, tracked: bik.TrackResu
 
 
 @pytest.mark.parametrize("content", [b"", b"plain text", b"PK\x03\x04 but no archive", b"\x93NUMPY"])
-def test_npz_that_is_no_npz(tmp_path: Path, content: bytes) -> None:
+def test_a_file_that_is_not_npz_is_refused(tmp_path: Path, content: bytes) -> None:
     file = tmp_path / "other.npz"
     file.write_bytes(content)
     with pytest.raises(bik.InvalidInputError) as caught:
@@ -133,7 +133,7 @@ def test_npz_that_is_no_npz(tmp_path: Path, content: bytes) -> None:
     assert str(caught.value) == f"{file}: not an npz file"
 
 
-def test_npz_that_is_damaged(tmp_path: Path, tracked: bik.TrackResult) -> None:
+def test_damaged_npz_is_refused(tmp_path: Path, tracked: bik.TrackResult) -> None:
     file = tmp_path / "motion.npz"
     tracked.trajectory.to_npz(file)
     content = bytearray(file.read_bytes())

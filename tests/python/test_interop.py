@@ -107,7 +107,7 @@ def test_what_only_looks_like_a_pose() -> None:
     assert str(caught.value) == "target: expected a pose (4, 4) or a position (3,), got shape (3, 3)"
 
 
-def test_scipy_transforms() -> None:
+def test_scipy_transforms_are_poses() -> None:
     transform = pytest.importorskip("scipy.spatial.transform", reason="scipy is not installed")
     rotation = transform.Rotation.from_matrix(TURN[:3, :3])
     np.testing.assert_allclose(bik.pose(TURN[:3, 3], matrix=rotation), TURN, rtol=0, atol=1e-15)
@@ -124,7 +124,7 @@ def test_scipy_transforms() -> None:
 # --- trajectories -------------------------------------------------------------------------------
 
 
-def test_ros_message() -> None:
+def test_a_ros_message_has_the_points_at_the_knots() -> None:
     message = bik.interop.to_ros(bik.Trajectory.from_samples(TIME, Q, qd=Q + 1.0, joint_names=NAMES), frame_id="base")
     assert message["header"] == {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "base"}
     assert message["joint_names"] == NAMES
@@ -139,7 +139,7 @@ def test_ros_message() -> None:
 
 
 @pytest.mark.parametrize("convert", [bik.interop.to_ros, bik.interop.to_dataframe])
-def test_a_result_is_told_from_its_trajectory(convert: object) -> None:
+def test_a_result_is_refused_in_place_of_its_trajectory(convert: object) -> None:
     robot = bik.Robot.planar([1.0, 1.0])
     plan = bik.plan_point_to_point(robot, start_q=[0, 0], end_q=[1, 1], limits=bik.Limits(velocity=1.0))
     with pytest.raises(bik.InvalidInputError) as caught:
@@ -151,14 +151,14 @@ def test_a_result_is_told_from_its_trajectory(convert: object) -> None:
 
 
 @pytest.mark.parametrize(("derivatives", "told"), [(0, 1), (1, 2), (2, 3)])
-def test_ros_message_has_what_determines_the_pieces(derivatives: int, told: int) -> None:
+def test_a_ros_message_has_the_derivatives_of_its_degree(derivatives: int, told: int) -> None:
     others = dict(list({"qd": Q, "qdd": Q}.items())[:derivatives])
     point = bik.interop.to_ros(bik.Trajectory.from_samples(TIME, Q, **others))["points"][1]
     names = ["positions", "velocities", "accelerations"]
     assert [len(point[name]) for name in names] == [2] * told + [0] * (3 - told)
 
 
-def test_ros_message_between_the_knots() -> None:
+def test_a_ros_message_may_be_sampled_evenly() -> None:
     trajectory = bik.Trajectory.from_samples(TIME, Q)
     points = bik.interop.to_ros(trajectory, dt=0.1)["points"]
     time, q, *_ = trajectory.sample(0.1)
@@ -197,7 +197,7 @@ def test_ros_yaml_is_plain_text(tmp_path: Path) -> None:
     assert "positions: [0.5, 1.0e-07]" in (tmp_path / "motion.yaml").read_text()
 
 
-def test_dataframe() -> None:
+def test_a_dataframe_has_a_column_per_joint_and_derivative() -> None:
     pytest.importorskip("pandas", reason="pandas is not installed")
     trajectory = bik.Trajectory.from_samples(TIME, Q, qd=Q, joint_names=["a", "b"])
     table = bik.interop.to_dataframe(trajectory)
@@ -241,7 +241,7 @@ def pin() -> object:
 
 
 @each_robot
-def test_pinocchio_there_and_back(robot: bik.Robot, pin: object) -> None:
+def test_a_robot_survives_pinocchio_and_back(robot: bik.Robot, pin: object) -> None:
     model = bik.interop.to_pinocchio(robot)
     data = model.createData()
     for q in robot.random_configurations(5, seed=1):
@@ -271,7 +271,7 @@ URDF = """<robot name="two">
 </robot>"""
 
 
-def test_pinocchio_models_from_urdf(pin: object) -> None:
+def test_a_pinocchio_model_equals_the_urdf(pin: object) -> None:
     model = pin.buildModelFromXML(URDF)
     robot = bik.Robot.from_urdf(URDF, tip="hand")
     made = bik.interop.from_pinocchio(model, base="base", tip="hand")
@@ -283,26 +283,24 @@ def test_pinocchio_models_from_urdf(pin: object) -> None:
     )
     with pytest.raises(bik.InvalidInputError) as caught:
         bik.interop.from_pinocchio(model)
-    assert (
-        str(caught.value) == "the model of Pinocchio has 2 bodies that nothing follows; give tip= one of: hand, camera"
-    )
+    assert str(caught.value) == "the model of Pinocchio has 2 leaf bodies; give tip= one of: hand, camera"
     with pytest.raises(bik.InvalidInputError) as caught:
         bik.interop.from_pinocchio(model, base="hand", tip="base")
-    assert str(caught.value) == "frame 'base' of the Pinocchio model does not follow frame 'hand'"
+    assert str(caught.value) == "frame 'base' of the Pinocchio model is not a descendant of frame 'hand'"
     with pytest.raises(
         bik.UnknownNameError, match=r"^no frame 'foot' in the Pinocchio model; frames: universe, base, "
     ):
         bik.interop.from_pinocchio(model, tip="foot")
 
 
-def test_pinocchio_joints_that_do_not_fit(pin: object) -> None:
+def test_pinocchio_joints_that_do_not_fit_are_refused(pin: object) -> None:
     model = pin.Model()
     joint = model.addJoint(0, pin.JointModelSpherical(), pin.SE3.Identity(), "ball")
     model.addFrame(pin.Frame("hand", joint, 0, pin.SE3.Identity(), pin.FrameType.BODY))
     with pytest.raises(bik.InvalidInputError) as caught:
         bik.interop.from_pinocchio(model)
     assert str(caught.value) == (
-        "joint 'ball' of the Pinocchio model is a JointModelSpherical: only joints that turn or slide are taken"
+        "joint 'ball' of the Pinocchio model is a JointModelSpherical, but must be revolute or prismatic"
     )
 
 
@@ -310,7 +308,7 @@ def test_pinocchio_joints_that_do_not_fit(pin: object) -> None:
 def test_mimic_joints_are_not_exported() -> None:
     xml, base, tip = chain(joints=9, place="branch", seed=4)
     with pytest.raises(
-        bik.InvalidInputError, match=r"^joint '.*' of robot '.*' moves several elements or by a factor \(mimic"
+        bik.InvalidInputError, match=r"^joint '.*' of robot '.*' has mimic joints, which the conversion to Pinocchio"
     ):
         bik.interop.to_pinocchio(bik.Robot.from_urdf(xml, base=base, tip=tip))
 
@@ -325,7 +323,7 @@ def rtb() -> object:
 
 @each_robot
 @pytest.mark.usefixtures("rtb")
-def test_roboticstoolbox_there_and_back(robot: bik.Robot) -> None:
+def test_a_robot_survives_roboticstoolbox_and_back(robot: bik.Robot) -> None:
     model = bik.interop.to_roboticstoolbox(robot)
     for q in robot.random_configurations(3, seed=1):
         np.testing.assert_allclose(model.fkine(q).A, robot.fk(q), rtol=0, atol=1e-12)
@@ -334,7 +332,7 @@ def test_roboticstoolbox_there_and_back(robot: bik.Robot) -> None:
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_roboticstoolbox_models(rtb: object) -> None:
+def test_roboticstoolbox_models_keep_their_kinematics(rtb: object) -> None:
     placed = rtb.Robot(rtb.ETS(rtb.ET.Rz()) * rtb.ET.ty(flip=True), base=rtb.ET.SE3(TURN).A(), tool=rtb.ET.SE3(TIP).A())
     for model in (
         rtb.models.DH.Puma560(),
@@ -385,7 +383,7 @@ def mujoco() -> object:
 
 
 @pytest.mark.parametrize("tip", [None, "tool"])
-def test_mujoco_chains(mujoco: object, tip: str | None, tmp_path: Path) -> None:
+def test_mujoco_models_keep_their_kinematics(mujoco: object, tip: str | None, tmp_path: Path) -> None:
     text = MJCF.format(more="", equality="")
     (tmp_path / "arm.xml").write_text(text)
     robot = bik.interop.from_mujoco(text, tip=tip)
@@ -408,24 +406,27 @@ def test_mujoco_chains(mujoco: object, tip: str | None, tmp_path: Path) -> None:
     ("more", "equality", "options", "problem"),
     [
         ("<body name='b'><geom size='1'/></body>", "", {},
-         "the model of MuJoCo has 2 bodies that nothing follows; give tip= one of: lower, b"),
+         "the model of MuJoCo has 2 leaf bodies; give tip= one of: lower, b"),
         ("<body name='b'><geom size='1'/><freejoint name='f'/></body>", "", {"tip": "b"},
-         "joint 'f' of the MuJoCo model is neither a hinge nor a slide"),
+         "joint 'f' of the MuJoCo model must be a hinge or a slide"),
         ("", "<equality><joint joint1='turn' joint2='elbow'/></equality>", {},
-         "joint 'turn' of the MuJoCo model is coupled to another by an equality"),
-        ("", "", {"base": "lower", "tip": "upper"}, "body 'upper' of the MuJoCo model does not follow body 'lower'"),
+         "joint 'turn' of the MuJoCo model is coupled to another joint by an equality constraint"),
+        ("", "", {"base": "lower", "tip": "upper"},
+         "body 'upper' of the MuJoCo model is not a descendant of body 'lower'"),
         ("", "", {"tip": "hand"},
          "no body or site 'hand' in the MuJoCo model; bodies: world, upper, lower; sites: tool"),
     ],
 )  # fmt: skip
 @pytest.mark.usefixtures("mujoco")
-def test_mujoco_mistakes(more: str, equality: str, options: dict[str, str], problem: str) -> None:
+def test_mujoco_models_that_do_not_fit_are_refused(
+    more: str, equality: str, options: dict[str, str], problem: str
+) -> None:
     with pytest.raises(bik.BeetleIkError) as caught:
         bik.interop.from_mujoco(MJCF.format(more=more, equality=equality), **options)
     assert str(caught.value) == problem
 
 
 @pytest.mark.usefixtures("mujoco")
-def test_mujoco_text_that_is_none() -> None:
+def test_text_that_is_no_mujoco_model_is_refused() -> None:
     with pytest.raises(bik.InvalidInputError, match=r"^MuJoCo cannot read the model: "):
         bik.interop.from_mujoco("<mujoco><nonsense/></mujoco>")

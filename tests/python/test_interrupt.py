@@ -70,6 +70,7 @@ def interrupted(after: float) -> Iterator[list[float]]:
         timer.cancel()  # a call that ended by itself must not have the next test interrupted
 
 
+@pytest.mark.usefixtures("ctrl_c_raises")
 @pytest.mark.parametrize("call", LONG_CALLS)
 def test_ctrl_c_stops_a_long_call(call: Callable[[], object]) -> None:
     with interrupted(after=0.15) as sent:
@@ -79,9 +80,23 @@ def test_ctrl_c_stops_a_long_call(call: Callable[[], object]) -> None:
     assert bik.solve(IIWA, [0.4, 0.3, 0.9]).success
 
 
+@pytest.mark.usefixtures("ctrl_c_raises")
 def test_ctrl_c_stops_a_track_with_a_progress_bar() -> None:
     with interrupted(after=0.15):
         bik.track(IIWA, FAR, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12, progress=True)
+
+
+def test_a_call_outlives_ctrl_c_where_the_process_ignores_it() -> None:
+    """Under nohup, SIGINT is ignored: the call runs to the end of its budget."""
+    inherited = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    try:
+        found = bik.solve(IIWA, [0.0, 0.0, 0.36], stop=bik.Stop(max_evaluations=10**12, max_time=0.4))
+    finally:
+        timer.join()
+        signal.signal(signal.SIGINT, inherited)
+    assert found.status == bik.Status.TIME_UP
 
 
 def test_what_progress_raises_stops_a_long_track() -> None:
@@ -96,6 +111,7 @@ def test_what_progress_raises_stops_a_long_track() -> None:
     assert time.monotonic() - began < 2.0
 
 
+@pytest.mark.usefixtures("ctrl_c_raises")
 @pytest.mark.parametrize("call", [track_for_minutes, solve_for_minutes])
 def test_other_threads_run_meanwhile(call: Callable[[], object]) -> None:
     turns = 0

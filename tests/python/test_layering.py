@@ -28,7 +28,7 @@ def belongs_to_command_line(file: Path) -> bool:
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(PACKAGE)))
-def test_tables_pictures_and_prompts_are_imported_inside_functions(file: Path) -> None:
+def test_optional_libraries_are_imported_inside_functions(file: Path) -> None:
     top_level = names_imported(list(ast.parse(file.read_text()).body))
     kept_out = {"jinja2", "matplotlib", "rich"} | (set() if belongs_to_command_line(file) else {"typer"})
     assert not {name.split(".")[0] for name in top_level} & kept_out

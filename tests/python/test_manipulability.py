@@ -9,7 +9,7 @@ IIWA = bik.Robot.named("iiwa14")
 Q = np.array([0.3, 0.5, -0.2, -1.1, 0.4, 0.9, 0.1])
 
 
-def test_the_ellipsoid_holds_the_singular_values_of_the_jacobian() -> None:
+def test_ellipsoid_lengths_are_singular_values_of_the_jacobian() -> None:
     ellipsoid = IIWA.velocity_ellipsoid(Q)
     left, lengths, _ = np.linalg.svd(IIWA.jacobian(Q)[:3])
     np.testing.assert_allclose(ellipsoid.lengths, lengths, rtol=1e-12)

@@ -108,7 +108,7 @@ def test_negative_values_are_minimised_too() -> None:
         assert found.value < -4.99, solver
 
 
-def test_what_became_of_it() -> None:
+def test_the_message_says_how_the_search_ended() -> None:
     spent = minimize()
     assert not spent.success
     assert spent.message == (
@@ -129,7 +129,7 @@ def test_values_that_are_not_finite_are_the_worst() -> None:
 
 
 @pytest.mark.parametrize("value", [1, np.float32(2.0), np.int64(3), np.array(4.0), True])
-def test_whatever_is_a_number_will_do(value: Any) -> None:
+def test_any_type_of_number_is_a_value(value: Any) -> None:
     assert minimize(lambda _: value).value == float(value)
 
 
@@ -138,7 +138,7 @@ class BoomError(Exception):
 
 
 @pytest.mark.parametrize("vectorized", [False, True])
-def test_the_functions_own_exception_comes_out_with_the_best_so_far(vectorized: bool) -> None:
+def test_an_exception_of_the_function_carries_the_best_point(vectorized: bool) -> None:
     left = 5 if vectorized else 55
 
     def failing(x: np.ndarray) -> Any:
@@ -168,7 +168,7 @@ def test_progress_is_told_to_the_end_and_changes_nothing() -> None:
     np.testing.assert_array_equal(followed.x, bik.minimize(bowl, LOWER, UPPER, solver=bik.PSO(), stop=stop).x)
 
 
-def test_what_progress_raises_comes_out_with_the_best_so_far() -> None:
+def test_an_exception_of_progress_carries_the_best_point() -> None:
     def slow_bowl(x: np.ndarray) -> float:
         time.sleep(1e-3)
         return bowl(x)
@@ -184,7 +184,8 @@ def test_what_progress_raises_comes_out_with_the_best_so_far() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no process can send itself Ctrl-C on Windows")
-def test_ctrl_c_comes_out_with_the_best_so_far() -> None:
+@pytest.mark.usefixtures("ctrl_c_raises")
+def test_ctrl_c_carries_the_best_point() -> None:
     timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt) as caught:

@@ -51,7 +51,7 @@ def test_all_kinds_of_plants_give_the_same_track() -> None:
     assert mover.calls == track(mover, limits=LIMITS, position_tolerance=1e-6).evaluations
 
 
-def test_a_wrong_model_and_a_noisy_sensor() -> None:
+def test_a_wrong_model_and_sensor_noise_are_compensated() -> None:
     wrong = IIWA.with_errors(length=0.02, angle=np.radians(2.0), seed=4)
     assert np.linalg.norm(wrong.fk(ON_CIRCLE)[:3, 3] - tip(ON_CIRCLE)) > 1e-3
     plant = bik.KinematicPlant(wrong, noise=1e-4, seed=2)
@@ -90,7 +90,7 @@ def test_znnbas_measures_once_a_step() -> None:
     np.testing.assert_array_equal(again.command, result.command)
 
 
-def test_dt_that_does_not_divide_the_duration_ends_at_the_paths_end() -> None:
+def test_a_last_partial_tick_ends_at_the_end_of_the_path() -> None:
     result = track(dt=0.7, path=SHORT, position_tolerance=1e-6)
     np.testing.assert_allclose(result.time, [0.0, 0.7, 1.4, 2.1])
     np.testing.assert_allclose(result.reference[-1], SHORT.position(2.0))
@@ -174,7 +174,7 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
         (
             lambda: bik.ZNNBAS(antenna_length=0.1, c1=0.3),
             bik.InvalidInputError,
-            "antenna_length and c1 exclude each other: a constant antenna, or one of c1 sqrt(h)",
+            "give either antenna_length, for a constant antenna, or c1, for one of c1 sqrt(h)",
         ),
         (
             lambda: track(controller=bik.ZNNBAS(antenna_length=[0.1, 0.2])),
@@ -210,8 +210,8 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
         (
             lambda: bik.ZNNBAS().session(ON_CIRCLE, dt=0.1, limits=bik.Limits(velocity=lambda t: t)),
             bik.UnsupportedLimit,
-            "session cannot honour callable velocity limits: it has no end to be sampled to; give numbers or a "
-            "Sinusoid, or use track_model_free",
+            "session cannot honour callable velocity limits: it has no end time up to which to sample; give numbers or "
+            "a Sinusoid, or use track_model_free",
         ),
         (lambda: track(dt=0.0), bik.InvalidInputError, "dt must be positive and finite, got 0"),
         (lambda: track(start=[]), bik.InvalidInputError, "start: expected 1 to 32 joints, got 0"),

@@ -25,7 +25,7 @@ def assert_same_kinematics(robot: bik.Robot, oracle: Oracle, configurations: int
 
 @needs_shared
 @pytest.mark.parametrize("file", URDFS, ids=lambda file: f"{file.parent.name}/{file.stem}")
-def test_real_robots(file: Path) -> None:
+def test_real_robots_agree_with_pinocchio(file: Path) -> None:
     described = ROBOTS[file.stem]
     robot = bik.Robot.from_urdf(file, base=described["base"], tip=described["tip"])
     assert robot.dof == described["dof"]
@@ -34,7 +34,7 @@ def test_real_robots(file: Path) -> None:
 
 @pytest.mark.parametrize("joints", range(1, 13))
 @pytest.mark.parametrize("place", ["root", "inside", "branch"])
-def test_generated_chains(joints: int, place: str) -> None:
+def test_generated_chains_agree_with_pinocchio(joints: int, place: str) -> None:
     for seed in range(20):
         xml, base, tip = chain(joints, place, seed)
         robot = bik.Robot.from_urdf(xml, base=base, tip=tip)
@@ -44,7 +44,7 @@ def test_generated_chains(joints: int, place: str) -> None:
 
 @needs_shared
 @pytest.mark.parametrize("file", sorted((SHARED / "targets").glob("*.npz")), ids=lambda file: file.stem)
-def test_stored_targets(file: Path) -> None:
+def test_stored_targets_are_reached(file: Path) -> None:
     described = ROBOTS[file.stem]
     urdf = SHARED / "robots" / f"{file.stem}.urdf"
     robot = bik.Robot.from_urdf(urdf, base=described["base"], tip=described["tip"])

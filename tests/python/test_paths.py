@@ -29,7 +29,7 @@ def assert_velocity_is_the_derivative(path: bik.Path, times: Array) -> None:
     np.testing.assert_allclose(path.velocity(times), difference, rtol=0, atol=1e-7)
 
 
-def test_circle() -> None:
+def test_circle_follows_its_equation() -> None:
     path = bik.paths.circle(CENTER, 0.5, DURATION, a=A, b=B)
     angle = 2 * np.pi * TIMES / DURATION
     assert_passes_through(path, TIMES, in_plane(0.25 * np.cos(angle), 0.25 * np.sin(angle)))
@@ -39,7 +39,7 @@ def test_circle() -> None:
 
 
 @pytest.mark.parametrize(("k", "turns"), [(2, 1.0), (3, 0.5), (4, 1.0), (5, 0.5)])
-def test_rose(k: int, turns: float) -> None:
+def test_rose_follows_its_equation(k: int, turns: float) -> None:
     path = bik.paths.rose(CENTER, DURATION, radius=0.2, k=k, a=A, b=B)
     angle = 2 * np.pi * turns * TIMES / DURATION  # an odd rose is complete after half a turn
     distance = 0.2 * np.cos(k * angle)
@@ -47,7 +47,7 @@ def test_rose(k: int, turns: float) -> None:
     assert_velocity_is_the_derivative(path, TIMES[1:-1])
 
 
-def test_hypotrochoid() -> None:
+def test_hypotrochoid_follows_its_equation() -> None:
     path = bik.paths.hypotrochoid(CENTER, DURATION, outer_radius=0.5, inner_radius=0.3, distance=0.4, a=A, b=B)
     turn = 6 * np.pi * TIMES / DURATION  # closes after lcm(0.3, 0.5) / 0.5 = 3 rounds
     ratio = 0.2 / 0.3
@@ -57,7 +57,7 @@ def test_hypotrochoid() -> None:
     assert_velocity_is_the_derivative(path, TIMES[1:-1])
 
 
-def test_letter_m() -> None:
+def test_letter_m_passes_through_its_corners() -> None:
     path = bik.paths.letter_m(CENTER, DURATION, width=0.4, height=0.6, a=A, b=B)
     corners = path.position(np.linspace(0.0, DURATION, 5))
     u, v = ((corners - CENTER) @ axis for axis in (A, B))
@@ -67,7 +67,7 @@ def test_letter_m() -> None:
     assert v[2] < v[1]
 
 
-def test_pentagram() -> None:
+def test_pentagram_passes_through_its_points() -> None:
     path = bik.paths.pentagram(CENTER, DURATION, radius=0.3, a=A, b=B)
     angle = np.pi / 2 + np.arange(6) * 4 * np.pi / 5
     points = path.position(np.linspace(0.0, DURATION, 6))
@@ -91,7 +91,7 @@ def test_times_outside_are_clamped() -> None:
     np.testing.assert_array_equal(path.position([-5.0, 9.0]), [[0, 0, 0], [1, 0, 0]])
 
 
-def test_numbers_and_arrays_of_time() -> None:
+def test_a_path_takes_one_time_or_many() -> None:
     path = bik.paths.circle(CENTER, 0.5, DURATION).with_orientation(np.eye(3))
     for method, shape in ((path.position, (3,)), (path.velocity, (3,)), (path.pose, (4, 4))):
         single, several = method(1.0), method([1.0, 2.0])
@@ -100,7 +100,7 @@ def test_numbers_and_arrays_of_time() -> None:
         assert not several.flags.writeable
 
 
-def test_samples_of_positions() -> None:
+def test_samples_are_joined_by_straight_lines() -> None:
     time, points = [0.0, 1.0, 3.0], np.array([[0, 0, 0], [1, 2, 3], [1, 2, 5]])
     path = bik.paths.from_samples(time, points)
     np.testing.assert_allclose(

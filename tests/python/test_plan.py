@@ -63,7 +63,7 @@ def test_elbows_are_bent_as_asked() -> None:
     assert q[0, 1] < 0.0 < q[-1, 1]
 
 
-def test_configurations_are_kept() -> None:
+def test_given_end_configurations_are_kept() -> None:
     q = [0.1, 0.2, 0.3]
     plan = bik.plan_point_to_point(ARM, start_q=q, end=END, method="tpbso", limits=LIMITS, stop=QUICK)
     np.testing.assert_array_equal(plan.trajectory.q[0], q)
@@ -88,7 +88,7 @@ def test_a_path_is_followed_within_the_accuracy() -> None:
     assert (value <= highest).all()
 
 
-def test_what_no_plan_keeps_is_named() -> None:
+def test_violations_of_the_best_plan_are_named() -> None:
     plan = bik.plan_along_path(  # two links leave no choice of how to get past the point between
         bik.Robot.planar([1.0, 1.0]),
         [[1.0, 1.0, 0.0], [1.5, 1.0, 0.0], [0.5, 1.0, 0.0]],
@@ -214,7 +214,7 @@ def run(*arguments: str) -> Result:
 QUICKLY = ("--velocity-limit", "3.14", "--acceleration-limit", "6.28", "--max-evaluations", "3000", "--method", "tpbso")
 
 
-def test_command_line_from_end_to_end(tmp_path: Path) -> None:
+def test_the_command_plans_from_point_to_point(tmp_path: Path) -> None:
     result = run("point-to-point", "planar5", "--start", "3,0,0", "--end", "2,2,0", *QUICKLY, "--out", str(tmp_path))
     assert result.exit_code == 0, result.output
     assert {file.name for file in tmp_path.iterdir()} == {
@@ -226,7 +226,7 @@ def test_command_line_from_end_to_end(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "summary.json").read_text())["success"] is True
 
 
-def test_command_line_round_an_obstacle_with_an_animation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_command_animates_a_plan_around_an_obstacle(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_plan_figure, "_FRAMES_A_SECOND", 2)
     monkeypatch.setattr(_plan_figure, "_PAUSE", 0)
     ends = ("--start-q", "0,0,0,0,0", "--end-q", "0.1,0,0,0,0")
@@ -239,7 +239,7 @@ def test_command_line_round_an_obstacle_with_an_animation(tmp_path: Path, monkey
     assert "--animation writes a file" in run("point-to-point", "planar5", *ends, "--animation").stderr
 
 
-def test_command_line_along_a_path() -> None:
+def test_the_command_plans_along_a_path() -> None:
     result = run("along-path", "planar5", "--curve", "circle", *QUICKLY, "--json")
     summary = json.loads(result.stdout)
     assert result.exit_code == (0 if summary["success"] else 1)
@@ -260,7 +260,7 @@ def test_command_line_along_a_path() -> None:
         (["along-path", "planar5"], "give one of --path FILE and --curve with one of circle"),
     ],
 )
-def test_command_line_tells_mistakes(arguments: list[str], message: str) -> None:
+def test_the_command_names_mistakes(arguments: list[str], message: str) -> None:
     result = run(*arguments, *QUICKLY)
     assert result.exit_code == 2
     assert message in result.stderr

@@ -23,7 +23,7 @@ def legend(axes: Axes) -> list[str]:
     return [text.get_text() for text in axes.get_legend().get_texts()]
 
 
-def test_a_tracked_path(tracked: bik.TrackResult) -> None:
+def test_a_tracked_path_is_drawn_with_labels(tracked: bik.TrackResult) -> None:
     figure = tracked.plot()
     space, error, positions, evaluations, *velocities = figure.get_axes()
     assert [space.get_xlabel(), space.get_ylabel(), space.get_zlabel()] == ["x [m]", "y [m]", "z [m]"]
@@ -55,14 +55,14 @@ def test_a_trajectory_of_straight_lines_has_no_acceleration(tracked: bik.TrackRe
     assert labels(tracked.trajectory.plot()) == ["position [rad, m]", "velocity [rad/s, m/s]"]
 
 
-def test_a_curved_trajectory() -> None:
+def test_accelerations_of_a_curved_trajectory_are_drawn() -> None:
     q = np.array([[0.0, 1.0], [1.0, 0.0]])
     figure = bik.Trajectory.from_samples([0.0, 1.0], q, qd=np.zeros((2, 2)), joint_names=["a", "b"]).plot()
     assert labels(figure)[2] == "acceleration [rad/s², m/s²]"
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["a", "b"]
 
 
-def test_a_robot() -> None:
+def test_a_robot_is_drawn_up_to_its_tip() -> None:
     robot = bik.Robot.planar([1.0, 1.0])
     (axes,) = bik.plot.robot(robot, [0.0, 0.0]).get_axes()
     assert axes.get_title() == f"{robot.name}, 2 joints"

@@ -12,7 +12,7 @@ E = (0.5, 0.5, 0.0)
 QUADRANT = ((0.0, 0.0), (np.inf, np.inf))
 
 
-def test_the_best_posture_of_a_planar_arm() -> None:
+def test_the_best_posture_of_a_planar_arm_is_found() -> None:
     tip = bik.planar_posture(ARM, E)
     assert tip.success
     assert np.pi * tip.index == pytest.approx(1.720667, rel=1e-5)
@@ -24,7 +24,7 @@ def test_the_best_posture_of_a_planar_arm() -> None:
     assert whole.history.shape == (0,)
 
 
-def test_the_swarm_as_published() -> None:
+def test_the_published_swarm_improves_over_generations() -> None:
     found = bik.planar_posture(ARM, E, swarm=bik.CircleSwarm(), seed=3)
     assert found.history.shape == (10,)
     assert (np.diff(found.history) >= 0.0).all()

@@ -26,7 +26,7 @@ def velocity(t: float) -> np.ndarray:
 PATH = bik.paths.from_function(lambda t: ARM.fk(wanted(t))[:3, 3], 2.0)
 
 
-def test_the_gain_takes_errors_back_and_runge_kutta_makes_none() -> None:
+def test_the_gain_reduces_errors_and_runge_kutta_makes_none() -> None:
     def worst(**options: object) -> float:
         rule = bik.WeightedPseudoInverse(**options)
         return bik.track(ARM, PATH, wanted(0.0), dt=0.01, solver=rule, limits=OPEN).position_error.max()
@@ -72,7 +72,7 @@ def test_accelerations_are_kept() -> None:
     assert result.position_error[150:].max() < 1e-6
 
 
-def test_goals_go_with_it() -> None:
+def test_goals_act_in_the_null_space() -> None:
     middle, half = (ARM.lower + ARM.upper) / 2, (ARM.upper - ARM.lower) / 2
 
     def off_centre(**goals: object) -> float:
@@ -84,7 +84,7 @@ def test_goals_go_with_it() -> None:
     assert off_centre(goals=bik.goals.Centring(weight=1 / 3)) < 0.97 * off_centre()
 
 
-def test_it_is_a_value() -> None:
+def test_the_rule_is_a_value() -> None:
     posture = bik.Trajectory.from_samples([0.0, 1.0], [[0.0] * 3, [0.1] * 3])
     rule = bik.WeightedPseudoInverse(
         gain=10.0, integrator="rk4", weights=[1.0, 2.0, 3.0], posture=posture, damping=1e-6

@@ -115,7 +115,7 @@ def test_other_number_types_are_converted() -> None:
     np.testing.assert_array_equal(robot.fk(np.ones(7, dtype=np.int8)), robot.fk(np.ones(7)))
 
 
-def test_batches_in_any_memory_order() -> None:
+def test_batches_may_have_any_memory_order() -> None:
     robot = bik.Robot.named("iiwa14")
     q = robot.random_configurations(20)
     expected = robot.fk(q)

@@ -40,7 +40,7 @@ def mujoco() -> None:
 
 
 @pytest.mark.usefixtures("mujoco")
-def test_the_simulated_arm_is_the_robot_with_servos_that_give_way() -> None:
+def test_servos_of_the_simulated_robot_yield_under_gravity() -> None:
     plant = MujocoPlant(IIWA, gravity=0.0)
     plant.reset(ON_CIRCLE)
     np.testing.assert_allclose(plant.q, ON_CIRCLE, atol=1e-6)
@@ -52,7 +52,7 @@ def test_the_simulated_arm_is_the_robot_with_servos_that_give_way() -> None:
 
 
 @pytest.mark.usefixtures("mujoco")
-def test_descriptions_without_meshes_and_masses_will_do() -> None:
+def test_a_robot_needs_no_meshes_or_masses() -> None:
     plant = MujocoPlant.from_urdf(SLIDER, gravity=0.0)
     plant.reset([0.3, -0.5])
     np.testing.assert_allclose(plant.tip, plant.robot.fk([0.3, -0.5])[:3, 3], atol=1e-6)
@@ -63,7 +63,7 @@ def test_descriptions_without_meshes_and_masses_will_do() -> None:
 
 
 @pytest.mark.usefixtures("mujoco")
-def test_without_a_model_a_wrongly_built_arm_follows_to_under_a_millimetre() -> None:
+def test_broyden_bas_follows_to_a_millimetre_without_a_model() -> None:
     built = IIWA.with_errors(length=0.02, angle=np.radians(2.0), seed=1)
     plant = MujocoPlant(built, noise=5e-5)
     resolved = bik.track(IIWA, CIRCLE, ON_CIRCLE, dt=0.2)

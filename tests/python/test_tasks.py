@@ -114,7 +114,7 @@ def test_the_nearest_solution_is_nearest() -> None:
     np.testing.assert_array_equal(batch.q[0], nearest.q)
 
 
-def test_goals_are_served() -> None:
+def test_goals_change_the_solution_as_asked() -> None:
     posture = Q + 0.2
     plain = bik.solve(IIWA, POSE, start=Q)
     near = bik.solve(IIWA, POSE, start=Q, goals=goals.Posture(posture))
@@ -201,11 +201,11 @@ def solve(**options: object) -> bik.Solution:
             Invalid,
             "task Pose needs a target pose (4, 4), got a position (3,)",
         ),
-        (lambda: solve(task="Pose"), Invalid, "task must be of beetle_ik.tasks, got 'Pose'"),
+        (lambda: solve(task="Pose"), Invalid, "task must be one of beetle_ik.tasks, got 'Pose'"),
         (
             lambda: solve(task=tasks.Pose),
             Invalid,
-            "task must be of beetle_ik.tasks, got the class Pose itself: did you mean Pose()?",
+            "task must be one of beetle_ik.tasks, got the class Pose itself: did you mean Pose()?",
         ),
         (
             lambda: tasks.Pose(weights=[1, 1, 1]),
@@ -272,9 +272,9 @@ def solve(**options: object) -> bik.Solution:
         (
             lambda: solve(goals="Centring"),
             Invalid,
-            "goals must be of beetle_ik.goals, one or several, got 'Centring'",
+            "goals must be one or several of beetle_ik.goals, got 'Centring'",
         ),
-        (lambda: solve(goals=3), Invalid, "goals must be of beetle_ik.goals, one or several, got 3"),
+        (lambda: solve(goals=3), Invalid, "goals must be one or several of beetle_ik.goals, got 3"),
         (lambda: solve(prefer="near"), Invalid, "prefer must be one of 'any', 'nearest', 'best', got 'near'"),
         (lambda: solve(prefer="nearest"), Invalid, 'prefer="nearest" needs a start: nearest to what?'),
         (

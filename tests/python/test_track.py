@@ -30,7 +30,7 @@ def follow_paper(**options: object) -> bik.TrackResult:
     ],
     ids=["star", "chain", "chain, 1 mm", "greedy", "default"],
 )
-def test_the_circle_of_the_paper(
+def test_the_papers_circle_is_followed_within_its_band(
     solver: object, band: float, steady: tuple[float, float], most_evaluations: int
 ) -> None:
     for seed in range(4):
@@ -49,7 +49,7 @@ def followed() -> bik.TrackResult:
     return follow_paper(solver=bik.BAS(variant="chain"), position_tolerance=1e-4)
 
 
-def test_shapes(followed: bik.TrackResult) -> None:
+def test_columns_have_the_documented_shapes(followed: bik.TrackResult) -> None:
     k, n = 151, 7
     for name, shape in {
         "time": (k,),
@@ -93,7 +93,7 @@ def test_statuses_follow_from_errors(followed: bik.TrackResult) -> None:
     assert followed.status is bik.Status.SOLVED
 
 
-def test_sums(followed: bik.TrackResult) -> None:
+def test_totals_are_those_of_the_steps(followed: bik.TrackResult) -> None:
     assert followed.evaluations == followed.step_evaluations.sum()
     assert (followed.step_evaluations[0], followed.step_iterations[0]) == (1, 0)
     margin = (followed.velocity_limit[1:] - np.abs(followed.qd[1:])).min()
@@ -154,7 +154,7 @@ def test_a_start_outside_its_limits_is_refused() -> None:
     )
 
 
-def test_poses_along_a_path() -> None:
+def test_poses_along_a_path_are_followed() -> None:
     robot = bik.Robot.named("panda")
     start = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.8, 0.8])
     first = robot.fk(start)
@@ -218,6 +218,6 @@ def test_the_same_seed_gives_the_same_bits_in_every_process(solver: object) -> N
     assert elsewhere.stdout.strip() == here
 
 
-def test_another_seed_takes_another_way() -> None:
+def test_another_seed_gives_another_motion() -> None:
     first, second = (follow_paper(solver=bik.BAS(), seed=seed).q for seed in (1, 2))
     assert not np.array_equal(first, second)

@@ -77,7 +77,9 @@ def test_wrong_input_is_named() -> None:
     assert tracker.time == 0.0
     with pytest.raises(bik.LimitError, match="q: joint 'joint_1' at 9 is outside its limits"):
         tracker.reset([9, 0, 0, 0, 0, 0, 0])
-    with pytest.raises(bik.UnsupportedLimit, match="Tracker cannot honour callable velocity limits: it has no end"):
+    with pytest.raises(
+        bik.UnsupportedLimit, match="Tracker cannot honour callable velocity limits: it has no end time"
+    ):
         bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, limits=bik.Limits(velocity=lambda t: 1.0 + t))
     with pytest.raises(bik.UnsupportedLimit, match="track cannot honour jerk limits"):
         bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, limits=bik.Limits(jerk=1.0))

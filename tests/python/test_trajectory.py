@@ -22,7 +22,7 @@ def random_pieces(degree: int) -> np.ndarray:
     return coefficients
 
 
-def test_straight_lines_through_samples() -> None:
+def test_samples_without_velocities_are_joined_linearly() -> None:
     q = motion(TIME)[0]
     trajectory = bik.Trajectory.from_samples(TIME, q)
     assert (trajectory.duration, trajectory.joint_names) == (2.0, ["q1", "q2"])
@@ -36,7 +36,7 @@ def test_straight_lines_through_samples() -> None:
 
 
 @pytest.mark.parametrize(("derivatives", "degree"), [(2, 3), (3, 5)])
-def test_pieces_keep_the_derivatives_that_were_given(derivatives: int, degree: int) -> None:
+def test_segments_keep_the_given_derivatives(derivatives: int, degree: int) -> None:
     given = motion(TIME)[:derivatives]
     trajectory = bik.Trajectory.from_samples(TIME, *given[:1], **dict(zip(("qd", "qdd"), given[1:], strict=False)))
     assert trajectory.coefficients.shape == (3, 2, degree + 1)
@@ -101,7 +101,7 @@ def test_a_jump_is_no_motion() -> None:
         bik.Trajectory(TIME, coefficients)
 
 
-def test_numbers_and_arrays_of_time() -> None:
+def test_a_trajectory_takes_one_time_or_many() -> None:
     trajectory = bik.Trajectory.from_samples(TIME, motion(TIME)[0])
     for single, several in zip(trajectory.at(0.7), trajectory.at([0.7, 0.9]), strict=True):
         assert (single.shape, several.shape) == ((2,), (2, 2))

@@ -73,7 +73,7 @@ def test_every_kind_of_picture_is_understood() -> None:
 def test_a_picture_of_nothing_says_so(image: np.ndarray) -> None:
     found = vision.locate_arm(image, ARM, Q)
     assert (found.success, found.status) == (False, vision.Sight.NOTHING_SEEN)
-    assert found.message == "there is nothing in the picture that stands out from it"
+    assert found.message == "no arm stands out from the background: increase the contrast, or check the image"
     assert found.contour.shape == (0, 2)
 
 
@@ -82,7 +82,7 @@ def test_an_arm_over_the_edge_is_told() -> None:
     image = vision.render(ARM, [0.0, 0.2, 0.1], camera=camera)
     found = vision.locate_arm(image, ARM, [0.0, 0.2, 0.1], camera=camera)
     assert found.status is vision.Sight.CUT_OFF
-    assert found.message.startswith("the arm reaches over the edge of the picture: move the camera back")
+    assert found.message.startswith("the arm extends beyond the edge of the image: move the camera back")
 
 
 def test_another_arm_is_not_taken_for_this_one() -> None:
@@ -96,7 +96,10 @@ def test_another_arm_is_not_taken_for_this_one() -> None:
         (lambda: vision.locate_arm(np.zeros(5), ARM, Q), r"image: expected shape \(rows, columns\)"),
         (lambda: vision.locate_arm(np.full((9, 9), np.nan), ARM, Q), "image must be finite"),
         (lambda: vision.locate_arm(picture(), ARM, Q[:2]), "expected 3 joints, got 2"),
-        (lambda: vision.locate_arm(picture(), bik.Robot.named("ur5e"), np.zeros(6)), "robot 'ur5e' is no planar arm"),
+        (
+            lambda: vision.locate_arm(picture(), bik.Robot.named("ur5e"), np.zeros(6)),
+            "robot 'ur5e' is not a planar arm",
+        ),
         (
             lambda: vision.locate_arm(picture(), ARM, Q, method="eye"),
             "method must be one of 'threshold', 'snake', got 'eye'",

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::so3::{norm, rotation_between};
-use ikcore::path::{Circle, Path, Plane, Polyline, Reference};
+use ikcore::path::{Circle, Path, Plane, Polyline, Waypoints};
 use ikcore::planning::{AlongPathOptions, Elbow, Plan, TipPath, plan_along_path};
 use ikcore::rng;
 use ikcore::robot::Robot;
@@ -35,7 +35,7 @@ fn trefoil(u: f64) -> [f64; 3] {
 
 fn tip_path(curve: fn(f64) -> [f64; 3]) -> TipPath {
     let points = (0..=INTERVALS).map(|i| curve(i as f64 / INTERVALS as f64)).collect();
-    TipPath::through(&Reference::new(1.0, points, None).unwrap()).unwrap()
+    TipPath::through(&Waypoints::new(points, None).unwrap()).unwrap()
 }
 
 fn plan(tip_path: &TipPath, options: AlongPathOptions) -> Plan {
@@ -106,7 +106,7 @@ fn few() -> Option<Stop> {
 fn corners_of_a_path_are_reached() {
     let robot = Robot::planar(&[1.0; 3]).unwrap();
     let points = vec![[1.0, 1.0, 0.0], [1.31, 1.0, 0.0], [1.31, 1.27, 0.0], [1.05, 1.3, 0.0]];
-    let tip_path = TipPath::through(&Reference::new(1.0, points.clone(), None).unwrap()).unwrap();
+    let tip_path = TipPath::through(&Waypoints::new(points.clone(), None).unwrap()).unwrap();
     let plan = plan(&tip_path, AlongPathOptions { stop: few(), ..Default::default() });
     assert_eq!(plan.status, Status::Solved, "{}", plan.message());
     let tips: Vec<[f64; 3]> = instants(&plan, 20_000).map(|q| robot.tip_position(&q)).collect();
@@ -137,7 +137,7 @@ fn rotations_are_kept_between_points_too() {
 fn what_cannot_be_kept_is_told() {
     // The tip of two links that reach 1 m passes (0, 0.99) and (0.99, 0), but not (0.99, 0.99) between.
     let robot = Robot::planar(&[0.5, 0.5]).unwrap();
-    let points = Reference::new(1.0, vec![[0.0, 0.99, 0.0], [0.99, 0.99, 0.0], [0.99, 0.0, 0.0]], None).unwrap();
+    let points = Waypoints::new(vec![[0.0, 0.99, 0.0], [0.99, 0.99, 0.0], [0.99, 0.0, 0.0]], None).unwrap();
     let limits = Limits::of(&robot).replace(Field::Acceleration, vec![Profile::Constant(5.0)]).unwrap();
     let options = AlongPathOptions { limits: Some(limits), ..Default::default() };
     let tip_path = TipPath::through(&points).unwrap();
@@ -154,7 +154,7 @@ fn what_cannot_be_kept_is_told() {
 #[test]
 fn courses_know_their_corners_and_places() {
     let square = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-    let tip_path = TipPath::through(&Reference::new(1.0, square.clone(), None).unwrap()).unwrap();
+    let tip_path = TipPath::through(&Waypoints::new(square.clone(), None).unwrap()).unwrap();
     let corners: Vec<f64> = tip_path.corners().collect();
     assert!(corners.len() == 2 && (corners[0] - 1.0 / 3.0).abs() < 1e-15 && (corners[1] - 2.0 / 3.0).abs() < 1e-15);
     assert_eq!(tip_path.place(corners[0]), "point 1 of the path");
@@ -173,14 +173,14 @@ fn courses_know_their_corners_and_places() {
 }
 
 #[test]
-fn noise_of_measured_points_is_no_corner_and_a_sampled_corner_is_one() {
+fn sampled_corners_are_told_from_measurement_noise() {
     let mut rng = rng::stream(4, 0);
     let noisy = |i: usize| {
         let angle = 3.0 * i as f64 / 4000.0;
         let radius = 0.3 + rng.uniform_in(-1e-4, 1e-4);
         [radius * angle.cos(), radius * angle.sin(), 0.0]
     };
-    let points = Reference::new(1.0, (0..=4000).map(noisy).collect(), None).unwrap();
+    let points = Waypoints::new((0..=4000).map(noisy).collect(), None).unwrap();
     assert_eq!(TipPath::through(&points).unwrap().corners().count(), 0);
     // A corner between two looks.
     let times = TipPath::times(1.0, &[]);
@@ -192,11 +192,11 @@ fn noise_of_measured_points_is_no_corner_and_a_sampled_corner_is_one() {
 fn course_of_circle(points: usize) -> TipPath {
     let angle = |i: usize| TAU * i as f64 / (points - 1) as f64;
     let points = (0..points).map(|i| [angle(i).cos(), angle(i).sin(), 0.0]).collect();
-    TipPath::through(&Reference::new(1.0, points, None).unwrap()).unwrap()
+    TipPath::through(&Waypoints::new(points, None).unwrap()).unwrap()
 }
 
 #[test]
-fn a_pause_of_a_path_does_not_matter_and_a_path_of_one_place_is_none() {
+fn a_pause_is_ignored_and_a_path_of_one_point_refused() {
     let times = TipPath::times(1.0, &[]);
     let paused: Vec<[f64; 3]> = times.iter().map(|t| [t.clamp(0.3, 0.6), 0.0, 0.0]).collect();
     let tip_path = TipPath::sampled(times.clone(), paused, None).unwrap();

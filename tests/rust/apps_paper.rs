@@ -133,7 +133,7 @@ fn no_other_rate_gives_these_counts() {
 }
 
 #[test]
-fn others_need_fewer_iterations() {
+fn other_solvers_need_fewer_iterations_than_apps() {
     // Held inside the limits all the way, only APPS makes the last motion, on which the fourth joint passes one.
     let no_limits = |_: usize, joint: &mut Joint| (joint.lower, joint.upper) = (f64::NEG_INFINITY, f64::INFINITY);
     let free = kuka().with_limits(no_limits).unwrap();
@@ -191,7 +191,7 @@ fn joints_are_brought_back_by_whole_turns() {
 }
 
 #[test]
-fn wrapping_takes_the_fewest_turns_and_clips_what_does_not_repeat() {
+fn wrapping_takes_fewest_turns_and_clips_other_joints() {
     let bounds = Bounds::new(&[-1.0, -1.0, -9.0, 2.0, -1.0], &[1.0, 1.0, 9.0, 3.0, 1.0]).unwrap();
     let periods = [Some(TAU), Some(TAU), Some(TAU), Some(TAU), None];
     let mut x = [3.0 * TAU + 0.5, -2.0 * TAU - 0.5, 9.5, 4.0, 1.5];

@@ -12,7 +12,8 @@ use ikcore::nalgebra::Matrix4;
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{
-    Algorithm, AnySolver, Bas, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop, Unattended, Variant,
+    Algorithm, AnySolver, Bas, BasVariant, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop,
+    Unattended,
 };
 use ikcore::task::Target;
 
@@ -129,7 +130,7 @@ fn side_by_side_a_target_gets_the_bits_that_it_gets_alone() {
 /// More targets than a thread takes at once, wrong ones on both sides of where one group ends and the next begins, and one that takes
 /// its whole budget when all others have ended.
 #[test]
-fn groups_do_not_show() {
+fn lane_groups_do_not_change_results() {
     let robot = robot("panda");
     let mut targets = poses(&robot, 600);
     for wrong in [255, 256, 512] {
@@ -168,7 +169,7 @@ fn times_of_targets_add_up() {
 #[test]
 fn items_draw_from_streams_of_their_own() {
     let robot = robot("iiwa14");
-    let solver = AnySolver::Single(Algorithm::from(Bas::of(Variant::Greedy)));
+    let solver = AnySolver::Single(Algorithm::from(Bas::of(BasVariant::Greedy)));
     let each = SolveOptions { solver, start: Some(vec![0.3; 7]), ..SolveOptions::default() };
     let options = BatchOptions { each, ..on_threads(2) };
     let [first, second] = [[0.4, 0.3, 0.9], [0.5, 0.1, 0.8]];

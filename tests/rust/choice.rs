@@ -5,12 +5,13 @@ use std::f64::consts::{PI, TAU};
 use crate::common::{bits, configurations, message, pose_at, robot};
 use ikcore::ik::{AllOptions, Prefer, Solution, SolveOptions, solve, solve_all};
 use ikcore::limits::LimitAt;
+use ikcore::load::{Dh, DhTable};
 use ikcore::manipulability::{self, Motion};
 use ikcore::math::pose;
 use ikcore::path::{Path, Reference};
-use ikcore::robot::{Dh, DhTable, JointKind, Robot};
+use ikcore::robot::{JointKind, Robot};
 use ikcore::solver::{Status, Stop, Unattended};
-use ikcore::task::{Goal, Kind, Target};
+use ikcore::task::{Goal, Target, TaskKind};
 use ikcore::tracking::{TrackOptions, track};
 
 fn solved(robot: &Robot, target: &Target, options: &SolveOptions) -> Solution {
@@ -58,7 +59,7 @@ fn whole_turns_inside_the_limits_are_counted() {
 }
 
 #[test]
-fn a_solution_known_to_be_near_is_not_passed_by_for_one_far_away() {
+fn nearest_finds_a_solution_known_to_be_near() {
     for name in ["ur3e", "ur5e", "ur10"] {
         let robot = robot(name);
         for (i, start) in configurations(&robot, 150).iter().enumerate() {
@@ -72,7 +73,7 @@ fn a_solution_known_to_be_near_is_not_passed_by_for_one_far_away() {
 }
 
 #[test]
-fn on_a_redundant_arm_the_nearest_is_a_minimum_along_the_self_motion() {
+fn nearest_is_a_minimum_along_the_self_motion() {
     let robot = robot("iiwa14");
     for q in configurations(&robot, 10) {
         let inside: Vec<f64> = q.iter().map(|angle| 0.8 * angle).collect();
@@ -154,7 +155,7 @@ fn all_solutions_of_a_six_joint_arm_are_found() {
 }
 
 #[test]
-fn the_limit_cuts_the_farthest_and_no_solution_is_told_with_the_best_miss() {
+fn limit_keeps_the_nearest_and_a_miss_is_returned() {
     let robot = robot("iiwa14");
     let q = [0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1];
     let each = SolveOptions { start: Some(q.to_vec()), ..SolveOptions::default() };
@@ -297,12 +298,12 @@ fn a_path_may_ask_for_less_than_it_says() {
     let plane = ikcore::path::Plane::xy([0.4, 0.2, 0.7]).unwrap();
     let circle = ikcore::path::Circle::new(plane, 0.1, 5.0).unwrap();
     let path = Path::new(circle).with_orientation(tip.rotation.into_inner()).unwrap();
-    for kind in [Kind::Position, Kind::Pointing { axis: [0.0, 0.0, 1.0] }, Kind::Pose] {
+    for kind in [TaskKind::Position, TaskKind::Pointing { axis: [0.0, 0.0, 1.0] }, TaskKind::Pose] {
         let goals = vec![Goal::Centring { weight: 1.0 }];
         let options = TrackOptions { task: Some(kind.into()), goals, ..TrackOptions::default() };
         let record = track(&robot, &path.sample(0.01).unwrap(), None, &options, &mut Unattended).unwrap();
         assert_eq!(record.status, Status::Solved, "{kind:?}: {}", record.message());
-        assert_eq!(record.rotation_error[5].is_nan(), kind == Kind::Position, "{kind:?}");
+        assert_eq!(record.rotation_error[5].is_nan(), kind == TaskKind::Position, "{kind:?}");
     }
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::common::{StopAt, message, robot};
-use ikcore::posture::{CircleSwarm, Measure, Posture, Rectangle, SearchOptions, best_posture};
+use ikcore::posture::{CircleSwarm, Measure, Posture, PostureOptions, Rectangle, best_posture};
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
 
@@ -17,7 +17,7 @@ const OPTIMA: [(f64, [f64; 2], [f64; 2]); 3] = [
     (1.0, [4.403020, 2.720699], [7.503629, 5.584065]),
 ];
 
-fn search(arm: &Robot, options: SearchOptions) -> Posture {
+fn search(arm: &Robot, options: PostureOptions) -> Posture {
     best_posture(arm, &E, &options, &mut Unattended).unwrap()
 }
 
@@ -37,10 +37,10 @@ fn cases() -> impl Iterator<Item = (f64, Measure, Option<Rectangle>, f64)> {
 }
 
 #[test]
-fn our_own_search_finds_the_optima_anywhere_and_in_the_first_quadrant() {
+fn the_default_search_finds_the_optima_of_both_regions() {
     for (length, measure, region, optimum) in cases() {
         let arm = Robot::planar(&[length; 3]).unwrap();
-        let found = search(&arm, SearchOptions { measure, region, ..SearchOptions::default() });
+        let found = search(&arm, PostureOptions { measure, region, ..PostureOptions::default() });
         assert_eq!(found.status, Status::Solved);
         assert!(found.error.position < 1e-12);
         let gap = 1.0 - index(&found, measure) / optimum;
@@ -52,7 +52,7 @@ fn our_own_search_finds_the_optima_anywhere_and_in_the_first_quadrant() {
 fn gaps(swarm: CircleSwarm, seeds: u64, region: Option<Rectangle>, measure: Measure, optimum: f64) -> Vec<f64> {
     let arm = Robot::planar(&[0.5; 3]).unwrap();
     let gap = |seed| {
-        let found = search(&arm, SearchOptions { measure, region, swarm: Some(swarm), seed });
+        let found = search(&arm, PostureOptions { measure, region, swarm: Some(swarm), seed });
         assert!(found.history.is_sorted(), "{:?}", found.history);
         assert_eq!((found.history.len(), found.history.last()), (swarm.generations, Some(&found.index)));
         1.0 - index(&found, measure) / optimum
@@ -80,19 +80,19 @@ fn the_swarm_as_published_comes_near_and_a_larger_one_arrives() {
 #[test]
 fn longer_arms_are_searched_too() {
     let arm = Robot::planar(&[0.3, 0.3, 0.25, 0.2, 0.2]).unwrap();
-    let own = search(&arm, SearchOptions::default());
+    let own = search(&arm, PostureOptions::default());
     let swarm = CircleSwarm { population: 40, generations: 200, ..CircleSwarm::default() };
-    let published = search(&arm, SearchOptions { swarm: Some(swarm), ..SearchOptions::default() });
+    let published = search(&arm, PostureOptions { swarm: Some(swarm), ..PostureOptions::default() });
     assert!(own.error.position < 1e-12 && published.error.position < 1e-12);
     assert!(published.index < own.index * (1.0 + 1e-6), "{} {}", published.index, own.index);
     assert!(published.index > 0.9 * own.index, "{} {}", published.index, own.index);
 }
 
 #[test]
-fn what_cannot_be_has_a_status() {
+fn impossible_targets_end_in_a_status() {
     let arm = Robot::planar(&[0.2; 3]).unwrap();
     for swarm in [None, Some(CircleSwarm::default())] {
-        let found = search(&arm, SearchOptions { swarm, ..SearchOptions::default() });
+        let found = search(&arm, PostureOptions { swarm, ..PostureOptions::default() });
         assert_eq!(found.status, Status::OutOfReach);
         let says = "no posture: the tip stays 0.1071 m away; move the target nearer";
         assert_eq!(found.message(), says);
@@ -100,7 +100,7 @@ fn what_cannot_be_has_a_status() {
     }
     let narrow = Rectangle { lower: [0.0; 2], upper: [0.01; 2] };
     let arm = Robot::planar(&[0.5; 3]).unwrap();
-    let found = search(&arm, SearchOptions { region: Some(narrow), ..SearchOptions::default() });
+    let found = search(&arm, PostureOptions { region: Some(narrow), ..PostureOptions::default() });
     assert_eq!(found.message(), "no posture found inside the region and the joint limits: widen them");
 }
 
@@ -110,7 +110,7 @@ fn an_interrupted_search_keeps_its_best() {
     let endless = CircleSwarm { population: 7, generations: 1_000_000, ..CircleSwarm::default() };
     let mut evaluations = 0;
     for (swarm, patience, generations) in [(Some(endless), 3, 0), (Some(endless), 20, 2), (None, 2, 0)] {
-        let options = SearchOptions { swarm, ..SearchOptions::default() };
+        let options = PostureOptions { swarm, ..PostureOptions::default() };
         let found = best_posture(&arm, &E, &options, &mut StopAt(patience)).unwrap();
         assert_eq!(found.status, Status::Interrupted);
         assert_eq!(found.message(), "interrupted: run again to finish");
@@ -123,8 +123,8 @@ fn an_interrupted_search_keeps_its_best() {
 
 #[test]
 fn wrong_arms_and_options_are_named() {
-    let says = |robot: &Robot, options: SearchOptions| message(best_posture(robot, &E, &options, &mut Unattended));
-    let standard = SearchOptions::default();
+    let says = |robot: &Robot, options: PostureOptions| message(best_posture(robot, &E, &options, &mut Unattended));
+    let standard = PostureOptions::default();
     assert_eq!(
         says(&Robot::planar(&[0.5; 2]).unwrap(), standard),
         "robot 'planar2': a posture on circles needs at least 3 links, got 2"
@@ -133,7 +133,7 @@ fn wrong_arms_and_options_are_named() {
     assert_eq!(says(&robot("iiwa14"), standard), format!("robot 'iiwa14': {needs}"));
     let swarm = Some(CircleSwarm { c1: 1.5, c2: 1.5, ..CircleSwarm::default() });
     let arm = Robot::planar(&[0.5; 3]).unwrap();
-    assert_eq!(says(&arm, SearchOptions { swarm, ..standard }), "c1 + c2 must be above 4, got 3");
+    assert_eq!(says(&arm, PostureOptions { swarm, ..standard }), "c1 + c2 must be above 4, got 3");
     let above = best_posture(&arm, &[0.5, 0.5, 0.1], &standard, &mut Unattended);
     assert_eq!(message(above), "z of the target must be that of the arm's plane, 0, got 0.1");
 }

@@ -12,9 +12,7 @@ use ikcore::objective::{
 use ikcore::problem::Problem;
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
-use ikcore::solver::{
-    Algorithm, AnySolver, Best, DerivativeFree, Evaluator, Halt, Monitor, Outcome, Status, Stop, Unattended,
-};
+use ikcore::solver::{Algorithm, AnySolver, BestPoint, DerivativeFree, Evaluator, Monitor, Status, Stop, Unattended};
 use ikcore::task::{Target, Tolerance};
 
 /// Evaluations between two looks at monitor and clock, and the largest group handed in at once.
@@ -213,7 +211,7 @@ fn solves_the_valley(solver: &AnySolver) -> bool {
 /// The valley is solved or, by those that cannot promise it, nearly.
 fn check_valley(solver: &AnySolver, run: &Run) {
     if solves_the_valley(solver) {
-        assert_eq!(run.outcome.halt, Halt::Solved, "{solver:?}: {:?}", run.best);
+        assert_eq!(run.status, Status::Solved, "{solver:?}: {:?}", run.best);
     } else {
         assert!(run.best.value < 1e-5, "{solver:?}: {:?}", run.best);
     }
@@ -230,9 +228,10 @@ fn is_free(solver: &AnySolver) -> bool {
 }
 
 struct Run {
-    outcome: Outcome,
+    status: Status,
+    iterations: usize,
     evaluations: usize,
-    best: Best,
+    best: BestPoint,
     seen: Vec<f64>,
     values: Vec<f64>,
 }
@@ -252,9 +251,10 @@ impl Case {
         let mut rng = rng::stream(self.seed, 0);
         let objective: &mut dyn Differentiable = &mut probe;
         let mut evaluator = Evaluator::new(objective, &self.bounds, self.stop, &mut rng, monitor);
-        let outcome = solver.run(&mut evaluator, &self.start);
-        let (evaluations, best) = (evaluator.evaluations(), evaluator.best().clone());
-        let run = Run { outcome, evaluations, best, seen: probe.seen, values: probe.values };
+        let status = solver.run(&mut evaluator, &self.start);
+        let (evaluations, iterations) = (evaluator.evaluations(), evaluator.iterations());
+        let best = evaluator.best().clone();
+        let run = Run { status, iterations, evaluations, best, seen: probe.seen, values: probe.values };
         let what = format!("{} by {solver:?}", self.name);
         run.check_points(self, is_free(solver), &what);
         run.check_best(self, &what);
@@ -275,7 +275,7 @@ impl Run {
 
     /// The best is the lowest finite value seen in the box, at the point where it was seen; without any, the start.
     fn check_best(&self, case: &Case, what: &str) {
-        let Best { x, value, solved } = &self.best;
+        let BestPoint { x, value, solved } = &self.best;
         assert!(case.bounds.contains(x), "{what}: kept {x:?}, which is outside the box");
         let seen = self.seen.chunks_exact(x.len()).zip(&self.values);
         let inside = seen.filter(|(x, value)| case.bounds.contains(x) && value.is_finite());
@@ -284,16 +284,16 @@ impl Run {
         let at = self.values.iter().position(|v| v == value).unwrap_or(0);
         let seen = &self.seen[at * x.len()..(at + 1) * x.len()];
         assert_eq!(bits(x), bits(seen), "{what}: the best value belongs to another point");
-        assert_eq!(*solved, self.outcome.halt == Halt::Solved, "{what}");
+        assert_eq!(*solved, self.status == Status::Solved, "{what}");
     }
 
     fn check_counts(&self, case: &Case, what: &str) {
-        let Outcome { halt, iterations } = self.outcome;
+        let Run { status, iterations, .. } = *self;
         let made = self.values.len();
         assert!(made <= case.stop.max_evaluations, "{what}: {made} evaluations");
         assert!(iterations <= case.stop.max_iterations, "{what}: {iterations} iterations");
         assert_eq!(made, self.evaluations, "{what}: evaluations made and reported");
-        if halt == Halt::Budget {
+        if status == Status::BudgetSpent {
             let spent = made == case.stop.max_evaluations || iterations == case.stop.max_iterations;
             assert!(spent, "{what}: gave up after {made} evaluations and {iterations} iterations");
         }
@@ -321,8 +321,8 @@ fn budgets_are_kept_to_the_last_evaluation() {
             for max_evaluations in [1, 2, 3, 4, 5, 7, 8, 9, 50, 151, 1000] {
                 let run = case().with_stop(Stop { max_evaluations, ..Stop::default() }).run(&solver);
                 let gave_up_before = run.evaluations < max_evaluations;
-                let may = matches!(run.outcome.halt, Halt::Stalled | Halt::Solved);
-                assert!(!gave_up_before || may, "{solver:?}: {:?} after {}", run.outcome, run.evaluations);
+                let may = matches!(run.status, Status::Stalled | Status::Solved);
+                assert!(!gave_up_before || may, "{solver:?}: {:?} after {}", run.status, run.evaluations);
             }
         }
     }
@@ -333,10 +333,13 @@ fn iterations_are_limited() {
     for solver in solvers() {
         for max_iterations in [1, 2, 3] {
             let run = bottomless().with_stop(Stop { max_iterations, ..Stop::default() }).run(&solver);
-            let Outcome { halt, iterations } = run.outcome;
+            let Run { status, iterations, .. } = run;
             // The floor leaves a quadratic: Newton-Raphson is at its end after two.
-            let ended_before = halt == Halt::Stalled && iterations < max_iterations;
-            assert!(ended_before || (halt, iterations) == (Halt::Budget, max_iterations), "{solver:?}: {halt:?}");
+            let ended_before = status == Status::Stalled && iterations < max_iterations;
+            assert!(
+                ended_before || (status, iterations) == (Status::BudgetSpent, max_iterations),
+                "{solver:?}: {status:?}"
+            );
         }
     }
 }
@@ -345,7 +348,7 @@ fn iterations_are_limited() {
 fn a_start_that_is_solved_is_returned_untouched() {
     for solver in solvers() {
         let run = Case { start: BOTTOM.to_vec(), ..valley() }.run(&solver);
-        assert_eq!(run.outcome, Outcome { halt: Halt::Solved, iterations: 0 }, "{solver:?}");
+        assert_eq!((run.status, run.iterations), (Status::Solved, 0), "{solver:?}");
         assert_eq!((run.evaluations, bits(&run.best.x)), (1, bits(&BOTTOM)), "{solver:?}");
     }
 }
@@ -379,7 +382,7 @@ fn a_poisoned_start_is_left_by_those_that_draw() {
         if is_random(&solver) {
             check_valley(&solver, &run);
         } else {
-            assert_eq!(run.outcome.halt, Halt::Stalled, "{solver:?}");
+            assert_eq!(run.status, Status::Stalled, "{solver:?}");
         }
     }
 }
@@ -412,7 +415,7 @@ fn a_box_of_one_point_holds_everybody() {
     for solver in solvers() {
         let stop = Stop { max_evaluations: 2000, ..Stop::default() };
         let run = Case { bounds: bounds.clone(), start: vec![0.0; 3], ..valley().with_stop(stop) }.run(&solver);
-        assert!(matches!(run.outcome.halt, Halt::Stalled | Halt::Budget), "{solver:?}: {:?}", run.outcome);
+        assert!(matches!(run.status, Status::Stalled | Status::BudgetSpent), "{solver:?}: {:?}", run.status);
     }
 }
 
@@ -450,10 +453,10 @@ fn a_monitor_that_says_stop_is_obeyed_at_once() {
         for left in [0, 1, 3] {
             let mut monitor = Countdown { left, asked_in_vain: 0 };
             let run = bottomless().run_watched(&solver, &mut monitor);
-            if run.outcome.halt == Halt::Stalled && run.values.len() < POLL {
+            if run.status == Status::Stalled && run.values.len() < POLL {
                 continue; // over before anybody could ask
             }
-            assert_eq!(run.outcome.status(), Status::Interrupted, "{solver:?}");
+            assert_eq!(run.status, Status::Interrupted, "{solver:?}");
             assert!(run.values.len() <= (left + 1) * POLL, "{solver:?}: {} evaluations", run.values.len());
             assert_eq!(monitor.asked_in_vain, 1, "{solver:?}");
         }
@@ -464,7 +467,7 @@ fn a_monitor_that_says_stop_is_obeyed_at_once() {
 fn no_time_ends_the_run_at_the_first_look_at_the_clock() {
     for solver in solvers() {
         let run = bottomless().with_stop(Stop { max_time: Some(Duration::ZERO), ..Stop::default() }).run(&solver);
-        assert!(matches!(run.outcome.halt, Halt::Time | Halt::Stalled), "{solver:?}: {:?}", run.outcome);
+        assert!(matches!(run.status, Status::TimeUp | Status::Stalled), "{solver:?}: {:?}", run.status);
         assert!(run.values.len() <= POLL, "{solver:?}: {} evaluations", run.values.len());
     }
 }
@@ -475,10 +478,10 @@ fn a_value_below_the_asked_one_is_enough() {
         let run = valley().with_stop(Stop { value_below: Some(0.001), ..Stop::default() }).run(&solver);
         // One whose last step went all the way has solved it.
         let expected = if run.best.solved { Status::Solved } else { Status::Improved };
-        assert_eq!(run.outcome.status(), expected, "{solver:?}");
+        assert_eq!(run.status, expected, "{solver:?}");
         assert!(run.best.value < 0.001, "{solver:?}: {:?}", run.best);
         // The start is below it: one step is made all the same.
         let run = bottomless().with_stop(Stop { value_below: Some(1e9), ..Stop::default() }).run(&solver);
-        assert_eq!(run.outcome, Outcome { halt: Halt::BelowValue, iterations: 1 }, "{solver:?}");
+        assert_eq!((run.status, run.iterations), (Status::Improved, 1), "{solver:?}");
     }
 }

@@ -60,7 +60,7 @@ fn joints_do_not_chatter_on_the_way_to_a_target_that_jumped() {
 }
 
 #[test]
-fn an_arm_with_limited_accelerations_stops_at_a_target_that_jumped() {
+fn limited_accelerations_stop_at_a_target_that_jumped() {
     let record = follow(Some(5.0), [0.0, 0.25, -0.15], [0.0; 3], 200);
     let errors: Vec<_> = record.iter().map(|(_, step)| step.error.position).collect();
     assert!(errors.windows(2).all(|two| two[1] <= two[0] + 1e-9), "it never goes past the target");
@@ -70,7 +70,7 @@ fn an_arm_with_limited_accelerations_stops_at_a_target_that_jumped() {
 }
 
 #[test]
-fn an_arm_with_limited_accelerations_catches_up_with_a_target_that_moves() {
+fn limited_accelerations_catch_up_with_a_moving_target() {
     let record = follow(Some(5.0), [0.1, 0.0, 0.0], [0.0, 0.05, 0.0], 150);
     let joined = record.iter().position(|(_, step)| step.status == Status::Solved).unwrap();
     assert!(joined < 100, "{joined}");

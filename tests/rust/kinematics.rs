@@ -42,7 +42,7 @@ fn every_link_is_the_product_up_to_it() {
     for (chain, q) in chains() {
         let (robot, expected) = (&chain.robot, chain.link_poses(&q));
         let poses = robot.link_poses(&q).unwrap();
-        assert_eq!((poses.len(), robot.link_names().len()), (expected.len(), expected.len()));
+        assert_eq!((poses.len(), robot.link_names().count()), (expected.len(), expected.len()));
         for ((name, pose), expected) in robot.link_names().zip(&poses).zip(&expected) {
             assert_near(&pose.to_homogeneous(), expected, name);
         }

@@ -96,11 +96,11 @@ fn the_index_is_the_root_of_the_determinant() {
 fn a_planar_arm_has_the_directions_of_its_plane() {
     let arm = Robot::planar(&[0.7, 0.4]).unwrap().with_base(pose::from_rpy([0.0; 3], [0.3, 0.8, 0.1])).unwrap();
     let measure = Manipulability::of(&arm, Motion::Position);
-    assert_eq!(measure.directions(), 2);
+    assert_eq!(measure.rank(), 2);
     // Yoshikawa 1985: w = l1 l2 |sin q2|.
     assert!((measure.index(&arm, &[0.4, 0.9]) - 0.28 * 0.9_f64.sin()).abs() < 1e-14);
-    assert_eq!(Manipulability::of(&arm, Motion::Rotation).directions(), 1);
-    assert_eq!(Manipulability::of(&arm, Motion::Pose).directions(), 2);
+    assert_eq!(Manipulability::of(&arm, Motion::Rotation).rank(), 1);
+    assert_eq!(Manipulability::of(&arm, Motion::Pose).rank(), 2);
 }
 
 #[test]

@@ -12,7 +12,7 @@ use ikcore::nalgebra::{Matrix4, Vector3};
 use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::robot::{ChainBuilder, Drive, Joint, JointKind, Robot};
 use ikcore::solver::RestartRule;
-use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, MultiStart, Stop, Unattended, Variant};
+use ikcore::solver::{Algorithm, AnySolver, Bas, BasVariant, LevenbergMarquardt, MultiStart, Stop, Unattended};
 use ikcore::task::{Target, Tolerance};
 use ikcore::tracking::{Session, TickRule, TrackOptions, track};
 
@@ -45,7 +45,7 @@ fn within(field: Field, profile: Profile) -> TrackOptions {
 }
 
 #[test]
-fn joint_angles_of_the_wrong_number() {
+fn a_wrong_number_of_joint_positions_is_named() {
     let iiwa = robot("iiwa14");
     let says = "joint angles of robot 'iiwa14': expected 7 joints, got 6";
     assert_eq!(message(iiwa.fk(&[0.0; 6])), says);
@@ -58,7 +58,7 @@ fn joint_angles_of_the_wrong_number() {
 }
 
 #[test]
-fn joint_angles_that_are_no_numbers() {
+fn joint_positions_that_are_not_finite_are_named() {
     let iiwa = robot("iiwa14");
     let q = |value| [0.0, 0.0, value, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(message(iiwa.fk(&q(NAN))), "joint angles must be finite, but joint 'joint_3' is NaN");
@@ -70,7 +70,7 @@ fn joint_angles_that_are_no_numbers() {
 }
 
 #[test]
-fn starts_outside_their_limits() {
+fn starts_outside_their_limits_are_named() {
     let mut start = vec![0.0; 7];
     start[1] = 2.5;
     let limit = 120.0_f64.to_radians();
@@ -83,7 +83,7 @@ fn starts_outside_their_limits() {
 }
 
 #[test]
-fn names_of_no_robot() {
+fn unknown_robots_are_named_with_suggestions() {
     let known =
         "fr3, gen3, hydraulic3, iiwa14, iiwa7, kr210, kr210_yuan2016, panda, planar5, ur10, ur10e, ur3e, ur5, ur5e";
     let says = |name, near| format!("no robot is named '{name}'{near}; known robots: {known}");
@@ -94,7 +94,7 @@ fn names_of_no_robot() {
 }
 
 #[test]
-fn names_of_no_link() {
+fn unknown_links_are_named_with_the_known_ones() {
     let urdf = r#"<robot name="arm"><link name="base"/><link name="wrist"/><joint name="j" type="revolute">
         <parent link="base"/><child link="wrist"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"#;
     let says = "robot 'arm' has no link 'rist' (did you mean 'wrist'?); its links: base, wrist";
@@ -115,7 +115,7 @@ fn hinge(joint: Joint) -> ikcore::Result<Robot> {
 }
 
 #[test]
-fn joints_with_impossible_limits() {
+fn impossible_limits_of_joints_are_named() {
     let joint = |lower, upper| Joint::new("hinge", JointKind::Revolute).with_range(lower, upper);
     assert_eq!(message(hinge(joint(1.0, 0.5))), "joint 'hinge': lower limit 1 is above upper limit 0.5");
     let says = "lower limit of joint 'hinge' must be a number below infinity, got NaN";
@@ -136,7 +136,7 @@ fn joints_with_impossible_limits() {
 }
 
 #[test]
-fn chains_that_cannot_be() {
+fn impossible_chains_are_named() {
     let empty = ChainBuilder::new("stick", "base").build();
     assert_eq!(message(empty), "robot 'stick': no joint moves between base and tip");
     let mut chain = ChainBuilder::new("arm", "base");
@@ -152,7 +152,7 @@ fn chains_that_cannot_be() {
 }
 
 #[test]
-fn poses_that_are_none() {
+fn matrices_that_are_no_poses_are_refused() {
     let says = |matrix: Matrix4<f64>| message(pose::from_matrix("target", &matrix));
     let mut matrix = Matrix4::identity();
     matrix[(0, 3)] = NAN;
@@ -171,7 +171,7 @@ fn poses_that_are_none() {
 }
 
 #[test]
-fn targets_that_are_nowhere() {
+fn targets_that_are_not_finite_are_refused() {
     let iiwa = robot("iiwa14");
     let says = |target: Target| message(solve(&iiwa, &target, &SolveOptions::default(), &mut Unattended));
     assert_eq!(says(Target::Position([0.0, NAN, 0.0])), "target must be finite, but coordinate y is NaN");
@@ -185,7 +185,7 @@ fn targets_that_are_nowhere() {
 }
 
 #[test]
-fn options_of_solvers_out_of_range() {
+fn solver_options_out_of_range_are_named() {
     let bas = |bas| AnySolver::Single(Algorithm::from(bas));
     let lm = |lm| AnySolver::Single(Algorithm::LevenbergMarquardt(lm));
     let again = |rule| {
@@ -216,12 +216,12 @@ fn options_of_solvers_out_of_range() {
         );
     }
     let says = "variant must be one of 'star', 'chain', 'greedy', got 'cain'";
-    assert_eq!(message("cain".parse::<Variant>()), says);
+    assert_eq!(message("cain".parse::<BasVariant>()), says);
     assert_eq!(message("end".parse::<LimitAt>()), "limit_at must be one of 'interval', 'start', got 'end'");
 }
 
 #[test]
-fn budgets_and_tolerances_out_of_range() {
+fn budgets_and_tolerances_out_of_range_are_named() {
     let stopping = |stop| solve_says(SolveOptions { stop, ..SolveOptions::default() });
     let says = "max_evaluations must be at least 1, got 0";
     assert_eq!(stopping(Stop { max_evaluations: 0, ..Stop::default() }), says);
@@ -239,7 +239,7 @@ fn budgets_and_tolerances_out_of_range() {
 }
 
 #[test]
-fn time_steps_and_durations_out_of_range() {
+fn time_steps_and_durations_out_of_range_are_named() {
     for (value, shown) in [(0.0, "0"), (-0.1, "-0.1"), (NAN, "NaN"), (INFINITE, "inf")] {
         let says = format!("dt must be positive and finite, got {shown}");
         assert_eq!(message(Reference::new(value, vec![[0.0; 3]; 2], None)), says);
@@ -253,7 +253,7 @@ fn time_steps_and_durations_out_of_range() {
 }
 
 #[test]
-fn paths_without_points() {
+fn paths_without_points_are_refused() {
     assert_eq!(message(Reference::new(0.2, vec![], None)), "path: it needs at least 2 points, got 0");
     assert_eq!(message(Reference::new(0.2, vec![[0.0; 3]], None)), "path: it needs at least 2 points, got 1");
     let says = "path points must be finite, but z of row 1 is NaN";
@@ -261,7 +261,7 @@ fn paths_without_points() {
 }
 
 #[test]
-fn velocity_limits_below_zero() {
+fn negative_velocity_limits_are_named() {
     let says = "velocity limit of joint 'joint_1' is -0.5 at t = 0 s: a limit cannot be negative";
     assert_eq!(track_says(&[0.0; 5], within(Field::Velocity, Profile::Constant(-0.5))), says);
     let options = within(Field::Velocity, Profile::Constant(-0.5));
@@ -285,7 +285,7 @@ fn a_limit_that_dips_after_the_end_is_no_mistake() {
 }
 
 #[test]
-fn limits_that_are_no_numbers() {
+fn limits_that_are_nan_are_named() {
     let says = |field, profile| message(planar_limits(field, profile));
     let expected = "velocity limit of joint 'joint_1' must be a number, got NaN";
     assert_eq!(says(Field::Velocity, Profile::Constant(NAN)), expected);
@@ -301,7 +301,7 @@ fn limits_that_are_no_numbers() {
 }
 
 #[test]
-fn limits_of_the_wrong_number() {
+fn a_wrong_number_of_limits_is_named() {
     let profiles = vec![Profile::Constant(1.0); 3];
     let says = "velocity limit: expected one number, or 5 (one per joint), got 3";
     assert_eq!(message(Limits::of(&robot("planar5")).replace(Field::Velocity, profiles)), says);
@@ -314,7 +314,7 @@ fn limits_of_the_wrong_number() {
 }
 
 #[test]
-fn position_limits_that_cross() {
+fn crossing_position_limits_are_named() {
     let says = "joint 'joint_1': lower limit 4 is above upper limit 3.141592653589793";
     assert_eq!(track_says(&[0.0; 5], within(Field::Lower, Profile::Constant(4.0))), says);
     let limits = Limits::of(&robot("iiwa14")).replace(Field::Upper, vec![Profile::Constant(-3.0)]).unwrap();
@@ -324,7 +324,7 @@ fn position_limits_that_cross() {
 }
 
 #[test]
-fn limits_that_a_tracker_cannot_keep() {
+fn limits_that_a_tracker_cannot_keep_are_refused() {
     let remedy = "this tracker keeps position, velocity and acceleration limits; leave it out";
     let says = format!("track cannot honour jerk limits: {remedy}");
     assert_eq!(track_says(&[0.0; 5], within(Field::Jerk, Profile::Constant(1.0))), says);
@@ -334,7 +334,7 @@ fn limits_that_a_tracker_cannot_keep() {
 }
 
 #[test]
-fn errors_can_be_told_apart() {
+fn an_error_carries_its_values() {
     let error = robot("planar5").fk(&[0.0]).unwrap_err();
     let Error::WrongLength { what, expected, got } = error else { panic!("{error:?}") };
     assert_eq!((what.as_str(), expected.as_str(), got), ("joint angles of robot 'planar5'", "5 joints", 1));

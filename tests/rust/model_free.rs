@@ -8,9 +8,9 @@ use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{BroydenBas, Status, Unattended};
-use ikcore::tracking::controller::{Antenna, Session, Znnbas};
 use ikcore::tracking::{
-    Controller, Fault, FunctionPlant, KinematicPlant, ModelFreeOptions, ModelFreeRecord, Plant, track_model_free,
+    Antenna, ControlSession, Controller, Fault, FunctionPlant, KinematicPlant, ModelFreeOptions, ModelFreeRecord,
+    Plant, Znnbas, track_model_free,
 };
 
 const SEEDS: u64 = 20;
@@ -66,7 +66,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 #[test]
-fn secants_follow_the_circle_to_a_nanometre_in_four_measurements_a_step() {
+fn broyden_tracks_to_a_nanometre_in_four_measurements() {
     let record = on_circle(&mut exact_plant(), &options(0));
     assert_eq!(record.track.status, Status::Solved, "{}", record.message());
     assert!(record.track.position_error.iter().all(|error| *error <= 1e-9));
@@ -103,7 +103,7 @@ fn noise_of_the_sensor_is_not_much_more_than_passed_on() {
 }
 
 #[test]
-fn noise_does_not_send_an_arm_with_one_measurement_a_step_astray() {
+fn one_measurement_per_step_withstands_noise() {
     let reference = circle_at(0.05);
     let mut largest: Vec<f64> = (0..SEEDS)
         .map(|seed| {
@@ -129,7 +129,7 @@ fn ninetieth(arm: &Robot, record: &ModelFreeRecord) -> f64 {
 }
 
 #[test]
-fn outliers_of_the_sensor_do_not_throw_it_off() {
+fn outliers_of_the_sensor_are_withstood() {
     for seed in 0..SEEDS {
         let (wrong, mut rng) = (wrong_arm(seed), rng::stream(seed, 2));
         // One measurement in a hundred is wrong by a decimetre.
@@ -179,7 +179,7 @@ fn one_measurement_a_step_is_enough_for_a_tenth_of_a_millimetre() {
 }
 
 #[test]
-fn it_joins_the_circle_from_the_singular_home_position() {
+fn tracking_starts_from_the_singular_home_position() {
     for limits in [None, Some(circle_limits(&robot("iiwa14")))] {
         let options = ModelFreeOptions { limits, ..ModelFreeOptions::default() };
         let record = track_model_free(&mut exact_plant(), &circle(), &[0.0; 7], &options, &mut Unattended).unwrap();
@@ -305,7 +305,7 @@ fn a_session_gives_the_same_commands_as_the_run() {
         let options = ModelFreeOptions { controller: controller.clone(), ..options(3) };
         let record = on_circle(&mut exact_plant(), &options);
         let limits = options.limits.clone().unwrap();
-        let mut session = Session::new(&controller, &ON_CIRCLE, 0.2, limits, 1e-9, 3).unwrap();
+        let mut session = ControlSession::new(&controller, &ON_CIRCLE, 0.2, limits, 1e-9, 3).unwrap();
         for i in 0..=150 {
             let step = loop {
                 let command = session.command(record.track.reference[i]).unwrap().to_vec();
@@ -321,7 +321,8 @@ fn a_session_gives_the_same_commands_as_the_run() {
 
 #[test]
 fn turns_are_kept() {
-    let mut session = Session::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none_for(2), 1e-6, 0).unwrap();
+    let mut session =
+        ControlSession::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none_for(2), 1e-6, 0).unwrap();
     let early = "observe: there is no command to answer; call command(target) first";
     assert_eq!(message(session.observe([0.0; 3])), early);
     session.command([1.0, 0.0, 0.0]).unwrap();

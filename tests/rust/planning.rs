@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::Frame;
 use ikcore::obstacle::Obstacle;
-use ikcore::path::{Path, Plane, Polyline, Reference};
+use ikcore::path::{Path, Plane, Polyline, Waypoints};
 use ikcore::planning::planar_arm::PlanarArm;
 use ikcore::planning::{
     AlongPathMethod, AlongPathOptions, Cost, Elbow, Endpoint, Plan, PointToPointMethod, PointToPointOptions, TipPath,
@@ -13,7 +13,7 @@ use ikcore::planning::{
 };
 use ikcore::rng;
 use ikcore::robot::Robot;
-use ikcore::solver::differential_evolution::Update;
+use ikcore::solver::TrialUpdate;
 use ikcore::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Schedule, Status, Stop, Unattended};
 use ikcore::task::Target;
 
@@ -45,7 +45,7 @@ fn plan(k: usize, options: PointToPointOptions) -> Plan {
 fn evolution() -> Option<AnySolver<DerivativeFree>> {
     let standard = DifferentialEvolution::default();
     let schedule = Schedule { population: 40, stall_generations: usize::MAX, ..standard.schedule };
-    Some(AnySolver::Single(DifferentialEvolution { schedule, update: Update::Immediate, ..standard }.into()))
+    Some(AnySolver::Single(DifferentialEvolution { schedule, update: TrialUpdate::Immediate, ..standard }.into()))
 }
 
 /// The mean cost over seeds, all plans sound.
@@ -193,7 +193,7 @@ fn paths() -> [TipPath; 2] {
         let radius = (1.0 + 0.35 * (3.0 * angle).cos()) * 0.6 / 1.35;
         [1.0 + radius * angle.cos(), 1.0 + radius * angle.sin(), 0.0]
     });
-    let lobes = Reference::new(0.02, lobes.collect(), None).expect("valid input");
+    let lobes = Waypoints::new(lobes.collect(), None).expect("valid input");
     [TipPath::along(&Path::new(star)).expect("valid input"), TipPath::through(&lobes).expect("valid input")]
 }
 
@@ -217,7 +217,7 @@ fn paths_are_followed_as_quickly_as_measured_before() {
 }
 
 #[test]
-fn every_second_point_of_a_path_is_passed_and_all_between_is_within_the_accuracy() {
+fn tpbso_passes_every_second_point_within_the_accuracy() {
     let robot = Robot::planar(&[1.0, 1.0, 1.0]).unwrap();
     let tip_path = &paths()[0];
     let plan = follow(tip_path, AlongPathOptions { accuracy: Some(0.04), ..Default::default() });

@@ -230,7 +230,7 @@ const MESH: &str = r#"<robot name="arm"><link name="base"/>
   <joint name="c" type="fixed"><parent link="fore"/><child link="tip"/><origin xyz="1 0 0"/></joint></robot>"#;
 
 #[test]
-fn an_arm_whose_shape_cannot_be_read_moves_where_nothing_is_in_the_way() {
+fn an_arm_of_unknown_shape_plans_only_without_obstacles() {
     let arm = Robot::from_urdf(MESH, None, None).unwrap();
     for method in [PointToPointMethod::MinMax, PointToPointMethod::Tpbso] {
         let options = |obstacles| PointToPointOptions {

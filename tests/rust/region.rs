@@ -5,12 +5,13 @@ use ikcore::ik::{AllOptions, SolveOptions, solve, solve_all};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::robot::Robot;
-use ikcore::solver::{Algorithm, AnySolver, Bas, Status, Stop, Unattended, Variant};
-use ikcore::task::{Components, Criterion, Kind, Region, Target, Task, Tolerance};
+use ikcore::solver::{Algorithm, AnySolver, Bas, BasVariant, Status, Stop, Unattended};
+use ikcore::task::{Components, Criterion, Region, Target, Task, TaskKind, Tolerance};
 use ikcore::tracking::{Session, TickRule, TrackOptions, WeightedPseudoInverse, track};
 
 const OPEN: f64 = f64::INFINITY;
-const KINDS: [Kind; 4] = [Kind::Pose, Kind::Position, Kind::Orientation, Kind::Pointing { axis: [0.6, 0.0, 0.8] }];
+const KINDS: [TaskKind; 4] =
+    [TaskKind::Pose, TaskKind::Position, TaskKind::Orientation, TaskKind::Pointing { axis: [0.6, 0.0, 0.8] }];
 const Q: [f64; 7] = [0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1];
 
 /// Below a ceiling (m).
@@ -18,7 +19,7 @@ fn below(height: f64) -> Region {
     Region::new([-OPEN; 3], [OPEN, OPEN, height]).unwrap()
 }
 
-fn kept(kind: Kind, region: Region) -> Task {
+fn kept(kind: TaskKind, region: Region) -> Task {
     Task::from(kind).within(region).unwrap()
 }
 
@@ -38,7 +39,7 @@ fn residual_and_jacobian_agree_on_both_sides_of_a_face() {
             // The tip is outside in x, inside in y, and in z one and then the other.
             for height in [tip[2] - 0.2, tip[2] + 0.2] {
                 let region = Region::new([tip[0] + 0.1, -OPEN, -OPEN], [OPEN, OPEN, height]).unwrap();
-                let components = (kind == Kind::Position).then_some(free);
+                let components = (kind == TaskKind::Position).then_some(free);
                 let criterion = Criterion { region: Some(region), components, ..Criterion::default() };
                 assert_derivative(&iiwa, &target, criterion, &q);
             }
@@ -53,7 +54,7 @@ fn every_solver_ends_inside_and_says_what_held_it_back() {
     let stop = Stop { max_evaluations: 20_000, ..Stop::default() };
     let tolerance = Tolerance { position: 1e-3, rotation: 1e-3 };
     for solver in solvers() {
-        let task = Some(kept(Kind::Position, region));
+        let task = Some(kept(TaskKind::Position, region));
         let options = SolveOptions { task, solver: solver.clone(), tolerance, stop, ..SolveOptions::default() };
         let (mut reached, mut held) = (0, 0);
         for height in [0.7, 0.9, 0.89999, 1.0, 0.4] {
@@ -77,7 +78,7 @@ fn every_solver_ends_inside_and_says_what_held_it_back() {
 #[test]
 fn a_target_outside_is_approached_as_far_as_the_box_allows() {
     let iiwa = robot("iiwa14");
-    for kind in [Kind::Pose, Kind::Position, Kind::Pointing { axis: [0.0, 0.0, 1.0] }] {
+    for kind in [TaskKind::Pose, TaskKind::Position, TaskKind::Pointing { axis: [0.0, 0.0, 1.0] }] {
         let options = SolveOptions { task: Some(kept(kind, below(0.9))), ..SolveOptions::default() };
         let wanted = pose_at(&iiwa, &Q);
         let solution = solve(&iiwa, &wanted, &options, &mut Unattended).unwrap();
@@ -103,7 +104,7 @@ fn coordinates_that_are_free_are_kept_inside_too() {
     let wanted = pose_at(&iiwa, &Q);
     let free_height = Components { weights: [1.0, 1.0, 0.0, 1.0, 1.0, 1.0], tolerance: None };
     for region in [below(0.6), below(0.9), Region::new([0.2, -OPEN, -OPEN], [0.3, OPEN, OPEN]).unwrap()] {
-        let orientation = kept(Kind::Orientation, region);
+        let orientation = kept(TaskKind::Orientation, region);
         let solution = solve(
             &iiwa,
             &wanted,
@@ -114,7 +115,7 @@ fn coordinates_that_are_free_are_kept_inside_too() {
         assert_eq!(solution.status, Status::Solved, "{}", solution.message());
         assert!(region.contains(&iiwa.tip_position(&solution.q)));
     }
-    let task = Task { components: Some(free_height), ..kept(Kind::Position, below(0.7)) };
+    let task = Task { components: Some(free_height), ..kept(TaskKind::Position, below(0.7)) };
     let options = SolveOptions { task: Some(task), ..SolveOptions::default() };
     let solution = solve(&iiwa, &Target::Position([0.5, 0.2, 9.0]), &options, &mut Unattended).unwrap();
     assert_eq!(solution.status, Status::Solved, "{}", solution.message());
@@ -126,7 +127,7 @@ fn coordinates_that_are_free_are_kept_inside_too() {
 fn a_miss_says_that_the_tip_is_outside() {
     let iiwa = robot("iiwa14");
     let nowhere = Region::new([2.0, -OPEN, -OPEN], [3.0, OPEN, OPEN]).unwrap();
-    let options = SolveOptions { task: Some(kept(Kind::Orientation, nowhere)), ..SolveOptions::default() };
+    let options = SolveOptions { task: Some(kept(TaskKind::Orientation, nowhere)), ..SolveOptions::default() };
     let solution = solve(&iiwa, &pose_at(&iiwa, &Q), &options, &mut Unattended).unwrap();
     assert!(!matches!(solution.status, Status::Solved | Status::HeldInRegion));
     assert!(solution.message().contains("(the tip is outside its region, which asks for x above 2"));
@@ -141,7 +142,7 @@ fn leaving(iiwa: &Robot, rule: TickRule, tolerance: f64) -> (TrackOptions, Refer
     let fast = vec![Profile::Constant(2.0)];
     let options = TrackOptions {
         rule,
-        task: Some(kept(Kind::Position, below(CEILING))),
+        task: Some(kept(TaskKind::Position, below(CEILING))),
         tolerance: Tolerance { position: tolerance, ..Tolerance::default() },
         limits: Some(Limits::of(iiwa).replace(Field::Velocity, fast).unwrap()),
         ..TrackOptions::default()
@@ -168,7 +169,7 @@ fn no_tick_of_any_rule_ends_outside() {
 #[test]
 fn beetles_follow_the_faces() {
     let iiwa = robot("iiwa14");
-    for variant in [Variant::Star, Variant::Chain] {
+    for variant in [BasVariant::Star, BasVariant::Chain] {
         let bas = Bas { variant, c1: 1.0, ..Bas::default() };
         let (options, reference) = leaving(&iiwa, TickRule::Solver(AnySolver::Single(bas.into())), 1e-4);
         let record = track(&iiwa, &reference, None, &options, &mut Unattended).unwrap();
@@ -201,7 +202,7 @@ fn a_track_that_is_held_says_where() {
 fn what_cannot_be_guaranteed_is_refused() {
     let iiwa = robot("iiwa14");
     let says = |limits: Limits, start: &[f64], ceiling: f64| {
-        let task = Some(kept(Kind::Position, below(ceiling)));
+        let task = Some(kept(TaskKind::Position, below(ceiling)));
         let options = TrackOptions { task, limits: Some(limits), ..TrackOptions::default() };
         message(Session::new(&iiwa, start, 0.01, &options))
     };
@@ -230,7 +231,7 @@ fn what_is_wrong_with_a_region_is_named() {
     assert_eq!(region([0.0, 0.0, f64::NAN], [1.0; 3]), "lower z of region must be below its upper one, 1, got NaN");
     assert_eq!(region([0.0; 3], [f64::NAN, 1.0, 1.0]), "upper x of region must be a number, got NaN");
     assert_eq!(region([OPEN; 3], [OPEN; 3]), "lower x of region must be below its upper one, inf, got inf");
-    let task = Task::new(Kind::Pose, Some(&[1.0, 1.0, 0.0, 1.0, 1.0, 1.0]), None, None).unwrap();
+    let task = Task::new(TaskKind::Pose, Some(&[1.0, 1.0, 0.0, 1.0, 1.0, 1.0]), None, None).unwrap();
     assert_eq!(
         message(task.within(below(1.0))),
         "region keeps x, y and z of the base, but weights free some of x, y and z of the target: free all three or \

@@ -253,7 +253,7 @@ fn a_joint_brakes_before_its_position_limit() {
 }
 
 #[test]
-fn a_velocity_limit_that_falls_faster_than_the_joint_can_brake_is_reported() {
+fn a_velocity_limit_that_outruns_braking_is_reported() {
     let arm = Robot::planar(&[1.0]).unwrap();
     let falling = Profile::Sampled { step: 0.5, values: vec![2.0, 2.0, 0.1, 0.1] };
     let limits = Limits::of(&arm).replace(Field::Velocity, vec![falling]).unwrap();

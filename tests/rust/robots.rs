@@ -3,9 +3,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::PathBuf;
 
+use ikcore::load::{Dh, DhTable};
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix4, Vector3};
-use ikcore::robot::{Dh, DhTable, JointKind, Robot};
+use ikcore::robot::{JointKind, Robot};
 
 fn position(robot: &Robot, q: &[f64]) -> Vector3<f64> {
     robot.fk(q).unwrap().translation.vector
@@ -18,7 +19,7 @@ fn assert_near(actual: Vector3<f64>, expected: [f64; 3], tolerance: f64) {
 }
 
 #[test]
-fn test_vectors_of_the_tracking_arms() {
+fn tracking_arms_meet_their_test_vectors() {
     let iiwa = Robot::named("iiwa14").unwrap();
     assert_near(position(&iiwa, &[0.0; 7]), [0.0, 0.0, 1.306], 1e-15);
     assert_near(position(&iiwa, &[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]), [0.04133656, -0.00431495, 1.27874931], 5e-9);
@@ -148,7 +149,7 @@ fn dh_tables_multiply_as_their_conventions_say() {
 }
 
 #[test]
-fn dh_tables_that_cannot_be() {
+fn impossible_dh_tables_are_named() {
     let message = |table: DhTable| Robot::from_dh("arm", &table).unwrap_err().to_string();
     assert_eq!(
         message(DhTable { d: vec![0.0; 2], ..table(Dh::Standard) }),
@@ -165,7 +166,7 @@ fn dh_tables_that_cannot_be() {
 }
 
 #[test]
-fn planar_arms() {
+fn planar_arms_have_their_links_in_the_plane() {
     let arm = Robot::planar(&[2.0, 1.0]).unwrap();
     assert_eq!(arm.link_names().collect::<Vec<_>>(), ["base", "link_1", "link_2", "tip"]);
     assert_eq!((arm.joints()[0].lower, arm.joints()[0].upper), (-PI, PI));

@@ -150,7 +150,7 @@ fn random_robots_of_six_joints_and_more_reach_their_targets() {
 }
 
 #[test]
-fn robots_of_few_joints_or_of_thirty_two_and_without_limits_are_served() {
+fn robots_of_1_to_32_joints_with_or_without_limits_solve() {
     for joints in [1, 2, 3, 5, 16, 32] {
         let chain = RandomChain::new(3, joints, joints);
         let free = chain.robot.with_limits(|_, joint| {

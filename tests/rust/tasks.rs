@@ -6,12 +6,13 @@ use ikcore::math::{Frame, Pose, pose};
 use ikcore::nalgebra::{Rotation3, Vector3};
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
-use ikcore::task::{Components, Criterion, Kind, Target, Task, Tolerance};
+use ikcore::task::{Components, Criterion, Target, Task, TaskKind, Tolerance};
 
 const AXIS: [f64; 3] = [0.6, 0.0, 0.8];
-const KINDS: [Kind; 4] = [Kind::Pose, Kind::Position, Kind::Orientation, Kind::Pointing { axis: AXIS }];
+const KINDS: [TaskKind; 4] =
+    [TaskKind::Pose, TaskKind::Position, TaskKind::Orientation, TaskKind::Pointing { axis: AXIS }];
 
-fn target(kind: Kind, pose: &Pose) -> Target {
+fn target(kind: TaskKind, pose: &Pose) -> Target {
     Task::from(kind).target(&Target::from(pose)).unwrap()
 }
 
@@ -59,10 +60,10 @@ fn every_kind_is_solved_and_leaves_the_rest_free() {
                 let axis = Vector3::from(AXIS);
                 let off_axis = (tip.rotation * axis).angle(&(wanted.rotation * axis));
                 let (near, asked) = match kind {
-                    Kind::Pose => (distance <= 1e-6 && angle <= 1e-6, (true, true)),
-                    Kind::Position => (distance <= 1e-6, (true, false)),
-                    Kind::Orientation => (angle <= 1e-6, (false, true)),
-                    Kind::Pointing { .. } => (distance <= 1e-6 && off_axis <= 1.1e-6, (true, true)),
+                    TaskKind::Pose => (distance <= 1e-6 && angle <= 1e-6, (true, true)),
+                    TaskKind::Position => (distance <= 1e-6, (true, false)),
+                    TaskKind::Orientation => (angle <= 1e-6, (false, true)),
+                    TaskKind::Pointing { .. } => (distance <= 1e-6 && off_axis <= 1.1e-6, (true, true)),
                 };
                 assert!(near, "{name} {kind:?}: {distance:.2e} m, {angle:.2e} rad, axis off by {off_axis:.2e} rad");
                 let error = solution.error;
@@ -84,7 +85,7 @@ fn the_error_of_a_pointing_task_is_the_angle_between_the_axes() {
         let wanted = tip * pose::from_parts([0.0; 3], aside.into_inner());
         let spin = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.7);
         let spun = wanted * pose::from_parts([0.0; 3], spin.into_inner());
-        let kind = Kind::Pointing { axis: [0.0, 0.0, 2.0] };
+        let kind = TaskKind::Pointing { axis: [0.0, 0.0, 2.0] };
         for pose in [wanted, spun] {
             let squared = target(kind, &pose).assess(&robot, &q, &criterion).error.rotation.unwrap();
             assert!((squared.sqrt() - angle).abs() < 1e-8, "{angle}: {}", squared.sqrt());
@@ -93,13 +94,13 @@ fn the_error_of_a_pointing_task_is_the_angle_between_the_axes() {
 }
 
 #[test]
-fn a_component_of_weight_zero_is_left_free_in_the_frame_of_the_target() {
+fn weight_zero_frees_a_component_in_the_target_frame() {
     let robot = robot("iiwa14");
     // Anywhere along the z axis of the target, with any spin about it.
     let components = Components { weights: [1.0, 1.0, 0.0, 1.0, 1.0, 0.0], tolerance: None };
     for q in configurations(&robot, 20) {
         let wanted = robot.fk(&q).unwrap() * pose::translation(0.0, 0.0, 3.0);
-        let task = Task { components: Some(components), ..Kind::Pose.into() };
+        let task = Task { components: Some(components), ..TaskKind::Pose.into() };
         let solution = solve(&robot, &Target::from(&wanted), &with(task), &mut Unattended).unwrap();
         assert_eq!(solution.status, Status::Solved, "{}", solution.message());
         let seen = wanted.inverse() * robot.fk(&solution.q).unwrap();
@@ -138,8 +139,8 @@ fn a_tool_is_what_reaches_the_target() {
             assert_eq!(solution.status, Status::Solved, "{}", solution.message());
             let (distance, angle) = apart(&(robot.fk(&solution.q).unwrap() * tool), &wanted);
             let near = match kind {
-                Kind::Pose => distance <= 1e-6 && angle <= 1e-6,
-                Kind::Orientation => angle <= 1e-6,
+                TaskKind::Pose => distance <= 1e-6 && angle <= 1e-6,
+                TaskKind::Orientation => angle <= 1e-6,
                 _ => distance <= 1e-6,
             };
             assert!(near, "{kind:?}: {distance:.2e} m, {angle:.2e} rad");
@@ -154,7 +155,7 @@ fn a_tool_stands_behind_the_robots_own() {
     let bare = robot("iiwa14");
     let with_own = bare.with_tool(own).unwrap();
     let q = [0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1];
-    let task = Task { tool: Some(more), ..Kind::Position.into() };
+    let task = Task { tool: Some(more), ..TaskKind::Position.into() };
     let both: Robot = task.robot(&with_own).unwrap().unwrap();
     let (distance, _) = apart(&both.fk(&q).unwrap(), &(bare.fk(&q).unwrap() * own * more));
     assert!(distance < 1e-15);
@@ -166,15 +167,15 @@ fn what_is_wrong_with_a_task_is_named() {
     let pose = pose_at(&robot, &[0.1; 7]);
     let says = |task: Task, target: &Target| message(solve(&robot, target, &with(task), &mut Unattended));
     let point = Target::Position([0.3, 0.3, 0.5]);
-    for (kind, name) in [(Kind::Pose, "Pose"), (Kind::Orientation, "Orientation"), (KINDS[3], "Pointing")] {
+    for (kind, name) in [(TaskKind::Pose, "Pose"), (TaskKind::Orientation, "Orientation"), (KINDS[3], "Pointing")] {
         let expected = format!("task {name} needs a target pose (4, 4), got a position (3,)");
         assert_eq!(says(kind.into(), &point), expected);
     }
-    let pointing = |axis| Task::from(Kind::Pointing { axis });
+    let pointing = |axis| Task::from(TaskKind::Pointing { axis });
     assert_eq!(says(pointing([0.0; 3]), &pose), "the length of axis must be positive, got 0");
     assert_eq!(says(pointing([0.0, f64::NAN, 1.0]), &pose), "axis must be finite, but entry 1 is NaN");
     let weighted =
-        |weights, tolerance| Task { components: Some(Components { weights, tolerance }), ..Kind::Pose.into() };
+        |weights, tolerance| Task { components: Some(Components { weights, tolerance }), ..TaskKind::Pose.into() };
     assert_eq!(
         says(weighted([1.0, -1.0, 1.0, 1.0, 1.0, 1.0], None), &pose),
         "weights[1] must be zero or more, and finite, got -1"
@@ -187,5 +188,5 @@ fn what_is_wrong_with_a_task_is_named() {
 #[test]
 fn a_position_task_takes_the_position_of_a_pose() {
     let frame = Frame::from(&pose::translation(0.1, 0.2, 0.3));
-    assert_eq!(Task::from(Kind::Position).target(&Target::Pose(frame)).unwrap(), Target::Position([0.1, 0.2, 0.3]));
+    assert_eq!(Task::from(TaskKind::Position).target(&Target::Pose(frame)).unwrap(), Target::Position([0.1, 0.2, 0.3]));
 }

@@ -9,7 +9,7 @@ use crate::common::{bits, robot};
 use ikcore::limits::{Field, LimitAt, Limits, Profile, Sinusoid};
 use ikcore::nalgebra::{Rotation3, Vector3};
 use ikcore::path::{Path, Polyline};
-use ikcore::solver::{Monitor, Status, Unattended, Variant};
+use ikcore::solver::{BasVariant, Monitor, Status, Unattended};
 use ikcore::task::Tolerance;
 use ikcore::tracking::{TickRule, TrackOptions, track};
 
@@ -17,8 +17,8 @@ use ikcore::tracking::{TickRule, TrackOptions, track};
 fn a_circle_that_leaves_the_reach_is_followed_where_it_can_be() {
     let task = Task { circle: circle([4.0, 1.0, 0.0], 2.2), ..five_links() };
     for (rule, band) in [
-        (beetle(Variant::Star, 1.0, 50), 4e-5),
-        (beetle(Variant::Chain, 0.3, 30), 5e-5),
+        (beetle(BasVariant::Star, 1.0, 50), 4e-5),
+        (beetle(BasVariant::Chain, 0.3, 30), 5e-5),
         (descent(), 1e-6),
         (TickRule::MidStep, 1e-6),
     ] {
@@ -38,8 +38,8 @@ fn a_circle_that_leaves_the_reach_is_followed_where_it_can_be() {
 fn limits_too_small_to_follow_end_in_statuses() {
     let task = Task { limit: 0.02, ..five_links() };
     for (rule, band) in [
-        (beetle(Variant::Star, 1.0, 50), 4e-5),
-        (beetle(Variant::Chain, 0.3, 30), 5e-5),
+        (beetle(BasVariant::Star, 1.0, 50), 4e-5),
+        (beetle(BasVariant::Chain, 0.3, 30), 5e-5),
         (descent(), 1e-6),
         (TickRule::MidStep, 1e-6),
     ] {
@@ -96,7 +96,7 @@ fn the_model_tracks_to_a_micrometre_in_one_evaluation_a_step() {
 }
 
 #[test]
-fn the_model_keeps_no_motion_alive_that_the_path_does_not_ask_for() {
+fn the_model_based_rule_damps_unneeded_self_motion() {
     // Extrapolated joint velocities would: after a start beside the path the arm would go on turning about its elbow.
     let rms = |rule: TickRule| {
         let record = iiwa().track(rule, 1e-9, 0);
@@ -110,7 +110,7 @@ fn the_model_keeps_no_motion_alive_that_the_path_does_not_ask_for() {
 #[test]
 fn a_record_holds_a_row_for_the_start_and_one_a_tick() {
     let task = iiwa();
-    let record = task.track(beetle(Variant::Chain, 1.0, 30), 2.2e-5, 3);
+    let record = task.track(beetle(BasVariant::Chain, 1.0, 30), 2.2e-5, 3);
     let (rows, n, qd) = (151, 7, record.qd());
     assert_eq!((record.dof, record.rows(), record.q.len(), qd.len()), (n, rows, rows * n, rows * n));
     assert_eq!((record.position.len(), record.reference.len(), record.velocity_limit().len()), (rows, rows, rows * n));
@@ -156,7 +156,7 @@ fn without_a_start_the_first_point_is_solved_for() {
 
 #[test]
 fn the_seed_decides_every_bit() {
-    let q = |seed| bits(&five_links().track(beetle(Variant::Star, 1.0, 50), 4e-5, seed).q);
+    let q = |seed| bits(&five_links().track(beetle(BasVariant::Star, 1.0, 50), 4e-5, seed).q);
     assert_eq!(q(1), q(1));
     assert_ne!(q(1), q(2));
 }
@@ -198,7 +198,7 @@ fn a_velocity_limit_of_zero_locks_its_joint() {
     let mut velocity = vec![Profile::Constant(2.0); 7];
     velocity[2] = Profile::Constant(0.0);
     let limits = Some(Limits::of(&task.robot).replace(Field::Velocity, velocity).unwrap());
-    for (solver, band) in [(descent(), 1e-6), (beetle(Variant::Chain, 1.0, 30), 2.2e-5)] {
+    for (solver, band) in [(descent(), 1e-6), (beetle(BasVariant::Chain, 1.0, 30), 2.2e-5)] {
         let record = task.track_with(&TrackOptions { limits: limits.clone(), ..task.options(solver, band, 0) });
         assert_eq!(record.status, Status::Solved, "{}", record.message());
         assert!(record.q.chunks_exact(7).all(|q| q[2].to_bits() == OFF7[2].to_bits()));
@@ -255,7 +255,7 @@ impl Monitor for StopAfterRows {
 #[test]
 fn an_interrupted_track_keeps_the_ticks_that_were_finished() {
     let task = iiwa();
-    for (solver, band) in [(beetle(Variant::Star, 3.0, 50), 1.7e-5), (descent(), 1e-9)] {
+    for (solver, band) in [(beetle(BasVariant::Star, 3.0, 50), 1.7e-5), (descent(), 1e-9)] {
         let options = task.options(solver, band, 1);
         let full = task.track_with(&options);
         let start = Some(task.start.as_slice());
@@ -307,7 +307,7 @@ fn an_arm_inside_its_band_moves_on_evenly() {
     // One that waits until it is out of its band stands still for most ticks, and then jumps at full speed.
     let task = iiwa();
     let reference = Path::new(task.circle.clone()).sample(0.01).unwrap();
-    for rule in [descent(), beetle(Variant::Chain, 1.0, 30), TickRule::MidStep] {
+    for rule in [descent(), beetle(BasVariant::Chain, 1.0, 30), TickRule::MidStep] {
         let options = TrackOptions { limits: None, ..task.options(rule.clone(), 1e-3, 0) };
         let record = track(&task.robot, &reference, None, &options, &mut Unattended).unwrap();
         assert_eq!(record.status, Status::Solved, "{rule:?}: {}", record.message());

@@ -4,7 +4,7 @@
 //! numbers of evaluations; they leave 25 to 50 per cent over the extremes of a hundred seeds.
 
 use crate::common::circles::{Task, beetle, count, five_links, iiwa};
-use ikcore::solver::{Status, Variant};
+use ikcore::solver::{BasVariant, Status};
 use ikcore::tracking::{Record, TickRule};
 
 const SEEDS: u64 = 20;
@@ -40,29 +40,29 @@ fn mean_steady_error(task: &Task, rule: &TickRule, band: f64, most_evaluations: 
 
 #[test]
 fn five_links_track_to_twenty_micrometres() {
-    let star = mean_steady_error(&five_links(), &beetle(Variant::Star, 1.0, 50), 4e-5, 140_000);
+    let star = mean_steady_error(&five_links(), &beetle(BasVariant::Star, 1.0, 50), 4e-5, 140_000);
     assert!((1.5e-5..2.5e-5).contains(&star), "{star:.3e}");
-    let chain = mean_steady_error(&five_links(), &beetle(Variant::Chain, 0.3, 30), 5e-5, 70_000);
+    let chain = mean_steady_error(&five_links(), &beetle(BasVariant::Chain, 0.3, 30), 5e-5, 70_000);
     assert!((1.5e-5..2.5e-5).contains(&chain), "{chain:.3e}");
 }
 
 #[test]
 fn iiwa_tracks_to_ten_micrometres() {
-    let star = mean_steady_error(&iiwa(), &beetle(Variant::Star, 3.0, 50), 1.7e-5, 200_000);
+    let star = mean_steady_error(&iiwa(), &beetle(BasVariant::Star, 3.0, 50), 1.7e-5, 200_000);
     assert!((8e-6..1.3e-5).contains(&star), "{star:.3e}");
-    let chain = mean_steady_error(&iiwa(), &beetle(Variant::Chain, 1.0, 30), 2.2e-5, 65_000);
+    let chain = mean_steady_error(&iiwa(), &beetle(BasVariant::Chain, 1.0, 30), 2.2e-5, 65_000);
     assert!((8e-6..1.3e-5).contains(&chain), "{chain:.3e}");
 }
 
 #[test]
 fn iiwa_tracks_to_a_millimetre_in_few_evaluations() {
-    let chain = mean_steady_error(&iiwa(), &beetle(Variant::Chain, 1.0, 30), 1e-3, 25_000);
+    let chain = mean_steady_error(&iiwa(), &beetle(BasVariant::Chain, 1.0, 30), 1e-3, 25_000);
     assert!((3e-4..7e-4).contains(&chain), "{chain:.3e}");
 }
 
 #[test]
 fn greedy_beetle_tracks_to_a_nanometre() {
-    let record = iiwa().track(beetle(Variant::Greedy, 3.0, 5), 1e-9, 1);
+    let record = iiwa().track(beetle(BasVariant::Greedy, 3.0, 5), 1e-9, 1);
     assert_eq!(record.status, Status::Solved, "{}", record.message());
 }
 
@@ -70,7 +70,7 @@ fn greedy_beetle_tracks_to_a_nanometre() {
 fn star_trend(task: &Task, c1: f64, explorations: usize, band: f64) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for seed in 1..=5 {
-        let record = task.track(beetle(Variant::Star, c1, explorations), band, seed);
+        let record = task.track(beetle(BasVariant::Star, c1, explorations), band, seed);
         let figures = [record.joined().unwrap() as f64, roughness(&record), record.evaluations() as f64];
         sum = std::array::from_fn(|k| sum[k] + figures[k] / 5.0);
     }

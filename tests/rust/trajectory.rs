@@ -179,7 +179,7 @@ fn power(degree: i32, times: &[f64]) -> [Vec<f64>; 3] {
 }
 
 #[test]
-fn samples_with_derivatives_reproduce_the_polynomial_that_they_were_taken_from() {
+fn samples_with_derivatives_reproduce_their_polynomial() {
     let times = [0.0, 0.5, 1.7];
     for (degree, with_accelerations) in [(3, false), (5, true)] {
         let [q, qd, qdd] = power(degree, &times);

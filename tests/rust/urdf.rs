@@ -142,7 +142,7 @@ fn mimic_joints_follow_through_chains_of_mimics() {
 }
 
 #[test]
-fn master_off_the_chain_stands_where_its_first_follower_does() {
+fn a_master_off_the_chain_is_set_by_its_first_mimic_joint() {
     let turn = "<axis xyz='0 0 1'/>";
     let follower = format!("{turn}<limit lower='-1' upper='3' velocity='2'/><mimic joint='master' multiplier='2'/>");
     let joints = [
@@ -175,7 +175,7 @@ fn missing_limits_are_told_from_zeros() {
 }
 
 #[test]
-fn what_is_not_kinematics_is_no_obstacle() {
+fn tags_beyond_kinematics_are_ignored() {
     let noise = r#"<robot name="arm" xmlns:sensor="http://example.org/sensor">
   <material name="grey"><color rgba="a b c d"/></material>
   <sensor:camera fov="${not xacro}"/> <gazebo><joint name="nothing"/></gazebo> <transmission/>
@@ -201,7 +201,7 @@ fn names_may_hold_any_character() {
 }
 
 #[test]
-fn text_that_is_no_urdf() {
+fn text_that_is_no_urdf_is_refused() {
     assert_eq!(error("<robot>\n<link></robot>"), "URDF line 2: not XML: expected 'link' tag, not 'robot' at 2:7");
     assert_eq!(error("<sdf/>"), "URDF line 1: the outermost element must be <robot>, found <sdf>");
     assert_eq!(
@@ -234,7 +234,7 @@ fn xacro_says_how_to_expand_it() {
 }
 
 #[test]
-fn joints_that_cannot_be() {
+fn impossible_joints_are_named() {
     let cases = [
         (
             "0.1 0.2 0.3",
@@ -301,7 +301,7 @@ fn joints_that_cannot_be() {
 }
 
 #[test]
-fn trees_that_are_none() {
+fn graphs_that_are_no_trees_are_refused() {
     assert_eq!(
         error_after("<link name=\"base\"/>", "<link name=\"base\"/><link name=\"world\"/>"),
         "URDF: no joint leads to any of the links 'base', 'world': a tree has one root"

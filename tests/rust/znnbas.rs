@@ -7,8 +7,9 @@ use ikcore::limits::{Field, Limits, Profile};
 use ikcore::path::{Path, Plane, Polyline, Reference};
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
-use ikcore::tracking::controller::{Accept, Antenna, Znnbas};
-use ikcore::tracking::{Controller, KinematicPlant, ModelFreeOptions, ModelFreeRecord, track_model_free};
+use ikcore::tracking::{
+    Acceptance, Antenna, Controller, KinematicPlant, ModelFreeOptions, ModelFreeRecord, Znnbas, track_model_free,
+};
 
 const SEEDS: u64 = 20;
 const DT: f64 = 1e-3;
@@ -88,7 +89,7 @@ fn antennae_that_follow_the_error_converge_to_1e_5_and_below() {
 }
 
 #[test]
-fn within_the_limits_of_the_arm_the_first_stroke_is_out_of_reach() {
+fn the_first_stroke_is_out_of_reach_within_the_limits() {
     for seed in 0..SEEDS {
         let run = Run::new(&Znnbas::published(), &letter(), Some(position_limits(&robot("iiwa14"))), seed);
         assert!((11.0..=13.0).contains(&run.arrival()), "seed {seed}: {} s", run.arrival());
@@ -120,6 +121,6 @@ fn theorem_1_holds_for_the_algorithm_of_its_proof_alone() {
         let run = Run::new(&Znnbas { accept, ..Znnbas::published() }, &point, None, 1);
         (1..=5000).filter(|i| run.h(*i) > run.h(i - 1)).count()
     };
-    assert_eq!(rises(Accept::Improving), 0);
-    assert!(rises(Accept::Always) > 100, "{}", rises(Accept::Always));
+    assert_eq!(rises(Acceptance::Improving), 0);
+    assert!(rises(Acceptance::Always) > 100, "{}", rises(Acceptance::Always));
 }

@@ -39,24 +39,28 @@
 //! - The same seed gives the same bits, on one build and instruction set.
 //! - Models are immutable and shared between threads without locks; hot loops do not allocate.
 //!
-//! # Layers
+//! # Rooms
 //!
-//! A file imports its own folder and lower layers only; a test checks it.
+//! A file imports its own module and modules of lower layers only, never in a circle; a test checks it.
 //!
 //! | layer | modules |
 //! |---|---|
 //! | 0 | [`error`], [`rng`], [`math`], [`stored`], `wording` |
-//! | 1 | [`robot`], [`path`], [`trajectory`], [`objective`] |
-//! | 2 | [`limits`], [`obstacle`], [`manipulability`] |
-//! | 3 | [`task`], [`solver`] |
-//! | 4 | [`problem`] |
-//! | 5 | [`ik`], [`minimize`](mod@minimize) |
-//! | 6 | [`tracking`], [`planning`], [`posture`], [`batch`] |
+//! | 1 | [`kinematics`], [`path`], [`trajectory`], [`objective`] |
+//! | 2 | [`starts`] |
+//! | 3 | [`robot`] |
+//! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
+//! | 5 | [`task`], [`solver`] |
+//! | 6 | [`problem`] |
+//! | 7 | [`ik`], [`minimize`](mod@minimize) |
+//! | 8 | [`tracking`], [`planning`], [`posture`], [`batch`] |
 
 pub mod batch;
 pub mod error;
 pub mod ik;
+pub mod kinematics;
 pub mod limits;
+pub mod load;
 pub mod manipulability;
 pub mod math;
 pub mod minimize;
@@ -69,6 +73,7 @@ pub mod problem;
 pub mod rng;
 pub mod robot;
 pub mod solver;
+pub mod starts;
 pub mod stored;
 pub mod task;
 pub mod tracking;

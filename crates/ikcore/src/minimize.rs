@@ -8,9 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result, require_finite};
 use crate::objective::{Bounds, CallPattern, Objective, Point, Score};
 use crate::rng::{self, LazyRng};
-use crate::solver::reporting::Reporting;
-use crate::solver::stop::Stopwatch;
-use crate::solver::{AnySolver, DerivativeFree, Evaluator, Monitor, Status, Stop};
+use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Monitor, Status, Stop, Stopwatch};
 
 /// How to minimise.
 #[derive(Debug, Clone)]
@@ -91,19 +89,20 @@ pub fn minimize(
     }
     let done = Cell::new(0);
     let mut recorded = Recorded { objective, enough: stop.value_below, done: &done, history: Vec::new() };
-    let mut reporting = Reporting { monitor, done: &done, total: stop.max_evaluations };
+    let mut reporting = EvaluationMonitor { monitor, done: &done, total: stop.max_evaluations };
     let narrowed: &mut dyn Objective = &mut recorded;
     let stop = Stop { value_below: None, ..*stop };
     let mut evaluator = Evaluator::new(narrowed, bounds, stop, &mut rng, &mut reporting);
-    let outcome = solver.run(&mut evaluator, &x0);
-    let (best, evaluations, restarts) = (evaluator.best().clone(), evaluator.evaluations(), evaluator.attempts() - 1);
+    let status = solver.run(&mut evaluator, &x0);
+    let (best, iterations) = (evaluator.best().clone(), evaluator.iterations());
+    let (evaluations, restarts) = (evaluator.evaluations(), evaluator.attempts() - 1);
     monitor.progress(evaluations, evaluations);
     Ok(Minimum {
         x: best.x,
         value: best.value,
         history: recorded.finish(evaluations),
-        status: outcome.status(),
-        iterations: outcome.iterations,
+        status,
+        iterations,
         restarts,
         evaluations,
         elapsed: stopwatch.elapsed(),

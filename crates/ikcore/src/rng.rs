@@ -1,5 +1,5 @@
-//! The only place where random generators are born: repeatable from (seed, stream), and lazily, since most targets
-//! are solved without a draw.
+//! Random generators, made nowhere else: repeatable from (seed, stream), and built at the first draw, since most targets are
+//! solved without one.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -82,7 +82,7 @@ impl LazyRng {
     /// Two independent uniforms in [0, 1) from one draw: 26 bits for the first, 27 for the second. Enough for weights, at
     /// half the cost.
     #[inline]
-    pub fn uniform_pair(&mut self) -> [f64; 2] {
+    fn uniform_pair(&mut self) -> [f64; 2] {
         split(self.uniform())
     }
 
@@ -134,7 +134,7 @@ impl LazyRng {
         b.iter_mut().for_each(|v| *v *= scale);
     }
 
-    /// Hands every entry of `out` a draw of its own, in order; straight from the buffer where that has enough.
+    /// Calls `set` with each entry of `out` and a draw, in order; straight from the buffer where it has enough.
     #[inline]
     fn draw(&mut self, out: &mut [f64], mut set: impl FnMut(&mut f64, f64)) {
         match &mut self.source {

@@ -1,5 +1,5 @@
-//! Values as bytes, for storing and for copying between processes: a version, a checksum, then the value. Bytes that were
-//! damaged are refused by the checksum, so that a value restored is one that was made.
+//! Values as bytes, for storing and for copying between processes: a version, a checksum, then the value. The checksum
+//! refuses damaged bytes.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

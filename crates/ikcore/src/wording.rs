@@ -1,10 +1,10 @@
-//! Numbers in sentences, and the words of options.
+//! Numbers in messages, and the words of options.
 
-/// The words of an option: `name` and `Display` write them, `FromStr` reads them, and its error lists them in this order.
+/// Implements `name`, `Display` and `FromStr` for an option by these words; the error of `FromStr` lists them.
 macro_rules! words {
     ($what:literal: $option:ident { $($variant:ident => $word:literal),+ $(,)? }) => {
         impl $option {
-            /// The word for it.
+            /// The word of this option.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $word,)+
@@ -45,7 +45,7 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
-/// A time (s) without the digits that sums of dt leave behind.
+/// A time (s), rounded to 1e-9 s to remove the rounding of sums of dt.
 pub(crate) fn time(seconds: f64) -> f64 {
     (seconds * 1e9).round() / 1e9
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use ikcore::batch::{self, Batch, BatchOptions, Item, OnInvalid, Targets};
+use ikcore::batch::{self, Batch, BatchItem, BatchOptions, OnInvalid, Targets};
 use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
@@ -12,21 +12,21 @@ use pyo3::types::PyIterator;
 use crate::convert::{Numbers, Rows, array, optional_count, row, rows, shape_text, table};
 use crate::error::{invalid, raise};
 use crate::ik::PySolution;
+use crate::indexing::{Selection, iterate, select};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
-use crate::picked::{Picked, items, picked};
+use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
-use crate::stored::{self, Reduced};
 
-/// Solutions in the order of the targets, as columns; `b[i]` is one of them as a `Solution`, `b[10:20]` and
-/// `b[~b.success]` are batches of some of them.
+/// Solutions in the order of the targets, stored as columns. `b[i]` is a `Solution`; `b[10:20]` and `b[~b.success]` are
+/// batches.
 #[pyclass(name = "BatchSolution", module = "beetle_ik", frozen)]
 pub struct PyBatchSolution {
-    items: Vec<Item>,
+    items: Vec<BatchItem>,
     dof: usize,
-    /// The best configurations found (m, n) (rad, m), inside the limits; NaN where `status` is INVALID.
+    /// The best configurations found (m, n) (rad, m), inside the limits; NaN in rows whose `status` is INVALID.
     #[pyo3(get)]
     q: Py<PyArrayDyn<f64>>,
     /// Whether each target was reached within the tolerances (m,).
@@ -35,16 +35,16 @@ pub struct PyBatchSolution {
     /// Why each search ended (m,), values of `Status`.
     #[pyo3(get)]
     status: Py<PyArray1<u8>>,
-    /// Distances of the tip from its targets (m,) (m), by forward kinematics of `q`.
+    /// Distances of the tip from the targets (m,) (m), by forward kinematics of `q`.
     #[pyo3(get)]
     position_error: Py<PyArray1<f64>>,
-    /// Geodesic angles to the targets' orientations (m,) (rad); NaN where none was asked for.
+    /// Geodesic angles to the targets' orientations (m,) (rad); NaN if the task leaves the orientation free.
     #[pyo3(get)]
     rotation_error: Py<PyArray1<f64>>,
     /// Iterations over all starts (m,).
     #[pyo3(get)]
     iterations: Py<PyArray1<i64>>,
-    /// Starts beyond the first (m,).
+    /// Restarts after the first start (m,).
     #[pyo3(get)]
     restarts: Py<PyArray1<i64>>,
     /// Evaluations of the forward kinematics (m,).
@@ -61,7 +61,7 @@ pub struct PyBatchSolution {
 
 #[pymethods]
 impl PyBatchSolution {
-    /// Time taken in all (s).
+    /// Total time (s).
     #[getter]
     fn elapsed(&self) -> f64 {
         self.elapsed.as_secs_f64()
@@ -71,25 +71,25 @@ impl PyBatchSolution {
         self.items.len()
     }
 
-    /// A `Solution`; for a slice, a mask or several indices a `BatchSolution` of these, whose `elapsed` is the sum of
-    /// theirs.
+    /// Returns a `Solution`, or a `BatchSolution` for a slice, a mask or several indices. The `elapsed` of such a part is
+    /// the sum over its items.
     fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        match picked("a batch", index, self.items.len())? {
-            Picked::One(i) => {
+        match select("a batch", index, self.items.len())? {
+            Selection::One(i) => {
                 let q = self.q.bind(py).readonly();
                 let solution = self.items[i].solution(&q.as_slice()?[i * self.dof..(i + 1) * self.dof]);
                 Ok(Bound::new(py, PySolution::new(py, solution, self.limits.clone_ref(py)))?.into_any())
             }
-            Picked::Many(rows) => {
+            Selection::Many(rows) => {
                 let batch = self.core(py)?.select(&rows);
                 Ok(Bound::new(py, Self::new(py, batch, self.limits.clone_ref(py))?)?.into_any())
             }
         }
     }
 
-    /// Each `Solution`.
+    /// Iterates over the solutions.
     fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyIterator>> {
-        items(slf.as_any())
+        iterate(slf.as_any())
     }
 
     fn __repr__(&self) -> String {
@@ -97,11 +97,11 @@ impl PyBatchSolution {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("batch of solutions", &self.core(py)?))?;
-        stored::restored_from::<Self>(py, (core, self.limits.clone_ref(py)))
+        let core = pickling::bytes(py, to_bytes("batch of solutions", &self.core(py)?))?;
+        pickling::restored_from::<Self>(py, (core, self.limits.clone_ref(py)))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
         Self::new(py, from_bytes("batch of solutions", bytes).map_err(raise)?, limits)
@@ -137,38 +137,38 @@ impl PyBatchSolution {
     }
 }
 
-fn column<T: Element>(py: Python<'_>, items: &[Item], of: impl Fn(&Item) -> T) -> Py<PyArray1<T>> {
+fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchItem) -> T) -> Py<PyArray1<T>> {
     row(py, items.iter().map(of).collect()).unbind()
 }
 
 /// Solves many targets at once, on all cores.
 ///
-/// The result is the same, to the bit, for any number of threads; an item does not depend on the items behind it, and
-/// item 0 is what `solve` finds.
+/// The result is bit-identical for any number of threads. An item does not depend on the items after it, and item 0 equals
+/// the result of `solve`.
 ///
 /// Args:
 ///     robot: the arm.
 ///     targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free.
-///     starts: where to begin, (m, n), or (n,) for all; None begins at stored configurations of the robot whose tip is near.
-///     threads: None: one per core. With 1, nothing leaves the calling thread.
-///     on_invalid: what to do about a target or start that is wrong: "raise" names its row; "skip" solves the others
-///         and marks the row `Status.INVALID`, its q NaN.
-///     progress: True for a bar on the terminal, or a callable of (done, total).
+///     starts: first starts, (m, n), or (n,) for all; None: stored configurations of the robot with the tip near the target.
+///     threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
+///     on_invalid: how to treat an invalid target or start: "raise" raises an error that names its row; "skip" solves the
+///         other rows and marks this one `Status.INVALID`, with q NaN.
+///     progress: True shows a progress bar; a callable is called with (done, total).
 ///     task: as for `solve`.
-///     solver: None: Levenberg-Marquardt from many starts.
-///     position_tolerance: m.
-///     rotation_tolerance: rad, geodesic angle.
+///     solver: the solver; None: Levenberg-Marquardt from many starts.
+///     position_tolerance: largest position error (m).
+///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
 ///     goals, prefer: as for `solve`.
-///     limits: position limits to keep; None keeps the robot's.
+///     limits: position limits; None: the robot's.
 ///     stop: budgets of each target; None: as for `solve`.
-///     seed: of the random draws: the same seed, the same bits.
+///     seed: seed of the random draws; the same seed gives the same bits.
 ///
 /// Returns:
-///     A `BatchSolution`. A target that is not reached is a status beside the best configuration found, not an error.
+///     A `BatchSolution`. If a target is not reached, its status says why, and its q is the best configuration found.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape; NaN or a target that is not a rigid transform, with its row.
-///     LimitError: a start outside the limits, with its row.
+///     InvalidInputError: wrong shape; NaN, or a target that is not a rigid transform (names the row).
+///     LimitError: a start outside the limits (names the row).
 #[pyfunction]
 #[pyo3(signature = (robot, targets, *, starts=None, threads=None, on_invalid="raise", progress=None, task=None,
                     solver=None, position_tolerance=1e-6, rotation_tolerance=1e-6, goals=None, prefer="any",

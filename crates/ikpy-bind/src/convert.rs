@@ -1,4 +1,4 @@
-//! Python values to Rust and back: the only file that knows how numpy lays out memory.
+//! Conversion of Python values to Rust and back. The only file that depends on numpy's memory layout.
 
 use std::ops::Deref;
 
@@ -15,20 +15,20 @@ use pyo3::types::{IntoPyDict, PyBytes, PyList, PyString, PyTuple, PyType};
 
 use crate::error::{invalid, raise};
 
-/// A float64 array of any shape, as results hold it.
+/// A float64 array of any shape.
 pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// The numbers of an argument, in C order.
 ///
-/// numpy's `readonly()` would register every one in a table of borrows, which costs as much as a step of a solver and guards
-/// against mutable borrows alone: there are none here.
+/// numpy's `readonly()` would register each array in a table of borrows. That costs as much as a step of a solver, and only
+/// guards against mutable borrows, of which there are none here.
 pub struct Numbers<'py>(Array<'py>);
 
 impl Numbers<'_> {
-    /// Row after row.
+    /// The numbers, row by row.
     pub fn as_slice(&self) -> Result<&[f64], AsSliceError> {
-        // SAFETY: nothing in this library writes into an argument. That no other thread does, while a long call has let go of
-        // the interpreter, is the caller's part; numpy's table would not stop it either.
+        // SAFETY: this library never writes into an argument. The caller must ensure that no other thread does while a long
+        // call has released the interpreter; numpy's table would not prevent it either.
         unsafe { self.0.as_slice() }
     }
 }
@@ -41,7 +41,7 @@ impl<'py> Deref for Numbers<'py> {
     }
 }
 
-/// Any array-like as float64 in C order; not copied where it already is one. `what` names it in errors.
+/// Converts an array-like to float64 in C order; copies only if needed. `what` names it in errors.
 pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
     if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
         && array.is_c_contiguous()
@@ -58,14 +58,14 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py
     });
     match converted {
         Ok(array) => Ok(Numbers(array.cast_into()?)),
-        // A Ctrl-C that falls into the conversion is not the value's fault.
+        // Ctrl-C during the conversion is not an error of the value.
         Err(error) if error.is_instance_of::<PyException>(value.py()) => Err(no_numbers()),
         Err(interrupt) => Err(interrupt),
     }
 }
 
-/// What numpy would turn into other numbers than were meant: None into NaN, a text into what it spells, complex numbers
-/// into their real parts, dates into seconds.
+/// Whether numpy would silently convert the value to unintended numbers: None to NaN, text to the number it spells, complex
+/// numbers to their real parts, dates to seconds.
 fn is_misread(value: &Bound<'_, PyAny>) -> PyResult<bool> {
     if value.is_none() || value.is_instance_of::<PyString>() || value.is_instance_of::<PyBytes>() {
         return Ok(true);
@@ -78,14 +78,14 @@ fn is_misread(value: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(kind?.is_some_and(|kind| kind.extract::<char>().is_ok_and(|kind| "cmMSUV".contains(kind))))
 }
 
-/// What numpy makes of the value.
+/// Calls `numpy.asarray`.
 fn float64<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let py = value.py();
     let options = [("dtype", "float64"), ("order", "C")].into_py_dict(py)?;
     py.import(intern!(py, "numpy"))?.call_method(intern!(py, "asarray"), (value,), Some(&options))
 }
 
-/// The matrices of another library's poses and rotations, one or several in a list; None for anything else.
+/// Returns the matrices of another library's poses or rotations, one or a list of them; None for anything else.
 fn matrices<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
     if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
         let each = value.try_iter()?.map(|item| matrix(&item?)).collect::<PyResult<Option<Vec<_>>>>()?;
@@ -94,7 +94,7 @@ fn matrices<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>
     matrix(value)
 }
 
-/// The matrix of an object that is known by what it offers: `homogeneous` (Pinocchio's SE3) or `as_matrix()` (scipy's
+/// Returns the matrix of an object with an attribute `homogeneous` (Pinocchio's SE3) or a method `as_matrix` (scipy's
 /// RigidTransform and Rotation).
 fn matrix<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
     let py = value.py();
@@ -104,23 +104,23 @@ fn matrix<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>>
     value.getattr_opt(intern!(py, "as_matrix"))?.map(|matrix| matrix.call0()).transpose()
 }
 
-/// A count or a seed. Taken as i128, because the overflow error of a narrower type would not say what was wrong.
+/// Reads a count or a seed. It is taken as i128, because the overflow error of a narrower type would not name the argument.
 pub fn count<T: TryFrom<i128>>(what: &str, value: i128) -> PyResult<T> {
     let bound = || if value < 0 { "zero or more".into() } else { format!("below 2^{}", 8 * size_of::<T>()) };
     T::try_from(value).map_err(|_| invalid(format!("{what} must be {}, got {value}", bound())))
 }
 
-/// [`count`] where one was given.
+/// Reads an optional count.
 pub fn optional_count<T: TryFrom<i128>>(what: &str, value: Option<i128>) -> PyResult<Option<T>> {
     value.map(|value| count(what, value)).transpose()
 }
 
-/// So many of a thing, in words.
+/// Formats a count with its noun.
 pub fn counted(count: usize, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
-/// The repr of a value, cut to a readable length. A class of this library stands where a value of it was meant.
+/// Returns the repr of a value, cut to a readable length. A class of this library probably lacks its parentheses.
 pub fn summary(value: &Bound<'_, PyAny>) -> String {
     if let Ok(class) = value.cast::<PyType>()
         && class.module().is_ok_and(|module| module.to_string_lossy().starts_with("beetle_ik"))
@@ -132,7 +132,7 @@ pub fn summary(value: &Bound<'_, PyAny>) -> String {
     if repr.chars().count() > 60 { repr.chars().take(57).chain("...".chars()).collect() } else { repr }
 }
 
-/// A shape as Python writes it.
+/// Formats a shape in Python syntax.
 pub fn shape_text(shape: &[usize]) -> String {
     match shape {
         [n] => format!("({n},)"),
@@ -140,7 +140,7 @@ pub fn shape_text(shape: &[usize]) -> String {
     }
 }
 
-/// The numbers of an array-like of one dimension.
+/// Reads a one-dimensional array-like.
 pub fn vector(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let array = array(what, value)?;
     match array.shape() {
@@ -149,7 +149,7 @@ pub fn vector(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     }
 }
 
-/// A number, or the numbers of an array-like of one dimension; whether it was a number.
+/// Reads a number or a one-dimensional array-like; also returns whether it was a number.
 pub fn scalar_or_vector(what: &str, value: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, bool)> {
     let array = array(what, value)?;
     match array.shape() {
@@ -158,7 +158,7 @@ pub fn scalar_or_vector(what: &str, value: &Bound<'_, PyAny>) -> PyResult<(Vec<f
     }
 }
 
-/// Times (s) to look at, a number or one dimension; whether it was a number. Infinite ones are clamped later.
+/// Reads times (s), a number or one dimension; also returns whether it was a number. Infinite times are clamped later.
 pub fn times(value: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, bool)> {
     let (times, single) = scalar_or_vector("t", value)?;
     match times.iter().position(|t| t.is_nan()) {
@@ -167,7 +167,7 @@ pub fn times(value: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, bool)> {
     }
 }
 
-/// The N numbers of an array-like of one dimension.
+/// Reads N numbers from a one-dimensional array-like.
 pub fn entries<const N: usize>(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; N]> {
     let array = array(what, value)?;
     match <[f64; N]>::try_from(array.as_slice()?) {
@@ -176,12 +176,12 @@ pub fn entries<const N: usize>(what: &str, value: &Bound<'_, PyAny>) -> PyResult
     }
 }
 
-/// Three numbers.
+/// Reads three numbers.
 pub fn point(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
     entries(what, value)
 }
 
-/// Two corners of a box, one row each.
+/// Reads two corners of a box, one row each.
 pub fn corners(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 2]> {
     let array = array(what, value)?;
     match (array.shape(), array.as_slice()?) {
@@ -190,7 +190,7 @@ pub fn corners(what: &str, value: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 2]> 
     }
 }
 
-/// A rigid transform from a 4x4 matrix.
+/// Reads a rigid transform from a 4x4 matrix.
 pub fn rigid(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Pose> {
     let array = array(what, value)?;
     match array.shape() {
@@ -199,18 +199,18 @@ pub fn rigid(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Pose> {
     }
 }
 
-/// A rigid transform from 16 numbers, row after row.
+/// Makes a rigid transform from 16 numbers, row by row.
 pub fn rigid_rows(what: &str, rows: &[f64]) -> PyResult<Pose> {
     pose::from_matrix(what, &Matrix4::from_row_slice(rows)).map_err(raise)
 }
 
-/// The rigid transforms of a pile of 4x4 matrices.
+/// Makes rigid transforms from stacked 4x4 matrices.
 pub fn rigid_matrices(numbers: &[f64]) -> PyResult<Vec<Pose>> {
     let matrices = numbers.chunks_exact(16).enumerate();
     matrices.map(|(i, rows)| rigid_rows(&format!("pose {i}"), rows)).collect()
 }
 
-/// A 3x3 matrix.
+/// Reads a 3x3 matrix.
 pub fn matrix3(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
     let array = array(what, value)?;
     match array.shape() {
@@ -219,34 +219,34 @@ pub fn matrix3(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
     }
 }
 
-/// Numbers in C order, moved into a read-only array of this shape.
+/// Moves numbers in C order into a read-only array of this shape.
 pub fn table<'py, T: Element>(py: Python<'py>, values: Vec<T>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     Ok(read_only(values.into_pyarray(py).reshape(shape)?))
 }
 
-/// A read-only vector that takes the buffer over.
+/// Moves a buffer into a read-only vector.
 pub fn row<T: Element>(py: Python<'_>, values: Vec<T>) -> Bound<'_, PyArray1<T>> {
     read_only(values.into_pyarray(py))
 }
 
-/// A read-only vector of these few numbers: cheaper than handing a buffer over.
+/// Copies a few numbers into a read-only vector, which is cheaper than moving a buffer.
 pub fn copied<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>> {
     read_only(PyArray1::from_slice(py, values))
 }
 
-/// A read-only 4x4 matrix.
+/// Converts a pose to a read-only 4x4 matrix.
 pub fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyArray2<f64>>> {
     Ok(read_only(PyArray1::from_slice(py, &pose::rows(pose)).reshape([4, 4])?))
 }
 
 fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
-    // SAFETY: the array was made here and nobody else has seen it.
+    // SAFETY: the array was made here and has no other owner yet.
     unsafe { (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE };
     array
 }
 
-/// The rows (m, n) of a batch, or the single row (n,): the numbers and, for a batch, m. `n` is checked by the core for
-/// a single row, and here for a batch.
+/// The rows (m, n) of a batch, or a single row (n,): the numbers and, for a batch, m. The core checks n of a single row;
+/// [`rows`] checks it for a batch.
 pub enum Rows<'py> {
     /// One row.
     One(Numbers<'py>),
@@ -254,7 +254,7 @@ pub enum Rows<'py> {
     Many(Numbers<'py>, usize),
 }
 
-/// Reads (n,) or (m, n); `owner` is whose joints these are.
+/// Reads (n,) or (m, n); `owner` names the robot in errors.
 pub fn rows<'py>(what: &str, owner: &str, n: usize, value: &Bound<'py, PyAny>) -> PyResult<Rows<'py>> {
     let array = array(what, value)?;
     match array.shape() {

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
-/// The exception classes, made once. Several have two bases, which pyo3's own macro cannot give them.
+/// The exception classes, made once. Several have two bases, which pyo3's macro does not support.
 struct Classes {
     base: Py<PyType>,
     invalid_input: Py<PyType>,
@@ -50,33 +50,33 @@ fn classes(py: Python<'_>) -> PyResult<&Classes> {
         let bound = |class: &Py<PyType>| class.bind(py).clone();
         let invalid_input = class(
             "InvalidInputError",
-            "An argument with a wrong value, shape or unit; the message says what would be right.",
+            "An argument with a wrong value, shape or unit; the message says what is expected.",
             vec![bound(&base), value_error],
         )?;
         let limit = class(
             "LimitError",
-            "Limits that contradict themselves or exclude the start.",
+            "Limits that contradict each other or exclude the start.",
             vec![bound(&invalid_input)],
         )?;
         Ok(Classes {
             unknown_name: class(
                 "UnknownNameError",
-                "No robot, link or option of that name; the message lists them.",
+                "Unknown name of a robot, link or option; the message lists the known ones.",
                 vec![bound(&base), lookup_error],
             )?,
             urdf: class(
                 "UrdfError",
-                "A robot description that cannot be read; the message names line and joint.",
+                "A robot description that cannot be read; the message names the line and the joint.",
                 vec![bound(&invalid_input)],
             )?,
             unsupported_limit: class(
                 "UnsupportedLimit",
-                "A limit that the method cannot honour. No method ignores one.",
+                "A limit that the method cannot keep. No method ignores one.",
                 vec![bound(&limit)],
             )?,
             infeasible: class(
                 "InfeasibleError",
-                "A question without an answer: what it asks for contradicts itself; the message says what stands against what.",
+                "Requirements that contradict each other; the message names the two.",
                 vec![bound(&invalid_input)],
             )?,
             base,
@@ -96,7 +96,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     Ok(())
 }
 
-/// The exception for an error of the core.
+/// Converts an error of the core to its exception.
 pub fn raise(error: Error) -> PyErr {
     Python::attach(|py| {
         let classes = match classes(py) {
@@ -108,7 +108,7 @@ pub fn raise(error: Error) -> PyErr {
     })
 }
 
-/// An `InvalidInputError` for what the core never sees.
+/// Makes an `InvalidInputError`, for arguments checked in the binding.
 pub fn invalid(message: String) -> PyErr {
     Python::attach(|py| match classes(py) {
         Ok(classes) => PyErr::from_type(classes.invalid_input.bind(py).clone(), message),

@@ -1,4 +1,4 @@
-//! `goals`: what the joints should do where the task leaves them free.
+//! `goals`: secondary objectives in the null space of the task.
 
 use ikcore::manipulability::Motion;
 use ikcore::task::Goal;
@@ -20,7 +20,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyLinkManipulability>()
 }
 
-/// What the joints should do where the task leaves them free: one of `Posture`, `Centring`, `Manipulability` and
+/// A secondary objective, optimised in the null space of the task: `Posture`, `Centring`, `Manipulability` or
 /// `LinkManipulability`.
 #[pyclass(name = "Goal", module = "beetle_ik.goals", frozen, subclass, eq)]
 #[derive(Debug, Clone, PartialEq)]
@@ -30,7 +30,7 @@ pub struct PyGoal {
 
 #[pymethods]
 impl PyGoal {
-    /// Share among several goals.
+    /// Weight relative to other goals.
     #[getter]
     fn weight(&self) -> f64 {
         self.core.weight()
@@ -69,7 +69,7 @@ impl PyGoal {
     }
 }
 
-/// A goal of a class that adds nothing to it.
+/// Makes an instance of a goal's class, which adds no fields.
 fn made<C>(core: Goal, class: C) -> PyResult<PyClassInitializer<C>>
 where
     C: PyClass<BaseType = PyGoal>,
@@ -78,11 +78,11 @@ where
     Ok(PyClassInitializer::from(PyGoal { core }).add_subclass(class))
 }
 
-/// Near a posture: lowers |q - posture|^2.
+/// Stays close to a posture: minimises |q - posture|^2.
 ///
 /// Args:
 ///     posture: (n,) (rad, m).
-///     weight: share among several goals.
+///     weight: weight relative to other goals.
 #[pyclass(name = "Posture", module = "beetle_ik.goals", extends = PyGoal, frozen)]
 pub struct PyPosture;
 
@@ -94,7 +94,7 @@ impl PyPosture {
         made(Goal::Posture { posture: vector("posture", posture)?, weight }, Self)
     }
 
-    /// (n,) (rad, m).
+    /// The posture (n,) (rad, m).
     #[getter]
     fn posture<'py>(self_: PyRef<'py, Self>) -> Option<Bound<'py, PyArray1<f64>>> {
         let py = self_.py();
@@ -105,10 +105,10 @@ impl PyPosture {
     }
 }
 
-/// Away from the limits: lowers the sum of ((q - middle) / range)^2 over the joints that have limits.
+/// Stays away from the joint limits: minimises the sum of ((q - middle) / range)^2 over the joints that have limits.
 ///
 /// Args:
-///     weight: share among several goals.
+///     weight: weight relative to other goals.
 #[pyclass(name = "Centring", module = "beetle_ik.goals", extends = PyGoal, frozen)]
 pub struct PyCentring;
 
@@ -121,11 +121,11 @@ impl PyCentring {
     }
 }
 
-/// Far from singularities: lowers -ln w, with w Yoshikawa's index.
+/// Stays away from singularities: minimises -ln w, where w is Yoshikawa's index.
 ///
 /// Args:
-///     motion: of the tip, as in `Robot.manipulability`: "pose", "position" or "rotation".
-///     weight: share among several goals.
+///     motion: motion of the tip that counts, "pose", "position" or "rotation", as in `Robot.manipulability`.
+///     weight: weight relative to other goals.
 #[pyclass(name = "Manipulability", module = "beetle_ik.goals", extends = PyGoal, frozen)]
 pub struct PyManipulability;
 
@@ -139,12 +139,12 @@ impl PyManipulability {
     }
 }
 
-/// The whole arm far from singularities: lowers -ln of the sum of `Robot.link_manipulability`, so that no link comes near
-/// a straight line with the one before it.
+/// Keeps the whole arm away from singularities: minimises -ln of the sum of `Robot.link_manipulability`, so that no two
+/// successive links become collinear.
 ///
 /// Args:
-///     motion: of the links' tips, as in `Robot.manipulability`: "pose", "position" or "rotation".
-///     weight: share among several goals.
+///     motion: motion of the link tips that counts, "pose", "position" or "rotation", as in `Robot.manipulability`.
+///     weight: weight relative to other goals.
 #[pyclass(name = "LinkManipulability", module = "beetle_ik.goals", extends = PyGoal, frozen)]
 pub struct PyLinkManipulability;
 
@@ -158,13 +158,13 @@ impl PyLinkManipulability {
     }
 }
 
-/// The goals of a call: one, or several.
+/// Reads the `goals` argument of a call: None, one goal or several.
 pub fn read_goals(value: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Goal>> {
     let Some(value) = value else { return Ok(vec![]) };
     let core = |goal: &Bound<'_, PyAny>| goal.cast::<PyGoal>().map(|goal| goal.get().core.clone()).ok();
     if let Some(goal) = core(value) {
         return Ok(vec![goal]);
     }
-    let wrong = || invalid(format!("goals must be of beetle_ik.goals, one or several, got {}", summary(value)));
+    let wrong = || invalid(format!("goals must be one or several of beetle_ik.goals, got {}", summary(value)));
     value.try_iter().map_err(|_| wrong())?.map(|goal| core(&goal?).ok_or_else(wrong)).collect()
 }

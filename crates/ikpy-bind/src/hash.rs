@@ -1,17 +1,17 @@
-//! Hashes of values: what compares equal by its content hashes by it, and serves as a key of dicts and caches.
+//! Hashes of values that compare equal by content, so that they can be keys of dicts and caches.
 
 use std::fmt::{Debug, Result, Write};
 use std::hash::{DefaultHasher, Hasher};
 
-/// The hash of a content, taken of all that its `Debug` form shows.
+/// Returns the hash of the `Debug` form of a value.
 pub fn content_hash(content: &impl Debug) -> u64 {
     let mut shown = Signless(DefaultHasher::new());
-    // A hasher takes whatever is written.
+    // Writing to a hasher cannot fail.
     let _ = write!(shown, "{content:?}");
     shown.0.finish()
 }
 
-/// Hashes text without its minus signs: 0.0 and -0.0 are equal, so they must hash alike.
+/// Hashes text without minus signs: 0.0 and -0.0 are equal, so they must have the same hash.
 struct Signless(DefaultHasher);
 
 impl Write for Signless {

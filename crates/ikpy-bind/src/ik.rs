@@ -12,12 +12,12 @@ use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::Watcher;
 use crate::outcome::outcome;
+use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
-use crate::stored::{self, Reduced};
 
-/// The best configuration found, and what became of the search.
+/// The best configuration found, and how the search ended.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
 pub struct PySolution {
     core: ik::Solution,
@@ -49,7 +49,7 @@ impl PySolution {
         self.core.error.position
     }
 
-    /// Geodesic angle to the target's orientation (rad); NaN where none was asked for.
+    /// Geodesic angle to the target's orientation (rad); NaN if the task leaves the orientation free.
     #[getter]
     fn rotation_error(&self) -> f64 {
         self.core.error.rotation
@@ -61,7 +61,7 @@ impl PySolution {
         self.core.iterations
     }
 
-    /// Starts beyond the first.
+    /// Restarts after the first start.
     #[getter]
     fn restarts(&self) -> usize {
         self.core.restarts
@@ -72,11 +72,11 @@ impl PySolution {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("solution", &self.core))?;
-        stored::restored_from::<Self>(py, (core, &self.limits))
+        let core = pickling::bytes(py, to_bytes("solution", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, &self.limits))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
         Ok(Self::new(py, from_bytes("solution", bytes).map_err(raise)?, limits))
@@ -94,26 +94,28 @@ impl PySolution {
 /// Args:
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m) with the orientation left free.
-///     task: of `tasks`, what of the target matters; None: all that it says.
-///     start: (n,), where to begin; None begins at stored configurations of the robot whose tip is near the target.
-///     solver: None: Levenberg-Marquardt from many starts.
-///     position_tolerance: m.
-///     rotation_tolerance: rad, geodesic angle.
-///     goals: of `goals`, one or several: the solution found is moved along the self-motion to where they are best near it.
-///     prefer: "any" solution, or the "nearest" to the start: of those found until 24 in a row were no nearer, each moved
-///         along the self-motion and by whole turns inside the limits towards the start, the one with the smallest
-///         |q - start| (rad, m); or the "best" for the goals, of those found all over, each moved along the self-motion, until
-///         40 in a row were no better; an arm with one joint more than its task needs is led once along every curve of
-///         solutions, past the limits that cut it.
-///     limits: position limits to keep; None keeps the robot's.
+///     task: which part of the target counts, one of `tasks`; None: all of it.
+///     start: (n,), first start of the search; None: stored configurations of the robot with the tip near the target.
+///     solver: the solver; None: Levenberg-Marquardt from many starts.
+///     position_tolerance: largest position error (m).
+///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
+///     goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
+///     prefer: which solution to return.
+///         "any": the first one found.
+///         "nearest": the one with the smallest |q - start| (rad, m). Each solution found is moved along its self-motion
+///         and by whole turns towards the start; the search ends when 24 in a row are no nearer.
+///         "best": the best one for the goals. Each solution found is optimised along its self-motion; the search ends
+///         when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
+///         traced once instead, including the parts beyond joint limits.
+///     limits: position limits; None: the robot's.
 ///     stop: budgets; None: a count of evaluations that keeps a 7-joint arm under about 10 ms.
-///     seed: of the random draws: the same seed, the same bits.
+///     seed: seed of the random draws; the same seed gives the same bits.
 ///
 /// Returns:
-///     A `Solution`. A target that is not reached is a status beside the best configuration found, not an error.
+///     A `Solution`. If the target is not reached, `status` says why, and `q` is the best configuration found.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform.
+///     InvalidInputError: wrong shape, NaN, or a target that is not a rigid transform.
 ///     LimitError: a start outside the limits.
 #[pyfunction]
 #[pyo3(signature = (robot, target, *, task=None, start=None, solver=None, position_tolerance=1e-6,

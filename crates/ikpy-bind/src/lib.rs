@@ -1,12 +1,12 @@
-//! The native module `beetle_ik._core`: registration only. Each file converts for one module of the core.
+//! The native module `beetle_ik._core`: registration of classes and functions. Each file wraps one module of the core.
 
-mod all;
 mod batch;
 mod convert;
 mod error;
 mod goal;
 mod hash;
 mod ik;
+mod indexing;
 mod limits;
 mod minimize;
 mod monitor;
@@ -14,18 +14,18 @@ mod obstacle;
 mod options;
 mod outcome;
 mod path;
-mod picked;
+mod pickling;
 mod planning;
 mod pose;
 mod posture;
+mod python_calls;
 mod robot;
+mod solve_all;
 mod solve_arguments;
 mod solver;
-mod stored;
 mod task;
 mod tracking;
 mod trajectory;
-mod upward;
 
 use pyo3::prelude::*;
 
@@ -41,8 +41,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<limits::PyLimits>()?;
     module.add_class::<ik::PySolution>()?;
     module.add_function(wrap_pyfunction!(ik::solve, module)?)?;
-    module.add_class::<all::PySolutionSet>()?;
-    module.add_function(wrap_pyfunction!(all::solve_all, module)?)?;
+    module.add_class::<solve_all::PySolutionSet>()?;
+    module.add_function(wrap_pyfunction!(solve_all::solve_all, module)?)?;
     task::register(module)?;
     goal::register(module)?;
     module.add_class::<batch::PyBatchSolution>()?;
@@ -57,6 +57,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     planning::register(module)?;
     tracking::register(module)?;
     module.add_class::<trajectory::PyTrajectory>()?;
-    // The package names what is public; a second list here would only go stale.
+    // The package lists what is public; a second list would become outdated.
     module.dict().del_item("__all__")
 }

@@ -3,18 +3,19 @@
 use std::time::Duration;
 
 use ikcore::solver::Monitor;
-use ikcore::solver::stop::Stopwatch;
+use ikcore::solver::Stopwatch;
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
 use crate::convert::summary;
 use crate::error::{invalid, raise};
-use crate::upward;
+use crate::python_calls;
 
-/// Time between two looks at Python, and between two reports of progress: short enough to feel immediate, long enough to cost nothing.
+/// Time between two checks for signals, and between two reports of progress: short enough to feel immediate, long enough to cost
+/// nothing.
 const INTERVAL: Duration = Duration::from_millis(20);
 
-/// Watches a call that runs without the interpreter.
+/// Monitors a long call: checks for Ctrl-C and reports progress.
 pub struct Watcher {
     since_last_look: Stopwatch,
     since_last_report: Stopwatch,
@@ -23,20 +24,20 @@ pub struct Watcher {
 }
 
 impl Watcher {
-    /// A watcher for Ctrl-C alone.
+    /// A watcher that only checks for Ctrl-C.
     pub fn new() -> Self {
         let now = Stopwatch::start();
         Self { since_last_look: now, since_last_report: now, progress: None, failure: None }
     }
 
-    /// What the interpreter raised meanwhile, if anything.
+    /// Returns the exception that occurred during the call, if any.
     pub fn finish(self) -> PyResult<()> {
         self.failure.map_or(Ok(()), Err)
     }
 }
 
-/// A call that may take long and keeps the interpreter, watched for Ctrl-C and with reports to `progress`. What those raised
-/// comes before what the call did.
+/// Runs a long call that holds the interpreter, with checks for Ctrl-C and reports to `progress`. Their exceptions take
+/// precedence over the result of the call.
 pub fn attended<T>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -46,7 +47,7 @@ pub fn attended<T>(
     failure.map_or(found, Err)
 }
 
-/// What such a call came to, and beside it what Ctrl-C or `progress` raised meanwhile.
+/// Runs such a call; returns its result and the exception of Ctrl-C or `progress`, if any.
 pub fn followed<T>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -59,7 +60,7 @@ pub fn followed<T>(
     Ok((found, watcher.failure))
 }
 
-/// The same for a call of the core, which needs no interpreter.
+/// Runs a long call of the core, which releases the interpreter.
 pub fn watched<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -68,7 +69,7 @@ pub fn watched<T: Send>(
     attended(py, progress, |watcher| py.detach(|| call(watcher)).map_err(raise))
 }
 
-/// Whether the interval is over, which then begins anew.
+/// Whether the interval has passed; if so, restarts it.
 fn due(since: &mut Stopwatch) -> bool {
     let due = since.elapsed() >= INTERVAL;
     if due {
@@ -93,7 +94,7 @@ impl Monitor for Watcher {
     }
 }
 
-/// The `progress` argument: nothing, a bar on the terminal (True), or a callable of (done, total).
+/// The `progress` argument: None or False, True for a progress bar, or a callable of (done, total).
 #[derive(Default)]
 struct Progress {
     update: Option<Py<PyAny>>,
@@ -113,16 +114,16 @@ impl Progress {
     }
 
     fn bar(py: Python<'_>) -> PyResult<Self> {
-        let bar = upward::progress_bar(py)?;
+        let bar = python_calls::progress_bar(py)?;
         Ok(Self { update: Some(bar.getattr("update")?.unbind()), bar: Some(bar.unbind()) })
     }
 
-    /// What to call with (done, total).
+    /// The function to call with (done, total).
     fn update(&self, py: Python<'_>) -> Option<Py<PyAny>> {
         self.update.as_ref().map(|update| update.clone_ref(py))
     }
 
-    /// Takes the bar off the screen.
+    /// Stops the progress bar.
     fn close(self, py: Python<'_>) -> PyResult<()> {
         self.bar.map_or(Ok(()), |bar| bar.call_method0(py, "close").map(|_| ()))
     }

@@ -1,24 +1,24 @@
-//! Options that are fields of a core value: how they come from Python, go back and show themselves.
+//! Options that are fields of a core value: conversion from and to Python, and `repr`.
 
-use ikcore::solver::Variant;
-use ikcore::solver::beetle_swarm::Direction;
-use ikcore::solver::differential_evolution::Update;
+use ikcore::solver::BasVariant;
+use ikcore::solver::BeetleDirection;
+use ikcore::solver::TrialUpdate;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::convert::{count, optional_count};
 use crate::error::raise;
 
-/// An option as the core holds it.
+/// An option stored in the core.
 pub trait Shown {
-    /// What Python gets.
+    /// The type of the option in Python.
     type Value;
     fn value(&self) -> Self::Value;
-    /// As Python writes it.
+    /// The option in Python syntax.
     fn text(&self) -> String;
 }
 
-/// An option that Python gives as it gets it.
+/// An option that Python passes in the type that it gets.
 pub trait Taken: Shown + Sized {
     fn take(name: &str, given: Self::Value) -> PyResult<Self>;
 }
@@ -81,12 +81,12 @@ impl Taken for Option<usize> {
     }
 }
 
-/// A list of numbers as Python writes it.
+/// Formats a list of numbers in Python syntax.
 pub fn list_text(values: &[f64]) -> String {
     format!("[{}]", values.iter().map(f64::text).collect::<Vec<_>>().join(", "))
 }
 
-/// Options that are one of a few names.
+/// Implements both traits for options that are one of a few names.
 macro_rules! named {
     ($($option:ty),*) => {$(
         impl Shown for $option {
@@ -107,9 +107,9 @@ macro_rules! named {
     )*};
 }
 
-named!(Direction, Update, Variant);
+named!(BeetleDirection, TrialUpdate, BasVariant);
 
-/// The getters of a class whose options are the fields of its core value, how it shows itself and how it pickles.
+/// Defines getters, `repr`, hash and pickling of a class whose options are the fields of its core value.
 macro_rules! options {
     ($class:ident, $name:literal { $($(#[$note:meta])* $option:ident: $kind:ty,)* }) => {
         #[pymethods]
@@ -138,10 +138,10 @@ macro_rules! options {
 
 pub(crate) use options;
 
-/// What `__getnewargs_ex__` returns: positional arguments, then named ones.
+/// The result of `__getnewargs_ex__`: positional arguments, then keyword arguments.
 pub type NewArguments<'py> = (Bound<'py, PyTuple>, Bound<'py, PyDict>);
 
-/// The arguments that make a value anew which takes keywords alone and has a getter for each.
+/// Returns the constructor arguments of a value that takes keywords only and has a getter for each.
 pub fn keywords<'py, T>(value: &Bound<'py, T>, names: &[&str]) -> PyResult<NewArguments<'py>> {
     let options = PyDict::new(value.py());
     for name in names {

@@ -1,7 +1,7 @@
-//! What every result says of the search behind it.
+//! The getters that all results share.
 
-/// The getters `success`, `status`, `message`, `evaluations` and `elapsed` of a result's class. Success is the status SOLVED;
-/// what that means differs from class to class, so that three of them are given their words.
+/// Defines the getters `success`, `status`, `message`, `evaluations` and `elapsed` of a result's class. Success is the status
+/// SOLVED. Its meaning differs between classes, so that three getters take their docstrings as arguments.
 macro_rules! outcome {
     (
         $class:ident = |$result:ident|
@@ -27,7 +27,7 @@ macro_rules! outcome {
                 $crate::solver::status(py, $status)
             }
 
-            /// What happened, and what to try.
+            /// A sentence that says what happened and what to try.
             #[getter]
             fn message(&self) -> String {
                 let $result = self;

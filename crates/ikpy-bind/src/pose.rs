@@ -1,4 +1,4 @@
-//! `pose`: a 4x4 matrix from a position and one description of the orientation.
+//! `pose`: a 4x4 matrix from a position and an orientation.
 
 use ikcore::math::{Pose, pose as poses};
 use numpy::PyArray2;
@@ -7,16 +7,16 @@ use pyo3::prelude::*;
 use crate::convert::{self, pose_array};
 use crate::error::{invalid, raise};
 
-/// A pose (4, 4) from a position (3,) (m) and one description of the orientation, whose keyword names its order.
+/// Makes a pose (4, 4) from a position (3,) (m) and an orientation. The keyword names the form of the orientation.
 ///
 /// Args:
-///     position: (3,).
-///     xyzw, wxyz: quaternion (4,), of any length but zero.
+///     position: (3,) (m).
+///     xyzw, wxyz: quaternion (4,), of any nonzero length.
 ///     rpy: fixed-axis roll, pitch, yaw (rad): Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
 ///     rotvec: rotation vector (rad).
 ///     matrix: rotation matrix (3, 3).
 ///
-/// Without a description of the orientation the axes are those of the base.
+/// Without an orientation the axes are those of the base.
 #[pyfunction]
 #[pyo3(signature = (position, *, xyzw=None, wxyz=None, rpy=None, rotvec=None, matrix=None))]
 pub fn pose<'py>(

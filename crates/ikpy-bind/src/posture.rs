@@ -1,6 +1,6 @@
 //! `planar_posture`, `PlanarPosture` and `CircleSwarm`.
 
-use ikcore::posture::{CircleSwarm, Posture, Rectangle, SearchOptions, best_posture};
+use ikcore::posture::{CircleSwarm, Posture, PostureOptions, Rectangle, best_posture};
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -11,18 +11,18 @@ use crate::limits::PyLimits;
 use crate::monitor::watched;
 use crate::options::options;
 use crate::outcome::outcome;
+use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
-use crate::stored::{self, Reduced};
 
-/// The particle swarm of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization": over joint
-/// points on circles, with a constriction factor (eq. 17, 18).
+/// The particle swarm of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization": particles
+/// are joint positions on circles; with a constriction factor (eq. 17, 18).
 ///
 /// Args:
-///     population: particles.
-///     generations: the first draw included.
-///     c1, c2: attraction to the particle's own best place and to the swarm's; together above 4.
-///     velocity_limit: largest velocity of a coordinate (m a generation); not published.
-///     signed: random factors from [-1, 1], as printed, instead of [0, 1].
+///     population: number of particles.
+///     generations: number of generations, the initial one included.
+///     c1, c2: attraction to the particle's own best point and to the swarm's; their sum must be above 4.
+///     velocity_limit: largest velocity of a coordinate (m per generation); the paper does not give one.
+///     signed: draw random factors from [-1, 1], as printed, instead of [0, 1].
 #[pyclass(name = "CircleSwarm", module = "beetle_ik", frozen, eq)]
 #[derive(Debug, PartialEq)]
 pub struct PyCircleSwarm(CircleSwarm);
@@ -41,17 +41,17 @@ impl PyCircleSwarm {
 
 options! {
     PyCircleSwarm, "CircleSwarm" {
-        /// Particles.
+        /// Number of particles.
         population: usize,
-        /// Generations, the first draw included.
+        /// Number of generations, the initial one included.
         generations: usize,
-        /// Attraction to the particle's own best place.
+        /// Attraction to the particle's own best point.
         c1: f64,
-        /// Attraction to the swarm's best place.
+        /// Attraction to the swarm's best point.
         c2: f64,
-        /// Largest velocity of a coordinate (m a generation).
+        /// Largest velocity of a coordinate (m per generation).
         velocity_limit: f64,
-        /// Whether random factors come from [-1, 1].
+        /// Whether random factors are drawn from [-1, 1].
         signed: bool,
     }
 }
@@ -72,27 +72,27 @@ outcome! {
     /// Why the search ended, a `Status`.
     status: result.core.status,
     message: result.core.message(),
-    /// Postures whose index was computed.
+    /// Number of postures evaluated.
     evaluations: result.core.evaluations,
     elapsed: result.core.elapsed,
 }
 
 #[pymethods]
 impl PyPlanarPosture {
-    /// The configuration (n,) (rad); as near as the tip gets where there is no posture.
+    /// The configuration (n,) (rad). If no posture was found, the one that brings the tip nearest to the target.
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.core.q.clone())
     }
 
-    /// Its index: `Robot.manipulability(q, motion="position")`, or for measure "overall" the sum of
-    /// `Robot.link_manipulability(q)`; NaN where there is no posture.
+    /// Manipulability of the posture: `Robot.manipulability(q, motion="position")`, or for measure "overall" the sum of
+    /// `Robot.link_manipulability(q)`. NaN if no posture was found.
     #[getter]
     fn index(&self) -> f64 {
         self.core.index
     }
 
-    /// The best index after each generation of a `CircleSwarm` (generations,); empty for the library's own search.
+    /// The best index after each generation of a `CircleSwarm` (generations,); empty for the default search.
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.core.history.clone())
@@ -109,34 +109,34 @@ impl PyPlanarPosture {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("posture", &self.core))?;
-        stored::restored_from::<Self>(py, (core, &self.limits))
+        let core = pickling::bytes(py, to_bytes("posture", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, &self.limits))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     fn _restore(bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
         Ok(Self { core: from_bytes("posture", bytes).map_err(raise)?, limits })
     }
 }
 
-/// The posture of a planar arm with the best manipulability for a tip position, of all that there are.
+/// Finds the posture of a planar arm with the best manipulability for a tip position: the global optimum.
 ///
-/// For any arm, and for poses: `solve(robot, target, goals=goals.Manipulability(...), prefer="best")`.
+/// For other arms, and for poses, use `solve(robot, target, goals=goals.Manipulability(...), prefer="best")`.
 ///
 /// Args:
-///     robot: an arm of 3 or more joints that turn about z in one plane, such as `Robot.planar([...])`.
+///     robot: an arm of 3 or more revolute joints about z in one plane, such as `Robot.planar([...])`.
 ///     target: position of the tip (3,) (m).
-///     measure: "tip", Yoshikawa's index of the tip, or "overall", the sum of those of all links.
-///     region: ((x, y), (x, y)), least and largest coordinates of the joint points (m); None: anywhere.
-///     swarm: a `CircleSwarm` to search as published; None: differential evolution over the directions of the links.
-///     seed: of the random draws: the same seed, the same bits.
+///     measure: "tip": Yoshikawa's index of the tip; "overall": the sum of the indices of all links.
+///     region: (2, 2) (m), lower and upper corner (x, y) of a rectangle for the joint positions; None: no restriction.
+///     swarm: a `CircleSwarm`, the published search; None: differential evolution over the link directions.
+///     seed: seed of the random draws; the same seed gives the same bits.
 ///
 /// Returns:
 ///     A `PlanarPosture`. A target out of reach is a status, not an error.
 ///
 /// Raises:
-///     InvalidInputError: an arm that is not planar or has fewer than 3 links, wrong shape, NaN.
+///     InvalidInputError: an arm that is not planar or has fewer than 3 links; wrong shape; NaN.
 #[pyfunction]
 #[pyo3(signature = (robot, target, *, measure="tip", region=None, swarm=None, seed=0))]
 pub fn planar_posture(
@@ -149,7 +149,7 @@ pub fn planar_posture(
     seed: i128,
 ) -> PyResult<PyPlanarPosture> {
     let target = point("target", target)?;
-    let options = SearchOptions {
+    let options = PostureOptions {
         measure: measure.parse().map_err(raise)?,
         region: region.map(read_region).transpose()?,
         swarm: swarm.map(|swarm| swarm.0),
@@ -159,7 +159,7 @@ pub fn planar_posture(
     Ok(PyPlanarPosture { core, limits: robot.limits(py)? })
 }
 
-/// Least and largest coordinates, (2, 2).
+/// Reads the corners of a rectangle, (2, 2).
 fn read_region(value: &Bound<'_, PyAny>) -> PyResult<Rectangle> {
     let numbers = array("region", value)?;
     match (numbers.shape(), numbers.as_slice()?) {

@@ -1,4 +1,4 @@
-//! What `solve`, `solve_batch` and `solve_all` are asked: each argument is read here, for all of them.
+//! Reading of the arguments that `solve`, `solve_batch` and `solve_all` share.
 
 use ikcore::ik::SolveOptions;
 use ikcore::limits::Limits;
@@ -12,7 +12,7 @@ use crate::goal::read_goals;
 use crate::solver::{PyStop, any_solver};
 use crate::task::read_task;
 
-/// The arguments as Python gives them.
+/// The arguments as passed from Python.
 pub struct SolveArguments<'a, 'py> {
     pub task: Option<&'a Bound<'py, PyAny>>,
     pub solver: Option<&'a Bound<'py, PyAny>>,
@@ -25,7 +25,7 @@ pub struct SolveArguments<'a, 'py> {
 }
 
 impl SolveArguments<'_, '_> {
-    /// The options of the core, with the `start` and the `limits` of the call.
+    /// Converts the arguments to options of the core, with the `start` and the `limits` of the call.
     pub fn read(&self, start: Option<Vec<f64>>, limits: Option<Limits>) -> PyResult<SolveOptions> {
         Ok(SolveOptions {
             solver: self.solver.map_or(Ok(AnySolver::default()), any_solver)?,

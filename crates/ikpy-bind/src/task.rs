@@ -1,7 +1,7 @@
-//! `tasks`: what of a target matters.
+//! `tasks`: which part of a target counts.
 
 use ikcore::math::{Pose, pose};
-use ikcore::task::{Kind, Region, Task};
+use ikcore::task::{Region, Task, TaskKind};
 use numpy::{PyArray1, PyArray2};
 use pyo3::PyClass;
 use pyo3::prelude::*;
@@ -20,12 +20,12 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyPointing>()
 }
 
-/// What of a target matters: one of `Pose`, `Position`, `Orientation` and `Pointing`.
+/// Which part of a target counts: `Pose`, `Position`, `Orientation` or `Pointing`.
 ///
-/// With a `region`, the tip is kept in a box, p_min < p < p_max: eq. (5) of Cheng et al. (2020). A target outside is approached
-/// as far as the box allows, and the status is `HELD_IN_REGION`. No solution is `SOLVED` or `HELD_IN_REGION` with the tip
-/// outside; a track never leaves the box at the end of a tick, whatever its solver. Between two ticks the joints move in straight
-/// lines, the tip does not quite.
+/// A `region` keeps the tip in a box, p_min < p < p_max: eq. (5) of Cheng et al. (2020). A target outside the box is
+/// approached as far as the box allows, and the status is `HELD_IN_REGION`. The tip of a solution with status `SOLVED` or
+/// `HELD_IN_REGION` is always inside, and so is the tip at the end of each tick of a track, with any solver. Within a tick
+/// the joints move linearly, so that the tip can leave the box by the curvature of its path.
 #[pyclass(name = "Task", module = "beetle_ik.tasks", frozen, subclass, eq)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyTask {
@@ -34,25 +34,25 @@ pub struct PyTask {
 
 #[pymethods]
 impl PyTask {
-    /// Factors on the components; None: all one. A component of weight zero is left free.
+    /// Weights of the components; None: all 1. A component of weight 0 is free.
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.core.weights().map(|weights| row(py, weights))
     }
 
-    /// Largest error of each component (m, rad); None: the tolerances of the call.
+    /// Largest error of each component (m, rad); None: the tolerances of the call apply.
     #[getter]
     fn tolerance<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.core.tolerance().map(|tolerance| row(py, tolerance))
     }
 
-    /// From the tip to what is to reach the target (4, 4); None: the tip itself.
+    /// Pose of the tool in the frame of the tip (4, 4); None: the tip itself.
     #[getter]
     fn tool<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         self.core.tool.as_ref().map(|tool| pose_array(py, tool)).transpose()
     }
 
-    /// The corners of the box that the tip is kept in (2, 3) (m); None: anywhere.
+    /// Lower and upper corner of the box that the tip stays in (2, 3) (m); None: no box.
     #[getter]
     fn region<'py>(&self, py: Python<'py>) -> PyResult<Option<Array<'py>>> {
         let corners = |region: &Region| table(py, [*region.lower(), *region.upper()].concat(), &[2, 3]);
@@ -61,7 +61,7 @@ impl PyTask {
 
     fn __repr__(&self) -> String {
         let axis = match &self.core.kind {
-            Kind::Pointing { axis } => Some(format!("axis={}", list_text(axis))),
+            TaskKind::Pointing { axis } => Some(format!("axis={}", list_text(axis))),
             _ => None,
         };
         let matrix = |tool: &Pose| format!("tool={:?}", pose::rows(tool).as_chunks::<4>().0);
@@ -83,7 +83,7 @@ impl PyTask {
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let options = PyDict::new(py);
-        if let Kind::Pointing { axis } = self.core.kind {
+        if let TaskKind::Pointing { axis } = self.core.kind {
             options.set_item("axis", axis)?;
         }
         options.set_item("weights", self.weights(py))?;
@@ -94,13 +94,12 @@ impl PyTask {
     }
 }
 
-/// An argument that may be left out.
+/// An optional argument.
 type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
-/// A task of a class that adds nothing to what all of them take besides their kind: weights, tolerance,
-/// tool and region.
+/// Makes an instance of a task's class, which adds no fields to kind, weights, tolerance, tool and region.
 fn made<C>(
-    kind: Kind,
+    kind: TaskKind,
     [weights, tolerance, tool, region]: [Argument<'_, '_>; 4],
     class: C,
 ) -> PyResult<PyClassInitializer<C>>
@@ -123,13 +122,13 @@ where
     Ok(PyClassInitializer::from(PyTask { core }).add_subclass(class))
 }
 
-/// The class of a task whose kind says it all.
+/// Defines the class of a task without further options.
 macro_rules! task {
     ($(#[$doc:meta])* $class:ident, $name:literal, $kind:expr) => {
         $(#[$doc])*
-        ///     tool: (4, 4), from the tip to what is to reach the target.
-        ///     region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
-        ///         infinite where it is open. See `Task`.
+        ///     tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
+        ///     region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
+        ///         infinite on open sides. See `Task`.
         #[pyclass(name = $name, module = "beetle_ik.tasks", extends = PyTask, frozen)]
         pub struct $class;
 
@@ -153,40 +152,40 @@ task! {
     /// The whole pose.
     ///
     /// Args:
-    ///     weights: (6,), factors on x, y, z and on the three components of the rotation vector, along the axes of the target;
-    ///         zero leaves a component free.
+    ///     weights: (6,), for x, y, z and the three components of the rotation vector, along the axes of the target; 0
+    ///         leaves a component free.
     ///     tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
-    PyPose, "Pose", Kind::Pose
+    PyPose, "Pose", TaskKind::Pose
 }
 
 task! {
-    /// The position alone; the orientation is left free. Takes the position of a target that is a pose.
+    /// The position only; the orientation is free. A target given as a pose counts by its position.
     ///
     /// Args:
-    ///     weights: (3,), factors on x, y and z of the base; zero leaves a component free.
+    ///     weights: (3,), for x, y and z of the base; 0 leaves a component free.
     ///     tolerance: (3,) (m), largest error of each component, instead of the tolerance of the call.
-    PyPosition, "Position", Kind::Position
+    PyPosition, "Position", TaskKind::Position
 }
 
 task! {
-    /// The orientation alone; the position is left free.
+    /// The orientation only; the position is free.
     ///
     /// Args:
-    ///     weights: (3,), factors on the components of the rotation vector along the axes of the target; zero leaves one free.
+    ///     weights: (3,), for the components of the rotation vector along the axes of the target; 0 leaves one free.
     ///     tolerance: (3,) (rad), largest error of each component, instead of the tolerance of the call.
-    PyOrientation, "Orientation", Kind::Orientation
+    PyOrientation, "Orientation", TaskKind::Orientation
 }
 
-/// The position, and the direction of one axis of the tip; the spin about it is left free. `rotation_error` is the angle
-/// between that axis and the same one of the target.
+/// The position, and the direction of one axis of the tip; rotation about that axis is free. `rotation_error` is the angle
+/// between the axis and its target direction.
 ///
 /// Args:
-///     axis: (3,), in the tip's coordinates, of any length but zero.
-///     weights: (4,), factors on x, y and z along the axes of the target, and on the angle; zero leaves a component free.
+///     axis: (3,), in the frame of the tip, of any nonzero length; None: (0, 0, 1).
+///     weights: (4,), for x, y and z along the axes of the target, and for the angle; 0 leaves a component free.
 ///     tolerance: (4,) (m, m, m, rad), largest error of each component, instead of the tolerances of the call.
-///     tool: (4, 4), from the tip to what is to reach the target.
-///     region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
-///         infinite where it is open. See `Task`.
+///     tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
+///     region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
+///         infinite on open sides. See `Task`.
 #[pyclass(name = "Pointing", module = "beetle_ik.tasks", extends = PyTask, frozen)]
 pub struct PyPointing;
 
@@ -202,25 +201,25 @@ impl PyPointing {
         region: Argument<'_, '_>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let axis = axis.map_or(Ok([0.0, 0.0, 1.0]), |axis| point("axis", axis))?;
-        made(Kind::Pointing { axis }, [weights, tolerance, tool, region], Self)
+        made(TaskKind::Pointing { axis }, [weights, tolerance, tool, region], Self)
     }
 
-    /// In the tip's coordinates (3,).
+    /// The axis in the frame of the tip (3,).
     #[getter]
     fn axis<'py>(self_: PyRef<'py, Self>) -> Option<Bound<'py, PyArray1<f64>>> {
         let py = self_.py();
         match self_.as_super().core.kind {
-            Kind::Pointing { axis } => Some(copied(py, &axis)),
+            TaskKind::Pointing { axis } => Some(copied(py, &axis)),
             _ => None,
         }
     }
 }
 
-/// The task of a call, if one is given.
+/// Reads the `task` argument of a call.
 pub fn read_task(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Task>> {
     let Some(value) = value else { return Ok(None) };
     match value.cast::<PyTask>() {
         Ok(task) => Ok(Some(task.get().core)),
-        Err(_) => Err(invalid(format!("task must be of beetle_ik.tasks, got {}", summary(value)))),
+        Err(_) => Err(invalid(format!("task must be one of beetle_ik.tasks, got {}", summary(value)))),
     }
 }

@@ -9,14 +9,14 @@ use crate::convert::{Array, array, copied, counted, row, shape_text, table, time
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::options::NewArguments;
-use crate::upward;
+use crate::python_calls;
 
-/// Joint motion in time, a polynomial between knots: q_j(t) = sum over p of coefficients[i, j, p] (t - time[i])^p.
+/// A joint trajectory of polynomial segments between knots: q_j(t) = sum over p of coefficients[i, j, p] (t - time[i])^p.
 ///
 /// Args:
-///     time: the knots (k,) (s), from 0.
-///     coefficients: (k - 1, n, degree + 1), degree at most 6, in ascending powers.
-///     joint_names: n names; None: "q1", "q2", ...
+///     time: the knots (k,) (s), starting at 0.
+///     coefficients: (k - 1, n, degree + 1), in ascending powers; the degree is at most 6.
+///     joint_names: n names; None: "q1", "q2" and so on.
 #[pyclass(name = "Trajectory", module = "beetle_ik", frozen, eq)]
 #[derive(Debug, PartialEq)]
 pub struct PyTrajectory(Trajectory);
@@ -33,7 +33,7 @@ impl PyTrajectory {
     }
 }
 
-/// The names of `n` joints, or "q1", "q2", ... where none were given.
+/// Returns the names of `n` joints; by default "q1", "q2" and so on.
 pub fn names(given: Option<Vec<String>>, n: usize) -> PyResult<Vec<String>> {
     match given {
         None => Ok((1..=n).map(|i| format!("q{i}")).collect()),
@@ -67,8 +67,8 @@ impl PyTrajectory {
         core.map(Self).map_err(raise)
     }
 
-    /// The motion through samples q (k, n) at `time` (k,) (s): straight in between; cubic where velocities qd (k, n)
-    /// are given too, quintic where accelerations qdd (k, n) are.
+    /// Makes a trajectory through samples q (k, n) at `time` (k,) (s). Segments are linear; cubic if velocities qd (k, n)
+    /// are given, quintic if accelerations qdd (k, n) are given too.
     #[staticmethod]
     #[pyo3(signature = (time, q, *, qd=None, qdd=None, joint_names=None))]
     fn from_samples(
@@ -102,7 +102,7 @@ impl PyTrajectory {
         copied(py, self.0.knots())
     }
 
-    /// (k - 1, n, degree + 1), in ascending powers of the time since the knot.
+    /// Coefficients (k - 1, n, degree + 1), in ascending powers of the time since the knot.
     #[getter]
     fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         let (polynomials, n) = (self.0.coefficients(), self.0.joints().len());
@@ -117,19 +117,19 @@ impl PyTrajectory {
         Ok(self.at_times(py, self.0.knots(), false)?.0)
     }
 
-    /// Velocities at the knots (k, n) (rad/s, m/s), of the piece that begins there.
+    /// Velocities at the knots (k, n) (rad/s, m/s), of the segment that begins there.
     #[getter]
     fn qd<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         Ok(self.at_times(py, self.0.knots(), false)?.1)
     }
 
-    /// Accelerations at the knots (k, n) (rad/s^2, m/s^2), of the piece that begins there.
+    /// Accelerations at the knots (k, n) (rad/s^2, m/s^2), of the segment that begins there.
     #[getter]
     fn qdd<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         Ok(self.at_times(py, self.0.knots(), false)?.2)
     }
 
-    /// How long the motion lasts (s).
+    /// Duration (s).
     #[getter]
     fn duration(&self) -> f64 {
         self.0.duration()
@@ -141,30 +141,30 @@ impl PyTrajectory {
         self.0.joints().to_vec()
     }
 
-    /// The largest speed of each joint (n,) (rad/s, m/s), exact over all times.
+    /// Returns the largest speed of each joint (n,) (rad/s, m/s), exact over all times.
     fn max_velocity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.0.max_velocity())
     }
 
-    /// The largest acceleration of each joint (n,) (rad/s^2, m/s^2), exact inside the pieces; jumps of the velocity at
-    /// knots are not in it.
+    /// Returns the largest acceleration of each joint (n,) (rad/s^2, m/s^2), exact within the segments. Jumps of the
+    /// velocity at knots are not included.
     fn max_acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.0.max_acceleration())
     }
 
-    /// The largest jerk of each joint (n,) (rad/s^3, m/s^3), exact inside the pieces; jumps of the acceleration at knots
-    /// are not in it.
+    /// Returns the largest jerk of each joint (n,) (rad/s^3, m/s^3), exact within the segments. Jumps of the acceleration
+    /// at knots are not included.
     fn max_jerk<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.0.max_jerk())
     }
 
-    /// (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside are clamped.
+    /// Returns (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside the trajectory are clamped.
     fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
         let (times, single) = times(t)?;
         self.at_times(py, &times, single)
     }
 
-    /// (time, q, qd, qdd) every dt seconds and at the end: (k,) and (k, n) each.
+    /// Returns (time, q, qd, qdd) every `dt` (s) and at the end: (k,), and (k, n) each.
     #[allow(clippy::type_complexity)]
     fn sample<'py>(
         &self,
@@ -176,38 +176,38 @@ impl PyTrajectory {
         Ok((row(py, times), q, qd, qdd))
     }
 
-    /// This motion, a rest of `pause` (s), and then `motion`, of the same joints, which begins where this one ends.
+    /// Returns this trajectory followed by a rest of `pause` (s) and by `motion`, which must begin where this one ends.
     #[pyo3(signature = (motion, *, pause=0.0))]
     fn then(&self, motion: &Self, pause: f64) -> PyResult<Self> {
         self.0.then(&motion.0, pause).map(Self).map_err(raise)
     }
 
-    /// Writes samples as CSV, whole or not at all: every `dt` (s) and at the end; None: at the knots.
+    /// Writes samples as CSV: every `dt` (s) and at the end; None: at the knots. The file appears complete or not at all.
     #[pyo3(signature = (file, *, dt=None))]
     fn to_csv(slf: Bound<'_, Self>, file: Bound<'_, PyAny>, dt: Option<f64>) -> PyResult<()> {
-        upward::write(slf.py(), "to_csv", (&slf, file, dt))
+        python_calls::write(slf.py(), "to_csv", (&slf, file, dt))
     }
 
-    /// Writes knots and coefficients as npz, whole or not at all.
+    /// Writes knots and coefficients as npz. The file appears complete or not at all.
     fn to_npz(slf: Bound<'_, Self>, file: Bound<'_, PyAny>) -> PyResult<()> {
-        upward::write(slf.py(), "to_npz", (&slf, file))
+        python_calls::write(slf.py(), "to_npz", (&slf, file))
     }
 
-    /// Reads what `to_csv` wrote, or any CSV with a column `time` and one column per joint.
+    /// Reads a file that `to_csv` wrote, or any CSV with a column `time` and one column per joint.
     #[staticmethod]
     fn from_csv<'py>(file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        upward::read("from_csv", file)
+        python_calls::read("from_csv", file)
     }
 
-    /// Reads what `to_npz` wrote.
+    /// Reads a file that `to_npz` wrote.
     #[staticmethod]
     fn from_npz<'py>(file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        upward::read("from_npz", file)
+        python_calls::read("from_npz", file)
     }
 
-    /// A matplotlib figure of positions, velocities and accelerations.
+    /// Draws positions, velocities and accelerations; returns a matplotlib figure.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        upward::plot(slf.into_any(), "trajectory")
+        python_calls::plot(slf.into_any(), "trajectory")
     }
 
     fn __repr__(&self) -> String {

@@ -1,4 +1,4 @@
-"""The commands in one place, and how mistakes are told."""
+"""The list of commands, and how errors are reported."""
 
 from typing import Annotated, Any
 
@@ -14,21 +14,21 @@ from .solve import solve
 from .track import track
 
 _WRONG_INPUT = 2
-_INTERRUPTED = 130  # as shells have it: 128 + SIGINT
+_INTERRUPTED = 130  # the convention of shells: 128 + SIGINT
 
 
 class _Commands(TyperGroup):
-    """Users get the sentence of an error, not its traceback."""
+    """Prints an error as one line instead of a traceback."""
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """As given, but for `plan`: Typer puts groups last."""
+        """Lists `reproduce` last; Typer would put the group `plan` there."""
         return sorted(super().list_commands(ctx), key=lambda name: name == "reproduce")
 
     def invoke(self, ctx: Any) -> Any:
         try:
             return super().invoke(ctx)
         except BrokenPipeError:
-            raise  # the reader of our output has gone: Typer leaves without a word
+            raise  # the reader of our output has closed the pipe: Typer exits silently
         except BeetleIkError as error:
             typer.echo(f"Error: {error}", err=True)
             raise typer.Exit(_WRONG_INPUT) from error
@@ -37,7 +37,7 @@ class _Commands(TyperGroup):
             typer.echo(f"Error: {where}{error.strerror or error}", err=True)
             raise typer.Exit(_WRONG_INPUT) from error
         except KeyboardInterrupt as interrupt:
-            # True of every command: files appear when all of them are complete.
+            # Holds for every command: files appear only when all of them are complete.
             typer.echo("Interrupted: nothing was written.", err=True)
             raise typer.Exit(_INTERRUPTED) from interrupt
 
@@ -48,7 +48,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
     help="Inverse kinematics, path tracking and planning for robot manipulators. SI units and radians.",
-    epilog="Exit status: 0 reached, 1 computed but not reached, 2 wrong input, 130 interrupted.",
+    epilog="Exit status: 0 target reached, 1 computed but not reached, 2 wrong input, 130 interrupted.",
 )
 
 
@@ -65,7 +65,7 @@ def _options_of_all(
         bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
-    """Take what belongs to no single command."""
+    """Options that belong to no single command."""
 
 
 for command in (robots, fk, solve, track):
@@ -75,5 +75,5 @@ app.command()(reproduce)
 
 
 def main() -> None:
-    """Run the command line on the arguments of the process."""
+    """Runs the command line on the arguments of the process."""
     app(prog_name="beetle-ik")

@@ -29,7 +29,7 @@ class CurveName(StrEnum):
 @dataclass(frozen=True)
 class _Curve:
     make: Callable[..., ReferencePath]
-    lengths: dict[str, float]  # as shares of the arm's stretched length
+    lengths: dict[str, float]  # as fractions of the arm's stretched length
     others: dict[str, Any] = field(default_factory=dict)
 
 
@@ -40,14 +40,14 @@ _CURVES = {
     CurveName.PENTAGRAM: _Curve(paths.pentagram, {"radius": 0.05}),
     CurveName.ROSE: _Curve(paths.rose, {"radius": 0.05}, {"k": 3}),
 }
-# The plane that planar arms reach as well.
+# The x-y plane, in which planar arms move.
 _PLANE = {"a": (1.0, 0.0, 0.0), "b": (0.0, 1.0, 0.0)}
 _PLACES_TRIED = 1000
 _FULL_RANK = 1e-9
 
 
 def make_curve(name: CurveName, robot: Robot, duration: float | None, given: dict[str, Any]) -> ReferencePath:
-    """The curve `name` with the parameters that were given and defaults that suit the robot for the others."""
+    """Makes the curve `name` with the given parameters; the others get defaults that suit the robot."""
     curve = _CURVES[name]
     parameters = ("center", *curve.lengths, *curve.others, "a", "b")
     for parameter in given:
@@ -61,9 +61,9 @@ def make_curve(name: CurveName, robot: Robot, duration: float | None, given: dic
 
 
 def _agile_place(robot: Robot) -> tuple[NDArray[np.float64], float]:
-    """Where the tip is at the most manipulable of many configurations (m), and how long the arm is (m).
+    """Returns the tip position (m) at the most manipulable of many random configurations, and the arm's length (m).
 
-    Directions in which no configuration moves the tip, as out of a planar arm's plane, do not count.
+    Directions in which no configuration moves the tip, such as out of a planar arm's plane, do not count.
     """
     configurations = robot.random_configurations(_PLACES_TRIED)
     gains = np.linalg.svd(robot.jacobian(configurations), compute_uv=False)
@@ -73,7 +73,7 @@ def _agile_place(robot: Robot) -> tuple[NDArray[np.float64], float]:
 
 
 def read_points(file: Path, duration: float | None) -> ReferencePath:
-    """The path through the points of a CSV file: columns x, y, z (m) and, optionally, time (s)."""
+    """Reads a path from a CSV file: columns x, y, z (m) and, optionally, time (s)."""
     table = read_table(file, ["x", "y", "z"])
     points = np.column_stack([table[axis] for axis in "xyz"])
     if "time" not in table:

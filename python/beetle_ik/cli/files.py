@@ -1,4 +1,4 @@
-"""The files that a command leaves: a motion, what there is to say of it, and pictures."""
+"""Output files of a command: trajectory, summary and figures."""
 
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 def results_folder(out: Path | None) -> AbstractContextManager[Path | None]:
-    """Where to write for `--out`, whole or not at all; None without it."""
+    """Returns the folder of `--out`, written completely or not at all; None if the option was not given."""
     return nullcontext() if out is None else whole_folder(out, option="--out")
 
 
 def write_files(
     folder: Path, trajectory: Trajectory, summary: dict[str, Any], figures: Mapping[str, Callable[[], "Figure"]]
 ) -> None:
-    """Write trajectory, summary and, only where matplotlib is installed, the figures by their names."""
+    """Writes trajectory, summary and, if matplotlib is installed, the figures under their names."""
     trajectory.to_csv(folder / "trajectory.csv")
     trajectory.to_npz(folder / "trajectory.npz")
     with whole_file(folder / "summary.json") as stream:
@@ -35,12 +35,12 @@ def write_files(
 
 
 def print_files(out: Path | None) -> None:
-    """Say where the files are, if there are any, and why one is missing."""
+    """Prints where the files are, and why a figure is missing."""
     if out is not None:
-        figure = "" if can_draw() else ", without a figure: that needs `pip install beetle-ik[plot]`"
+        figure = "" if can_draw() else ", without a figure: drawing needs `pip install beetle-ik[plot]`"
         typer.echo(f"Files in {out}/{figure}")
 
 
 def can_draw() -> bool:
-    """Whether matplotlib is there: it comes with the extra `plot`."""
+    """Whether matplotlib, which the extra `plot` brings, is installed."""
     return find_spec("matplotlib") is not None

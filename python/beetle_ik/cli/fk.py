@@ -1,4 +1,4 @@
-"""`beetle-ik fk`: where the tip is."""
+"""`beetle-ik fk`: forward kinematics."""
 
 from typing import Annotated
 
@@ -11,7 +11,7 @@ from .show import listed, print_json, print_pairs
 def fk(
     robot: RobotName = None,
     *,
-    q: Annotated[str, typer.Option("--q", help="Joint positions: q1,q2,... (rad, sliding joints m).")],
+    q: Annotated[str, typer.Option("--q", help="Joint positions: q1,q2,... (rad; m for prismatic joints).")],
     urdf: UrdfFile = None,
     tip: TipLink = None,
     base: BaseLink = None,

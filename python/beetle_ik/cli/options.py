@@ -1,4 +1,4 @@
-"""Options that several commands share, and what their text means."""
+"""Options that several commands share, and how their text is read."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -17,19 +17,23 @@ _ROBOT = "Robot"
 
 RobotName = Annotated[str | None, typer.Argument(help="A built-in robot; `beetle-ik robots` lists them.")]
 UrdfFile = Annotated[
-    Path | None, typer.Option("--urdf", help="Your robot instead: a URDF file.", rich_help_panel=_ROBOT)
+    Path | None, typer.Option("--urdf", help="A URDF file, instead of a built-in robot.", rich_help_panel=_ROBOT)
 ]
-TipLink = Annotated[str | None, typer.Option("--tip", help="The link that is to move.", rich_help_panel=_ROBOT)]
-BaseLink = Annotated[str | None, typer.Option("--base", help="The link that stands still.", rich_help_panel=_ROBOT)]
+TipLink = Annotated[
+    str | None, typer.Option("--tip", help="Link to move; without it the only leaf.", rich_help_panel=_ROBOT)
+]
+BaseLink = Annotated[
+    str | None, typer.Option("--base", help="Link that stays fixed; without it the root.", rich_help_panel=_ROBOT)
+]
 Start = Annotated[str | None, typer.Option(help="Joint positions to start from: q1,q2,...")]
 StartQ = Annotated[str | None, typer.Option("--start-q", help="Joint positions to start from: q1,q2,...")]
 Velocity = Annotated[
     str | None,
-    typer.Option("--velocity-limit", help="In rad/s: a number, or one a joint: v1,v2,...; else the robot's."),
+    typer.Option("--velocity-limit", help="rad/s: one number, or one per joint: v1,v2,...; default: the robot's."),
 ]
 Acceleration = Annotated[
     str | None,
-    typer.Option("--acceleration-limit", help="In rad/s^2: a number, or one a joint: a1,a2,...; else there is none."),
+    typer.Option("--acceleration-limit", help="rad/s^2: one number, or one per joint: a1,a2,...; default: none."),
 ]
 Seed = Annotated[int, typer.Option(help="Seed of all random draws: the same seed gives the same bits.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for machines instead of tables.")]
@@ -75,12 +79,12 @@ _SOLVERS: dict[SolverName, "_Single"] = {
 
 
 def make_solver(name: SolverName) -> "_Single":
-    """The solver of this name, with the library's settings."""
+    """Returns the solver of this name with its default options."""
     return _SOLVERS[name]
 
 
 def load_robot(name: str | None, urdf: Path | None, base: str | None, tip: str | None) -> Robot:
-    """The built-in robot or the one of the URDF file, whichever was asked for."""
+    """Loads the built-in robot or the one in the URDF file, whichever was given."""
     if urdf is not None:
         if name is not None:
             raise InvalidInputError(f"both the robot '{name}' and --urdf '{urdf}' were given: give one of them")
@@ -90,12 +94,14 @@ def load_robot(name: str | None, urdf: Path | None, base: str | None, tip: str |
             "no robot was given: name a built-in one (`beetle-ik robots` lists them) or use --urdf FILE"
         )
     if base is not None or tip is not None:
-        raise InvalidInputError("--base and --tip belong to --urdf; a built-in robot has its own")
+        raise InvalidInputError(
+            "--base and --tip can only be used with --urdf: a built-in robot has its own base and tip"
+        )
     return Robot.named(name)
 
 
 def numbers(option: str, text: str, length: int | None = None) -> list[float]:
-    """Numbers separated by commas, `length` of them where that is known beforehand."""
+    """Reads numbers separated by commas; `length` is how many there must be, if that is known."""
     values = [_number(option, entry.strip()) for entry in text.split(",")]
     if length is not None and len(values) != length:
         raise InvalidInputError(
@@ -105,7 +111,7 @@ def numbers(option: str, text: str, length: int | None = None) -> list[float]:
 
 
 def limit(option: str, text: str | None) -> float | list[float] | None:
-    """A limit as one number for all joints or one each; None where none was given."""
+    """Reads a limit: one number for all joints, or one per joint; None if the option was not given."""
     if text is None:
         return None
     values = numbers(option, text)
@@ -113,7 +119,7 @@ def limit(option: str, text: str | None) -> float | list[float] | None:
 
 
 def sinusoid(option: str, text: str) -> Sinusoid:
-    """A limit as `mean,amplitude,angular_frequency`."""
+    """Reads a limit given as `mean,amplitude,angular_frequency`."""
     mean, amplitude, angular_frequency = numbers(option, text, 3)
     return Sinusoid(mean=mean, amplitude=amplitude, angular_frequency=angular_frequency)
 

@@ -1,4 +1,4 @@
-"""`beetle-ik robots`: what is built in."""
+"""`beetle-ik robots`: the built-in robots."""
 
 from .. import Robot
 from .options import AsJson

@@ -1,4 +1,4 @@
-"""What the commands print: tables for people, JSON for machines."""
+"""Prints results: tables for people, JSON for machines."""
 
 import json
 import math
@@ -12,22 +12,22 @@ _NOISE_DECIMALS = 12
 
 
 def print_json(value: Any) -> None:
-    """Print `value` as JSON."""
+    """Prints `value` as JSON."""
     typer.echo(to_json(value))
 
 
 def to_json(value: Any) -> str:
-    """`value` as JSON; numbers that JSON cannot write (NaN, infinite) become null."""
+    """Returns `value` as JSON; NaN and infinite numbers become null."""
     return json.dumps(_plain(value), indent=2, ensure_ascii=False)
 
 
 def print_pairs(title: str, pairs: Iterable[tuple[str, str]]) -> None:
-    """Print a table of names and values."""
+    """Prints a table of names and values."""
     print_table(title, (), pairs)
 
 
 def print_table(title: str, columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> None:
-    """Print a table; without `columns` it has no header."""
+    """Prints a table; without `columns` it has no header."""
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table
@@ -41,17 +41,17 @@ def print_table(title: str, columns: tuple[str, ...], rows: Iterable[tuple[str, 
 
 
 def listed(values: Iterable[float]) -> str:
-    """Numbers as a short list to read."""
+    """Formats numbers as a short list."""
     return ", ".join(_decimal(value, digits=6) for value in values)
 
 
 def as_argument(values: Iterable[float]) -> str:
-    """Numbers as options such as --q and --start take them, in ten digits."""
+    """Formats numbers as options like --q and --start take them, with ten digits."""
     return ",".join(_decimal(value, digits=10) for value in values)
 
 
 def _decimal(value: float, digits: int) -> str:
-    """`value` in so many significant digits; rounding noise about zero is 0."""
+    """Formats `value` with this many significant digits; rounding noise around zero becomes 0."""
     return f"{round(value, _NOISE_DECIMALS) + 0.0:.{digits}g}"  # -0.0 + 0.0 is 0.0
 
 

@@ -1,4 +1,4 @@
-"""`beetle-ik solve`: joint positions that bring the tip to a target."""
+"""`beetle-ik solve`: inverse kinematics of one target."""
 
 from typing import Annotated
 
@@ -25,17 +25,15 @@ from .show import as_argument, print_json, print_pairs
 def solve(
     robot: RobotName = None,
     *,
-    position: Annotated[str, typer.Option(help="Target of the tip: x,y,z in m.")],
+    position: Annotated[str, typer.Option(help="Target position of the tip: x,y,z in m.")],
     rpy: Annotated[
-        str | None, typer.Option(help="Its orientation: roll,pitch,yaw in rad; without it any will do.")
+        str | None, typer.Option(help="Target orientation: roll,pitch,yaw in rad; without it the orientation is free.")
     ] = None,
     start: Start = None,
-    solver: Annotated[SolverName | None, typer.Option(help="Without it: the library's own choice.")] = None,
+    solver: Annotated[SolverName | None, typer.Option(help="Default: Levenberg-Marquardt from many starts.")] = None,
     position_tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = 1e-6,
     rotation_tolerance: Annotated[float, typer.Option(help="Allowed rotation error in rad.")] = 1e-6,
-    max_evaluations: Annotated[
-        int | None, typer.Option(help="Budget of forward kinematics: stop=Stop(...) in Python.")
-    ] = None,
+    max_evaluations: Annotated[int | None, typer.Option(help="Budget: evaluations of the forward kinematics.")] = None,
     seed: Seed = 0,
     urdf: UrdfFile = None,
     tip: TipLink = None,
@@ -84,4 +82,4 @@ def _show(robot: Robot, solution: Solution, oriented: bool, as_json: bool) -> No
             ("time [ms]", f"{1e3 * solution.elapsed:.3g}"),
         ],
     )
-    typer.echo(f"q [rad, m]: {as_argument(solution.q)}")  # on a line of its own, which no terminal width breaks
+    typer.echo(f"q [rad, m]: {as_argument(solution.q)}")  # on its own line, so that no terminal width breaks it

@@ -1,4 +1,4 @@
-"""The figures by which a tracked path is judged."""
+"""Summary of a tracked path: errors, limits and cost."""
 
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from .show import listed, print_pairs
 
 
 def summarize(result: TrackResult, solver: str, dt: float, seed: int, limits_from: str | None) -> dict[str, Any]:
-    """Errors, limits and cost of a tracked path; `limits_from` is the option that gave limits, if one did."""
+    """Collects errors, limits and cost of a tracked path; `limits_from` names the option that gave the limits."""
     error = result.position_error
     highest = np.nanmax(result.velocity_limit, axis=0)
     own = result.robot.velocity_limit
@@ -52,7 +52,7 @@ def summarize(result: TrackResult, solver: str, dt: float, seed: int, limits_fro
 
 
 def print_summary(summary: dict[str, Any], out: Path | None) -> None:
-    """Print the summary as a table, what to know about its limits, and where the files are."""
+    """Prints the summary as a table, a note on limits above the robot's own, and where the files are."""
     error, limit = summary["position_error"], summary["velocity_limit"]
     print_pairs(
         f"{summary['robot']}, {counted(summary['steps'], 'step')} of {summary['dt']:g} s: {summary['message']}",
@@ -63,7 +63,7 @@ def print_summary(summary: dict[str, Any], out: Path | None) -> None:
             ("smallest velocity margin [rad/s]", f"{summary['limit_margin']:.3g}"),
             ("largest limit violation [rad, m]", f"{summary['max_violation']:.3g}"),
             ("velocity limit [rad/s]", f"{_span(limit['lowest'], limit['highest'])} ({limit['source']})"),
-            ("evaluations", f"{summary['evaluations']} ({summary['evaluations_per_step']:.0f} a step)"),
+            ("evaluations", f"{summary['evaluations']} ({summary['evaluations_per_step']:.0f} per step)"),
             ("time [ms]", f"{1e3 * summary['elapsed']:.3g}"),
         ],
     )
@@ -73,7 +73,7 @@ def print_summary(summary: dict[str, Any], out: Path | None) -> None:
 
 
 def _span(lowest: NDArray[np.float64], highest: NDArray[np.float64]) -> str:
-    """The range of a limit: one for all joints where they agree."""
+    """Formats the range of a limit: one range if all joints agree, else one per joint."""
     spans = [
         f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}" for low, high in zip(lowest, highest, strict=True)
     ]

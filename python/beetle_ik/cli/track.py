@@ -1,4 +1,4 @@
-"""`beetle-ik track`: follow a path."""
+"""`beetle-ik track`: follows a path."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -31,9 +31,9 @@ from .show import print_json
 from .summary import print_summary, summarize
 
 _PATH = "Path"
-_CURVE = "Parameters of the curve; without them place and size suit the arm, in the plane of x and y"
+_CURVE = "Parameters of the curve; by default in the x-y plane, placed and sized to suit the arm"
 
-# The BAS paper's mean error of 1e-5 m comes out of a band 1.7 times as wide.
+# A band of 1.7e-5 m gives the BAS paper's mean error of 1e-5 m.
 _BAND = 1.7e-5
 
 Length = Annotated[float | None, typer.Option(metavar="METRES", rich_help_panel=_CURVE)]
@@ -49,9 +49,11 @@ def track(
     curve: Annotated[CurveName | None, typer.Option(help="A built-in curve.", rich_help_panel=_PATH)] = None,
     points: Annotated[
         Path | None,
-        typer.Option("--path", help="Or a CSV file: columns x,y,z in m, optionally time in s.", rich_help_panel=_PATH),
+        typer.Option("--path", help="A CSV file: columns x,y,z in m, optionally time in s.", rich_help_panel=_PATH),
     ] = None,
-    duration: Annotated[float | None, typer.Option(help="Time for the path in s (30).", rich_help_panel=_PATH)] = None,
+    duration: Annotated[
+        float | None, typer.Option(help="Duration of the path in s; default 30.", rich_help_panel=_PATH)
+    ] = None,
     center: Point = None,
     diameter: Length = None,
     radius: Length = None,
@@ -60,7 +62,9 @@ def track(
     distance: Length = None,
     width: Length = None,
     height: Length = None,
-    k: Annotated[int | None, typer.Option("--k", help="Of the rose radius cos(k u).", rich_help_panel=_CURVE)] = None,
+    k: Annotated[
+        int | None, typer.Option("--k", help="Of the rose: its radius is radius cos(k u).", rich_help_panel=_CURVE)
+    ] = None,
     a: Direction = None,
     b: Direction = None,
     velocity: Velocity = None,
@@ -68,16 +72,16 @@ def track(
         str | None,
         typer.Option(
             metavar="MEAN,AMPLITUDE,OMEGA",
-            help="Or a limit that varies, the same for all joints: mean + amplitude sin(omega t), in rad/s.",
+            help="A velocity limit that varies, the same for all joints: mean + amplitude sin(omega t), in rad/s.",
         ),
     ] = None,
     acceleration: Acceleration = None,
     solver: Annotated[
         SolverName | None,
-        typer.Option(help="Without it the library's model-based rule; bas, chain and greedy are beetles."),
+        typer.Option(help="Default: the model-based rule. bas, chain and greedy are beetle antennae search."),
     ] = None,
     position_tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = _BAND,
-    dt: Annotated[float, typer.Option(help="Time between two commands in s.")] = 0.2,
+    dt: Annotated[float, typer.Option(help="Time step in s.")] = 0.2,
     start: Start = None,
     seed: Seed = 0,
     out: Annotated[
@@ -88,7 +92,7 @@ def track(
     base: BaseLink = None,
     as_json: AsJson = False,
 ) -> None:
-    """Follow a path with the tip, within the joints' limits."""
+    """Follow a path with the tip, within the joint limits."""
     arm = load_robot(robot, urdf, base, tip)
     triples = {"center": center, "a": a, "b": b}
     others = {
@@ -130,9 +134,9 @@ def track(
 def _limits(
     velocity: str | None, velocity_sinusoid: str | None, acceleration: str | None
 ) -> tuple[Limits | None, str | None]:
-    """The limits that were asked for, and the option that the velocity limit comes from."""
+    """Returns the given limits, and the name of the option that gave the velocity limit."""
     if velocity is not None and velocity_sinusoid is not None:
-        raise InvalidInputError("--velocity-limit and --velocity-sinusoid are two ways to say the same: leave one out")
+        raise InvalidInputError("both --velocity-limit and --velocity-sinusoid were given: give one of them")
     given: dict[str, Any] = {}
     limits_from = None
     if velocity_sinusoid is not None:

@@ -1,7 +1,7 @@
-"""Trajectories and robots for other libraries, and from them. What a function needs is imported when it is called.
+"""Converts trajectories and robots to and from other libraries, which are imported when a function needs them.
 
-Poses need no conversion: wherever one is taken, so are Pinocchio's `SE3`, spatialmath's `SE3` and scipy's
-`RigidTransform`, and scipy's `Rotation` where a rotation matrix is.
+Poses need no conversion: every function that takes a pose also takes Pinocchio's `SE3`, spatialmath's `SE3` and scipy's
+`RigidTransform`; every function that takes a rotation matrix also takes scipy's `Rotation`.
 
 | to and from | functions |
 |---|---|

@@ -1,4 +1,4 @@
-"""A robot's chain, element by element, on its way from another library or to it."""
+"""The elements of a robot's chain, as an intermediate form between libraries."""
 
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
@@ -14,7 +14,7 @@ Kind: TypeAlias = Literal["revolute", "continuous", "prismatic"]
 
 @dataclass(frozen=True)
 class Motion:
-    """A joint: it turns about its axis (3,) or slides along it, by its entry of q plus `offset` (rad, m)."""
+    """A joint: rotates about its axis (3,) or translates along it, by its entry of q plus `offset` (rad, m)."""
 
     joint: int
     turns: bool
@@ -24,14 +24,14 @@ class Motion:
 
 @dataclass(frozen=True)
 class Link:
-    """The frame reached here is that of a link."""
+    """Marks the current frame as that of a link."""
 
     name: str
 
 
 @dataclass
 class ChainReader:
-    """Collects what another library says of a chain, from link `base` on."""
+    """Builds a chain element by element, starting at link `base`."""
 
     name: str
     base: str
@@ -39,7 +39,7 @@ class ChainReader:
     elements: list[tuple[object, ...]] = field(default_factory=list)
 
     def fixed(self, pose: ArrayLike) -> None:
-        """A constant transform (4, 4)."""
+        """Appends a constant transform (4, 4)."""
         self.elements.append(("fixed", np.asarray(pose, dtype=float)))
 
     def moving(
@@ -53,26 +53,26 @@ class ChainReader:
         upper: float = np.inf,
         velocity: float = np.inf,
     ) -> None:
-        """A joint of its own about or along `axis` (3,)."""
+        """Appends an independent joint about or along `axis` (3,)."""
         self.elements.append(
             ("moving", len(self.joints), kind != "prismatic", np.asarray(axis, dtype=float), 1.0, offset)
         )
         self.joints.append((name, kind, float(lower), float(upper), float(velocity)))
 
     def link(self, name: str) -> None:
-        """Name the frame reached so far."""
+        """Names the current frame."""
         self.elements.append(("link", name))
 
     def robot(self) -> Robot:
-        """The robot collected."""
+        """Returns the robot."""
         return Robot._from_chain(self.name, self.base, self.joints, self.elements)
 
 
 def parts(robot: Robot, library: str) -> tuple[Matrix, list[Matrix | Motion | Link], Matrix]:
-    """Pose of the base link, what follows up to the last link, and the tool, for a library without coupled joints.
+    """Returns pose of the base link, elements up to the last link, and tool, for a library without mimic joints.
 
     Raises:
-        InvalidInputError: a joint that moves several elements, or by a factor: names it.
+        InvalidInputError: a mimic joint; names the joint that it follows.
     """
     base, elements, tool = robot._chain()
     seen: set[int] = set()
@@ -86,23 +86,23 @@ def parts(robot: Robot, library: str) -> tuple[Matrix, list[Matrix | Motion | Li
             joint, turns, axis, scale, offset = values
             if joint in seen or abs(scale) != 1.0:
                 raise InvalidInputError(
-                    f"joint '{robot.joint_names[joint]}' of robot '{robot.name}' moves several elements or by a factor "
-                    f"(mimic joints), which a model of {library} made here cannot say"
+                    f"joint '{robot.joint_names[joint]}' of robot '{robot.name}' has mimic joints, "
+                    f"which the conversion to {library} does not support"
                 )
             seen.add(joint)
-            # Backwards about an axis is forwards about its opposite.
+            # A scale of -1 is the opposite axis.
             shown.append(Motion(joint, turns, scale * axis, scale * offset))
     return base, shown, tool
 
 
 def only_leaf(library: str, what: str, leaves: list[str]) -> str:
-    """The tip where none was named.
+    """Returns the only leaf, as the default tip.
 
     Raises:
-        InvalidInputError: there are several: lists them.
+        InvalidInputError: there are several; lists them.
     """
     if len(leaves) == 1:
         return leaves[0]
     raise InvalidInputError(
-        f"the model of {library} has {len(leaves)} {what} that nothing follows; give tip= one of: {', '.join(leaves)}"
+        f"the model of {library} has {len(leaves)} leaf {what}; give tip= one of: {', '.join(leaves)}"
     )

@@ -1,4 +1,4 @@
-"""MuJoCo's models."""
+"""Robots from MuJoCo models."""
 
 import os
 from pathlib import Path
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
 def from_mujoco(
     model: "mujoco.MjModel | str | os.PathLike[str]", *, base: str | None = None, tip: str | None = None
 ) -> Robot:
-    """The chain of a MuJoCo model between two of its bodies, or up to a site.
+    """Makes a robot from the chain between two bodies of a MuJoCo model, or from a body to a site.
 
     Args:
-        model: an `mujoco.MjModel`, an MJCF file, or text that contains "<".
-        base: body in whose frame everything is expressed, at the chain's start; None: "world".
-        tip: body or site that is to be moved; None: the only body that nothing follows.
+        model: a `mujoco.MjModel`, an MJCF file, or text that contains "<".
+        base: body at the start of the chain, whose frame is the reference frame; None: "world".
+        tip: body or site at the end of the chain; None: the only leaf body.
 
-    Hinges and slides are taken with their ranges; MuJoCo knows no velocity limits. Angles count as in MuJoCo's qpos.
+    Hinge and slide joints keep their ranges. MuJoCo has no velocity limits. Joint positions equal MuJoCo's qpos.
 
     Raises:
         BeetleIkError: MuJoCo is not installed.
         UnknownNameError: no body or site of that name; the message lists them.
-        InvalidInputError: a model that MuJoCo cannot read, several leaves and no `tip`, a tip that does not follow the
-            base, ball or free joints, joints coupled by equalities.
+        InvalidInputError: a model that MuJoCo cannot read, several leaves and no `tip`, a tip that is not a descendant
+            of the base, ball or free joints, joints coupled by equality constraints.
     """
     mujoco = library("mujoco", "mujoco", "a MuJoCo model")
     described = model if isinstance(model, mujoco.MjModel) else _read(mujoco, model)
@@ -64,7 +64,7 @@ def _name(model: Any) -> str:
 
 
 def _index(bodies: list[str], sites: list[str], name: str) -> int:
-    """Place of a name among the bodies, or behind them among the sites."""
+    """Returns the index of a name in the bodies followed by the sites."""
     names = bodies + sites
     if name not in names:
         known = f"bodies: {', '.join(bodies)}" + (f"; sites: {', '.join(filter(None, sites))}" if any(sites) else "")
@@ -78,12 +78,14 @@ def _leaf(model: Any, bodies: list[str]) -> str:
 
 
 def _bodies_between(model: Any, bodies: list[str], start: int, end: int) -> list[int]:
-    """The bodies behind `start` up to `end`, in order."""
+    """Returns the bodies after `start` up to and including `end`, in order."""
     between: list[int] = []
     body = end
     while body != start:
         if body == 0:
-            raise InvalidInputError(f"body '{bodies[end]}' of the MuJoCo model does not follow body '{bodies[start]}'")
+            raise InvalidInputError(
+                f"body '{bodies[end]}' of the MuJoCo model is not a descendant of body '{bodies[start]}'"
+            )
         between.insert(0, body)
         body = int(model.body_parentid[body])
     return between
@@ -95,12 +97,14 @@ def _add_joints(mujoco: Any, chain: ChainReader, model: Any, body: int) -> None:
         name = model.joint(joint).name or f"joint_{joint}"
         hinge = model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE
         if not hinge and model.jnt_type[joint] != mujoco.mjtJoint.mjJNT_SLIDE:
-            raise InvalidInputError(f"joint '{name}' of the MuJoCo model is neither a hinge nor a slide")
+            raise InvalidInputError(f"joint '{name}' of the MuJoCo model must be a hinge or a slide")
         if _is_coupled(mujoco, model, joint):
-            raise InvalidInputError(f"joint '{name}' of the MuJoCo model is coupled to another by an equality")
+            raise InvalidInputError(
+                f"joint '{name}' of the MuJoCo model is coupled to another joint by an equality constraint"
+            )
         limited = bool(model.jnt_limited[joint])
         lower, upper = model.jnt_range[joint] if limited else (-np.inf, np.inf)
-        # A hinge turns about a point of the body, by qpos less the qpos at which the model was drawn.
+        # A hinge rotates about a point of the body, by qpos minus the reference qpos0.
         chain.fixed(pose(model.jnt_pos[joint]))
         chain.moving(
             name,

@@ -1,4 +1,4 @@
-"""Pinocchio's models."""
+"""Robots from and to Pinocchio models."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 
 
 def from_pinocchio(model: "pin.Model", *, base: str | None = None, tip: str | None = None) -> Robot:
-    """The chain of a Pinocchio model between two of its frames.
+    """Makes a robot from the chain between two frames of a Pinocchio model.
 
     Args:
-        model: a `pinocchio.Model` of joints that turn or slide about any axis; unbounded ones become continuous.
-        base: frame in which everything is expressed, at the chain's start; None: "universe".
-        tip: frame that is to be moved; None: the only body that nothing follows.
+        model: a `pinocchio.Model` of revolute and prismatic joints about any axis; unbounded ones become continuous.
+        base: frame at the start of the chain, the reference frame; None: "universe".
+        tip: frame at the end of the chain; None: the only leaf body.
 
-    Joint limits and velocity limits are the model's; masses and geometry are left behind.
+    Position and velocity limits are those of the model; masses and geometry are dropped.
 
     Raises:
         UnknownNameError: no frame of that name; the message lists them.
-        InvalidInputError: several leaves and no `tip`, a tip that does not follow the base, joints of other kinds.
+        InvalidInputError: several leaves and no `tip`, a tip that is not a descendant of the base, other joint types.
     """
     pin = library("pinocchio", "pin", "a Pinocchio model")
     names = [frame.name for frame in model.frames]
@@ -44,10 +44,10 @@ def from_pinocchio(model: "pin.Model", *, base: str | None = None, tip: str | No
 
 
 def to_pinocchio(robot: Robot) -> "pin.Model":
-    """A Pinocchio model of the robot: joints and limits, a BODY frame for every link, and a frame "tool" for the tip.
+    """Makes a Pinocchio model: joints and limits, a BODY frame for each link, and a frame "tool" for the tip.
 
-    Every joint has one entry in Pinocchio's q as it has in ours: continuous ones are revolute without limits. There are
-    no masses.
+    The configuration vectors are equal: a continuous joint becomes a revolute joint without limits. The model has no
+    masses.
 
     Raises:
         InvalidInputError: mimic joints.
@@ -87,7 +87,7 @@ def _frame(names: list[str], name: str) -> int:
 
 
 def _leaf(pin: Any, model: Any) -> str:
-    """The body at the end: nothing is mounted on it or on frames behind it."""
+    """Returns the only leaf body."""
     followed = {frame.parentFrame for frame in model.frames if frame.type != pin.FrameType.OP_FRAME}
     bodies = [
         frame.name
@@ -98,12 +98,14 @@ def _leaf(pin: Any, model: Any) -> str:
 
 
 def _joints_between(model: Any, start: Any, end: Any) -> list[int]:
-    """The joints that move `end` against `start`, in order."""
+    """Returns the joints between `start` and `end`, in order."""
     joints: list[int] = []
     joint = end.parentJoint
     while joint != start.parentJoint:
         if joint == 0:
-            raise InvalidInputError(f"frame '{end.name}' of the Pinocchio model does not follow frame '{start.name}'")
+            raise InvalidInputError(
+                f"frame '{end.name}' of the Pinocchio model is not a descendant of frame '{start.name}'"
+            )
         joints.insert(0, joint)
         joint = model.parents[joint]
     return joints
@@ -111,9 +113,7 @@ def _joints_between(model: Any, start: Any, end: Any) -> list[int]:
 
 def _add_joint(pin: Any, chain: ChainReader, model: Any, joint: int) -> None:
     described, name = model.joints[joint], model.names[joint]
-    wrong = (
-        f"joint '{name}' of the Pinocchio model is a {described.shortname()}: only joints that turn or slide are taken"
-    )
+    wrong = f"joint '{name}' of the Pinocchio model is a {described.shortname()}, but must be revolute or prismatic"
     if described.nv != 1 or "Mimic" in described.shortname():
         raise InvalidInputError(wrong)
     data = described.createData()
@@ -136,7 +136,7 @@ def _add_joint(pin: Any, chain: ChainReader, model: Any, joint: int) -> None:
 
 
 def _body(pin: Any, model: Any, joint: int, taken: set[str]) -> str:
-    """The link that a joint moves: the first body on it at its own place, else the joint's name."""
+    """Returns the name of the link that a joint moves: the first body in its frame, else the joint's name."""
     for frame in model.frames:
         on_joint = frame.type == pin.FrameType.BODY and frame.parentJoint == joint and frame.name not in taken
         if on_joint and frame.placement.isIdentity(0.0):

@@ -1,4 +1,4 @@
-"""Models of the Robotics Toolbox for Python."""
+"""Robots from and to the Robotics Toolbox for Python."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -15,16 +15,16 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def from_roboticstoolbox(robot: "rtb.Robot | rtb.DHRobot | rtb.ETS", *, tip: str | None = None) -> Robot:
-    """The chain of a robot of the Robotics Toolbox: a `DHRobot`, a `Robot` (`ERobot`) or an `ETS`.
+    """Makes a robot from a `DHRobot`, a `Robot` (`ERobot`) or an `ETS` of the Robotics Toolbox.
 
     Args:
-        robot: revolute and prismatic joints; its base and tool go along.
-        tip: name of the link at the end, for a `Robot` with several, without its tool; None: the toolbox's own choice.
+        robot: a robot of revolute and prismatic joints; its base and tool are kept.
+        tip: name of the end link of a `Robot` with several, without its tool; None: the toolbox's default.
 
-    A joint without limits in the toolbox has none here. It knows no velocity limits.
+    A joint without limits in the toolbox has none here. The toolbox has no velocity limits.
 
     Raises:
-        InvalidInputError: something else, or a tip for what has one end.
+        InvalidInputError: another type, or a `tip` for a type without named links.
     """
     transforms, base, tool = _transforms(robot, tip)
     chain = ChainReader(getattr(robot, "name", "") or "roboticstoolbox", "base")
@@ -41,7 +41,7 @@ def from_roboticstoolbox(robot: "rtb.Robot | rtb.DHRobot | rtb.ETS", *, tip: str
 
 
 def to_roboticstoolbox(robot: Robot) -> "rtb.Robot":
-    """A `Robot` of the Robotics Toolbox, of elementary transforms: joints and position limits, base and tool folded in.
+    """Makes a `Robot` of the Robotics Toolbox from elementary transforms, with position limits, base and tool.
 
     Raises:
         InvalidInputError: mimic joints.
@@ -63,7 +63,7 @@ def to_roboticstoolbox(robot: Robot) -> "rtb.Robot":
 
 
 def _transforms(robot: Any, tip: str | None) -> tuple[Any, Matrix, Matrix]:
-    """The elementary transforms, and base and tool where they are not among them."""
+    """Returns the elementary transforms, and base and tool if the transforms do not include them."""
     rtb = library("roboticstoolbox", "roboticstoolbox-python", "a model of the Robotics Toolbox")
     nowhere = np.eye(4)
     if not isinstance(robot, rtb.DHRobot) and isinstance(robot, rtb.Robot):
@@ -80,7 +80,7 @@ def _transforms(robot: Any, tip: str | None) -> tuple[Any, Matrix, Matrix]:
 
 
 def _add_joint(chain: ChainReader, transform: Any, number: int) -> None:
-    kind: str = transform.kind if hasattr(transform, "kind") else transform.axis  # before 1.4 it was called so
+    kind: str = transform.kind if hasattr(transform, "kind") else transform.axis  # its name before 1.4
     axis = np.array(_AXES[kind[1]]) * (-1.0 if transform.isflip else 1.0)
     limits = transform.qlim
     lower, upper = (-np.inf, np.inf) if limits is None else limits
@@ -89,7 +89,7 @@ def _add_joint(chain: ChainReader, transform: Any, number: int) -> None:
 
 
 def _turning_z_onto(axis: Matrix) -> Matrix:
-    """A rotation (4, 4) of the z axis onto a unit vector: half a turn about what lies between them."""
+    """Returns the rotation (4, 4) of the z axis onto a unit vector: half a turn about their bisector."""
     between = axis + np.array([0.0, 0.0, 1.0])
     length = np.linalg.norm(between)
     half_way = between / length if length > 1e-9 else np.array([1.0, 0.0, 0.0])

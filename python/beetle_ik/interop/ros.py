@@ -12,19 +12,19 @@ _NANO = 1_000_000_000
 
 
 def to_ros(trajectory: Trajectory, *, dt: float | None = None, frame_id: str = "") -> dict[str, Any]:
-    """The trajectory in the shape of a ROS 2 `trajectory_msgs/JointTrajectory`: names, lists and numbers alone.
+    """Converts a trajectory to the fields of a ROS 2 `trajectory_msgs/JointTrajectory`, as a dict of plain values.
 
     Args:
         trajectory: the motion.
-        dt: time between points (s), for controllers that do not join them by polynomials of its degree, and for
-            trajectories whose derivatives jump; None: its knots.
-        frame_id: of the header.
+        dt: time between points (s). Needed if the controller interpolates with another degree, or if derivatives of
+            the trajectory jump. None: points at the knots.
+        frame_id: frame_id of the header.
 
-    Velocities and accelerations go along as far as its degree needs them (from 2, from 4), so that a controller that
-    joins points by the lowest polynomial through them does what the trajectory says.
+    Points contain velocities if the degree is 2 or more, and accelerations if it is 4 or more. A controller that
+    interpolates with the lowest degree then reproduces the trajectory.
 
     Raises:
-        InvalidInputError: `dt` not positive, or two points in the same nanosecond.
+        InvalidInputError: `dt` is not positive, or two points fall into the same nanosecond.
     """
     time, *values_of = samples(trajectory, dt)
     degree = trajectory.coefficients.shape[2] - 1
@@ -45,7 +45,7 @@ def to_ros(trajectory: Trajectory, *, dt: float | None = None, frame_id: str = "
 def to_ros_yaml(
     trajectory: Trajectory, file: str | os.PathLike[str], *, dt: float | None = None, frame_id: str = ""
 ) -> None:
-    """Write `to_ros(trajectory, ...)` as YAML, whole or not at all: for `ros2 topic pub` and parameter files."""
+    """Writes `to_ros(trajectory, ...)` as YAML for `ros2 topic pub` and parameter files; complete or not at all."""
     message = to_ros(trajectory, dt=dt, frame_id=frame_id)
     header, points = message["header"], message["points"]
     lines = ["header:", f"  stamp: {_flow(header['stamp'])}", f"  frame_id: {_flow(header['frame_id'])}"]
@@ -62,13 +62,13 @@ def _duration(nanoseconds: int) -> dict[str, int]:
 
 
 def _flow(value: Any) -> str:
-    """A value on one line. Text is quoted as in JSON, which YAML contains."""
+    """Formats a value on one line of YAML. Text is quoted as in JSON, a subset of YAML."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{name}: {_flow(item)}" for name, item in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(_flow(item) for item in value) + "]"
     if isinstance(value, float):
         text = repr(value)
-        # YAML 1.1 reads 1e-07 as text: a number has a point.
+        # YAML 1.1 reads 1e-07 as text: a float needs a decimal point.
         return text.replace("e", ".0e") if "e" in text and "." not in text else text
     return json.dumps(value)

@@ -1,4 +1,4 @@
-"""The samples of a trajectory that go to other libraries."""
+"""Samples of a trajectory for other libraries."""
 
 from typing import TypeAlias
 
@@ -11,10 +11,10 @@ Samples: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.
 
 
 def samples(trajectory: Trajectory, dt: float | None) -> Samples:
-    """Times (k,) (s), and positions, velocities and accelerations (k, n) there: every `dt` (s), or at the knots.
+    """Returns times (k,) (s), and positions, velocities and accelerations (k, n), every `dt` (s) or at the knots.
 
     Raises:
-        InvalidInputError: no trajectory, such as a result that has one, or `dt` not positive.
+        InvalidInputError: the argument is not a `Trajectory`, or `dt` is not positive.
     """
     if not isinstance(trajectory, Trajectory):
         hint = ": give its .trajectory" if hasattr(trajectory, "trajectory") else ""

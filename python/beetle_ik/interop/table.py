@@ -1,4 +1,4 @@
-"""Trajectories as tables."""
+"""Trajectories as pandas tables."""
 
 from typing import TYPE_CHECKING
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 
 def to_dataframe(trajectory: Trajectory, *, dt: float | None = None) -> "pd.DataFrame":
-    """A pandas table of the motion: index `time` (s), columns `q:joint`, `qd:joint`, `qdd:joint` (rad, m and per s).
+    """Makes a pandas table: index `time` (s), columns `q:joint`, `qd:joint`, `qdd:joint` (rad, m, s).
 
     Args:
         trajectory: the motion.
-        dt: time between rows (s); None: its knots.
+        dt: time between rows (s); None: rows at the knots.
 
     Raises:
         BeetleIkError: pandas is not installed.

@@ -86,10 +86,10 @@ def draw_velocities_by_joint(strips: Sequence[Axes], result: TrackResult) -> Non
             axes.fill_between(time, bound[:, j], top, color=FORBIDDEN, linewidth=0)
             axes.fill_between(time, -bound[:, j], -top, color=FORBIDDEN, linewidth=0)
         axes.set(xlim=(0.0, time[-1]), ylim=(-top, top))
-        named = {"transform": axes.transAxes, "va": "top", "fontsize": "small"}
+        named: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "fontsize": "small"}
         axes.text(0.02, 0.93, f"joint {j + 1}", color=line(j)["color"], **named)
-    if not near and np.isfinite(limit):
-        strips[0].text(0.98, 0.93, f"limit ±{number(limit, 2)} rad/s", ha="right", **named)
+        if j == 0 and not near and np.isfinite(limit):
+            axes.text(0.98, 0.93, f"limit ±{number(limit, 2)} rad/s", ha="right", **named)
 
 
 def draw_arm_in_space(axes: Any, robot: Robot, q: NDArray[np.float64], *, alpha: float = 1.0) -> None:

@@ -1,6 +1,6 @@
-"""Finding a planar arm in a picture (extra `vision`, on scikit-image).
+"""Locates a planar arm in an image (extra `vision`, based on scikit-image).
 
-The camera says where pixels are in the plane of the arm, the guess about where the arm is:
+The camera maps pixels to the plane of the arm; the guess starts the search:
 
     camera = bik.vision.Camera(pixels_per_metre=80.0, origin=(128.0, 128.0), link_width=0.2)
     found = bik.vision.locate_arm(image, robot, guess, camera=camera)

@@ -1,4 +1,4 @@
-"""From the plane of the arm to the picture."""
+"""The mapping from the plane of the arm to the image."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from .._core import InvalidInputError, Robot
 
 @dataclass(frozen=True, kw_only=True)
 class Camera:
-    """A camera that looks straight at the x-y plane: x to the right, y up."""
+    """A camera that looks perpendicularly at the x-y plane: x to the right, y up."""
 
     pixels_per_metre: float = 80.0
     """Scale."""
     origin: tuple[float, float] = (128.0, 128.0)
-    """Where (0, 0, 0) is: column and row (pixels)."""
+    """Column and row of (0, 0, 0) (pixels)."""
     link_width: float = 0.2
-    """Width of the links as seen (m); their ends are round."""
+    """Visible width of the links (m); their ends are round."""
 
     def __post_init__(self) -> None:
-        """Refuse sizes that are none."""
+        """Checks the options."""
         for name in ("pixels_per_metre", "link_width"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise InvalidInputError(f"{name} must be positive and finite, got {getattr(self, name)}")
@@ -33,21 +33,21 @@ class Camera:
         return 0.5 * self.link_width * self.pixels_per_metre
 
     def joint_points(self, robot: Robot, q: ArrayLike) -> NDArray[np.float64]:
-        """Ends of the links at `q` (n,): (links + 1, 2), column and row (pixels), base first."""
+        """Returns the ends of the links at `q` (n,) in the image: (links + 1, 2), column and row (pixels)."""
         points = robot.link_poses(q)[1:, :2, 3]
         return np.asarray(self.origin) + self.pixels_per_metre * points * [1.0, -1.0]
 
 
 def check_planar(robot: Robot) -> None:
-    """Raise unless the robot moves in the x-y plane."""
+    """Raises an error unless the robot moves in the x-y plane."""
     q = np.clip(np.full(robot.dof, 0.3), robot.lower, robot.upper)
     out_of_plane = np.abs(robot.jacobian(q)[2:5]).max()
     if "prismatic" in robot.joint_kinds or out_of_plane > 1e-9:
-        raise InvalidInputError(f"robot '{robot.name}' is no planar arm: its joints must all turn about z")
+        raise InvalidInputError(f"robot '{robot.name}' is not a planar arm: all joints must rotate about z")
 
 
 def distance_to_links(points: NDArray[np.float64], joints: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distance (k,) of `points` (k, 2) from the nearest line between two successive `joints` (links + 1, 2)."""
+    """Returns the distances (k,) of `points` (k, 2) from the nearest link between `joints` (links + 1, 2)."""
     begin, along = joints[:-1], np.diff(joints, axis=0)
     offset = points[:, None, :] - begin
     share = np.clip(np.sum(offset * along, axis=2) / np.maximum(np.sum(along**2, axis=1), 1e-12), 0.0, 1.0)

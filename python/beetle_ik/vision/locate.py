@@ -1,9 +1,9 @@
-"""Joint angles of a planar arm from a picture of it.
+"""Joint angles of a planar arm from an image.
 
-A contour of the arm is found, by a threshold or by an active contour, and the joint angles are fitted to it: every
-point of the contour should be half a link's width from the nearest link. The active contour of scikit-image has the
-energy of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", eq. (19) to (21), with the
-squares put back that eq. (20) lacks: alpha is its l1, beta its l2, and the strength of edges its E_con.
+The contour of the arm is found by a threshold or by an active contour. The joint angles are fitted to it: each point of
+the contour should be half a link width from the nearest link. The active contour of scikit-image minimises the energy
+of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", eq. (19) to (21), with the squares
+that eq. (20) lacks: alpha is its l1, beta its l2, and the edge strength its E_con.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from .camera import Camera, check_planar, distance_to_links
 from .render import evenly, outline
 
 _SMOOTHING = 2.0  # pixels, standard deviation
-_SMALLEST = 8  # pixels: a picture with a shorter side shows nothing
-_FLAT = 1e-9  # brightness: a picture that varies by less shows nothing
-_CONTRAST = 0.2  # least difference of the two brightnesses over their spread together, for anything to be seen
+_SMALLEST = 8  # pixels: least side of an image
+_FLAT = 1e-9  # least variation of the brightness
+_CONTRAST = 0.2  # least difference between arm and background, as a fraction of the range of brightness
 _POINTS = 300  # of the contour
 _RELIABLE_RMS = 0.8  # pixels
 _RELIABLE_OVERLAP = 0.93
-_MARGIN = 6.0  # pixels that the active contour begins outside the guess
+_MARGIN = 6.0  # pixels between the guess and the initial active contour
 
 
 class Sight(StrEnum):
-    """What became of a search for an arm."""
+    """How a search for an arm ended."""
 
     FOUND = "found"
     UNRELIABLE = "unreliable"
@@ -42,27 +42,27 @@ class Sight(StrEnum):
 
 _ADVICE = {
     Sight.FOUND: "found",
-    Sight.UNRELIABLE: "the fit does not explain the picture: give a better guess, or check camera and robot",
-    Sight.CUT_OFF: "the arm reaches over the edge of the picture: move the camera back",
-    Sight.NOTHING_SEEN: "there is nothing in the picture that stands out from it",
+    Sight.UNRELIABLE: "the fit does not match the image: give a better guess, or check camera and robot",
+    Sight.CUT_OFF: "the arm extends beyond the edge of the image: move the camera back",
+    Sight.NOTHING_SEEN: "no arm stands out from the background: increase the contrast, or check the image",
 }
 
 
 @dataclass(frozen=True, kw_only=True)
 class ArmLocation:
-    """Where an arm was found."""
+    """The result of `locate_arm`."""
 
     q: NDArray[np.float64]
-    """The joint angles (n,) (rad); to be trusted only on `success`."""
+    """Joint angles (n,) (rad); reliable only on `success`."""
     status: Sight
     contour: NDArray[np.float64]
-    """The contour that was seen (k, 2): column and row (pixels); empty where nothing was."""
+    """The contour in the image (k, 2): column and row (pixels); empty if none was found."""
     rms: float
-    """Root mean square distance of the contour from the fitted arm's outline (pixels)."""
+    """Root mean square distance between the contour and the outline of the fitted arm (pixels)."""
     overlap: float
-    """Of what is arm in the picture or in the fit, the share that is both."""
+    """Intersection over union of the arm in the image and the fitted arm."""
     evaluations: int
-    """Postures that were held against the contour."""
+    """Postures compared with the contour."""
     elapsed: float
     """Time taken (s)."""
 
@@ -86,20 +86,20 @@ def locate_arm(
     camera: Camera | None = None,
     method: Literal["threshold", "snake"] = "threshold",
 ) -> ArmLocation:
-    """Find the joint angles of a planar arm, brighter or darker than what is behind it.
+    """Finds the joint angles of a planar arm that is brighter or darker than the background.
 
     Args:
         image: (rows, columns) grey, or (rows, columns, 3 or 4) RGB or RGBA; integers or floats.
         robot: a planar arm.
-        guess: (n,) (rad), where the search begins; up to about 0.1 rad off a joint.
-        camera: None: 80 pixels a metre, the base at pixel (128, 128), links 0.2 m wide.
-        method: the contour by a "threshold", or by a "snake", an active contour that begins around the guess.
+        guess: (n,) (rad), start of the search; each joint up to about 0.1 rad off.
+        camera: None: 80 pixels per metre, the base at pixel (128, 128), links 0.2 m wide.
+        method: how the contour is found: "threshold", or "snake", an active contour that starts around the guess.
 
     Returns:
-        An `ArmLocation`. A picture without an arm, or one that the fit does not explain, is a status, not an error.
+        An `ArmLocation`. An image without an arm, or a fit that does not match it, is a status, not an error.
 
     Raises:
-        InvalidInputError: a robot that is not planar, an image or a guess of a wrong shape.
+        InvalidInputError: a robot that is not planar, an image or a guess of the wrong shape.
         BeetleIkError: scikit-image is not installed.
     """
     library("skimage", "scikit-image", "locate_arm", extra="vision")
@@ -133,7 +133,7 @@ def locate_arm(
 
 
 def _grey(image: ArrayLike) -> NDArray[np.float64]:
-    """The image as brightness between 0 and about 1."""
+    """Returns the brightness of the image, between 0 and about 1."""
     picture = np.asarray(image)
     coloured = picture.ndim == 3 and picture.shape[2] in (3, 4)
     if not (picture.ndim == 2 or coloured) or picture.dtype.kind not in "buif":
@@ -156,7 +156,7 @@ def _checked_guess(guess: ArrayLike, robot: Robot) -> NDArray[np.float64]:
 
 
 def _arm_mask(grey: NDArray[np.float64]) -> tuple[NDArray[np.bool_] | None, float, NDArray[np.float64]]:
-    """What is arm, the largest piece that stands out; the brightness at its edge; the smooth picture, arm bright."""
+    """Returns the mask of the largest object, the brightness at its edge, and the smoothed image with a bright arm."""
     from skimage.filters import gaussian, threshold_otsu
     from skimage.measure import label
 
@@ -167,14 +167,14 @@ def _arm_mask(grey: NDArray[np.float64]) -> tuple[NDArray[np.bool_] | None, floa
         return None, 0.0, grey
     level = float(threshold_otsu(smooth))
     bright = smooth > level
-    # The frame of the picture is what is behind the arm.
+    # The border of the image is background.
     if np.mean(np.concatenate((bright[0], bright[-1], bright[:, 0], bright[:, -1]))) > 0.5:
         smooth, level, bright = -smooth, -level, ~bright
     apart = smooth[bright].mean() - smooth[~bright].mean()
     rest = smooth[~bright].std()
     pieces = label(bright)
     sizes = np.bincount(pieces.ravel())[1:]
-    # Noise alone falls into many pieces, and its two sides are not far apart.
+    # Noise alone breaks into many small objects with little contrast.
     if apart < _CONTRAST * np.ptp(grey) or rest > 0.5 * apart or sizes.max() < 0.5 * bright.sum():
         return None, level, smooth
     level = float(0.5 * (np.median(smooth[bright]) + np.median(smooth[~bright])))
@@ -190,7 +190,7 @@ def _longest_contour(smooth: NDArray[np.float64], level: float) -> NDArray[np.fl
 def _snake(
     smooth: NDArray[np.float64], robot: Robot, start: NDArray[np.float64], camera: Camera
 ) -> NDArray[np.float64]:
-    """An active contour from around the guess onto the edge."""
+    """Moves an active contour from around the guess onto the edge of the arm."""
     from skimage.segmentation import active_contour
 
     begin = outline(robot, start, camera=camera, margin=_MARGIN, points=_POINTS)[:, ::-1]
@@ -201,7 +201,7 @@ def _snake(
 def _fit(
     contour: NDArray[np.float64], robot: Robot, start: NDArray[np.float64], camera: Camera
 ) -> tuple[NDArray[np.float64], int]:
-    """The angles at which the contour is half a link's width from the links; stray points count little."""
+    """Fits the joint angles, so that the contour is half a link width from the links; robust against outliers."""
     from scipy.optimize import least_squares
 
     def residual(q: NDArray[np.float64]) -> NDArray[np.float64]:

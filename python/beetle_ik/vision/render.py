@@ -1,4 +1,4 @@
-"""Pictures of planar arms, for tests and examples."""
+"""Synthetic images of planar arms, for tests and examples."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ def render(
     noise: float = 0.0,
     seed: int = 0,
 ) -> NDArray[np.float64]:
-    """A picture (rows, columns) of the arm at `q` (n,): 1 on its links, 0 beside them, one pixel of blur between.
+    """Renders an image (rows, columns) of the arm at `q` (n,): 1 on its links, 0 elsewhere, blurred over one pixel.
 
     Args:
         robot: a planar arm.
         q: (n,) (rad).
-        camera: None: 80 pixels a metre, the base in the middle of 256 by 256 pixels.
+        camera: None: 80 pixels per metre, the base at the centre of 256 by 256 pixels.
         shape: rows and columns.
-        noise: standard deviation of what is added to every pixel.
-        seed: of the noise.
+        noise: standard deviation of the noise on each pixel.
+        seed: seed of the noise.
     """
     check_planar(robot)
     camera = camera or Camera()
@@ -41,7 +41,7 @@ def render(
 def outline(
     robot: Robot, q: ArrayLike, *, camera: Camera | None = None, margin: float = 0.0, points: int = 300
 ) -> NDArray[np.float64]:
-    """The outline of the arm at `q` (n,), `margin` pixels outside: closed, (points, 2), column and row (pixels)."""
+    """Returns the closed outline of the arm at `q` (n,), `margin` pixels outside: (points, 2), column and row."""
     library("skimage", "scikit-image", "a picture", extra="vision")
     from skimage.measure import find_contours
 
@@ -58,7 +58,7 @@ def outline(
 
 
 def evenly(curve: NDArray[np.float64], points: int) -> NDArray[np.float64]:
-    """The curve (k, 2) at `points` places, the same length apart."""
+    """Resamples a curve (k, 2) at `points` places, evenly spaced by length."""
     length = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(curve, axis=0), axis=1))))
     places = np.linspace(0.0, length[-1], points)
     return np.stack([np.interp(places, length, coordinate) for coordinate in curve.T], axis=1)

@@ -3,7 +3,7 @@
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::robot::Robot;
-use ikcore::solver::{Algorithm, AnySolver, Bas, LevenbergMarquardt, Status, Unattended, Variant};
+use ikcore::solver::{Algorithm, AnySolver, Bas, BasVariant, LevenbergMarquardt, Status, Unattended};
 use ikcore::task::Tolerance;
 use ikcore::tracking::{Record, TickRule, TrackOptions, track};
 
@@ -46,7 +46,7 @@ pub fn velocity_limits(robot: &Robot, profile: Profile) -> Limits {
     Limits::of(robot).replace(Field::Velocity, vec![profile]).unwrap()
 }
 
-pub fn beetle(variant: Variant, c1: f64, explorations: usize) -> TickRule {
+pub fn beetle(variant: BasVariant, c1: f64, explorations: usize) -> TickRule {
     TickRule::Solver(AnySolver::Single(Algorithm::from(Bas { variant, c1, explorations, ..Bas::default() })))
 }
 

@@ -1,24 +1,29 @@
-//! Inverse kinematics: one target, one answer, or all of them.
+//! Inverse kinematics: one target with one solution, or with all of them.
+//!
+//! Read `solve` first. A [`SolveContext`] is validated once for all targets of a call; an `Attempt` holds everything that
+//! one target needs: problem, random numbers, monitor, `budget`. `nearest` and `best` choose among several solutions,
+//! `goal_descent` moves one along its self-motion, `solve_all` collects them, `side_by_side` solves four at once for batches.
+//! Why a target was missed is a matter of [`problem`](crate::problem).
 
-mod all;
-mod arcs;
+mod attempt;
 mod best;
-mod curve;
-mod flip;
+mod budget;
+mod context;
+mod goal_descent;
 mod nearest;
-mod prepared;
-mod room;
-mod round;
-mod run;
-mod self_motion;
+mod options;
+mod shared_time;
 mod side_by_side;
 mod solution;
 mod solve;
-mod unreached;
+mod solve_all;
+mod whole_turns;
 
-pub use all::{AllOptions, SolutionSet, solve_all};
-pub(crate) use nearest::bring_near;
-pub(crate) use prepared::Prepared;
-pub(crate) use side_by_side::Query;
+pub(crate) use context::{Query, SolveContext};
+pub use options::{Prefer, SolveOptions};
+pub(crate) use side_by_side::solve_queries;
 pub use solution::Solution;
-pub use solve::{Prefer, SolveOptions, solve};
+pub use solve::solve;
+pub(crate) use solve::solve_query;
+pub use solve_all::{AllOptions, SolutionSet, solve_all};
+pub(crate) use whole_turns::bring_near;

@@ -4,21 +4,28 @@
 //! (product of the others) u_i v_i'. The Jacobian changes by cross products of its own columns: turning about an element
 //! carries all elements behind it along, and moves the tip as seen from all before it.
 
-use super::Manipulability;
+use super::gram;
+use super::index::Manipulability;
+use crate::kinematics::{Columns, Screw};
 use crate::math::MAX_DOF;
 use crate::math::singular::SingularValues;
 use crate::math::so3::cross;
-use crate::robot::{Columns, Robot, Screw};
+use crate::robot::Robot;
 
-/// The index at `q` and its gradient.
-pub(super) fn index(measure: &Manipulability, robot: &Robot, q: &[f64], out: &mut [f64]) -> f64 {
-    let screws = robot.screws(q);
-    let Some(tip) = screws.last().map(|screw| screw.end) else { return 0.0 };
-    out.fill(0.0);
-    add(measure, &screws, &tip, out)
+impl Manipulability {
+    /// The index at `q`, and its gradient (n,) in `out`; nothing is allocated. `q` and `out` have one entry per joint.
+    ///
+    /// Exact, by the derivative of the geometric Jacobian. Where the index is zero it has no gradient: `out` then points out
+    /// of the singularity on one of its two sides, or is zero.
+    pub fn gradient(&self, robot: &Robot, q: &[f64], out: &mut [f64]) -> f64 {
+        let screws = robot.screws(q);
+        let Some(tip) = screws.last().map(|screw| screw.end) else { return 0.0 };
+        out.fill(0.0);
+        add(self, &screws, &tip, out)
+    }
 }
 
-/// The index of the point `tip` behind `screws`; its gradient is added to `out` (n,).
+/// Adds the gradient of the index of the point `tip` behind `screws` to `out` (n,), and returns the index.
 pub(super) fn add(measure: &Manipulability, screws: &[Screw], tip: &[f64; 3], out: &mut [f64]) -> f64 {
     // Mimics: several elements may share a joint, so that their columns are summed.
     let mut shares = [[0.0; 6]; MAX_DOF];
@@ -40,15 +47,16 @@ pub(super) fn add(measure: &Manipulability, screws: &[Screw], tip: &[f64; 3], ou
 /// w and dw/dJ, column by column.
 fn sensitivity(measure: &Manipulability, columns: &mut [[f64; 6]]) -> (f64, Columns) {
     let mut sensitivity: Columns = [[0.0; 6]; MAX_DOF];
-    if let Some(gram) = measure.gram_factor(columns) {
-        gram.sensitivity(columns, &mut sensitivity);
-        return (gram.index(), sensitivity);
+    if measure.has_full_rank()
+        && let Some(index) = gram::index_and_sensitivity(columns, measure.motion(), &mut sensitivity)
+    {
+        return (index, sensitivity);
     }
     measure.motion().select(columns);
     let values = SingularValues::of(columns);
-    let (n, directions) = (columns.len(), measure.directions());
-    for i in 0..directions {
-        let others: f64 = (0..directions).filter(|k| *k != i).map(|k| values.lengths[k]).product();
+    let (n, rank) = (columns.len(), measure.rank());
+    for i in 0..rank {
+        let others: f64 = (0..rank).filter(|k| *k != i).map(|k| values.lengths[k]).product();
         for (column, right) in sensitivity[..n].iter_mut().zip(&values.right[i]) {
             for (entry, left) in column.iter_mut().zip(&values.left[i]) {
                 *entry += others * left * right;

@@ -1,73 +1,68 @@
-//! The Gram matrix J J' and its LDL' factorisation: the index far from singularities, at a tenth of the work of singular values.
-//! Near singularities squaring J would lose the digits that matter; there the singular values take over.
+//! The index by the LDL' factors of J J', at a tenth of the work of singular values. None near singularities, where
+//! squaring J loses digits and singular values take over.
 
-use std::ops::Range;
+use crate::kinematics::Columns;
+use crate::math::arithmetic::NoFma;
+use crate::math::gram::gram;
+use crate::math::ldl::{Ldl, trace};
+use crate::math::real::{One, Real};
 
-use crate::robot::Columns;
-
-const ROWS: usize = 6;
+use super::motion::Motion;
 
 /// A pivot below this share of the trace counts as near a singularity: ten of sixteen digits are left there.
 const NEAR: f64 = 1e-6;
 
-/// J J' = L D L' of the rows that count.
-pub(super) struct GramFactor {
-    rows: Range<usize>,
-    /// Below the diagonal L, on it the pivots.
-    factor: [[f64; ROWS]; ROWS],
+/// w = sqrt(det(J J')) on the rows of `motion`.
+pub(super) fn index(columns: &[[f64; 6]], motion: Motion) -> Option<f64> {
+    match motion {
+        Motion::Pose => Some(GramFactor::<6>::of(columns, 0)?.index()),
+        Motion::Position => Some(GramFactor::<3>::of(columns, 0)?.index()),
+        Motion::Rotation => Some(GramFactor::<3>::of(columns, 3)?.index()),
+    }
 }
 
-impl GramFactor {
-    /// Of the matrix with these columns; None near a singularity.
-    pub fn of(columns: &[[f64; ROWS]], rows: Range<usize>) -> Option<Self> {
-        let mut a = [[0.0; ROWS]; ROWS];
-        for column in columns {
-            for i in rows.clone() {
-                for k in rows.start..=i {
-                    a[i][k] += column[i] * column[k];
-                }
-            }
-        }
-        let smallest = NEAR * rows.clone().map(|i| a[i][i]).sum::<f64>();
-        for j in rows.clone() {
-            // Written so that NaN is near too.
-            if !(a[j][j] > smallest) {
-                return None;
-            }
-            for i in j + 1..rows.end {
-                let factor = a[i][j] / a[j][j];
-                for k in j + 1..=i {
-                    a[i][k] -= factor * a[k][j];
-                }
-            }
-            let pivot = a[j][j];
-            a[j + 1..rows.end].iter_mut().for_each(|row| row[j] /= pivot);
-        }
-        Some(Self { rows, factor: a })
+/// The same w, and dw/dJ column by column in `out`.
+pub(super) fn index_and_sensitivity(columns: &[[f64; 6]], motion: Motion, out: &mut Columns) -> Option<f64> {
+    match motion {
+        Motion::Pose => Some(GramFactor::<6>::of(columns, 0)?.write_sensitivity(columns, out)),
+        Motion::Position => Some(GramFactor::<3>::of(columns, 0)?.write_sensitivity(columns, out)),
+        Motion::Rotation => Some(GramFactor::<3>::of(columns, 3)?.write_sensitivity(columns, out)),
+    }
+}
+
+/// J J' = L D L' of `R` rows from `first` on.
+struct GramFactor<const R: usize> {
+    first: usize,
+    ldl: Ldl<One<NoFma>, R>,
+}
+
+impl<const R: usize> GramFactor<R> {
+    /// None near a singularity.
+    fn of(columns: &[[f64; 6]], first: usize) -> Option<Self> {
+        let matrix = gram::<NoFma, R>(columns.iter().map(|column| leading(column, first)), 0.0);
+        let smallest = NEAR * trace(&matrix).stored();
+        let ldl = Ldl::of(matrix);
+        // Written so that NaN is near too.
+        (0..R).all(|j| ldl.pivot(j).stored() > smallest).then_some(Self { first, ldl })
     }
 
-    /// w = sqrt(det(J J')).
-    pub fn index(&self) -> f64 {
-        self.rows.clone().map(|i| self.factor[i][i]).product::<f64>().sqrt()
+    fn index(&self) -> f64 {
+        (0..R).map(|j| self.ldl.pivot(j).stored()).product::<f64>().sqrt()
     }
 
-    /// dw/dJ = w (J J')^-1 J, column by column.
-    pub fn sensitivity(&self, columns: &[[f64; ROWS]], out: &mut Columns) {
+    /// dw/dJ = w (J J')^-1 J, zero in the other rows. Returns w.
+    fn write_sensitivity(&self, columns: &[[f64; 6]], out: &mut Columns) -> f64 {
         let index = self.index();
         for (out, column) in out.iter_mut().zip(columns) {
-            *out = self.solve(column).map(|entry| index * entry);
+            let z = self.ldl.solve(std::array::from_fn(|i| One::of(column[self.first + i])));
+            *out = [0.0; 6];
+            z.into_iter().enumerate().for_each(|(i, entry)| out[self.first + i] = index * entry.stored());
         }
+        index
     }
+}
 
-    /// (J J')^-1 b; zero in the rows that do not count.
-    fn solve(&self, b: &[f64; ROWS]) -> [f64; ROWS] {
-        let mut z = [0.0; ROWS];
-        for i in self.rows.clone() {
-            z[i] = b[i] - (self.rows.start..i).map(|k| self.factor[i][k] * z[k]).sum::<f64>();
-        }
-        for i in self.rows.clone().rev() {
-            z[i] = z[i] / self.factor[i][i] - (i + 1..self.rows.end).map(|k| self.factor[k][i] * z[k]).sum::<f64>();
-        }
-        z
-    }
+/// The rows from `first` on moved to the front, then zeros.
+fn leading(column: &[f64; 6], first: usize) -> [f64; 6] {
+    std::array::from_fn(|row| column.get(first + row).copied().unwrap_or(0.0))
 }

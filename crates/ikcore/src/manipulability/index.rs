@@ -1,35 +1,34 @@
 //! Yoshikawa's index of a robot's postures.
 
 use super::ellipsoid::Ellipsoid;
-use super::gradient;
-use super::gram::GramFactor;
+use super::gram;
 use super::motion::Motion;
 use crate::error::Result;
+use crate::kinematics::{Columns, TaskRank};
 use crate::math::MAX_DOF;
 use crate::math::singular::SingularValues;
-use crate::robot::{Columns, Directions, Robot};
+use crate::robot::Robot;
 
-/// The measure of a robot's postures: which motion counts, and how many directions of it the robot has at all.
+/// The measure of a robot's postures: the motion that counts, and the rank of its Jacobian.
 ///
-/// The index is the product of as many singular values as there are directions: sqrt(det(J J')) where the tip can move
-/// in all of them, sqrt(det(J' J)) for an arm of fewer joints, and the area of the ellipse for the tip of a planar arm,
-/// where both determinants vanish everywhere.
+/// The index is the product of the `rank` largest singular values: sqrt(det(J J')) for full rank, sqrt(det(J' J)) for an arm
+/// of fewer joints, and the area of the ellipse for the tip of a planar arm, where both determinants vanish everywhere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Manipulability {
     motion: Motion,
-    directions: usize,
+    rank: usize,
 }
 
 impl Manipulability {
     /// The measure of `motion` for `robot`.
     pub fn of(robot: &Robot, motion: Motion) -> Self {
-        let Directions { pose, position, rotation } = robot.directions();
-        let directions = match motion {
+        let TaskRank { pose, position, rotation } = robot.task_rank();
+        let rank = match motion {
             Motion::Pose => pose,
             Motion::Position => position,
             Motion::Rotation => rotation,
         };
-        Self { motion, directions }
+        Self { motion, rank }
     }
 
     /// Which motion counts.
@@ -37,9 +36,9 @@ impl Manipulability {
         self.motion
     }
 
-    /// Directions in which the tip can move, m.
-    pub fn directions(&self) -> usize {
-        self.directions
+    /// Rank of the Jacobian of the motion, m: the number of directions in which the tip can move.
+    pub fn rank(&self) -> usize {
+        self.rank
     }
 
     /// Yoshikawa's index at `q`, which has one finite entry per joint of the robot.
@@ -49,39 +48,28 @@ impl Manipulability {
         self.index_of(&mut columns[..q.len()])
     }
 
-    /// The index of the matrix with these columns, of which the rows that do not count are emptied.
+    /// The index of the matrix with these columns. The rows that do not count are emptied.
     pub(super) fn index_of(&self, columns: &mut [[f64; 6]]) -> f64 {
-        match self.gram_factor(columns) {
-            Some(gram) => gram.index(),
-            None => {
-                self.motion.select(columns);
-                self.product(&SingularValues::of(columns))
-            }
-        }
+        let regular = if self.has_full_rank() { gram::index(columns, self.motion) } else { None };
+        regular.unwrap_or_else(|| {
+            self.motion.select(columns);
+            self.product(&SingularValues::of(columns))
+        })
     }
 
-    /// The factorisation of J J' away from singularities, where the robot has all directions of the motion.
-    pub(super) fn gram_factor(&self, columns: &[[f64; 6]]) -> Option<GramFactor> {
-        let rows = self.motion.rows();
-        if rows.len() == self.directions { GramFactor::of(columns, rows) } else { None }
-    }
-
-    /// The index at `q`, and its gradient (n,) in `out`; nothing is allocated. `q` and `out` have one entry per joint.
-    ///
-    /// Exact, by the derivative of the geometric Jacobian. Where the index is zero it has no gradient: what is written
-    /// then points out of the singularity on one of its two sides, or is zero.
-    pub fn gradient(&self, robot: &Robot, q: &[f64], out: &mut [f64]) -> f64 {
-        gradient::index(self, robot, q, out)
+    /// Whether the tip can move in all directions of the motion.
+    pub(super) fn has_full_rank(&self) -> bool {
+        self.motion.rows().len() == self.rank
     }
 
     /// The ellipsoid of tip velocities at `q`, which has one finite entry per joint.
     pub fn ellipsoid(&self, robot: &Robot, q: &[f64]) -> Ellipsoid {
-        Ellipsoid::new(&decompose(robot, self.motion, q), self.directions)
+        Ellipsoid::new(&decompose(robot, self.motion, q), self.rank)
     }
 
-    /// The product of the largest singular values, one per direction.
+    /// The product of the `rank` largest singular values.
     pub(super) fn product(&self, values: &SingularValues) -> f64 {
-        values.lengths[..self.directions].iter().product()
+        values.lengths[..self.rank].iter().product()
     }
 }
 

@@ -3,22 +3,21 @@
 
 use std::f64::consts::PI;
 
-use super::{Manipulability, gradient};
+use super::gradient;
+use super::index::Manipulability;
+use crate::kinematics::Columns;
 use crate::math::MAX_DOF;
-use crate::robot::{Columns, Robot};
-
-/// At most so many links move.
-pub const MAX_LINKS: usize = MAX_DOF;
+use crate::robot::Robot;
 
 /// The indices of all moving links, base to tip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinkIndices {
-    values: [f64; MAX_LINKS],
+    values: [f64; MAX_DOF],
     count: usize,
 }
 
 impl LinkIndices {
-    /// One per moving link; the last is the tip's. Links with fewer joints before them than directions have zero.
+    /// One per moving link; the last is the tip's. Links with fewer joints before them than the rank have zero.
     pub fn values(&self) -> &[f64] {
         &self.values[..self.count]
     }
@@ -34,7 +33,7 @@ impl Manipulability {
     /// moved by the joints before it, k_m w_i the area or volume of its ellipsoid.
     pub fn link_indices(&self, robot: &Robot, q: &[f64]) -> LinkIndices {
         let screws = robot.screws(q);
-        let mut indices = LinkIndices { values: [0.0; MAX_LINKS], count: screws.len() };
+        let mut indices = LinkIndices { values: [0.0; MAX_DOF], count: screws.len() };
         for (i, link) in screws.iter().enumerate() {
             let mut columns: Columns = [[0.0; 6]; MAX_DOF];
             for screw in &screws[..=i] {
@@ -55,10 +54,10 @@ impl Manipulability {
         self.unit_ball() * sum
     }
 
-    /// k_m of eq. (15): the volume of the unit ball in as many dimensions as there are directions; pi in the plane.
+    /// k_m of eq. (15): the volume of the unit ball in m dimensions, m the rank; pi in the plane.
     pub fn unit_ball(&self) -> f64 {
         // V_m = V_{m-2} 2 pi / m, from V_0 = 1 and V_1 = 2.
-        let m = self.directions();
+        let m = self.rank();
         let (first, from) = if m.is_multiple_of(2) { (1.0, 2) } else { (2.0, 3) };
         (from..=m).step_by(2).fold(first, |volume, m| volume * 2.0 * PI / m as f64)
     }

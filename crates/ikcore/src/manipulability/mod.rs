@@ -1,5 +1,4 @@
-//! How well a posture lets the tip move: Yoshikawa's index, its exact gradient, the ellipsoid of velocities, and the
-//! index of every link's tip on the way.
+//! Manipulability: Yoshikawa's index, its exact gradient, the ellipsoid of tip velocities, and the index of every link.
 //!
 //! Unit joint speeds, |q'| = 1, give the tip velocities in an ellipsoid whose semi-axes are the singular values of the
 //! Jacobian. Their product is Yoshikawa's index w = sqrt(det(J J')) (1985).
@@ -8,9 +7,9 @@
 //! |---|---|
 //! | `motion` | [`Motion`]: velocities, angular velocities or both |
 //! | `index` | [`Manipulability`]: the index |
-//! | `gram` | the index far from singularities, without singular values |
+//! | `gram` | the index away from singularities, without singular values |
 //! | `gradient` | its gradient |
-//! | `links` | the index of the tip of every link, and its gradient |
+//! | `links` | the index of the end of every link, and its gradient |
 //! | `ellipsoid` | [`Ellipsoid`]: semi-axes, condition, isotropy |
 
 mod ellipsoid;
@@ -22,5 +21,5 @@ mod motion;
 
 pub use ellipsoid::Ellipsoid;
 pub use index::{Manipulability, manipulability, manipulability_all};
-pub use links::{LinkIndices, MAX_LINKS};
+pub use links::LinkIndices;
 pub use motion::Motion;

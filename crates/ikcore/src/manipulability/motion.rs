@@ -1,13 +1,13 @@
-//! Which motion of the tip counts: rows of the Jacobian.
+//! The motion of the tip that counts: rows of the Jacobian.
 
 use std::ops::Range;
 
 use crate::wording::words;
 
-/// Which motion of the tip counts.
+/// The motion of the tip that counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Motion {
-    /// Velocities (m/s) and angular velocities (rad/s) together: values depend on the unit of length.
+    /// Velocities (m/s) and angular velocities (rad/s); the index depends on the unit of length.
     #[default]
     Pose,
     /// Velocities alone.
@@ -28,7 +28,7 @@ impl Motion {
         }
     }
 
-    /// Empties the rows that do not count.
+    /// Sets the rows that do not count to zero.
     pub(super) fn select(self, columns: &mut [[f64; 6]]) {
         let Range { start, end } = self.rows();
         for column in columns {

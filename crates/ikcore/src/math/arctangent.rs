@@ -1,7 +1,7 @@
-//! The angle of a sine and a cosine without branches, for one pair or several side by side.
+//! The angle of a sine and a cosine without branches, for one pair or one per lane.
 //!
-//! The quotient is brought into [-tan(pi/8), tan(pi/8)] by eighths of a turn; there a minimax polynomial follows, fitted for this file by
-//! Remez exchange: its relative error is 2e-18.
+//! Turns by eighths bring the quotient into [-tan(pi/8), tan(pi/8)], where a minimax polynomial has a relative error of
+//! 2e-18; it was fitted for this file by Remez exchange.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -23,16 +23,16 @@ const P: [f64; 11] = [
 ];
 /// tan(pi/8): a quotient beyond it is nearer to 1 than to 0.
 const EIGHTH: f64 = 0.41421356237309503;
-/// What pi/4 is beyond [`FRAC_PI_4`].
+/// pi/4 - [`FRAC_PI_4`].
 const FRAC_PI_4_REST: f64 = 3.061616997868383e-17;
 
-/// The angle (rad, from 0 to pi) whose sine and cosine stand in the proportion of these; `sine` is not negative, and not both are zero.
+/// The angle (rad, from 0 to pi) of a point at (`cosine`, `sine`), at any distance but zero; `sine` is not negative.
 #[inline(always)]
 pub fn angle_of<R: Real>(sine: R, cosine: R) -> R {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let size = cosine.choose_below(zero, -cosine, cosine);
     let (less, more) = (sine.smaller(size), size.larger(sine));
-    // The angle is so many quarters of pi, plus or minus the arctangent of a small quotient.
+    // The angle is a multiple of pi/4, plus or minus the arctangent of a small quotient.
     let quarter = (more * R::splat(EIGHTH)).choose_below(less, one, zero);
     let quotient = (less - quarter * more) / (more + quarter * less);
     let (quarters, sign) = (quarter, one);
@@ -58,12 +58,12 @@ fn arctangent<R: Real>(x: R) -> R {
 
 #[cfg(test)]
 mod tests {
-    use super::super::arithmetic::Separate;
+    use super::super::arithmetic::NoFma;
     use super::super::real::One;
     use super::*;
 
     fn angle(sine: f64, cosine: f64) -> f64 {
-        angle_of(One::<Separate>::of(sine), One::of(cosine)).stored()
+        angle_of(One::<NoFma>::of(sine), One::of(cosine)).stored()
     }
 
     #[test]

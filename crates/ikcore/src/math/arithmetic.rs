@@ -1,74 +1,82 @@
-//! Arithmetic with or without the processor's fused multiply-add and registers of four numbers, chosen once per call of a kernel.
+//! Arithmetic with or without the processor's fused multiply-add (FMA) and registers of four numbers.
 //!
-//! Kernels are straight-line bodies over [`Arithmetic`]: one source, compiled portable and for machines with AVX2 and FMA.
-//! Both are repeatable; they differ from each other in the last bit.
+//! Kernels are straight-line bodies over [`Arithmetic`]: one source, compiled portably and for machines with AVX2 and FMA
+//! by [`by_instructions`]. Both are repeatable; they differ from each other in the last bit.
 
-use super::quad::Quad;
+use super::f64x4::F64x4;
 
-/// The operations in which the two compilations of a kernel differ.
+/// Operations in which the two compilations of a kernel differ.
 pub trait Arithmetic: Copy {
     /// a * b + c.
     fn mul_add(a: f64, b: f64, c: f64) -> f64;
 
     /// a * b + c, lane by lane.
     #[inline(always)]
-    fn mul_add_quad(a: Quad, b: Quad, c: Quad) -> Quad {
-        Quad(std::array::from_fn(|k| Self::mul_add(a.0[k], b.0[k], c.0[k])))
+    fn mul_add_x4(a: F64x4, b: F64x4, c: F64x4) -> F64x4 {
+        F64x4(std::array::from_fn(|k| Self::mul_add(a.0[k], b.0[k], c.0[k])))
     }
 
     /// a * b, lane by lane.
     #[inline(always)]
-    fn mul_quad(a: Quad, b: Quad) -> Quad {
-        Quad(std::array::from_fn(|k| a.0[k] * b.0[k]))
+    fn mul_x4(a: F64x4, b: F64x4) -> F64x4 {
+        F64x4(std::array::from_fn(|k| a.0[k] * b.0[k]))
     }
 
     /// a + b, lane by lane.
     #[inline(always)]
-    fn add_quad(a: Quad, b: Quad) -> Quad {
-        Quad(std::array::from_fn(|k| a.0[k] + b.0[k]))
+    fn add_x4(a: F64x4, b: F64x4) -> F64x4 {
+        F64x4(std::array::from_fn(|k| a.0[k] + b.0[k]))
+    }
+
+    /// The cross product of two vectors in the first three lanes.
+    #[inline(always)]
+    fn cross_x4(a: F64x4, b: F64x4) -> F64x4 {
+        // a x b = P (a * Pb - Pa * b), entry by entry, with the cyclic permutation P.
+        let product = Self::mul_x4(a.permuted(), b);
+        Self::mul_add_x4(a, b.permuted(), -product).permuted()
     }
 
     /// a - b, lane by lane.
     #[inline(always)]
-    fn sub_quad(a: Quad, b: Quad) -> Quad {
-        Quad(std::array::from_fn(|k| a.0[k] - b.0[k]))
+    fn sub_x4(a: F64x4, b: F64x4) -> F64x4 {
+        F64x4(std::array::from_fn(|k| a.0[k] - b.0[k]))
     }
 
     /// a / b, lane by lane.
     #[inline(always)]
-    fn div_quad(a: Quad, b: Quad) -> Quad {
-        Quad(std::array::from_fn(|k| a.0[k] / b.0[k]))
+    fn div_x4(a: F64x4, b: F64x4) -> F64x4 {
+        F64x4(std::array::from_fn(|k| a.0[k] / b.0[k]))
     }
 
     /// The square root, lane by lane.
     #[inline(always)]
-    fn sqrt_quad(a: Quad) -> Quad {
-        Quad(a.0.map(f64::sqrt))
+    fn sqrt_x4(a: F64x4) -> F64x4 {
+        F64x4(a.0.map(f64::sqrt))
     }
 
     /// `then` where a < b, and `otherwise` elsewhere, NaN included, lane by lane.
     #[inline(always)]
-    fn choose_below_quad(a: Quad, b: Quad, then: Quad, otherwise: Quad) -> Quad {
-        Quad(std::array::from_fn(|k| if a.0[k] < b.0[k] { then.0[k] } else { otherwise.0[k] }))
+    fn choose_below_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
+        F64x4(std::array::from_fn(|k| if a.0[k] < b.0[k] { then.0[k] } else { otherwise.0[k] }))
     }
 
     /// `then` where a = b, and `otherwise` elsewhere, NaN included, lane by lane.
     #[inline(always)]
-    fn choose_equal_quad(a: Quad, b: Quad, then: Quad, otherwise: Quad) -> Quad {
-        Quad(std::array::from_fn(|k| if a.0[k] == b.0[k] { then.0[k] } else { otherwise.0[k] }))
+    fn choose_equal_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
+        F64x4(std::array::from_fn(|k| if a.0[k] == b.0[k] { then.0[k] } else { otherwise.0[k] }))
     }
 }
 
-/// Two roundings: runs anywhere.
+/// Product and sum rounded apart: runs on any machine.
 #[derive(Debug, Clone, Copy)]
-pub enum Separate {}
+pub enum NoFma {}
 
-/// One rounding: quick only where the processor has the instruction. On x86-64, for code that is compiled for AVX2 and FMA and
-/// reached only where [`has_fused`] found them.
+/// Product and sum rounded once: fast only where the processor has the instruction. On x86-64 only for code inside
+/// [`by_instructions`], which is compiled for AVX2 and FMA.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Fused {}
+pub(crate) enum Fma {}
 
-impl Arithmetic for Separate {
+impl Arithmetic for NoFma {
     #[inline(always)]
     fn mul_add(a: f64, b: f64, c: f64) -> f64 {
         a * b + c
@@ -76,7 +84,7 @@ impl Arithmetic for Separate {
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-impl Arithmetic for Fused {
+impl Arithmetic for Fma {
     #[inline(always)]
     fn mul_add(a: f64, b: f64, c: f64) -> f64 {
         a.mul_add(b, c)
@@ -84,45 +92,45 @@ impl Arithmetic for Fused {
 }
 
 #[cfg(target_arch = "x86_64")]
-impl Arithmetic for Fused {
+impl Arithmetic for Fma {
     #[inline(always)]
     fn mul_add(a: f64, b: f64, c: f64) -> f64 {
         a.mul_add(b, c)
     }
 
     #[inline(always)]
-    fn mul_add_quad(a: Quad, b: Quad, c: Quad) -> Quad {
-        // SAFETY (all eight): kernels over `Fused` and quads are reached only where `has_fused` found the instructions.
+    fn mul_add_x4(a: F64x4, b: F64x4, c: F64x4) -> F64x4 {
+        // SAFETY (all eight): code over `Fma` runs only where `has_fma` found the instructions.
         from_register(unsafe { x86::_mm256_fmadd_pd(register(a), register(b), register(c)) })
     }
 
     #[inline(always)]
-    fn mul_quad(a: Quad, b: Quad) -> Quad {
+    fn mul_x4(a: F64x4, b: F64x4) -> F64x4 {
         from_register(unsafe { x86::_mm256_mul_pd(register(a), register(b)) })
     }
 
     #[inline(always)]
-    fn add_quad(a: Quad, b: Quad) -> Quad {
+    fn add_x4(a: F64x4, b: F64x4) -> F64x4 {
         from_register(unsafe { x86::_mm256_add_pd(register(a), register(b)) })
     }
 
     #[inline(always)]
-    fn sub_quad(a: Quad, b: Quad) -> Quad {
+    fn sub_x4(a: F64x4, b: F64x4) -> F64x4 {
         from_register(unsafe { x86::_mm256_sub_pd(register(a), register(b)) })
     }
 
     #[inline(always)]
-    fn div_quad(a: Quad, b: Quad) -> Quad {
+    fn div_x4(a: F64x4, b: F64x4) -> F64x4 {
         from_register(unsafe { x86::_mm256_div_pd(register(a), register(b)) })
     }
 
     #[inline(always)]
-    fn sqrt_quad(a: Quad) -> Quad {
+    fn sqrt_x4(a: F64x4) -> F64x4 {
         from_register(unsafe { x86::_mm256_sqrt_pd(register(a)) })
     }
 
     #[inline(always)]
-    fn choose_below_quad(a: Quad, b: Quad, then: Quad, otherwise: Quad) -> Quad {
+    fn choose_below_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
         from_register(unsafe {
             let smaller = x86::_mm256_cmp_pd::<{ x86::_CMP_LT_OQ }>(register(a), register(b));
             x86::_mm256_blendv_pd(register(otherwise), register(then), smaller)
@@ -130,7 +138,7 @@ impl Arithmetic for Fused {
     }
 
     #[inline(always)]
-    fn choose_equal_quad(a: Quad, b: Quad, then: Quad, otherwise: Quad) -> Quad {
+    fn choose_equal_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
         from_register(unsafe {
             let equal = x86::_mm256_cmp_pd::<{ x86::_CMP_EQ_OQ }>(register(a), register(b));
             x86::_mm256_blendv_pd(register(otherwise), register(then), equal)
@@ -143,28 +151,57 @@ use std::arch::x86_64 as x86;
 
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn register(quad: Quad) -> x86::__m256d {
+fn register(lanes: F64x4) -> x86::__m256d {
     // SAFETY: both are four f64 in 32 bytes, and any bits are a value of either.
-    unsafe { std::mem::transmute(quad) }
+    unsafe { std::mem::transmute(lanes) }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn from_register(register: x86::__m256d) -> Quad {
+fn from_register(register: x86::__m256d) -> F64x4 {
     // SAFETY: as in `register`.
     unsafe { std::mem::transmute(register) }
 }
 
-/// What every machine of this architecture runs quickly.
+/// What every machine of this architecture runs fast.
 #[cfg(target_arch = "aarch64")]
-pub(crate) type Baseline = Fused;
-/// What every machine of this architecture runs quickly.
+pub(crate) type Baseline = Fma;
+/// What every machine of this architecture runs fast.
 #[cfg(not(target_arch = "aarch64"))]
-pub(crate) type Baseline = Separate;
+pub(crate) type Baseline = NoFma;
 
-/// Whether this machine runs the kernels compiled for AVX2 and FMA.
+/// Whether this machine has AVX2 and FMA.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-pub fn has_fused() -> bool {
+pub(crate) fn has_fma() -> bool {
     std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
 }
+
+/// Compiles a function twice, for any machine of the architecture and for AVX2 with FMA, and calls the one that this
+/// machine runs. In the body `A` is the [`Arithmetic`]. What the body calls must be `#[inline(always)]`, or a closure
+/// that stands in it, to be compiled with it.
+macro_rules! by_instructions {
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? $body:block
+    ) => {
+        $(#[$attribute])*
+        $visibility fn $name($($argument: $type),*) $(-> $result)? {
+            #[cfg(target_arch = "x86_64")]
+            if $crate::math::arithmetic::has_fma() {
+                #[target_feature(enable = "avx2,fma")]
+                fn with_fma($($argument: $type),*) $(-> $result)? {
+                    #[allow(dead_code, reason = "some bodies have no arithmetic of their own")]
+                    type A = $crate::math::arithmetic::Fma;
+                    $body
+                }
+                // SAFETY: `has_fma` found the instructions.
+                return unsafe { with_fma($($argument),*) };
+            }
+            #[allow(dead_code, reason = "some bodies have no arithmetic of their own")]
+            type A = $crate::math::arithmetic::Baseline;
+            $body
+        }
+    };
+}
+pub(crate) use by_instructions;

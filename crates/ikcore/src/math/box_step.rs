@@ -1,11 +1,9 @@
-//! The one bounded step: damped least squares on six rows, with joints that hit a bound fixed and the step re-solved.
+//! The bounded step: damped least squares on six rows; joints that hit a bound are fixed, and the step is solved again.
 
-use super::arithmetic::{Arithmetic, Baseline};
-#[cfg(target_arch = "x86_64")]
-use super::arithmetic::{Fused, has_fused};
-use super::ldl;
+use super::arithmetic::{Arithmetic, by_instructions};
+use super::gram::gram;
+use super::ldl::Ldl;
 use super::ordered::{larger, smaller};
-use super::quad::Quad;
 use super::real::{One, Real};
 use super::vector::squared_size;
 
@@ -15,11 +13,11 @@ pub const ROWS: usize = 6;
 /// Rows that a position takes: the first ones.
 pub(super) const POSITION_ROWS: usize = 3;
 
-/// A damping over the squared size of the Jacobian that makes no difference but where a direction is lost: a singular system stays
-/// solvable.
+/// Damping, relative to the squared size of the Jacobian, that keeps a singular system solvable and changes nothing
+/// elsewhere.
 pub const LEAST_DAMPING: f64 = 1e-10;
 
-/// Joints can stick one after another; after so many rounds the rest is cut off at the box.
+/// Joints can hit bounds one after another; after this number of rounds the step is clipped to the box.
 pub(super) const ROUNDS: usize = 4;
 
 /// A step of damped least squares in a box: to the point x + dx in \[`lower`, `upper`\] that (nearly) minimises
@@ -31,11 +29,11 @@ pub(super) const ROUNDS: usize = 4;
 pub struct BoxStep<'a> {
     /// Columns of J, at least one per entry of `x`.
     pub columns: &'a [[f64; ROWS]],
-    /// What the step is to remove.
+    /// Residual that the step is to remove.
     pub residual: &'a [f64; ROWS],
     /// The damping.
     pub lambda: f64,
-    /// Where it begins.
+    /// The current point.
     pub x: &'a [f64],
     /// The box, one entry per entry of `x`.
     pub lower: &'a [f64],
@@ -43,24 +41,19 @@ pub struct BoxStep<'a> {
     pub upper: &'a [f64],
 }
 
-/// [`LEAST_DAMPING`] of the Jacobian with these columns.
+/// [`LEAST_DAMPING`] for the Jacobian with these columns.
 pub fn least_damping(columns: &[[f64; ROWS]]) -> f64 {
     LEAST_DAMPING * squared_size(columns)
 }
 
 impl BoxStep<'_> {
-    /// Writes into `out` where the step leads.
+    /// Writes the point after the step into `out`.
     pub fn write(&self, out: &mut [f64]) {
-        #[cfg(target_arch = "x86_64")]
-        if has_fused() {
-            // SAFETY: the instructions were found.
-            return unsafe { fused(self, out) };
-        }
-        self.write_rows_in_use::<Baseline>(out);
+        write_step(self, out);
     }
 
-    /// Writes into `out`, of the points that (nearly) solve residual + J (out - x) = 0, the one in the box that is nearest to
-    /// `preferred`, itself in the box. What the task leaves free goes there.
+    /// Writes the point in the box that (nearly) solves residual + J (out - x) = 0 and is nearest to `preferred`, itself in
+    /// the box.
     pub fn write_near(&self, preferred: &[f64], out: &mut [f64]) {
         let mut there = *self.residual;
         for ((column, x), preferred) in self.columns.iter().zip(self.x).zip(preferred) {
@@ -71,7 +64,7 @@ impl BoxStep<'_> {
         BoxStep { residual: &there, x: preferred, ..*self }.write(out);
     }
 
-    /// Half the rows take less than half the time.
+    /// Solves on the position rows alone where the others are zero: half the rows take less than half the time.
     #[inline(always)]
     fn write_rows_in_use<A: Arithmetic>(&self, out: &mut [f64]) {
         let moves_position_alone = |column: &[f64; ROWS]| column[POSITION_ROWS..] == [0.0; ROWS - POSITION_ROWS];
@@ -93,7 +86,8 @@ impl BoxStep<'_> {
         for _ in 0..ROUNDS {
             let mut right = [One::of(0.0); R];
             right.iter_mut().zip(remaining).for_each(|(entry, rest)| *entry = One::of(rest));
-            let z = ldl::solve(gram::<A, R>(columns, lambda, n, fixed), right);
+            let free = (0..n).filter(|j| fixed & (1 << j) == 0).map(|j| columns[j]);
+            let z = Ldl::of(gram::<A, R>(free, lambda)).solve(right);
             let fixed_before = fixed;
             for j in (0..n).filter(|j| fixed_before & (1 << j) == 0) {
                 let wanted = x[j] - dot(&columns[j], &z).stored();
@@ -113,35 +107,10 @@ impl BoxStep<'_> {
     }
 }
 
-/// [`BoxStep::write`] compiled for AVX2 and FMA.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn fused(step: &BoxStep<'_>, out: &mut [f64]) {
-    step.write_rows_in_use::<Fused>(out);
-}
-
-/// J J' + lambda I over the joints that are not fixed.
-#[inline(always)]
-fn gram<A: Arithmetic, const R: usize>(columns: &[[f64; ROWS]], lambda: f64, n: usize, fixed: u64) -> [[One<A>; R]; R] {
-    // Four entries of a row, and then the rest: with three rows nothing asks for the rest, and it is not computed.
-    let mut sum = [[Quad::ZERO; 2]; R];
-    for column in (0..n).filter(|j| fixed & (1 << j) == 0).map(|j| &columns[j]) {
-        let [c0, c1, c2, c3, c4, c5] = *column;
-        let halves = [Quad([c0, c1, c2, c3]), Quad([c4, c5, 0.0, 0.0])];
-        for i in 0..R {
-            for (sum, half) in sum[i].iter_mut().zip(halves) {
-                *sum = A::mul_add_quad(Quad::splat(column[i]), half, *sum);
-            }
-        }
+by_instructions! {
+    fn write_step(step: &BoxStep<'_>, out: &mut [f64]) {
+        step.write_rows_in_use::<A>(out);
     }
-    // Loops, where closures would be shorter: those the compiler may leave apart, without the instructions of this kernel.
-    let mut entries = [[One::of(0.0); R]; R];
-    for (i, row) in entries.iter_mut().enumerate() {
-        for (k, entry) in row.iter_mut().enumerate() {
-            *entry = One::of(sum[i][k / 4].0[k % 4] + if i == k { lambda } else { 0.0 });
-        }
-    }
-    entries
 }
 
 /// a'b, in pairs.

@@ -1,6 +1,6 @@
 //! Cubic splines over knots that stay the same while the values change.
 
-/// What a spline does at its two ends.
+/// Conditions at the two ends of a spline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SplineEnds {
     /// No curvature.
@@ -22,8 +22,8 @@ struct EndRule {
 }
 
 impl SplineEnds {
-    /// The rule of an end whose piece has length `h`, the piece after it `next`, of `pieces` in all. `sign` is 1 at the
-    /// beginning and -1 at the end.
+    /// The rule of an end whose piece has length `h` and whose next piece has length `next`, with `pieces` in all. `sign` is
+    /// 1 at the beginning and -1 at the end.
     fn rule(self, h: f64, next: f64, pieces: usize, sign: f64) -> EndRule {
         let rule = |chord_share, near, far| EndRule { chord_share, near, far };
         match self {
@@ -37,11 +37,10 @@ impl SplineEnds {
     }
 }
 
-/// The tridiagonal system of the knots, factored beforehand: a spline through new values costs one forward and one backward
-/// pass.
+/// The factored tridiagonal system of the knots: a spline through new values costs one forward and one backward pass.
 ///
 /// Slopes agree on both sides of each inner knot: h_(i-1) q''_(i-1) + 2 (h_(i-1) + h_i) q''_i + h_i q''_(i+1) =
-/// 6 (chord_i - chord_(i-1)), with the rules of the ends put in for q'' there.
+/// 6 (chord_i - chord_(i-1)), with q'' at the ends by their rules.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CubicSpline {
     knots: Vec<f64>,
@@ -104,8 +103,7 @@ impl CubicSpline {
         &self.knots
     }
 
-    /// Writes the second derivatives, here called curvatures, at the knots of the spline through `values`; `curvatures` is
-    /// as long.
+    /// Writes the second derivatives at the knots of the spline through `values` into `curvatures`, which is as long.
     pub fn curvatures(&self, values: &[f64], curvatures: &mut [f64]) {
         let last = self.knots.len() - 1;
         let h = |i: usize| self.knots[i + 1] - self.knots[i];
@@ -135,7 +133,7 @@ impl CubicSpline {
         [curvatures[0], curvatures[last]] = ends;
     }
 
-    /// The piece that begins at knot `i`, of the spline with these values and second derivatives.
+    /// The piece after knot `i` of the spline with these values and second derivatives.
     pub fn piece(&self, i: usize, values: &[f64], curvatures: &[f64]) -> Piece {
         let span = self.knots[i + 1] - self.knots[i];
         Piece {
@@ -147,7 +145,7 @@ impl CubicSpline {
         }
     }
 
-    /// Its value at `u`, inside the knots.
+    /// The value at `u`, inside the knots.
     pub fn at(&self, u: f64, values: &[f64], curvatures: &[f64]) -> f64 {
         let i = self.knots.partition_point(|knot| *knot <= u).clamp(1, self.knots.len() - 1) - 1;
         self.piece(i, values, curvatures).at(u - self.knots[i])
@@ -166,7 +164,7 @@ impl Piece {
         [self.value, self.slope, 0.5 * self.curvature, self.third / 6.0]
     }
 
-    /// Its value `s` after its knot.
+    /// The value `s` after the knot.
     pub fn at(&self, s: f64) -> f64 {
         self.value + s * (self.slope + s * (self.curvature / 2.0 + s * self.third / 6.0))
     }
@@ -179,7 +177,7 @@ impl Piece {
         inside.max(slope_at(0.0)).max(slope_at(self.span))
     }
 
-    /// Where its slope is zero, at most twice; ascending.
+    /// Parameters of zero slope, at most two, ascending.
     pub fn turning_points(&self) -> smallvec::SmallVec<[f64; 2]> {
         super::polynomial::quadratic_roots(self.slope, self.curvature, 0.5 * self.third, 0.0, self.span)
     }

@@ -1,25 +1,23 @@
-//! Four [bounded steps](super::box_step) side by side, lane by lane to the same bits.
+//! Four [bounded steps](super::box_step) at once, lane by lane to the same bits.
 
 use super::MAX_DOF;
-use super::arithmetic::{Arithmetic, Baseline};
-#[cfg(target_arch = "x86_64")]
-use super::arithmetic::{Fused, has_fused};
+use super::arithmetic::{Arithmetic, by_instructions};
 use super::box_step::{POSITION_ROWS, ROUNDS, ROWS, dot};
-use super::ldl;
-use super::quad::Quad;
+use super::f64x4::F64x4;
+use super::ldl::Ldl;
 use super::real::{Four, Real};
 
 /// Four steps in one box.
 #[derive(Debug, Clone, Copy)]
 pub struct FourBoxSteps<'a> {
-    /// Of the Jacobians, one per entry of `x`.
-    pub columns: &'a [[Quad; ROWS]],
-    /// What the steps are to remove.
-    pub residual: &'a [Quad; ROWS],
+    /// Columns of the Jacobians, one per entry of `x`.
+    pub columns: &'a [[F64x4; ROWS]],
+    /// Residuals that the steps are to remove.
+    pub residual: &'a [F64x4; ROWS],
     /// The damping of each.
-    pub lambda: Quad,
-    /// Where they begin.
-    pub x: &'a [Quad],
+    pub lambda: F64x4,
+    /// The current points.
+    pub x: &'a [F64x4],
     /// The box of all four.
     pub lower: &'a [f64],
     /// See `lower`.
@@ -27,22 +25,17 @@ pub struct FourBoxSteps<'a> {
 }
 
 impl FourBoxSteps<'_> {
-    /// Writes into `out` where each step leads: lane by lane what [`BoxStep::write`](super::box_step::BoxStep::write) writes. The Jacobians are
-    /// of one kind: their angular rows are zero in all lanes, or in none.
-    pub fn write(&self, out: &mut [Quad]) {
-        #[cfg(target_arch = "x86_64")]
-        if has_fused() {
-            // SAFETY: the instructions were found.
-            return unsafe { fused(self, out) };
-        }
-        self.write_rows_in_use::<Baseline>(out);
+    /// Writes the points after the steps into `out`, lane by lane those of [`BoxStep::write`](super::box_step::BoxStep::write).
+    /// The angular rows of the Jacobians are zero in all lanes, or in none.
+    pub fn write(&self, out: &mut [F64x4]) {
+        write_steps(self, out);
     }
 
-    /// Half the rows take less than half the time.
+    /// Solves on the position rows alone where the others are zero.
     #[inline(always)]
-    fn write_rows_in_use<A: Arithmetic>(&self, out: &mut [Quad]) {
+    fn write_rows_in_use<A: Arithmetic>(&self, out: &mut [F64x4]) {
         let moves_position_alone =
-            |column: &[Quad; ROWS]| column[POSITION_ROWS..] == [Quad::ZERO; ROWS - POSITION_ROWS];
+            |column: &[F64x4; ROWS]| column[POSITION_ROWS..] == [F64x4::ZERO; ROWS - POSITION_ROWS];
         if self.columns.iter().all(moves_position_alone) {
             self.write_first_rows::<A, POSITION_ROWS>(out);
         } else {
@@ -52,14 +45,14 @@ impl FourBoxSteps<'_> {
 
     /// On the first `R` rows.
     #[inline(always)]
-    fn write_first_rows<A: Arithmetic, const R: usize>(&self, out: &mut [Quad]) {
+    fn write_first_rows<A: Arithmetic, const R: usize>(&self, out: &mut [F64x4]) {
         let mut remaining = [Four::<A>::splat(0.0); R];
         remaining.iter_mut().zip(self.residual).for_each(|(entry, residual)| *entry = Four::of(*residual));
         // One where a joint is free, zero where it sits at a bound.
         let mut free = [Four::<A>::splat(1.0); MAX_DOF];
         for _ in 0..ROUNDS {
-            let z = ldl::solve(self.gram::<A, R>(&free), remaining);
-            let mut someone_got_stuck = false;
+            let z = Ldl::of(self.gram::<A, R>(&free)).solve(remaining);
+            let mut some_joint_hit_a_bound = false;
             for j in 0..self.x.len() {
                 let (zero, x) = (Four::splat(0.0), Four::<A>::of(self.x[j]));
                 let wanted = x - dot(&self.columns[j], &z);
@@ -70,15 +63,15 @@ impl FourBoxSteps<'_> {
                 if stays_free.stored() == was_free.stored() {
                     continue;
                 }
-                someone_got_stuck = true;
-                // What the joints that got stuck still move; zero for the others.
+                some_joint_hit_a_bound = true;
+                // Motion of the joint where it has just hit a bound; zero in other lanes.
                 let moved = stays_free.choose_below(was_free, bounded - x, zero);
                 for (rest, entry) in remaining.iter_mut().zip(&self.columns[j]) {
                     *rest = Four::of(*entry).mul_add(moved, *rest);
                 }
                 free[j] = stays_free;
             }
-            if !someone_got_stuck {
+            if !some_joint_hit_a_bound {
                 return;
             }
         }
@@ -107,11 +100,10 @@ impl FourBoxSteps<'_> {
     }
 }
 
-/// [`FourBoxSteps::write`] compiled for AVX2 and FMA.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn fused(steps: &FourBoxSteps<'_>, out: &mut [Quad]) {
-    steps.write_rows_in_use::<Fused>(out);
+by_instructions! {
+    fn write_steps(steps: &FourBoxSteps<'_>, out: &mut [F64x4]) {
+        steps.write_rows_in_use::<A>(out);
+    }
 }
 
 #[cfg(test)]
@@ -130,17 +122,17 @@ mod tests {
             width in 0.0_f64..1.0,
             rows in prop::sample::select(vec![3, 6]),
         ) {
-            let cut = |all: [[f64; 4]; 6]| -> [Quad; 6] {
-                std::array::from_fn(|row| if row < rows { Quad(all[row]) } else { Quad::ZERO })
+            let cut = |all: [[f64; 4]; 6]| -> [F64x4; 6] {
+                std::array::from_fn(|row| if row < rows { F64x4(all[row]) } else { F64x4::ZERO })
             };
-            let columns: Vec<[Quad; 6]> = columns.into_iter().map(cut).collect();
-            let (residual, lambda, n) = (cut(residual), Quad(lambda), columns.len());
-            let (x, lower, upper) = (vec![Quad::splat(0.1 * width); n], vec![-width; n], vec![0.5 * width; n]);
-            let mut four = vec![Quad::ZERO; n];
+            let columns: Vec<[F64x4; 6]> = columns.into_iter().map(cut).collect();
+            let (residual, lambda, n) = (cut(residual), F64x4(lambda), columns.len());
+            let (x, lower, upper) = (vec![F64x4::splat(0.1 * width); n], vec![-width; n], vec![0.5 * width; n]);
+            let mut four = vec![F64x4::ZERO; n];
             let (columns, residual) = (&columns[..], &residual);
             FourBoxSteps { columns, residual, lambda, x: &x, lower: &lower, upper: &upper }.write(&mut four);
             for lane in 0..4 {
-                let alone = |lanes: &[Quad; 6]| lanes.map(|row| row.0[lane]);
+                let alone = |lanes: &[F64x4; 6]| lanes.map(|row| row.0[lane]);
                 let own: Vec<_> = columns.iter().map(alone).collect();
                 let mut out = vec![0.0; n];
                 let (residual, lambda, x) = (&alone(residual), lambda.0[lane], &vec![0.1 * width; n]);

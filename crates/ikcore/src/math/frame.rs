@@ -3,53 +3,72 @@
 use nalgebra::Matrix3;
 
 use super::arithmetic::Arithmetic;
-use super::pose::{self, Pose};
+use super::f64x4::F64x4;
+use super::{Pose, pose};
 
-/// A rigid transform: the columns of its rotation (its axes, seen from the base) and its origin (m).
+/// A rigid transform: the columns of its rotation (its axes, seen from the base) and its origin (m). Over
+/// [`F64x4`], four of them, lane by lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
+pub struct Frame<T = f64> {
     /// x, y and z axis.
-    pub axes: [[f64; 3]; 3],
+    pub axes: [[T; 3]; 3],
     /// Position of the origin (m).
-    pub origin: [f64; 3],
+    pub origin: [T; 3],
+}
+
+impl Frame<F64x4> {
+    /// These frames, one per lane.
+    #[inline(always)]
+    pub(crate) fn of(frames: [&Frame; 4]) -> Self {
+        let mut all = Self { axes: [[F64x4::ZERO; 3]; 3], origin: [F64x4::ZERO; 3] };
+        for (lane, frame) in frames.into_iter().enumerate() {
+            for k in 0..3 {
+                all.origin[k].0[lane] = frame.origin[k];
+                for axis in 0..3 {
+                    all.axes[axis][k].0[lane] = frame.axes[axis][k];
+                }
+            }
+        }
+        all
+    }
 }
 
 impl Frame {
     /// No motion.
     pub const IDENTITY: Self = Self { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.0; 3] };
 
-    /// A vector of this frame's coordinates, turned into the base's: R v.
+    /// Rotates a vector from this frame into the base: R v.
     #[inline(always)]
-    pub fn turn<A: Arithmetic>(&self, v: &[f64; 3]) -> [f64; 3] {
+    pub(crate) fn turn<A: Arithmetic>(&self, v: &[f64; 3]) -> [f64; 3] {
         let [x, y, z] = &self.axes;
         std::array::from_fn(|k| A::mul_add(z[k], v[2], A::mul_add(y[k], v[1], x[k] * v[0])))
     }
 
-    /// A point of this frame's coordinates, seen from the base: R p + t.
+    /// Maps a point from this frame into the base: R p + t.
     #[inline(always)]
-    pub fn place<A: Arithmetic>(&self, p: &[f64; 3]) -> [f64; 3] {
+    pub(crate) fn place<A: Arithmetic>(&self, p: &[f64; 3]) -> [f64; 3] {
         let [x, y, z] = &self.axes;
         // Two short chains instead of one long one: the latency of this sum is what a chain of joints costs.
         std::array::from_fn(|k| A::mul_add(x[k], p[0], self.origin[k]) + A::mul_add(y[k], p[1], z[k] * p[2]))
     }
 
-    /// The frame reached by `next` from here: self * next.
+    /// self * next.
     #[inline(always)]
-    pub fn then<A: Arithmetic>(&self, next: &Self) -> Self {
+    pub(crate) fn then<A: Arithmetic>(&self, next: &Self) -> Self {
         let axes = std::array::from_fn(|column| self.turn::<A>(&next.axes[column]));
         Self { axes, origin: self.place::<A>(&next.origin) }
     }
 
-    /// The frame that undoes this one.
+    /// The inverse transform.
     pub fn inverse(&self) -> Self {
         let axes: [[f64; 3]; 3] = std::array::from_fn(|row| std::array::from_fn(|column| self.axes[column][row]));
         let origin = self.axes.map(|axis| -(0..3).map(|k| axis[k] * self.origin[k]).sum::<f64>());
         Self { axes, origin }
     }
 
-    /// Turned about its own z axis, given sine and cosine of the angle.
+    /// This frame turned about its own z axis, given sine and cosine of the angle.
     #[inline(always)]
-    pub fn turned<A: Arithmetic>(&self, sine: f64, cosine: f64) -> Self {
+    pub(crate) fn turned<A: Arithmetic>(&self, sine: f64, cosine: f64) -> Self {
         let [x, y, z] = self.axes;
         let new_x = std::array::from_fn(|k| A::mul_add(sine, y[k], cosine * x[k]));
         let new_y = std::array::from_fn(|k| A::mul_add(-sine, x[k], cosine * y[k]));

@@ -1,35 +1,35 @@
-//! Hermite interpolation: the cubic that meets two values and two slopes.
+//! Hermite interpolation: the cubic through two values with two slopes.
 
-/// A cubic over the share of the way from one end, 0, to the other, 1.
+/// A cubic in a parameter from 0 at one end to 1 at the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cubic {
-    /// In ascending powers of the share.
+    /// In ascending powers of the parameter.
     pub coefficients: [f64; 4],
 }
 
 impl Cubic {
-    /// Between two values, with these slopes (per whole way) at them.
+    /// The cubic between two values, with these slopes at them.
     #[inline]
     pub fn new([from, to]: [f64; 2], [left, right]: [f64; 2]) -> Self {
         let chord = to - from;
         Self { coefficients: [from, left, 3.0 * chord - 2.0 * left - right, left + right - 2.0 * chord] }
     }
 
-    /// The value after `share` of the way.
+    /// The value at `share`.
     #[inline]
     pub fn at(&self, share: f64) -> f64 {
         let [a, b, c, d] = self.coefficients;
         a + share * (b + share * (c + share * d))
     }
 
-    /// The slope there, per whole way.
+    /// The derivative at `share`.
     #[inline]
     pub fn slope(&self, share: f64) -> f64 {
         let [_, b, c, d] = self.coefficients;
         b + share * (2.0 * c + 3.0 * share * d)
     }
 
-    /// Two values between which all on the way lie: those of the Bézier points, whose hull holds the curve.
+    /// Bounds of the values between the ends: the smallest and largest Bézier point.
     #[inline]
     pub fn hull(&self) -> [f64; 2] {
         let [a, b, c, _] = self.coefficients;
@@ -39,7 +39,7 @@ impl Cubic {
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| [low.min(point), high.max(point)])
     }
 
-    /// The share of the way after which the value is least.
+    /// The parameter of the smallest value.
     pub fn lowest(&self) -> f64 {
         let [_, b, c, d] = self.coefficients;
         let end = if self.at(1.0) < self.at(0.0) { 1.0 } else { 0.0 };

@@ -1,4 +1,4 @@
-//! Finite ranges to draw from.
+//! Finite ranges for random draws.
 
 /// The range itself where it is finite; an open side reaches 2 `reach` from the other bound, or `reach` from zero.
 pub fn finite(lower: f64, upper: f64, reach: f64) -> (f64, f64) {

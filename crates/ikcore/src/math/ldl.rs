@@ -5,30 +5,63 @@ use super::real::Real;
 /// Pivots below this share of the matrix's trace count as zero: no step in that direction.
 const SINGULAR: f64 = 1e-15;
 
-/// Solves A z = b by LDL', A symmetric positive semi-definite in its lower triangle.
-#[inline(always)]
-pub fn solve<R: Real, const N: usize>(mut l: [[R; N]; N], b: [R; N]) -> [R; N] {
-    let zero = R::splat(0.0);
-    let trace = (1..N).fold(l[0][0], |sum, i| sum + l[i][i]);
-    let smallest = R::splat(SINGULAR) * trace;
-    let mut inverse_pivot = [zero; N];
-    let mut z = b;
-    // Column by column: what a pivot settles is taken off everything behind it, the right-hand side included.
-    for j in 0..N {
-        inverse_pivot[j] = smallest.choose_below(l[j][j], R::splat(1.0) / l[j][j], zero);
-        for i in j + 1..N {
-            let factor = l[i][j] * inverse_pivot[j];
-            for k in j + 1..=i {
-                l[i][k] = (-factor).mul_add(l[k][j], l[i][k]);
+/// A = L D L' of a symmetric positive semi-definite matrix.
+#[derive(Debug, Clone, Copy)]
+pub struct Ldl<R, const N: usize> {
+    /// L D in the lower triangle; the pivots D on the diagonal.
+    scaled: [[R; N]; N],
+    /// 1 / D; zero for pivots that count as zero.
+    inverse_pivots: [R; N],
+}
+
+impl<R: Real, const N: usize> Ldl<R, N> {
+    /// Factors the matrix with this lower triangle.
+    #[inline(always)]
+    pub fn of(mut scaled: [[R; N]; N]) -> Self {
+        let zero = R::splat(0.0);
+        let smallest = R::splat(SINGULAR) * trace(&scaled);
+        let mut inverse_pivots = [zero; N];
+        for j in 0..N {
+            inverse_pivots[j] = smallest.choose_below(scaled[j][j], R::splat(1.0) / scaled[j][j], zero);
+            for i in j + 1..N {
+                let factor = scaled[i][j] * inverse_pivots[j];
+                for k in j + 1..=i {
+                    scaled[i][k] = (-factor).mul_add(scaled[k][j], scaled[i][k]);
+                }
             }
-            z[i] = (-factor).mul_add(z[j], z[i]);
         }
+        Self { scaled, inverse_pivots }
     }
-    for i in (0..N).rev() {
-        for k in i + 1..N {
-            z[i] = (-l[k][i]).mul_add(z[k], z[i]);
+
+    /// Solves A z = b; no component of z along directions whose pivots count as zero.
+    #[inline(always)]
+    pub fn solve(&self, b: [R; N]) -> [R; N] {
+        let Self { scaled, inverse_pivots } = self;
+        let mut z = b;
+        for j in 0..N {
+            for i in j + 1..N {
+                let factor = scaled[i][j] * inverse_pivots[j];
+                z[i] = (-factor).mul_add(z[j], z[i]);
+            }
         }
-        z[i] = z[i] * inverse_pivot[i];
+        for i in (0..N).rev() {
+            for k in i + 1..N {
+                z[i] = (-scaled[k][i]).mul_add(z[k], z[i]);
+            }
+            z[i] = z[i] * inverse_pivots[i];
+        }
+        z
     }
-    z
+
+    /// Pivot `j`.
+    #[inline(always)]
+    pub fn pivot(&self, j: usize) -> R {
+        self.scaled[j][j]
+    }
+}
+
+/// The sum of the diagonal.
+#[inline(always)]
+pub fn trace<R: Real, const N: usize>(matrix: &[[R; N]; N]) -> R {
+    (1..N).fold(matrix[0][0], |sum, i| sum + matrix[i][i])
 }

@@ -1,5 +1,4 @@
-//! The natural logarithm without branches, so that the compiler vectorises a loop over it. For random draws: relative error
-//! below 1e-11, not the last bit.
+//! The natural logarithm without branches, which the compiler vectorises. For random draws: relative error below 1e-11.
 
 use std::f64::consts::{LN_2, SQRT_2};
 

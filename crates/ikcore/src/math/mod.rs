@@ -1,38 +1,47 @@
-//! Rotations, rigid transforms, fast sines and arctangents, singular values, small systems, polynomials, cubics between two ends, splines,
-//! knots in time and the one bounded step. Plain arrays where it is hot, nalgebra elsewhere.
+//! Mathematics without robots: plain arrays where it is hot, nalgebra elsewhere.
 //!
-//! What is computed for four at once keeps each number of all four in one register, a [`quad::Quad`]; kernels that are the same for one and
-//! for four are written over [`real::Real`].
+//! Kernels are compiled with and without FMA ([`arithmetic`]). Kernels for one number or four, one per lane of a register
+//! ([`f64x4::F64x4`]), are written over [`real::Real`].
+//!
+//! | files | what |
+//! |---|---|
+//! | `pose`, `frame` | rigid transforms: checked ones of callers, plain ones of kernels |
+//! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
+//! | `arithmetic`, `f64x4`, `real` | instructions and lanes |
+//! | `sincos`, `arctangent`, `logarithm`, `ordered` | functions without branches |
+//! | `gram`, `ldl`, `box_step`, `four_box_steps`, `secant`, `singular` | small linear systems, and the bounded step |
+//! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `interval` | functions of one variable |
 
-pub mod arctangent;
-pub mod arithmetic;
+pub(crate) mod arctangent;
+pub(crate) mod arithmetic;
 pub mod box_step;
-pub mod cubic_spline;
-pub mod four_box_steps;
-pub mod four_frames;
-pub mod frame;
-pub mod hermite;
-pub mod interval;
-pub mod knots;
-pub mod ldl;
-pub mod logarithm;
-pub mod ordered;
+pub(crate) mod cubic_spline;
+pub(crate) mod f64x4;
+pub(crate) mod four_box_steps;
+mod frame;
+pub(crate) mod gram;
+pub(crate) mod hermite;
+pub(crate) mod interval;
+mod knots;
+pub(crate) mod ldl;
+pub(crate) mod logarithm;
+pub(crate) mod ordered;
 pub mod polynomial;
 pub mod pose;
-pub mod quad;
-pub mod real;
-pub mod secant;
-pub mod sincos;
-pub mod singular;
+pub(crate) mod real;
+pub(crate) mod secant;
+pub(crate) mod sincos;
+pub(crate) mod singular;
 pub mod so3;
 pub mod ticks;
-pub mod triple;
-pub mod vector;
-pub mod wide_frame;
+pub(crate) mod vec3;
+pub(crate) mod vector;
 
 pub use frame::Frame;
 pub use knots::Knots;
-pub use pose::Pose;
 
 /// The largest number of independent joints, and of moving elements, of a robot.
 pub const MAX_DOF: usize = 32;
+
+/// A rigid transform: rotation matrix and translation (m).
+pub type Pose = nalgebra::IsometryMatrix3<f64>;

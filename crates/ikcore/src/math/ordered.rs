@@ -1,4 +1,4 @@
-//! Comparisons of numbers in fewer instructions than the standard library's, which treats NaN and signed zeros with care.
+//! Larger, smaller and sign in fewer instructions than the standard library's, which handle NaN and signed zeros.
 
 /// The larger of the two; the second where one is NaN.
 #[inline(always)]

@@ -21,10 +21,10 @@ pub fn derivative(coefficients: &[f64]) -> Short {
     coefficients.iter().enumerate().skip(1).map(|(power, c)| power as f64 * c).collect()
 }
 
-/// All distinct real roots in `[lower, upper]`, ascending. Of the zero polynomial: the two ends.
+/// All distinct real roots in `[lower, upper]`, ascending; the two ends for the zero polynomial.
 ///
 /// Between the roots of its derivative a polynomial is monotone, so that each stretch holds at most one root, bracketed
-/// by its ends. Where two roots are so near that rounding hides the sign between them, they are found as one.
+/// by its ends. Two roots count as one where rounding hides the sign between them.
 pub fn roots(coefficients: &[f64], lower: f64, upper: f64) -> Short {
     let mut found = Short::new();
     let mut left = (lower, value_or_zero(coefficients, lower));
@@ -89,7 +89,7 @@ fn value_or_zero(coefficients: &[f64], x: f64) -> f64 {
 
 /// The root between two points where the signs differ, to the last bits.
 ///
-/// Newton's steps, with a bisection instead wherever one leaves the bracket or is not half as long as the step before.
+/// Newton steps, replaced by bisection where one leaves the bracket or is longer than half the step before.
 fn bracketed_root(coefficients: &[f64], mut lower: f64, mut upper: f64) -> f64 {
     let rising = evaluate(coefficients, lower)[0] < 0.0;
     let mut last_step = upper - lower;

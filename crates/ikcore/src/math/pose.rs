@@ -1,11 +1,9 @@
-//! Rigid transforms: the type, and the check that a 4x4 matrix is one.
+//! Rigid transforms from their parts, and the check that a 4x4 matrix is one.
 
-use nalgebra::{IsometryMatrix3, Matrix3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 
+use super::Pose;
 use crate::error::{Error, Result, require_finite};
-
-/// A rigid transform: rotation matrix and translation (m).
-pub type Pose = IsometryMatrix3<f64>;
 
 /// How far R'R may be from the identity, entry by entry, for R to pass as a rotation.
 const ORTHOGONALITY_TOLERANCE: f64 = 1e-6;

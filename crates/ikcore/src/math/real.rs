@@ -1,28 +1,28 @@
-//! One number, or four side by side: what a kernel computes with that is written once for both.
+//! The number type of kernels that are written once for one number and for four.
 //!
-//! Lane by lane the four go through the operations of the one, in the same order, so that both agree bit for bit.
+//! Each lane of the four goes through the operations of the one in the same order: both agree bit for bit.
 
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::arithmetic::Arithmetic;
+use super::f64x4::F64x4;
 use super::ordered::{larger, smaller};
-use super::quad::Quad;
 
-/// A real number, or several side by side.
+/// A real number, or one per lane.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// How it is stored.
+    /// Its stored form.
     type Stored: Copy;
 
-    /// How many there are side by side.
+    /// Number of lanes.
     const LANES: usize;
 
-    /// What is stored.
+    /// From its stored form.
     fn of(stored: Self::Stored) -> Self;
 
-    /// As it is stored.
+    /// Its stored form.
     fn stored(self) -> Self::Stored;
 
     /// The same number in all lanes.
@@ -31,7 +31,7 @@ pub trait Real:
     /// The number in lane `lane`.
     fn lane(self, lane: usize) -> f64;
 
-    /// With another number in lane `lane`.
+    /// The same with `value` in lane `lane`.
     fn with_lane(self, lane: usize, value: f64) -> Self;
 
     /// self * factor + addend.
@@ -57,9 +57,9 @@ pub trait Real:
 #[derive(Debug, Clone, Copy)]
 pub struct One<A>(f64, PhantomData<A>);
 
-/// Four numbers side by side, by arithmetic `A`.
+/// Four numbers, one per lane, by arithmetic `A`.
 #[derive(Debug, Clone, Copy)]
-pub struct Four<A>(Quad, PhantomData<A>);
+pub struct Four<A>(F64x4, PhantomData<A>);
 
 impl<A: Arithmetic> Real for One<A> {
     type Stored = f64;
@@ -123,23 +123,23 @@ impl<A: Arithmetic> Real for One<A> {
 }
 
 impl<A: Arithmetic> Real for Four<A> {
-    type Stored = Quad;
+    type Stored = F64x4;
 
     const LANES: usize = 4;
 
     #[inline(always)]
-    fn of(stored: Quad) -> Self {
+    fn of(stored: F64x4) -> Self {
         Self(stored, PhantomData)
     }
 
     #[inline(always)]
-    fn stored(self) -> Quad {
+    fn stored(self) -> F64x4 {
         self.0
     }
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
-        Self::of(Quad::splat(value))
+        Self::of(F64x4::splat(value))
     }
 
     #[inline(always)]
@@ -155,22 +155,22 @@ impl<A: Arithmetic> Real for Four<A> {
 
     #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        Self::of(A::mul_add_quad(self.0, factor.0, addend.0))
+        Self::of(A::mul_add_x4(self.0, factor.0, addend.0))
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self::of(A::sqrt_quad(self.0))
+        Self::of(A::sqrt_x4(self.0))
     }
 
     #[inline(always)]
     fn choose_below(self, limit: Self, then: Self, otherwise: Self) -> Self {
-        Self::of(A::choose_below_quad(self.0, limit.0, then.0, otherwise.0))
+        Self::of(A::choose_below_x4(self.0, limit.0, then.0, otherwise.0))
     }
 
     #[inline(always)]
     fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
-        Self::of(A::choose_equal_quad(self.0, other.0, then.0, otherwise.0))
+        Self::of(A::choose_equal_x4(self.0, other.0, then.0, otherwise.0))
     }
 
     #[inline(always)]
@@ -184,9 +184,9 @@ impl<A: Arithmetic> Real for Four<A> {
     }
 }
 
-/// `$operator` of [`One`] by that of f64, and of [`Four`] by that of the arithmetic.
+/// Implements `$operator` for [`One`] by f64 and for [`Four`] by the arithmetic.
 macro_rules! operator {
-    ($operator:ident, $method:ident, $of_quads:ident) => {
+    ($operator:ident, $method:ident, $of_lanes:ident) => {
         impl<A: Arithmetic> $operator for One<A> {
             type Output = Self;
 
@@ -201,16 +201,16 @@ macro_rules! operator {
 
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self::of(A::$of_quads(self.0, other.0))
+                Self::of(A::$of_lanes(self.0, other.0))
             }
         }
     };
 }
 
-operator!(Add, add, add_quad);
-operator!(Sub, sub, sub_quad);
-operator!(Mul, mul, mul_quad);
-operator!(Div, div, div_quad);
+operator!(Add, add, add_x4);
+operator!(Sub, sub, sub_x4);
+operator!(Mul, mul, mul_x4);
+operator!(Div, div, div_x4);
 
 impl<A: Arithmetic> Neg for One<A> {
     type Output = Self;

@@ -1,10 +1,10 @@
-//! A Jacobian that is known from differences alone: columns by antennae, then rank-one updates along every step made.
+//! A Jacobian estimated from differences: columns from antennae, then a rank-one update for every step made.
 
 use super::MAX_DOF;
 use super::box_step::{BoxStep, ROWS};
 use super::vector::squared_size;
 
-/// Steps shorter than this teach nothing but rounding.
+/// Shorter steps measure nothing but rounding.
 const SHORTEST: f64 = 1e-12;
 
 /// An estimate of dr/dx for `R` entries of r, by columns.
@@ -21,12 +21,12 @@ impl<const R: usize> Default for Secant<R> {
 }
 
 impl<const R: usize> Secant<R> {
-    /// Column `j` from one antenna: entry j of x was moved by `length`, and r changed by `difference`.
+    /// Sets column `j` from one antenna: x_j moved by `length`, and r changed by `difference`.
     pub fn set_column(&mut self, j: usize, length: f64, difference: &[f64; R]) {
         self.columns[j][..R].copy_from_slice(&difference.map(|change| change / length));
     }
 
-    /// The change of r that a step dx would make: J dx.
+    /// The predicted change of r by a step dx: J dx.
     pub fn predict(&self, dx: impl Iterator<Item = f64>) -> [f64; R] {
         let mut sum = [0.0; R];
         for (column, dx) in self.columns.iter().zip(dx) {
@@ -35,7 +35,7 @@ impl<const R: usize> Secant<R> {
         sum
     }
 
-    /// Learns from a step `dx` that changed r by `surprise` more than predicted: J + share surprise dx' / |dx|^2, the
+    /// Updates J after a step `dx` that changed r by `surprise` more than predicted: J + share surprise dx' / |dx|^2, the
     /// least change of J that explains it (Broyden 1965, eq. 4.5), or a share of it where r is noisy.
     pub fn learn(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; R], share: f64) {
         let squared: f64 = dx.clone().map(|dx| dx * dx).sum();
@@ -63,8 +63,8 @@ impl<const R: usize> Secant<R> {
     }
 }
 
-/// An antenna from `x` in \[`lower`, `upper`\]: `length` to the side that has room for it, else as far as the roomier
-/// side goes; zero where there is none.
+/// Signed length of an antenna from `x` in \[`lower`, `upper`\]: `length` to a side that has room for it, else as far as
+/// the roomier side goes; zero where neither has room.
 pub fn antenna(x: f64, length: f64, lower: f64, upper: f64) -> f64 {
     let (below, above) = ((x - lower).max(0.0), (upper - x).max(0.0));
     if above >= length || above >= below { length.min(above) } else { -length.min(below) }

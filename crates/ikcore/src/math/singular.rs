@@ -8,16 +8,16 @@ use super::vector::dot;
 /// Rows whose cosine is below this count as orthogonal.
 const ORTHOGONAL: f64 = 4.0 * f64::EPSILON;
 
-/// Rows shorter than this share of the longest are rounding, and of no direction.
+/// Rows shorter than this share of the longest count as rounding.
 const NOTHING: f64 = 1e-14;
 
-/// Every sweep squares what is left; six are common.
+/// Largest number of sweeps. Convergence is quadratic, and six are common.
 const SWEEPS: usize = 30;
 
-/// J = sum of length\[i\] left\[i\] right\[i\]', the longest first.
+/// J = sum of length\[i\] left\[i\] right\[i\]', largest first.
 #[derive(Debug, Clone)]
 pub struct SingularValues {
-    /// The singular values; zero where the matrix has no more directions.
+    /// The singular values; zero beyond the rank.
     pub lengths: [f64; ROWS],
     /// Unit vectors in the space of the rows, orthogonal to each other.
     pub left: [[f64; ROWS]; ROWS],
@@ -26,7 +26,7 @@ pub struct SingularValues {
 }
 
 impl SingularValues {
-    /// Those of the matrix with these columns, [`MAX_DOF`] at most.
+    /// The decomposition of the matrix with these columns, [`MAX_DOF`] at most.
     pub fn of(columns: &[[f64; ROWS]]) -> Self {
         let n = columns.len();
         let mut left = [[0.0; ROWS]; ROWS];
@@ -69,7 +69,7 @@ impl SingularValues {
     }
 }
 
-/// Turns rows `p` and `q` in their plane until they are orthogonal; whether they had to be.
+/// Turns rows `p` and `q` in their plane until they are orthogonal. Returns whether they were not.
 fn turn_apart(rows: &mut [[f64; MAX_DOF]; ROWS], left: &mut [[f64; ROWS]; ROWS], p: usize, q: usize, n: usize) -> bool {
     let (squared_p, squared_q) = (dot(&rows[p][..n], &rows[p][..n]), dot(&rows[q][..n], &rows[q][..n]));
     let product = dot(&rows[p][..n], &rows[q][..n]);

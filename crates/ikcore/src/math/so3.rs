@@ -1,10 +1,10 @@
-//! Rotations: logarithm and the Jacobian that goes with it, safe at no turn and at half a turn.
+//! Rotations: logarithm and its Jacobian, accurate from no turn to half a turn.
 
 use super::Frame;
 use super::arctangent::angle_of;
-use super::arithmetic::Separate;
+use super::arithmetic::NoFma;
 use super::real::{One, Real};
-use super::triple::Triple;
+use super::vec3::Vec3;
 
 /// Below this angle (rad) series replace quotients that lose their digits.
 const SMALL: f64 = 1e-4;
@@ -13,26 +13,26 @@ const SMALL: f64 = 1e-4;
 const NEAR_HALF_TURN: f64 = -0.9;
 
 /// The columns of rotations: their axes, seen from the base.
-pub type Axes<R> = [Triple<R>; 3];
+pub type Axes<R> = [Vec3<R>; 3];
 
-/// The axes of one frame as the kernels here take them.
+/// The axes of `frame`.
 #[inline(always)]
-pub fn axes_of(frame: &Frame) -> Axes<One<Separate>> {
+pub fn axes_of(frame: &Frame) -> Axes<One<NoFma>> {
     let [x, y, z] = &frame.axes;
-    [Triple::of(x), Triple::of(y), Triple::of(z)]
+    [Vec3::of(x), Vec3::of(y), Vec3::of(z)]
 }
 
-/// The rotation vector phi (rad) of R R_d', with R the axes of `frame` and R_d those of `target`: the turn that leads
-/// from the target to the frame, in base coordinates. Its length is the geodesic angle, at most pi.
+/// The rotation vector phi (rad) of R R_d', with R the axes of `frame` and R_d those of `target`: the turn from the target
+/// to the frame, in base coordinates. Its length is the geodesic angle, at most pi.
 #[inline]
 pub fn rotation_between(target: &Frame, frame: &Frame) -> [f64; 3] {
     let (target, frame) = (axes_of(target), axes_of(frame));
     Turn::between(&target, &frame).vector(&target, &frame).stored()
 }
 
-/// [`rotation_between`], and how it changes when a small turn is put before.
+/// [`rotation_between`], and its derivative with respect to a small turn put before.
 #[inline(always)]
-pub fn rotation_and_jacobian<R: Real>(target: &Axes<R>, frame: &Axes<R>) -> (Triple<R>, InverseLeftJacobian<R>) {
+pub fn rotation_and_jacobian<R: Real>(target: &Axes<R>, frame: &Axes<R>) -> (Vec3<R>, InverseLeftJacobian<R>) {
     let turn = Turn::between(target, frame);
     let phi = turn.vector(target, frame);
     (phi, InverseLeftJacobian::at(phi, turn.half_cotangent()))
@@ -41,7 +41,7 @@ pub fn rotation_and_jacobian<R: Real>(target: &Axes<R>, frame: &Axes<R>) -> (Tri
 /// R R_d' by sine and cosine of its angle theta.
 struct Turn<R> {
     /// sin(theta), times the axis.
-    sine_axis: Triple<R>,
+    sine_axis: Vec3<R>,
     sine: R,
     cosine: R,
 }
@@ -59,7 +59,7 @@ impl<R: Real> Turn<R> {
     }
 
     #[inline(always)]
-    fn vector(&self, target: &Axes<R>, frame: &Axes<R>) -> Triple<R> {
+    fn vector(&self, target: &Axes<R>, frame: &Axes<R>) -> Vec3<R> {
         let Self { sine_axis, sine, cosine } = *self;
         let angle = angle_of(sine, cosine);
         let series = R::splat(1.0) + sine * sine / R::splat(6.0);
@@ -103,18 +103,19 @@ fn near_half_turn(target: &[[f64; 3]; 3], frame: &[[f64; 3]; 3], angle: f64, sin
     axis
 }
 
-/// The inverse left Jacobian of SO(3) at a rotation vector: how the logarithm changes when a small turn is put before.
+/// The inverse left Jacobian of SO(3) at a rotation vector: the derivative of the logarithm with respect to a small turn
+/// put before.
 #[derive(Debug, Clone, Copy)]
 pub struct InverseLeftJacobian<R> {
-    columns: [Triple<R>; 3],
+    columns: [Vec3<R>; 3],
 }
 
 impl<R: Real> InverseLeftJacobian<R> {
     /// I - [phi]/2 + quadratic * [phi]^2 at the rotation vector `phi` (rad), given the cotangent of half its length.
     #[inline(always)]
-    fn at(phi: Triple<R>, half_cotangent: R) -> Self {
+    fn at(phi: Vec3<R>, half_cotangent: R) -> Self {
         let (half, one) = (R::splat(0.5), R::splat(1.0));
-        let Triple { x, y, z } = phi;
+        let Vec3 { x, y, z } = phi;
         let squared = phi.dot(phi);
         let series = R::splat(1.0 / 12.0) + squared * (R::splat(1.0 / 720.0) + squared / R::splat(30240.0));
         let quotient = (one - half * squared.sqrt() * half_cotangent) / squared;
@@ -126,16 +127,16 @@ impl<R: Real> InverseLeftJacobian<R> {
         let [hx, hy, hz] = [half * x, half * y, half * z];
         Self {
             columns: [
-                Triple { x: diagonal + qx * x, y: xy - hz, z: zx + hy },
-                Triple { x: xy + hz, y: diagonal + qy * y, z: yz - hx },
-                Triple { x: zx - hy, y: yz + hx, z: diagonal + qz * z },
+                Vec3 { x: diagonal + qx * x, y: xy - hz, z: zx + hy },
+                Vec3 { x: xy + hz, y: diagonal + qy * y, z: yz - hx },
+                Vec3 { x: zx - hy, y: yz + hx, z: diagonal + qz * z },
             ],
         }
     }
 
     /// Its product with `w`.
     #[inline(always)]
-    pub fn apply(&self, w: Triple<R>) -> Triple<R> {
+    pub fn apply(&self, w: Vec3<R>) -> Vec3<R> {
         let [a, b, c] = self.columns;
         a * w.x + b * w.y + c * w.z
     }
@@ -237,7 +238,7 @@ mod tests {
                         Vector3::from(rotation_between(&Frame::IDENTITY, &frame(turned)))
                     };
                     let difference = (after(h) - after(-h)) / (2.0 * h);
-                    let predicted = Vector3::from(jacobian.apply(Triple::of(&w.into())).stored());
+                    let predicted = Vector3::from(jacobian.apply(Vec3::of(&w.into())).stored());
                     assert!((difference - predicted).norm() < 1e-8, "{axis} {angle}: {difference} {predicted}");
                 }
             }

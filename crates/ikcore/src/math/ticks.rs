@@ -1,12 +1,12 @@
-//! The ticks of a clock that samples motion.
+//! Number of clock ticks that cover a motion.
 
 use crate::error::{Error, Result, require_positive};
 
-/// More ticks than this are taken for a mistake in `dt` rather than for a wish (2.7 hours at 1 kHz).
+/// More ticks than this are taken for a mistake in `dt` (2.7 hours at 1 kHz).
 const MAX_TICKS: f64 = 1e7;
 
-/// How many ticks of `dt` (s) cover `duration` (s): the ceiling of their ratio, except that a remainder below 1e-9 of a
-/// tick is rounding and not another tick.
+/// Number of ticks of `dt` (s) that cover `duration` (s): the ceiling of their ratio, where a remainder below 1e-9 of a
+/// tick counts as rounding.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] where `dt` is not positive, or so small that there would be over 10 million ticks.
@@ -20,7 +20,7 @@ pub fn ticks(duration: f64, dt: f64) -> Result<usize> {
     Ok(count as usize)
 }
 
-/// [`ticks`] of a path that is to be followed, of which one tick that is longer would leave nothing but its ends.
+/// [`ticks`] for a path to be followed, of which a longer tick would sample only the ends.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] as [`ticks`], and where `dt` is longer than `duration`.

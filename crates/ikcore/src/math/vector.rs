@@ -1,4 +1,4 @@
-//! Sizes of vectors of any number of entries; those of three in hot places are in [`so3`](super::so3).
+//! Products and lengths of vectors with any number of entries; those of three in hot places are in [`so3`](super::so3).
 
 /// a'b.
 #[inline]
@@ -24,7 +24,8 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     squared_distance(a, b).sqrt()
 }
 
-/// The sum of the squared entries of all columns: a sum for every row, so that they do not wait for one another.
+/// The sum of the squared entries of all columns. Each row has a sum of its own, so that additions do not wait for one
+/// another.
 #[inline]
 pub fn squared_size<const R: usize>(columns: &[[f64; R]]) -> f64 {
     let mut rows = [0.0; R];

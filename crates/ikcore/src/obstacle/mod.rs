@@ -6,23 +6,24 @@
 //! | [`shape`] | the obstacles: sphere, box, capsule, ellipsoid, flat ellipse, convex hull |
 //! | `tangent` | signed distance of a point to a convex set, with a plane that bounds it from below |
 //! | `ellipsoid` | the nearest point of an ellipsoid |
-//! | `hull` | convex hulls from the collision crate; the only file that knows its types |
-//! | `segment` | distance of a segment to a convex set or another segment, certified from below |
+//! | `convex_hull` | convex hulls from the collision crate; the only file that knows its types |
+//! | `segment_distance` | distance of a segment to a convex set or another segment, certified from below |
 //! | [`scene`] | a robot among obstacles: which pairs can touch, and how near they are at one configuration |
-//! | `displacement` | how far a link can move while the joints move by so much |
-//! | `surface` | triangles for drawing |
+//! | `link_displacement` | how far a link can move while the joints move by so much |
+//! | `triangles` | triangles for drawing |
 //! | [`sweep`] | continuous collision checking of a whole motion, and its smallest clearance |
 
-mod displacement;
-mod ellipsoid;
 #[cfg(feature = "convex-mesh")]
-mod hull;
+mod convex_hull;
+mod ellipsoid;
+mod link_displacement;
 pub mod scene;
-mod segment;
+mod segment_distance;
 pub mod shape;
-mod surface;
+mod signed_distance;
 pub mod sweep;
 mod tangent;
+mod triangles;
 
 pub use scene::{Body, Contact, Scene};
 pub use shape::{Obstacle, Shape};

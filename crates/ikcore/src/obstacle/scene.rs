@@ -4,11 +4,11 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use super::displacement::{Frames, displacement};
-use super::segment::{Segment, distance_between, distance_to_obstacle};
+use super::link_displacement::{Frames, displacement};
+use super::segment_distance::{Segment, distance_between, distance_to_obstacle};
 use super::shape::Obstacle;
 use crate::error::{Error, Result};
-use crate::math::arithmetic::Separate;
+use crate::math::arithmetic::NoFma;
 use crate::math::{Frame, MAX_DOF};
 use crate::robot::{Joint, Robot};
 
@@ -23,7 +23,7 @@ struct Carried {
 
 /// Two things that could touch.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Pair {
+pub(super) enum BodyPair {
     /// A capsule and an obstacle.
     Obstacle { capsule: usize, obstacle: usize },
     /// Two capsules of the robot; `near` is nearer to the base.
@@ -69,7 +69,7 @@ pub struct Scene<'a> {
     robot: &'a Robot,
     carried: Vec<Carried>,
     obstacles: &'a [Obstacle],
-    pub(super) pairs: Vec<Pair>,
+    pub(super) pairs: Vec<BodyPair>,
 }
 
 /// Where everything is at one configuration.
@@ -99,22 +99,22 @@ impl<'a> Scene<'a> {
         }
         let carried = robot.capsules().iter().filter_map(|capsule| {
             let (stages, offset) = robot.place_of_link(&capsule.link)?;
-            let ends = [capsule.a, capsule.b].map(|end| offset.place::<Separate>(&end));
+            let ends = [capsule.a, capsule.b].map(|end| offset.place::<NoFma>(&end));
             Some(Carried { link: capsule.link.clone(), stages, ends, radius: capsule.radius })
         });
         let carried = carried.collect();
         let mut scene = Self { robot, carried, obstacles, pairs: vec![] };
         scene.pairs = scene.self_pairs();
         let moving = (0..scene.carried.len()).filter(|i| scene.carried[*i].stages > 0);
-        let with_obstacles =
-            moving.flat_map(|capsule| (0..obstacles.len()).map(move |obstacle| Pair::Obstacle { capsule, obstacle }));
+        let with_obstacles = moving
+            .flat_map(|capsule| (0..obstacles.len()).map(move |obstacle| BodyPair::Obstacle { capsule, obstacle }));
         scene.pairs.extend(with_obstacles.collect::<Vec<_>>());
         Ok(scene)
     }
 
     /// The same scene for links that pass over each other, as those of an arm drawn in a plane.
     pub fn without_self_collision(mut self) -> Self {
-        self.pairs.retain(|pair| matches!(pair, Pair::Obstacle { .. }));
+        self.pairs.retain(|pair| matches!(pair, BodyPair::Obstacle { .. }));
         self
     }
 
@@ -158,14 +158,14 @@ impl<'a> Scene<'a> {
     }
 
     /// The contact of a pair that is `distance` apart (m).
-    pub(super) fn contact(&self, pair: Pair, distance: f64) -> Contact {
+    pub(super) fn contact(&self, pair: BodyPair, distance: f64) -> Contact {
         let link = |capsule: usize| self.carried[capsule].link.clone();
         match pair {
-            Pair::Obstacle { capsule, obstacle } => {
+            BodyPair::Obstacle { capsule, obstacle } => {
                 let other = Body::Obstacle(obstacle, self.obstacles[obstacle].name());
                 Contact { link: link(capsule), other, distance }
             }
-            Pair::Capsules { near, far } => Contact { link: link(far), other: Body::Link(link(near)), distance },
+            BodyPair::Capsules { near, far } => Contact { link: link(far), other: Body::Link(link(near)), distance },
         }
     }
 
@@ -182,18 +182,18 @@ impl<'a> Scene<'a> {
         self.robot.write_stage_frames(q, &mut placement.frames);
         for (segment, carried) in placement.segments.iter_mut().zip(&self.carried) {
             let frame = &placement.frames[carried.stages];
-            *segment = carried.ends.map(|end| frame.place::<Separate>(&end).into());
+            *segment = carried.ends.map(|end| frame.place::<NoFma>(&end).into());
         }
     }
 
     /// A lower bound of the distance between the surfaces of a pair (m), exact to 1e-9 where it is below `enough`.
-    pub(super) fn distance(&self, pair: Pair, placement: &Placement, enough: f64) -> f64 {
+    pub(super) fn distance(&self, pair: BodyPair, placement: &Placement, enough: f64) -> f64 {
         match pair {
-            Pair::Obstacle { capsule, obstacle } => {
+            BodyPair::Obstacle { capsule, obstacle } => {
                 let radius = self.carried[capsule].radius;
                 distance_to_obstacle(&placement.segments[capsule], &self.obstacles[obstacle], enough + radius) - radius
             }
-            Pair::Capsules { near, far } => {
+            BodyPair::Capsules { near, far } => {
                 let radii = self.carried[near].radius + self.carried[far].radius;
                 distance_between(&placement.segments[near], &placement.segments[far]) - radii
             }
@@ -201,16 +201,16 @@ impl<'a> Scene<'a> {
     }
 
     /// A bound on the change (m) of a pair's distance while each joint moves by up to `reach` (rad, m).
-    pub(super) fn change(&self, pair: Pair, placement: &Placement, reach: &[f64]) -> f64 {
+    pub(super) fn change(&self, pair: BodyPair, placement: &Placement, reach: &[f64]) -> f64 {
         let (first, capsule) = match pair {
-            Pair::Obstacle { capsule, .. } => (0, capsule),
-            Pair::Capsules { near, far } => (self.carried[near].stages, far),
+            BodyPair::Obstacle { capsule, .. } => (0, capsule),
+            BodyPair::Capsules { near, far } => (self.carried[near].stages, far),
         };
         let stages = first..self.carried[capsule].stages;
         displacement(self.robot, &placement.frames, &placement.segments[capsule], stages, reach)
     }
 
-    fn self_pairs(&self) -> Vec<Pair> {
+    fn self_pairs(&self) -> Vec<BodyPair> {
         let mut bodies: Vec<usize> = self.carried.iter().map(|carried| carried.stages).collect();
         bodies.sort_unstable();
         bodies.dedup();
@@ -220,7 +220,7 @@ impl<'a> Scene<'a> {
         let count = self.carried.len();
         let pairs = (0..count).flat_map(|near| (0..count).map(move |far| (near, far)));
         let apart = pairs.filter(|(near, far)| order(*near) + 1 < order(*far));
-        let pairs = apart.map(|(near, far)| Pair::Capsules { near, far });
+        let pairs = apart.map(|(near, far)| BodyPair::Capsules { near, far });
         pairs.filter(|pair| self.distance(*pair, &at_rest, 0.0) > 0.0).collect()
     }
 }

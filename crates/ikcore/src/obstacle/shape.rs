@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 #[cfg(feature = "convex-mesh")]
-use super::hull::Hull;
+use super::convex_hull::Hull;
 #[cfg(feature = "convex-mesh")]
 use crate::error::Error;
 use crate::error::{Result, require_finite, require_positive};

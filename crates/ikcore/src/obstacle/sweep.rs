@@ -4,7 +4,7 @@
 //! approach within the interval is clear in all of it; the other pairs are examined again in its two halves. No step width is
 //! chosen, and no collision can fall between two samples.
 
-use super::scene::{Contact, Pair, Placement, Scene};
+use super::scene::{BodyPair, Contact, Placement, Scene};
 use crate::math::MAX_DOF;
 use crate::objective::Point;
 
@@ -51,7 +51,7 @@ const RESOLUTION: f64 = 1e-5;
 #[derive(Debug)]
 pub struct Sweep<'a> {
     scene: &'a Scene<'a>,
-    pending: Vec<Pair>,
+    pending: Vec<BodyPair>,
     placement: Placement,
     examined: usize,
 }
@@ -165,11 +165,11 @@ struct Best {
     seen: f64,
     proven: f64,
     at: f64,
-    pair: Pair,
+    pair: BodyPair,
 }
 
 impl Best {
-    fn offer(&mut self, distance: f64, at: f64, pair: Pair) {
+    fn offer(&mut self, distance: f64, at: f64, pair: BodyPair) {
         if distance < self.seen {
             (self.seen, self.at, self.pair) = (distance, at, pair);
         }

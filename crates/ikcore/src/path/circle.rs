@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::stored::StoredCurve;
 use super::{Curve, Plane};
 use crate::error::{Result, require_positive};
 
@@ -35,10 +34,6 @@ impl Circle {
 }
 
 impl Curve for Circle {
-    fn stored(&self) -> Option<StoredCurve> {
-        Some(StoredCurve::Circle(self.clone()))
-    }
-
     fn duration(&self) -> f64 {
         self.duration
     }

@@ -1,15 +1,14 @@
 //! What every curve can say.
 
+use std::any::Any;
 use std::fmt::Debug;
 
 use nalgebra::Matrix3;
 
-use super::stored::StoredCurve;
-
 /// A curve that is passed through in time.
 ///
 /// Time `t` (s) is clamped to `[0, duration]`: before and after, the values are those of the ends.
-pub trait Curve: Debug + Send + Sync {
+pub trait Curve: Any + Debug + Send + Sync {
     /// How long one pass takes (s); positive.
     fn duration(&self) -> f64;
 
@@ -27,11 +26,5 @@ pub trait Curve: Debug + Send + Sync {
     /// Times (s) at which the direction may jump: a planner stops or slows down there.
     fn corners(&self) -> Vec<f64> {
         vec![]
-    }
-
-    /// The curve in the form in which a path is stored; None for a curve of your own.
-    #[doc(hidden)]
-    fn stored(&self) -> Option<StoredCurve> {
-        None
     }
 }

@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::stored::StoredCurve;
 use super::{Curve, Plane};
 use crate::error::{Error, Result, require_positive};
 
@@ -55,10 +54,6 @@ impl Hypotrochoid {
 }
 
 impl Curve for Hypotrochoid {
-    fn stored(&self) -> Option<StoredCurve> {
-        Some(StoredCurve::Hypotrochoid(self.clone()))
-    }
-
     fn duration(&self) -> f64 {
         self.duration
     }

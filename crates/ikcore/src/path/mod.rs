@@ -29,8 +29,9 @@ mod polyline;
 mod reference;
 mod rose;
 mod samples;
-mod stored;
+mod stored_path;
 mod timed_path;
+mod waypoints;
 
 pub use circle::Circle;
 pub use curve::Curve;
@@ -41,3 +42,4 @@ pub use reference::Reference;
 pub use rose::Rose;
 pub use samples::Samples;
 pub use timed_path::Path;
+pub use waypoints::Waypoints;

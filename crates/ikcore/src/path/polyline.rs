@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Curve;
-use super::stored::StoredCurve;
-use crate::error::{Error, Result, require_finite, require_positive};
+use super::curve::Curve;
+use super::waypoints::check_points;
+use crate::error::{Error, Result, require_positive};
 use crate::math::Knots;
 
 /// Straight segments from vertex to vertex, each at its own constant speed.
@@ -65,10 +65,6 @@ impl Polyline {
 }
 
 impl Curve for Polyline {
-    fn stored(&self) -> Option<StoredCurve> {
-        Some(StoredCurve::Polyline(self.clone()))
-    }
-
     fn duration(&self) -> f64 {
         self.knots.duration()
     }
@@ -90,15 +86,6 @@ impl Curve for Polyline {
     fn corners(&self) -> Vec<f64> {
         self.knots.times()[1..self.vertices.len() - 1].to_vec()
     }
-}
-
-/// Err unless there are at least two points and all are finite.
-pub(super) fn check_points(points: &[[f64; 3]]) -> Result<()> {
-    if points.len() < 2 {
-        let problem = format!("it needs at least 2 points, got {}", points.len());
-        return Err(Error::InvalidPath { problem });
-    }
-    require_finite("path points", points.as_flattened(), |i| format!("{} of row {}", ["x", "y", "z"][i % 3], i / 3))
 }
 
 /// The length (m) travelled up to each point.

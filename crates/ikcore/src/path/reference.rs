@@ -2,18 +2,16 @@
 
 use nalgebra::Matrix3;
 
-use super::orientation::check_rotations;
-use super::polyline::check_points;
+use super::waypoints::Waypoints;
 use crate::error::{Error, Result, require_finite, require_positive};
-use crate::math::{Pose, pose};
+use crate::math::Pose;
 
 /// Positions, and where wanted rotations, at the ticks t_i = i dt: row 0 is where to start, row i where to be at the end
 /// of tick i.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
     dt: f64,
-    positions: Vec<[f64; 3]>,
-    rotations: Option<Vec<Matrix3<f64>>>,
+    points: Waypoints,
     velocities: Option<Vec<[f64; 3]>>,
 }
 
@@ -27,15 +25,7 @@ impl Reference {
     /// [`Error::NotRigid`].
     pub fn new(dt: f64, positions: Vec<[f64; 3]>, rotations: Option<Vec<Matrix3<f64>>>) -> Result<Self> {
         require_positive("dt", dt)?;
-        check_points(&positions)?;
-        let rotations = rotations.map(|rows| check_rotations(rows.iter())).transpose()?;
-        match &rotations {
-            Some(rows) if rows.len() != positions.len() => {
-                let expected = format!("{}, one a position", positions.len());
-                Err(Error::WrongLength { what: "path rotations".into(), expected, got: rows.len() })
-            }
-            _ => Ok(Self { dt, positions, rotations, velocities: None }),
-        }
+        Ok(Self { dt, points: Waypoints::new(positions, rotations)?, velocities: None })
     }
 
     /// The same reference with the velocities (m/s) of its positions, for rules that work with velocities.
@@ -43,8 +33,8 @@ impl Reference {
     /// # Errors
     /// [`Error::WrongLength`] where they are not one a position, [`Error::NotFinite`].
     pub fn with_velocities(self, velocities: Vec<[f64; 3]>) -> Result<Self> {
-        if velocities.len() != self.positions.len() {
-            let expected = format!("{}, one a position", self.positions.len());
+        if velocities.len() != self.points.len() {
+            let expected = format!("{}, one a position", self.points.len());
             return Err(Error::WrongLength { what: "path velocities".into(), expected, got: velocities.len() });
         }
         require_finite("path velocities", velocities.as_flattened(), |i| {
@@ -60,7 +50,7 @@ impl Reference {
 
     /// Number of rows: one more than there are ticks.
     pub fn len(&self) -> usize {
-        self.positions.len()
+        self.points.len()
     }
 
     /// Time of row `i` (s).
@@ -70,7 +60,7 @@ impl Reference {
 
     /// Position of row `i` (m).
     pub fn position(&self, i: usize) -> [f64; 3] {
-        self.positions[i]
+        self.points.position(i)
     }
 
     /// Velocity at row `i` (m/s), if it is known; at a corner, that of the segment that begins.
@@ -80,11 +70,11 @@ impl Reference {
 
     /// Rotation of row `i`, if there are rotations.
     pub fn rotation(&self, i: usize) -> Option<Matrix3<f64>> {
-        self.rotations.as_ref().map(|rotations| rotations[i])
+        self.points.rotation(i)
     }
 
     /// Position and rotation of row `i`, if there are rotations.
     pub fn pose(&self, i: usize) -> Option<Pose> {
-        self.rotation(i).map(|rotation| pose::from_parts(self.position(i), rotation))
+        self.points.pose(i)
     }
 }

@@ -4,7 +4,6 @@ use std::f64::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
-use super::stored::StoredCurve;
 use super::{Curve, Plane};
 use crate::error::{Error, Result, require_positive};
 
@@ -40,10 +39,6 @@ impl Rose {
 }
 
 impl Curve for Rose {
-    fn stored(&self) -> Option<StoredCurve> {
-        Some(StoredCurve::Rose(self.clone()))
-    }
-
     fn duration(&self) -> f64 {
         self.duration
     }

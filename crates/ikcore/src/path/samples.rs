@@ -4,7 +4,6 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
 use super::orientation::check_rotations;
-use super::stored::StoredCurve;
 use super::{Curve, Polyline};
 #[cfg(doc)]
 use crate::error::Error;
@@ -43,10 +42,6 @@ impl Samples {
 }
 
 impl Curve for Samples {
-    fn stored(&self) -> Option<StoredCurve> {
-        Some(StoredCurve::Samples(self.clone()))
-    }
-
     fn duration(&self) -> f64 {
         self.positions.duration()
     }

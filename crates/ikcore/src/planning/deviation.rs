@@ -1,7 +1,7 @@
 //! How far the tip is from the path that it is to follow.
 
-use super::plan::Violation;
 use super::tip_path::TipPath;
+use super::violation::Violation;
 use crate::math::MAX_DOF;
 use crate::math::so3::{norm, rotation_between};
 use crate::robot::Robot;

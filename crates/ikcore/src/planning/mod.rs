@@ -9,7 +9,7 @@
 //! | [`planar_arm`] | arms in a plane: inverse kinematics in closed form, the redundancy left open |
 //! | [`tip_path`] | [`TipPath`]: the curve that the tip is to follow, whatever the time |
 //! | `deviation` | how far the tip is from that curve |
-//! | `collision` | what planners among obstacles share |
+//! | `collision_checks` | what planners among obstacles share |
 //! | `search` | any solver on the cost of a plan |
 //! | `minmax` | from end to end by the nearest configurations, and around obstacles |
 //! | [`point_to_point`] | the planner from end to end, whatever its method |
@@ -19,7 +19,7 @@
 //! | `tpbso` | both as published by Wang et al. (2019) |
 
 pub mod along_path;
-mod collision;
+mod collision_checks;
 pub mod cost;
 mod deviation;
 pub mod endpoint;
@@ -33,13 +33,15 @@ pub mod time_optimal;
 mod timed;
 pub mod tip_path;
 mod tpbso;
+mod violation;
 
 pub use along_path::{AlongPathMethod, AlongPathOptions, plan_along_path};
 pub use cost::Cost;
 pub use endpoint::Endpoint;
 pub use motion_limits::MotionLimits;
-pub use plan::{Improvement, Plan, Violation};
+pub use plan::{Improvement, Plan};
 pub use planar_arm::Elbow;
 pub use point_to_point::{PointToPointMethod, PointToPointOptions, plan_point_to_point};
 pub use time_optimal::{JointPath, SplineEnds, TimingLimits, TimingOptions, time_optimal};
 pub use tip_path::TipPath;
+pub use violation::Violation;

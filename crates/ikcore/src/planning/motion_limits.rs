@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::plan::Violation;
+use super::violation::Violation;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::interval;

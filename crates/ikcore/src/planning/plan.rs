@@ -1,13 +1,12 @@
 //! What a planner hands back.
 
-use std::borrow::Cow;
-use std::fmt;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
 use super::cost::Cost;
 use super::planar_arm::Orientations;
+use super::violation::Violation;
 use crate::solver::Status;
 use crate::trajectory::Trajectory;
 use crate::wording::number;
@@ -48,31 +47,6 @@ pub struct Improvement {
     pub evaluations: usize,
     /// The lowest value of the search's function from then on; with penalties as long as the plan breaks something.
     pub cost: f64,
-}
-
-/// A bound that a trajectory breaks.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Violation {
-    /// What breaks it, such as "velocity of joint 'elbow'".
-    pub what: String,
-    /// How far it goes, in `unit`.
-    pub value: f64,
-    /// How far it may go, in `unit`.
-    pub bound: f64,
-    /// "rad/s" and so on.
-    pub unit: Cow<'static, str>,
-}
-
-impl fmt::Display for Violation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { what, value, bound, unit } = self;
-        let [shown, allowed] = [number(*value), number(*bound)];
-        if shown == allowed {
-            let beyond = number((value - bound).abs());
-            return write!(f, "{what} is {beyond} {unit} beyond the {allowed} {unit} allowed");
-        }
-        write!(f, "{what} is {shown} {unit}, allowed {allowed} {unit}")
-    }
 }
 
 /// So many violations are written out in a message.

@@ -6,8 +6,7 @@ use crate::error::Result;
 use crate::objective::{Bounds, Objective, Point, Score};
 use crate::planning::plan::Improvement;
 use crate::rng;
-use crate::solver::reporting::Reporting;
-use crate::solver::{AnySolver, DerivativeFree, Evaluator, Monitor, Outcome, Status, Stop};
+use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Monitor, Status, Stop};
 
 /// What searches, and for how long.
 pub struct Search {
@@ -27,13 +26,13 @@ pub struct Found {
     pub history: Vec<Improvement>,
     /// Evaluations.
     pub evaluations: usize,
-    outcome: Outcome,
+    status: Status,
 }
 
 impl Found {
     /// How a plan ends that keeps everything, or does not.
     pub fn status(&self, keeps_everything: bool) -> Status {
-        match self.outcome.status() {
+        match self.status {
             Status::Interrupted => Status::Interrupted,
             _ if keeps_everything => Status::Solved,
             other => other,
@@ -52,18 +51,18 @@ impl Search {
         stop.validate()?;
         let done = Cell::new(0);
         let mut recorded = Recorded { cost, history: vec![], done: &done };
-        let mut reporting = Reporting { monitor, done: &done, total: stop.max_evaluations };
+        let mut reporting = EvaluationMonitor { monitor, done: &done, total: stop.max_evaluations };
         // Stream 0 and those after it belong to the inverse kinematics of the ends.
         let mut rng = rng::stream(*seed, u64::MAX);
         let mut x0 = Point::from_elem(0.0, recorded.dimension());
         bounds.sample(&mut rng, &mut x0);
         let objective: &mut dyn Objective = &mut recorded;
         let mut evaluator = Evaluator::new(objective, bounds, *stop, &mut rng, &mut reporting);
-        let outcome = solver.run(&mut evaluator, &x0);
+        let status = solver.run(&mut evaluator, &x0);
         let (x, evaluations) = (evaluator.best().x.clone(), evaluator.evaluations());
         let history = recorded.history;
         monitor.progress(evaluations, evaluations);
-        Ok(Found { x, history, evaluations, outcome })
+        Ok(Found { x, history, evaluations, status })
     }
 }
 

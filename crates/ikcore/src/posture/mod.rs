@@ -8,12 +8,12 @@
 //! |---|---|
 //! | [`linkage`] | joint points, their circles, the index of a posture |
 //! | [`circle_swarm`] | particle swarm over joint points, as published |
-//! | [`search`] | the call, and our own search over the directions of the links |
+//! | [`best_posture`](mod@best_posture) | the call, and our own search over the directions of the links |
 
-pub mod circle_swarm;
-pub mod linkage;
-pub mod search;
+mod best_posture;
+mod circle_swarm;
+mod linkage;
 
+pub use best_posture::{Posture, PostureOptions, best_posture};
 pub use circle_swarm::CircleSwarm;
 pub use linkage::{Linkage, Measure, Rectangle};
-pub use search::{Posture, SearchOptions, best_posture};

@@ -1,52 +1,14 @@
-//! Describes a serial chain from base to tip, element by element; [`ChainBuilder::build`] checks it and makes a [`Robot`].
-
-use std::collections::HashSet;
+//! Construction of a robot element by element, from base to tip.
 
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
 
+use super::description::{Description, Drive, Element};
 use super::joint::{Joint, JointKind};
 use super::model::Robot;
-use crate::error::{Error, Result, require_finite};
-use crate::math::{MAX_DOF, Pose, pose};
+use crate::error::Result;
+use crate::math::Pose;
 
-/// One element between base and tip, in order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Element {
-    /// A constant transform.
-    Fixed(Pose),
-    /// A motion by `scale * q[joint] + offset`.
-    Moving {
-        /// About or along this axis, of unit length.
-        axis: Vector3<f64>,
-        /// Whether it turns (rad) rather than slides (m).
-        turns: bool,
-        /// The independent joint that drives it.
-        joint: usize,
-        /// Factor on q.
-        scale: f64,
-        /// Constant added (rad or m).
-        offset: f64,
-    },
-    /// The frame reached here is that of a link.
-    Link(String),
-}
-
-/// How far a moving element goes for a value q of the independent joint that drives it: `scale * q + offset`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Drive {
-    /// Factor on q; -1 for a joint passed from its child to its parent, a mimic joint's multiplier.
-    pub scale: f64,
-    /// Constant added (rad or m).
-    pub offset: f64,
-}
-
-impl Drive {
-    /// The joint's own value.
-    pub const DIRECT: Self = Self { scale: 1.0, offset: 0.0 };
-}
-
-/// The description of a robot: independent joints in order, and the elements from base to tip.
+/// A robot under construction: independent joints in order, and the elements from base to tip.
 ///
 /// ```
 /// use ikcore::nalgebra::Vector3;
@@ -62,92 +24,64 @@ impl Drive {
 /// assert_eq!(robot.dof(), 1);
 /// # Ok::<(), ikcore::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ChainBuilder {
-    pub(super) name: String,
-    pub(super) joints: Vec<Joint>,
-    pub(super) elements: Vec<Element>,
+    description: Description,
 }
 
 impl ChainBuilder {
     /// An empty chain that starts in the frame of link `base_link`.
     pub fn new(name: impl Into<String>, base_link: impl Into<String>) -> Self {
-        Self { name: name.into(), joints: Vec::new(), elements: vec![Element::Link(base_link.into())] }
+        let elements = vec![Element::Link(base_link.into())];
+        Self { description: Description { name: name.into(), joints: Vec::new(), elements } }
     }
 
     /// Adds an independent joint and returns its index in q. It moves nothing until [`moving`](Self::moving) uses it.
     pub fn add_joint(&mut self, joint: Joint) -> usize {
-        self.joints.push(joint);
-        self.joints.len() - 1
+        self.description.joints.push(joint);
+        self.description.joints.len() - 1
+    }
+
+    /// Name of the robot.
+    pub(crate) fn name(&self) -> &str {
+        &self.description.name
     }
 
     /// The independent joint of this index, to narrow its limits.
-    pub(super) fn joint_mut(&mut self, index: usize) -> &mut Joint {
-        &mut self.joints[index]
+    pub(crate) fn joint_mut(&mut self, index: usize) -> &mut Joint {
+        &mut self.description.joints[index]
     }
 
     /// Appends a constant transform.
     pub fn fixed(&mut self, transform: Pose) {
-        self.elements.push(Element::Fixed(transform));
+        self.description.elements.push(Element::Fixed(transform));
     }
 
     /// Appends a motion about or along `axis` (any length but zero), driven by independent joint `joint`.
     pub fn moving(&mut self, joint: usize, kind: JointKind, axis: Vector3<f64>, drive: Drive) {
         let Drive { scale, offset } = drive;
-        self.elements.push(Element::Moving { axis: axis.normalize(), turns: kind.turns(), joint, scale, offset });
+        self.description.elements.push(Element::Moving {
+            axis: axis.normalize(),
+            turns: kind.turns(),
+            joint,
+            scale,
+            offset,
+        });
     }
 
     /// Names the frame reached so far. The last frame named is the tip.
     pub fn link(&mut self, name: impl Into<String>) {
-        self.elements.push(Element::Link(name.into()));
+        self.description.elements.push(Element::Link(name.into()));
     }
 
     /// Checks the description and makes the robot.
     ///
     /// # Errors
-    /// [`Error::InvalidRobot`] for no joints, too many, or a joint or link named twice;
-    /// [`Error::EmptyRange`], [`Error::NegativeLimit`] or
-    /// [`Error::OutOfRange`] for impossible limits;
-    /// [`Error::NotFinite`] for transforms.
+    /// [`Error::InvalidRobot`](crate::Error::InvalidRobot) for no joints, too many, or a joint or link named twice;
+    /// [`Error::EmptyRange`](crate::Error::EmptyRange), [`Error::NegativeLimit`](crate::Error::NegativeLimit) or
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for impossible limits;
+    /// [`Error::NotFinite`](crate::Error::NotFinite) for transforms.
     pub fn build(self) -> Result<Robot> {
-        Robot::new(self)
-    }
-
-    /// Everything that the kernels rely on.
-    pub(super) fn validate(&self) -> Result<()> {
-        let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem };
-        let moving = self.elements.iter().filter(|e| matches!(e, Element::Moving { .. })).count();
-        if moving == 0 || self.joints.is_empty() {
-            return Err(invalid("no joint moves between base and tip".into()));
-        }
-        if moving > MAX_DOF || self.joints.len() > MAX_DOF {
-            return Err(invalid(format!(
-                "{moving} moving joints between base and tip; at most {MAX_DOF} are supported"
-            )));
-        }
-        let mut names = HashSet::new();
-        for joint in &self.joints {
-            if !names.insert(&joint.name) {
-                return Err(invalid(format!("two joints are named '{}'", joint.name)));
-            }
-            joint.validate()?;
-        }
-        let mut links = HashSet::new();
-        self.elements.iter().try_for_each(|element| match element {
-            Element::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
-            Element::Link(name) if !links.insert(name) => Err(invalid(format!("two links are named '{name}'"))),
-            Element::Link(_) => Ok(()),
-            Element::Moving { axis, joint, scale, offset, .. } => {
-                let Some(driver) = self.joints.get(*joint) else {
-                    return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
-                };
-                if !((axis.norm() - 1.0).abs() < 1e-9) {
-                    return Err(invalid(format!("joint '{}' has a zero or non-finite axis", driver.name)));
-                }
-                require_finite("scale and offset of a joint", &[*scale, *offset], |_| {
-                    format!("joint '{}'", driver.name)
-                })
-            }
-        })
+        Robot::new(self.description)
     }
 }

@@ -1,4 +1,4 @@
-//! A joint as the caller sees it.
+//! An independent joint: name, kind and limits.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::math::interval;
 use crate::wording::words;
 
-/// How a joint moves.
+/// Kind of motion of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JointKind {
     /// Turns about its axis between two limits (rad).
@@ -20,7 +20,7 @@ pub enum JointKind {
 words!("kind of a joint": JointKind { Revolute => "revolute", Continuous => "continuous", Prismatic => "prismatic" });
 
 impl JointKind {
-    /// Whether the joint turns rather than slides.
+    /// True for joints that turn, false for those that slide.
     pub fn turns(self) -> bool {
         self != Self::Prismatic
     }
@@ -31,7 +31,7 @@ impl JointKind {
 pub struct Joint {
     /// Its name, unique in the robot.
     pub name: String,
-    /// How it moves.
+    /// Kind of motion.
     pub kind: JointKind,
     /// Lower position limit (rad or m); minus infinity where there is none.
     pub lower: f64,
@@ -67,12 +67,12 @@ impl Joint {
     }
 
     /// [`sampling_range`](Self::sampling_range) under other limits (rad or m).
-    pub fn sampling_range_within(&self, lower: f64, upper: f64) -> (f64, f64) {
+    pub(crate) fn sampling_range_within(&self, lower: f64, upper: f64) -> (f64, f64) {
         let reach = if self.kind.turns() { std::f64::consts::PI } else { UNLIMITED_SLIDE };
         interval::finite(lower, upper, reach)
     }
 
-    /// Err for limits that contradict themselves.
+    /// Checks that the limits do not contradict each other.
     pub(super) fn validate(&self) -> Result<()> {
         let Self { lower, upper, velocity, .. } = *self;
         let limits = [

@@ -1,40 +1,29 @@
-//! Robots: the serial chain from a base link to a tip link, its joints, limits and kinematics.
+//! The robot: joints with limits, links, base, tool and bodies. Immutable, validated once, shared without locks.
+//!
+//! Kernels are in [`kinematics`](crate::kinematics), files and named robots in [`load`](crate::load). Read [`Robot`] first.
+//!
+//! | file | what |
+//! |---|---|
+//! | `joint`, `description`, `builder` | from joints and elements to a robot |
+//! | `model` | [`Robot`] |
+//! | `batched` | kinematics of many configurations |
+//! | `link_capsule`, `bodies` | capsules on the links |
+//! | `manufacturing_errors` | the same robot, built inexactly |
+//! | `serialization` | robots as bytes |
 
-mod arrays;
-mod as_built;
+mod batched;
+mod bodies;
 mod builder;
-mod catalog;
-mod chain;
-mod collision;
-mod dh;
-mod directions;
-mod dispatch;
-mod four_kinematics;
+mod description;
 mod joint;
-mod kinematics;
-mod lane_search;
+mod link_capsule;
+mod manufacturing_errors;
 mod model;
-mod planar;
-mod reach;
-mod screws;
-mod seed_index;
-mod seeds;
-mod stages;
-mod stored;
-mod upright;
-mod urdf;
+mod serialization;
 
-pub use builder::{ChainBuilder, Drive, Element};
-pub use collision::LinkCapsule;
-pub use dh::{Dh, DhTable};
-pub use directions::Directions;
-pub use four_kinematics::FourColumns;
+pub use builder::ChainBuilder;
+pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
-pub use kinematics::{Columns, Wrench};
+pub(crate) use link_capsule::Bodies;
+pub use link_capsule::LinkCapsule;
 pub use model::Robot;
-pub use reach::{Beyond, Reach};
-pub use screws::{Screw, Screws};
-pub use seeds::Seeds;
-pub use upright::Upright;
-
-use crate::math::MAX_DOF;

@@ -4,18 +4,19 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::Matrix6xX;
 
-use super::builder::{ChainBuilder, Element};
-use super::chain::Chain;
-use super::collision::CollisionModel;
-use super::directions::Directions;
+use super::description::{Description, Element};
 use super::joint::Joint;
-use super::seed_index::SeedIndex;
-use super::{Columns, FourColumns, MAX_DOF, Wrench};
+use super::link_capsule::Bodies;
 use crate::error::{Error, Result, require_finite};
-use crate::math::four_frames::FourFrames;
-use crate::math::quad::Quad;
-use crate::math::{Frame, Pose, pose};
+use crate::kinematics::chain::Chain;
+use crate::kinematics::kernels::Kernels;
+use crate::kinematics::link_frames::link_frames;
+use crate::kinematics::{Columns, FourColumns, Reach, Screws, TaskRank, Wrench};
+use crate::math::f64x4::F64x4;
+use crate::math::{Frame, MAX_DOF, Pose, pose};
 use crate::rng::LazyRng;
+use crate::starts::Starts;
+use crate::starts::index::StartIndex;
 
 /// A robot arm: a serial chain from base to tip.
 ///
@@ -23,40 +24,49 @@ use crate::rng::LazyRng;
 /// the robot's base.
 #[derive(Debug, Clone)]
 pub struct Robot {
-    description: ChainBuilder,
+    description: Description,
     base: Pose,
     tool: Pose,
+    bodies: Bodies,
+    /// Folded from description, base and tool.
     chain: Arc<Chain>,
-    collision: CollisionModel,
-    /// Built when first asked for; copies that differ in base and tool share it.
-    seed_index: Arc<OnceLock<SeedIndex>>,
-    /// Found when first asked for.
-    directions: OnceLock<Directions>,
+    /// The compilation of the kernels that this machine runs for the chain.
+    kernels: Kernels,
+    /// Of the links stretched out, without slides.
+    reach_of_links: Reach,
+    /// Built at first use; copies that differ in base and tool share it.
+    start_index: Arc<OnceLock<StartIndex>>,
+    /// Computed at first use.
+    task_rank: OnceLock<TaskRank>,
 }
 
 impl PartialEq for Robot {
-    /// The chain follows from the rest.
+    /// Compares what the rest follows from.
     fn eq(&self, other: &Self) -> bool {
-        (&self.description, &self.base, &self.tool, &self.collision)
-            == (&other.description, &other.base, &other.tool, &other.collision)
+        (&self.description, &self.base, &self.tool, &self.bodies)
+            == (&other.description, &other.base, &other.tool, &other.bodies)
     }
 }
 
 impl Robot {
-    pub(super) fn new(description: ChainBuilder) -> Result<Self> {
-        Self::assembled(description, Pose::identity(), Pose::identity(), CollisionModel::default())
+    pub(super) fn new(description: Description) -> Result<Self> {
+        Self::assembled(description, Pose::identity(), Pose::identity(), Bodies::default())
     }
 
-    pub(super) fn assembled(
-        description: ChainBuilder,
-        base: Pose,
-        tool: Pose,
-        collision: CollisionModel,
-    ) -> Result<Self> {
+    pub(super) fn assembled(description: Description, base: Pose, tool: Pose, bodies: Bodies) -> Result<Self> {
         description.validate()?;
-        let chain = Arc::new(Chain::new(&description.elements, &base, &tool));
-        let (seed_index, directions) = (Arc::default(), OnceLock::new());
-        Ok(Self { description, base, tool, chain, collision, seed_index, directions })
+        let chain = description.folded(&base, &tool);
+        Ok(Self {
+            description,
+            base,
+            tool,
+            bodies,
+            kernels: Kernels::for_chain(&chain),
+            reach_of_links: Reach::of_links(&chain),
+            chain: Arc::new(chain),
+            start_index: Arc::default(),
+            task_rank: OnceLock::new(),
+        })
     }
 
     /// The robot's name.
@@ -75,11 +85,11 @@ impl Robot {
     }
 
     /// Names of the links from base to tip.
-    pub fn link_names(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.chain.links.iter().map(|link| link.name.as_str())
+    pub fn link_names(&self) -> impl Iterator<Item = &str> {
+        self.description.link_names()
     }
 
-    /// What the chain is made of between its first link and its last, without base and tool.
+    /// Elements of the chain from its first link to its last, without base and tool.
     pub fn elements(&self) -> &[Element] {
         &self.description.elements
     }
@@ -100,8 +110,8 @@ impl Robot {
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
     pub fn with_base(&self, base: Pose) -> Result<Self> {
         let base = pose::checked("base", base)?;
-        let robot = Self::assembled(self.description.clone(), base, self.tool, self.collision.clone())?;
-        Ok(Self { seed_index: self.seed_index.clone(), ..robot })
+        let robot = Self::assembled(self.description.clone(), base, self.tool, self.bodies.clone())?;
+        Ok(Self { start_index: self.start_index.clone(), ..robot })
     }
 
     /// The same robot, its tip moved by `tool` from the tip link.
@@ -110,8 +120,8 @@ impl Robot {
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
     pub fn with_tool(&self, tool: Pose) -> Result<Self> {
         let tool = pose::checked("tool", tool)?;
-        let robot = Self::assembled(self.description.clone(), self.base, tool, self.collision.clone())?;
-        Ok(Self { seed_index: self.seed_index.clone(), ..robot })
+        let robot = Self::assembled(self.description.clone(), self.base, tool, self.bodies.clone())?;
+        Ok(Self { start_index: self.start_index.clone(), ..robot })
     }
 
     /// The same robot with other joint limits; `change` gets each joint with its index.
@@ -123,11 +133,11 @@ impl Robot {
         for (index, joint) in description.joints.iter_mut().enumerate() {
             change(index, joint);
         }
-        Self::assembled(description, self.base, self.tool, self.collision.clone())
+        Self::assembled(description, self.base, self.tool, self.bodies.clone())
     }
 
-    /// Whether a whole turn of joint `joint` brings all that it moves back to where it was.
-    pub fn repeats_every_turn(&self, joint: usize) -> bool {
+    /// Whether a whole turn of joint `joint` leaves the pose of every link unchanged.
+    pub(crate) fn repeats_every_turn(&self, joint: usize) -> bool {
         let driven = self.chain.motions.iter().filter(|motion| motion.joint == joint);
         let scales = driven.map(|motion| (motion.turn_scale, motion.slide_scale));
         self.joints()[joint].kind.turns() && scales.into_iter().all(|(turn, slide)| turn.fract() == 0.0 && slide == 0.0)
@@ -147,7 +157,7 @@ impl Robot {
     ///
     /// # Errors
     /// [`Error::OutsideLimits`] names the joint, its value and its limits.
-    pub fn require_within(&self, what: &str, q: &[f64], lower: &[f64], upper: &[f64]) -> Result<()> {
+    pub(crate) fn require_within(&self, what: &str, q: &[f64], lower: &[f64], upper: &[f64]) -> Result<()> {
         match (0..q.len()).find(|j| !(lower[*j] <= q[*j] && q[*j] <= upper[*j])) {
             None => Ok(()),
             Some(j) => Err(Error::OutsideLimits {
@@ -186,46 +196,46 @@ impl Robot {
     /// [`Error::WrongLength`] or [`Error::NotFinite`].
     pub fn link_poses(&self, q: &[f64]) -> Result<Vec<Pose>> {
         self.check("joint angles", q)?;
-        Ok(self.chain.link_frames(q).into_iter().map(Pose::from).collect())
+        Ok(link_frames(&self.chain, &self.kernels.reached(&self.chain, q)).into_iter().map(Pose::from).collect())
     }
 
     /// [`fk`](Self::fk) without the check: `q` has one finite entry per joint.
     #[inline]
     pub fn tip(&self, q: &[f64]) -> Frame {
-        self.chain.tip(q)
+        (self.kernels.tip)(&self.chain, q)
     }
 
     /// Position of the tip (m) at `q`, which has one finite entry per joint.
     #[inline]
     pub fn tip_position(&self, q: &[f64]) -> [f64; 3] {
-        self.chain.tip_position(q)
+        (self.kernels.tip_position)(&self.chain, q)
     }
 
-    /// Hands the tip's positions (m) at configurations stored one after another to `visit`, in order; quicker than
+    /// Calls `visit` with the tip's position (m) at each of the configurations `qs`, stored one after another; faster than
     /// [`tip_position`](Self::tip_position) one by one, and the same bits (for joint angles below 8e5 rad).
     #[inline]
     pub fn tip_positions(&self, qs: &[f64], visit: impl FnMut([f64; 3])) {
-        self.chain.tip_positions(qs, self.dof(), visit);
+        self.kernels.tip_positions(&self.chain, qs, self.dof(), visit);
     }
 
-    /// Tip and Jacobian in one pass, without the check: `q` has one finite entry per joint.
+    /// Writes the Jacobian and returns the tip, in one pass without the check: `q` has one finite entry per joint.
     #[inline]
     pub fn tip_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
-        self.chain.jacobian(q, columns)
+        (self.kernels.jacobian)(&self.chain, q, columns)
     }
 
-    /// [`tip_and_jacobian`](Self::tip_and_jacobian) of four configurations side by side, to the same bits; `qs` and `columns` have one
-    /// entry per joint.
+    /// [`tip_and_jacobian`](Self::tip_and_jacobian) of four configurations at once, to the same bits; `qs` and `columns`
+    /// have one entry per joint.
     #[inline]
-    pub fn tips_and_jacobians(&self, qs: &[Quad], columns: &mut FourColumns) -> FourFrames {
-        self.chain.jacobian_four(qs, columns)
+    pub(crate) fn tips_and_jacobians(&self, qs: &[F64x4], columns: &mut FourColumns) -> Frame<F64x4> {
+        (self.kernels.jacobian_four)(&self.chain, qs, columns)
     }
 
-    /// Tip and joint torques (N m, N for sliding joints) J'w in one pass, without a Jacobian; w is the `wrench` on the tip. `q`
-    /// and `torques` have one entry per joint.
+    /// Writes the joint torques J'w (N m, N for sliding joints) of w = wrench(tip) and returns the tip, in one pass without
+    /// a Jacobian. `q` and `torques` have one entry per joint.
     #[inline]
     pub fn tip_and_torques(&self, q: &[f64], wrench: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
-        self.chain.torques(q, wrench, torques)
+        (self.kernels.torques)(&self.chain, q, wrench, torques)
     }
 
     /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).
@@ -233,7 +243,7 @@ impl Robot {
     /// # Errors
     /// [`Error::OutOfRange`] for more than memory holds.
     pub fn random_configurations(&self, count: usize, rng: &mut LazyRng) -> Result<Vec<f64>> {
-        let ranges: Vec<_> = self.joints().iter().map(Joint::sampling_range).collect();
+        let ranges = self.sampling_ranges();
         let mut qs = Vec::new();
         if qs.try_reserve_exact(count.saturating_mul(self.dof())).is_err() {
             return Err(Error::out_of_range("number of configurations", "small enough for memory", count as f64));
@@ -244,16 +254,53 @@ impl Robot {
         Ok(qs)
     }
 
-    /// The same robot, taking up other room.
-    pub(super) fn with_collision(&self, collision: CollisionModel) -> Self {
-        Self { collision, ..self.clone() }
+    /// Rank of the tip's Jacobian by task, at configurations that are not singular.
+    pub fn task_rank(&self) -> TaskRank {
+        *self.task_rank.get_or_init(|| TaskRank::of(&self.chain, &self.kernels, &self.sampling_ranges()))
     }
 
-    pub(super) fn collision(&self) -> &CollisionModel {
-        &self.collision
+    /// Bounds on where the tip can be between these joint limits.
+    pub fn reach(&self, lower: &[f64], upper: &[f64]) -> Reach {
+        self.reach_of_links.with_slides(&self.chain, lower, upper)
     }
 
-    pub(super) fn description(&self) -> &ChainBuilder {
+    /// Screws of the moving elements at `q`, which has one finite entry per joint; base to tip, mimics included.
+    pub fn screws(&self, q: &[f64]) -> Screws {
+        Screws::of(&self.chain, &self.kernels.reached(&self.chain, q))
+    }
+
+    /// Starts for bringing the tip to `pose`. The first call on a robot builds its index, which copies with another base
+    /// or tool share.
+    pub fn starts_near_pose(&self, pose: &Frame) -> Starts<'_> {
+        self.start_index().near_pose(&self.chain, pose)
+    }
+
+    /// Starts for bringing the tip to `position` (m), at any orientation.
+    pub fn starts_near_position(&self, position: &[f64; 3]) -> Starts<'_> {
+        self.start_index().near_position(&self.chain, position)
+    }
+
+    fn start_index(&self) -> &StartIndex {
+        self.start_index.get_or_init(|| {
+            let chain = self.description.folded(&Pose::identity(), &Pose::identity());
+            StartIndex::new(&chain, &self.kernels, &self.sampling_ranges())
+        })
+    }
+
+    fn sampling_ranges(&self) -> Vec<(f64, f64)> {
+        self.joints().iter().map(Joint::sampling_range).collect()
+    }
+
+    /// The same robot with other bodies.
+    pub(crate) fn with_bodies(&self, bodies: Bodies) -> Self {
+        Self { bodies, ..self.clone() }
+    }
+
+    pub(super) fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
+    pub(super) fn description(&self) -> &Description {
         &self.description
     }
 
@@ -261,17 +308,7 @@ impl Robot {
         &self.chain
     }
 
-    /// In how many directions the tip can move at all.
-    pub fn directions(&self) -> Directions {
-        *self.directions.get_or_init(|| Directions::of(self))
-    }
-
-    pub(super) fn seed_index(&self) -> &SeedIndex {
-        self.seed_index.get_or_init(|| {
-            let elements = &self.description.elements;
-            let moving = elements.iter().filter(|element| matches!(element, Element::Moving { .. })).count();
-            let chain = Chain::new(elements, &Pose::identity(), &Pose::identity());
-            SeedIndex::new(&chain, moving, self.joints())
-        })
+    pub(super) fn kernels(&self) -> &Kernels {
+        &self.kernels
     }
 }

@@ -1,22 +1,16 @@
 //! The one list of algorithms: the binding and the contract test read it.
 
 use super::apps::Apps;
-use super::bas::{Bas, Variant};
-use super::bee_colony::BeeColony;
-use super::beetle_swarm::BeetleSwarm;
+use super::bas::{Bas, BasVariant};
 use super::broyden_bas::BroydenBas;
-use super::differential_evolution::DifferentialEvolution;
-use super::driver::{Outcome, Solver, run};
+use super::driver::{Solver, run};
 use super::evaluator::Evaluator;
-use super::firefly::Firefly;
-use super::genetic::Genetic;
 use super::jacobian_transpose::JacobianTranspose;
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::multi_start::{MultiStart, RestartRule};
 use super::newton_raphson::NewtonRaphson;
-use super::population::Schedule;
-use super::pso::{Form, Pso};
-use super::qpso::Qpso;
+use super::status::Status;
+use super::swarm::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, PsoForm, Qpso, Schedule};
 use crate::error::Result;
 use crate::objective::{Differentiable, Objective};
 
@@ -108,16 +102,16 @@ impl DerivativeFree {
     /// Every one with its default options.
     pub fn all() -> Vec<Self> {
         vec![
-            Bas::of(Variant::Star).into(),
-            Bas::of(Variant::Chain).into(),
-            Bas::of(Variant::Greedy).into(),
+            Bas::of(BasVariant::Star).into(),
+            Bas::of(BasVariant::Chain).into(),
+            Bas::of(BasVariant::Greedy).into(),
             BeeColony::default().into(),
             BeetleSwarm::default().into(),
             DifferentialEvolution::default().into(),
             Firefly::default().into(),
             Genetic::default().into(),
-            Pso::of(Form::Constriction).into(),
-            Pso::of(Form::Inertia(0.729)).into(),
+            Pso::of(PsoForm::Constriction).into(),
+            Pso::of(PsoForm::Inertia(0.729)).into(),
             Qpso::default().into(),
         ]
     }
@@ -168,7 +162,7 @@ impl DerivativeFree {
         restarts: Option<RestartRule>,
         evaluator: &mut Evaluator<'_, dyn Objective + '_>,
         x0: &[f64],
-    ) -> Outcome {
+    ) -> Status {
         whichever!(self, solver => run_or_restart(solver, restarts, evaluator, x0))
     }
 }
@@ -220,7 +214,7 @@ impl Algorithm {
         restarts: Option<RestartRule>,
         evaluator: &mut Evaluator<'_, dyn Differentiable + '_>,
         x0: &[f64],
-    ) -> Outcome {
+    ) -> Status {
         match self {
             Self::DerivativeFree(solver) => evaluator.with_values_only(|evaluator| solver.run(restarts, evaluator, x0)),
             Self::BroydenBas(broyden) => run_or_restart(broyden, restarts, evaluator, x0),
@@ -237,7 +231,7 @@ fn run_or_restart<O, S>(
     restarts: Option<RestartRule>,
     evaluator: &mut Evaluator<'_, O>,
     x0: &[f64],
-) -> Outcome
+) -> Status
 where
     O: Objective + ?Sized,
     S: Solver<O>,

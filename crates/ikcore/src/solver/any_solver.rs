@@ -1,10 +1,10 @@
 //! What a caller chooses: an algorithm from one start, or from many.
 
 use super::algorithm::{Algorithm, DerivativeFree};
-use super::driver::Outcome;
 use super::evaluator::Evaluator;
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::multi_start::{MultiStart, RestartRule};
+use super::status::Status;
 use super::stop::Stop;
 use crate::error::{Error, Result};
 use crate::objective::{Differentiable, Objective};
@@ -90,7 +90,7 @@ impl AnySolver {
     }
 
     /// Runs from `x0` until solved, stopped or given up.
-    pub fn run(&self, evaluator: &mut Evaluator<'_, dyn Differentiable + '_>, x0: &[f64]) -> Outcome {
+    pub fn run(&self, evaluator: &mut Evaluator<'_, dyn Differentiable + '_>, x0: &[f64]) -> Status {
         self.algorithm().run(self.restarts(), evaluator, x0)
     }
 }
@@ -119,7 +119,7 @@ impl AnySolver<DerivativeFree> {
     }
 
     /// Runs from `x0` until solved, stopped or given up.
-    pub fn run(&self, evaluator: &mut Evaluator<'_, dyn Objective + '_>, x0: &[f64]) -> Outcome {
+    pub fn run(&self, evaluator: &mut Evaluator<'_, dyn Objective + '_>, x0: &[f64]) -> Status {
         self.algorithm().run(self.restarts(), evaluator, x0)
     }
 }

@@ -3,9 +3,10 @@
 //!
 //! The search is free, as published: a joint may pass its limits, and eq. (12) brings it back by whole turns.
 
-use super::conduct::{Conduct, Domain, Termination};
+use super::domain::Domain;
 use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
+use super::evaluator::Evaluator;
+use super::status::Status;
 use crate::error::{Result, require_positive};
 use crate::objective::{Gradient, Point};
 
@@ -88,12 +89,15 @@ pub struct State {
 impl<O: Gradient + ?Sized> Solver<O> for Apps {
     type State = State;
 
-    fn conduct(&self) -> Conduct {
-        let termination = if self.error_threshold.is_some() { Termination::Threshold } else { Termination::Solved };
-        Conduct { domain: Domain::Wrapped, termination }
+    fn domain(&self) -> Domain {
+        Domain::Wrapped
     }
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn has_own_threshold(&self) -> bool {
+        self.error_threshold.is_some()
+    }
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let mut theta = Point::from_slice(x0);
         let zeros = Point::from_elem(0.0, x0.len());
         let mut gradient = zeros.clone();
@@ -103,13 +107,13 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
     }
 
     /// The paper evaluates E, updates theta, and stops if that E was small enough: its last update is made from there.
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         if state.arrived {
             evaluator.check_solved_outside()?;
-            return Err(Halt::BelowThreshold);
+            return Err(Status::BelowThreshold);
         }
         if !state.error.is_finite() || state.gradient.iter().all(|slope| *slope == 0.0) {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         let eta = match self.learning_rate {
             LearningRate::Fixed(rate) => rate,
@@ -127,7 +131,7 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
         *error = evaluator.differentiate(theta, gradient)?;
         *iterations += 1;
         if *theta == before {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         if self.error_threshold.is_none() { evaluator.check_solved_outside() } else { Ok(()) }
     }

@@ -14,7 +14,8 @@
 use smallvec::SmallVec;
 
 use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
+use super::evaluator::Evaluator;
+use super::status::Status;
 use crate::error::{Error, Result, require_positive};
 use crate::math::ordered::sign;
 use crate::objective::{Objective, Point};
@@ -22,7 +23,7 @@ use crate::wording::words;
 
 /// From where the next exploration of a pass starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Variant {
+pub enum BasVariant {
     /// Always from the best point before the pass: eq. (8), (9) and (11) to the letter.
     Star,
     /// From where the beetle went, better or not: the original beetle antennae search.
@@ -31,13 +32,13 @@ pub enum Variant {
     Greedy,
 }
 
-words!("variant": Variant { Star => "star", Chain => "chain", Greedy => "greedy" });
+words!("variant": BasVariant { Star => "star", Chain => "chain", Greedy => "greedy" });
 
 /// Beetle antennae search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bas {
     /// From where explorations start.
-    pub variant: Variant,
+    pub variant: BasVariant,
     /// Antenna length over error, eq. (12): rad per unit of the error's norm.
     pub c1: f64,
     /// Step length over antenna length, eq. (13).
@@ -50,17 +51,17 @@ pub struct Bas {
 
 impl Default for Bas {
     fn default() -> Self {
-        Self::of(Variant::Star)
+        Self::of(BasVariant::Star)
     }
 }
 
 impl Bas {
     /// A variant with the options that suit it: those that tracked best on a 7-joint arm of about a metre.
-    pub fn of(variant: Variant) -> Self {
+    pub fn of(variant: BasVariant) -> Self {
         let (c1, explorations) = match variant {
-            Variant::Star => (3.0, 50),
-            Variant::Chain => (1.0, 30),
-            Variant::Greedy => (3.0, 5),
+            BasVariant::Star => (3.0, 50),
+            BasVariant::Chain => (1.0, 30),
+            BasVariant::Greedy => (3.0, 5),
         };
         Self { variant, c1, c2: 1.0, explorations, max_passes: 200 }
     }
@@ -120,16 +121,16 @@ struct Group {
 impl<O: Objective + ?Sized> Solver<O> for Bas {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let mut base = Point::from_slice(x0);
         let base_value = evaluator.evaluate(&mut base)?;
         Ok(State { group: Group::new(self.group(), base.len()), base, base_value, passes: 0 })
     }
 
     /// Lines 5 to 15 of Algorithm 1.
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         if state.passes == self.max_passes {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         state.passes += 1;
         let State { base, base_value, group, .. } = state;
@@ -146,7 +147,7 @@ impl<O: Objective + ?Sized> Solver<O> for Bas {
             for (beetle, value) in group.beetles.chunks_exact(base.len()).zip(values).take(count) {
                 self.walk(&mut pass, beetle, value);
             }
-            if self.variant == Variant::Greedy && pass.best_value < *base_value {
+            if self.variant == BasVariant::Greedy && pass.best_value < *base_value {
                 evaluator.check_solved()?;
             }
         }
@@ -161,7 +162,7 @@ impl<O: Objective + ?Sized> Solver<O> for Bas {
 impl Bas {
     /// Explorations that start from the same point.
     fn group(&self) -> usize {
-        if self.variant == Variant::Star { LARGEST_GROUP } else { 1 }
+        if self.variant == BasVariant::Star { LARGEST_GROUP } else { 1 }
     }
 
     /// lambda = c1 sqrt(o), eq. (12); where the start has no finite value, a unit antenna. The rule supposes that the least
@@ -179,7 +180,7 @@ impl Bas {
         group: &mut Group,
         count: usize,
         evaluator: &mut Evaluator<'_, O>,
-    ) -> Result<[f64; LARGEST_GROUP], Halt> {
+    ) -> Result<[f64; LARGEST_GROUP], Status> {
         let Pass { current: x, lambda, .. } = pass;
         let n = x.len();
         let antennae = &mut group.antennae[..2 * count * n];
@@ -213,14 +214,14 @@ impl Bas {
             pass.best_value = value;
         }
         match self.variant {
-            Variant::Star => {}
-            Variant::Chain => pass.current.copy_from_slice(beetle),
-            Variant::Greedy if value < pass.current_value => {
+            BasVariant::Star => {}
+            BasVariant::Chain => pass.current.copy_from_slice(beetle),
+            BasVariant::Greedy if value < pass.current_value => {
                 pass.current.copy_from_slice(beetle);
                 pass.current_value = value;
                 pass.lambda = self.antenna_length(value);
             }
-            Variant::Greedy => {}
+            BasVariant::Greedy => {}
         }
     }
 }

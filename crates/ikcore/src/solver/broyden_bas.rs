@@ -5,7 +5,8 @@
 //! too (Broyden 1965). Antennae are put out again where the steps stop predicting.
 
 use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
+use super::evaluator::Evaluator;
+use super::status::Status;
 use crate::error::{Error, Result, require_positive};
 use crate::math::box_step::{LEAST_DAMPING, ROWS};
 use crate::math::secant::{Secant, antenna};
@@ -73,7 +74,7 @@ pub struct State {
 impl<O: Residual + ?Sized> Solver<O> for BroydenBas {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let mut x = Point::from_slice(x0);
         let mut residual = [0.0; ROWS];
         let value = evaluator.residual(&mut x, &mut residual)?;
@@ -84,9 +85,9 @@ impl<O: Residual + ?Sized> Solver<O> for BroydenBas {
         Ok(state)
     }
 
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         if !state.value.is_finite() {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         let bounds = evaluator.bounds();
         let State { x, value, residual, jacobian, damping, .. } = state;
@@ -112,14 +113,14 @@ impl<O: Residual + ?Sized> Solver<O> for BroydenBas {
             return state.put_out_antennae(evaluator);
         }
         *damping = (*damping * 10.0).max(FIRST_DAMPING);
-        if *damping > LARGEST_DAMPING { Err(Halt::Stalled) } else { Ok(()) }
+        if *damping > LARGEST_DAMPING { Err(Status::Stalled) } else { Ok(()) }
     }
 }
 
 impl State {
     /// One antenna per entry of x: the Jacobian by forward differences.
     #[cold]
-    fn put_out_antennae<O: Residual + ?Sized>(&mut self, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn put_out_antennae<O: Residual + ?Sized>(&mut self, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let bounds = evaluator.bounds();
         for j in 0..self.x.len() {
             let length = antenna(self.x[j], NOISELESS_ANTENNA, bounds.lower()[j], bounds.upper()[j]);

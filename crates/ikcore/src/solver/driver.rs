@@ -1,8 +1,10 @@
-//! The loop: start, step, check; the same for every solver.
+//! The loop that runs every solver: start, step, check.
 
-use super::conduct::Conduct;
-use super::evaluator::{Evaluator, Halt};
-use super::stop::Status;
+use std::convert::Infallible;
+
+use super::domain::Domain;
+use super::evaluator::Evaluator;
+use super::status::Status;
 use crate::objective::Objective;
 
 /// An algorithm: options in `self`, progress in `State`.
@@ -10,98 +12,84 @@ pub trait Solver<O: Objective + ?Sized> {
     /// What the algorithm remembers between steps.
     type State;
 
-    /// Where it searches and what ends it; by default, inside the box and until solved.
-    fn conduct(&self) -> Conduct {
-        Conduct::default()
+    /// Where its points may lie; by default, in the box.
+    fn domain(&self) -> Domain {
+        Domain::Clipped
     }
 
-    /// Evaluates the start `x0` (first of all) and whatever else the algorithm begins with.
-    ///
-    /// # Errors
-    /// The evaluator's [`Halt`].
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Halt>;
+    /// Whether it ends at a threshold of its own ([`Status::BelowThreshold`]) instead of at the problem's test, which then
+    /// only decides whether the result counts as solved.
+    fn has_own_threshold(&self) -> bool {
+        false
+    }
 
-    /// Begins anew at `x0`; who has large buffers writes into those of `state`.
+    /// Evaluates the start `x0` first of all, then whatever else the algorithm begins with.
     ///
     /// # Errors
-    /// The evaluator's [`Halt`].
-    fn restart(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Halt> {
+    /// The evaluator's [`Status`].
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Status>;
+
+    /// Begins anew at `x0`. Override it to reuse large buffers of `state`.
+    ///
+    /// # Errors
+    /// The evaluator's [`Status`].
+    fn restart(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         *state = self.start(evaluator, x0)?;
         Ok(())
     }
 
-    /// One iteration.
+    /// Makes one iteration.
     ///
     /// # Errors
-    /// The evaluator's [`Halt`], or [`Halt::Stalled`] by the algorithm's own rule.
-    fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt>;
+    /// The evaluator's [`Status`], or [`Status::Stalled`] by the algorithm's own rule.
+    fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status>;
 }
 
 impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for &S {
     type State = S::State;
 
-    fn conduct(&self) -> Conduct {
-        (*self).conduct()
+    fn domain(&self) -> Domain {
+        (*self).domain()
     }
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Halt> {
+    fn has_own_threshold(&self) -> bool {
+        (*self).has_own_threshold()
+    }
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Status> {
         (*self).start(evaluator, x0)
     }
 
-    fn restart(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Halt> {
+    fn restart(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         (*self).restart(state, evaluator, x0)
     }
 
-    fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         (*self).step(state, evaluator)
     }
 }
 
-/// How a run ended. The best point and the counts stay with the evaluator.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Outcome {
-    /// Why it ended.
-    pub halt: Halt,
-    /// Steps that were finished.
-    pub iterations: usize,
+/// Runs `solver` from `x0` until it ends, and returns how it ended. The best point and the counts stay with the evaluator.
+/// A start that is solved already is returned untouched.
+pub fn run<O, S>(solver: &S, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Status
+where
+    O: Objective + ?Sized,
+    S: Solver<O>,
+{
+    evaluator.adopt(solver.domain(), solver.has_own_threshold());
+    let Err(signal) = step_until_ended(solver, evaluator, x0);
+    evaluator.final_status(signal)
 }
 
-impl Outcome {
-    /// That of a run that was halted so.
-    pub(super) fn of<O: Objective + ?Sized>(evaluator: &Evaluator<'_, O>, halt: Halt, iterations: usize) -> Self {
-        // A budget that runs out in mid-step may have met a solution in that step.
-        let halt = if evaluator.best().solved { Halt::Solved } else { halt };
-        Self { halt, iterations }
+fn step_until_ended<O, S>(solver: &S, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Infallible, Status>
+where
+    O: Objective + ?Sized,
+    S: Solver<O>,
+{
+    let mut state = solver.start(evaluator, x0)?;
+    evaluator.before_steps()?;
+    loop {
+        solver.step(&mut state, evaluator)?;
+        evaluator.after_step()?;
     }
-
-    /// The status of a solve that ended so.
-    pub fn status(&self) -> Status {
-        match self.halt {
-            Halt::Solved => Status::Solved,
-            Halt::BelowValue => Status::Improved,
-            Halt::BelowThreshold => Status::BelowThreshold,
-            Halt::OutsideBox => Status::OutsideLimits,
-            Halt::Stalled => Status::Stalled,
-            Halt::Budget => Status::BudgetSpent,
-            Halt::Time => Status::TimeUp,
-            Halt::Interrupted => Status::Interrupted,
-        }
-    }
-}
-
-/// Runs `solver` from `x0` until something halts it. A start that is solved already is returned untouched.
-pub fn run<O: Objective + ?Sized, S: Solver<O>>(solver: &S, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Outcome {
-    let mut iterations = 0;
-    evaluator.adopt(solver.conduct());
-    let mut until_halt = || -> Result<std::convert::Infallible, Halt> {
-        let mut state = solver.start(evaluator, x0)?;
-        evaluator.before_steps()?;
-        loop {
-            solver.step(&mut state, evaluator)?;
-            iterations += 1;
-            evaluator.after_step(iterations)?;
-        }
-    };
-    let Err(halt) = until_halt();
-    Outcome::of(evaluator, halt, iterations)
 }

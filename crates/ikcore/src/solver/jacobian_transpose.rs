@@ -2,7 +2,8 @@
 //! steps instead.
 
 use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
+use super::evaluator::Evaluator;
+use super::status::Status;
 use crate::error::{Result, require_positive};
 use crate::math::vector::dot;
 use crate::objective::{LeastSquares, Linearization, Point};
@@ -68,17 +69,17 @@ pub struct State {
 impl<O: LeastSquares + ?Sized> Solver<O> for JacobianTranspose {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let mut x = Point::from_slice(x0);
         let mut linearization = Linearization::default();
         let value = evaluator.linearize(&mut x, &mut linearization)?;
         Ok(State { gradient: Point::from_elem(0.0, x.len()), x, value, linearization })
     }
 
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let State { x, value, linearization, gradient } = state;
         if !value.is_finite() {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         linearization.gradient(gradient);
         let size = self.size(linearization, gradient);
@@ -86,11 +87,11 @@ impl<O: LeastSquares + ?Sized> Solver<O> for JacobianTranspose {
         next.iter_mut().zip(&*gradient).for_each(|(x, slope)| *x -= size * slope);
         // Without any slope the size is NaN; a step that is not finite leads nowhere.
         if next.iter().any(|x| !x.is_finite()) {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         *value = evaluator.linearize(&mut next, linearization)?;
         if next == *x {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         *x = next;
         Ok(())

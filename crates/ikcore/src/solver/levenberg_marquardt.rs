@@ -2,7 +2,8 @@
 //! near ones converge quadratically. A step is kept only where the value falls.
 
 use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
+use super::evaluator::Evaluator;
+use super::status::Status;
 use crate::error::{Error, Result, require_positive};
 use crate::math::box_step::BoxStep;
 use crate::objective::{LeastSquares, Linearization, Point};
@@ -88,11 +89,11 @@ impl Verdict {
     }
 
     /// # Errors
-    /// [`Halt::Stalled`] where the descent is at its end.
-    pub fn goes_on(self) -> Result<(), Halt> {
+    /// [`Status::Stalled`] where the descent is at its end.
+    pub fn goes_on(self) -> Result<(), Status> {
         match self {
             Self::Kept | Self::Refused => Ok(()),
-            Self::KeptAtLast | Self::RefusedAtLast => Err(Halt::Stalled),
+            Self::KeptAtLast | Self::RefusedAtLast => Err(Status::Stalled),
         }
     }
 }
@@ -123,31 +124,31 @@ impl Descent {
     /// The damping of the next step.
     ///
     /// # Errors
-    /// [`Halt::Stalled`] where the value says nothing.
+    /// [`Status::Stalled`] where the value says nothing.
     #[inline]
-    pub fn lambda(&self) -> Result<f64, Halt> {
-        if self.value.is_finite() { Ok(self.damping * self.value) } else { Err(Halt::Stalled) }
+    pub fn lambda(&self) -> Result<f64, Status> {
+        if self.value.is_finite() { Ok(self.damping * self.value) } else { Err(Status::Stalled) }
     }
 }
 
 impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let mut x = Point::from_slice(x0);
         let mut linearizations = [Linearization::default(), Linearization::default()];
         let value = evaluator.linearize(&mut x, &mut linearizations[0])?;
         Ok(State { x, descent: self.descent_from(value), linearizations, here: 0 })
     }
 
-    fn restart(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Halt> {
+    fn restart(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<(), Status> {
         let State { x, descent, linearizations, here } = state;
         x.copy_from_slice(x0);
         *descent = self.descent_from(evaluator.linearize(x, &mut linearizations[*here])?);
         Ok(())
     }
 
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let State { x, descent, linearizations, here } = state;
         let (bounds, lambda) = (evaluator.bounds(), descent.lambda()?);
         let mut trial = Point::from_slice(x);
@@ -155,7 +156,7 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
         let (lower, upper) = (bounds.lower(), bounds.upper());
         BoxStep { columns, residual, lambda, x, lower, upper }.write(&mut trial);
         if trial == *x {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         let value = evaluator.linearize(&mut trial, &mut linearizations[1 - *here])?;
         let verdict = self.judge(descent, value);

@@ -1,69 +1,64 @@
-//! Solvers minimise an [`Objective`](crate::objective::Objective) inside a box and know nothing of robots.
+//! Solvers minimise an [`Objective`](crate::objective::Objective) inside a box. They know nothing of robots.
 //!
-//! A solver is an immutable value of named options; its progress is another value, its `State`. The
-//! [driver](mod@driver) owns the loop, the [`Evaluator`] counts, clips, checks for finite values and keeps the best. So
-//! exact budgets, "never outside the box" and "the best so far is never lost" hold for every algorithm by construction.
-//! [Side by side](side_by_side) run four of the default solver's descents, for batches.
-//! [`algorithm`] lists all algorithms, [`any_solver`] is what a caller chooses: one of them, from one start or from many.
+//! A solver is a value of named options; its progress is another value, its `State`. `driver` owns the loop. The
+//! [`Evaluator`] counts, clips, refuses what is not finite and keeps the best point, so that budgets are exact, answers lie
+//! in the box and the best point is never lost, whatever the algorithm.
+//!
+//! Read `stop` and `status` (how a run ends), `driver` (the loop), `evaluator`, then any algorithm; `algorithm` lists them
+//! all, `any_solver` is what a caller chooses. `side_by_side` runs four descents at once for batches.
 //!
 //! | file | algorithm | needs |
 //! |---|---|---|
-//! | [`apps`] | APPS (Yuan et al. 2016): descent by steps cut off joint by joint | gradient |
-//! | [`bas`] | beetle antennae search (Cheng et al. 2020): star, chain, greedy | values |
-//! | [`broyden_bas`] | antenna differences as secants: quasi-Newton without a Jacobian | residual |
-//! | [`beetle_swarm`] | beetle swarm (Wang et al. 2019): particles with antennae | values |
-//! | [`pso`], [`qpso`] | particle swarms, with velocities and quantum-behaved | values |
-//! | [`firefly`], [`bee_colony`] | firefly algorithm, artificial bee colony | values |
-//! | [`genetic`], [`differential_evolution`] | evolution by crossover and mutation, and by differences | values |
-//! | [`jacobian_transpose`] | Jacobian transpose: steepest descent | residual and Jacobian |
-//! | [`levenberg_marquardt`] | Levenberg-Marquardt on the box | residual and Jacobian |
-//! | [`newton_raphson`] | Newton-Raphson by the pseudo-inverse | residual and Jacobian |
-//! | [`multi_start`] | any of them, from many starts | what the wrapped solver needs |
+//! | `apps` | APPS (Yuan et al. 2016): gradient descent with every joint's step limited | gradient |
+//! | `bas` | beetle antennae search (Cheng et al. 2020): star, chain, greedy | values |
+//! | `broyden_bas` | quasi-Newton with antenna differences as secants | residual |
+//! | `jacobian_transpose` | Jacobian transpose: steepest descent | residual and Jacobian |
+//! | `levenberg_marquardt` | Levenberg-Marquardt in a box | residual and Jacobian |
+//! | `newton_raphson` | Newton-Raphson by the pseudo-inverse | residual and Jacobian |
+//! | `swarm/beetle_swarm` | beetle swarm (Wang et al. 2019): particles with antennae | values |
+//! | `swarm/pso`, `swarm/qpso` | particle swarms, with velocities and quantum-behaved | values |
+//! | `swarm/firefly`, `swarm/bee_colony` | firefly algorithm, artificial bee colony | values |
+//! | `swarm/genetic`, `swarm/differential_evolution` | genetic algorithm, differential evolution | values |
+//! | `multi_start` | any of them, from many starts | what the wrapped solver needs |
 
-pub mod algorithm;
-pub mod any_solver;
-pub mod apps;
-pub mod bas;
-pub mod bee_colony;
-pub mod beetle_swarm;
-pub mod broyden_bas;
-pub mod conduct;
-pub mod differential_evolution;
-pub mod driver;
-pub mod evaluator;
-pub mod firefly;
-pub mod genetic;
-pub mod jacobian_transpose;
-pub mod levenberg_marquardt;
-pub mod multi_start;
-pub mod newton_raphson;
-pub mod population;
-pub mod pso;
-pub mod qpso;
-pub(crate) mod reporting;
-pub mod side_by_side;
-pub mod stop;
-pub mod velocities;
+mod algorithm;
+mod any_solver;
+mod apps;
+mod bas;
+pub(crate) mod broyden_bas;
+mod domain;
+mod driver;
+mod evaluator;
+mod jacobian_transpose;
+mod levenberg_marquardt;
+mod monitor;
+mod multi_start;
+mod newton_raphson;
+mod side_by_side;
+mod status;
+mod stop;
+mod stopwatch;
+mod swarm;
 
 pub use algorithm::{Algorithm, DerivativeFree};
 pub use any_solver::AnySolver;
 pub use apps::{Apps, LearningRate};
-pub use bas::{Bas, Variant};
-pub use bee_colony::BeeColony;
-pub use beetle_swarm::BeetleSwarm;
+pub use bas::{Bas, BasVariant};
 pub use broyden_bas::BroydenBas;
-pub use conduct::{Conduct, Domain, Termination};
-pub use differential_evolution::DifferentialEvolution;
-pub use driver::{Outcome, Solver, run};
-pub use evaluator::{Best, Evaluator, Halt};
-pub use firefly::Firefly;
-pub use genetic::Genetic;
+pub use domain::Domain;
+pub use driver::{Solver, run};
+pub use evaluator::{BestPoint, Evaluator};
 pub use jacobian_transpose::{JacobianTranspose, StepSize};
 pub use levenberg_marquardt::LevenbergMarquardt;
+pub(crate) use monitor::EvaluationMonitor;
+pub use monitor::{Monitor, Unattended};
 pub use multi_start::{MultiStart, RestartRule};
 pub use newton_raphson::NewtonRaphson;
-pub use population::Schedule;
-pub use pso::Pso;
-pub use qpso::Qpso;
 pub(crate) use side_by_side::run_side_by_side;
-pub use stop::{Monitor, Status, Stop, Unattended};
+pub use status::Status;
+pub use stop::Stop;
+pub use stopwatch::Stopwatch;
+pub use swarm::{
+    Acceptance, BeeColony, BeetleDirection, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, PsoForm, Qpso,
+    Schedule, TrialUpdate, Walls,
+};

@@ -1,8 +1,9 @@
 //! The one multi-start: any solver, begun again elsewhere when it stalls or its attempt is hopeless.
 
-use super::conduct::Conduct;
+use super::domain::Domain;
 use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
+use super::evaluator::Evaluator;
+use super::status::Status;
 use crate::error::{Error, Result};
 use crate::objective::{Objective, Point};
 
@@ -56,18 +57,18 @@ impl<S> MultiStart<S> {
 #[derive(Debug, Clone)]
 pub struct State<T> {
     inner: T,
-    attempt: Attempt,
+    attempt: AttemptProgress,
 }
 
 /// How far an attempt has come.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Attempt {
+pub(super) struct AttemptProgress {
     steps: usize,
     /// Its best value when `steps` was last a multiple of the patience.
     milestone: f64,
 }
 
-impl Attempt {
+impl AttemptProgress {
     /// One that has begun at a point of this value.
     pub fn begun_at(value: f64) -> Self {
         Self { steps: 0, milestone: value }
@@ -77,7 +78,7 @@ impl Attempt {
 impl RestartRule {
     /// Counts a step of the attempt; whether it is to be abandoned, its best `value` being what it is now.
     #[inline]
-    fn abandons(&self, attempt: &mut Attempt, value: f64) -> bool {
+    fn abandons(&self, attempt: &mut AttemptProgress, value: f64) -> bool {
         attempt.steps += 1;
         if !attempt.steps.is_multiple_of(self.patience) {
             return false;
@@ -92,10 +93,15 @@ impl RestartRule {
     /// # Errors
     /// The halt of a step that ended the run.
     #[inline]
-    pub(super) fn begins_again(&self, step: Result<(), Halt>, attempt: &mut Attempt, value: f64) -> Result<bool, Halt> {
+    pub(super) fn begins_again(
+        &self,
+        step: Result<(), Status>,
+        attempt: &mut AttemptProgress,
+        value: f64,
+    ) -> Result<bool, Status> {
         match step {
             Ok(()) => Ok(self.abandons(attempt, value)),
-            Err(Halt::Stalled | Halt::OutsideBox) => Ok(true),
+            Err(Status::Stalled | Status::OutsideLimits) => Ok(true),
             Err(halt) => Err(halt),
         }
     }
@@ -103,14 +109,14 @@ impl RestartRule {
     /// Where the next attempt begins.
     ///
     /// # Errors
-    /// [`Halt::Solved`] after an attempt that solved it, [`Halt::Stalled`] after the last one.
-    pub(super) fn next_start<O>(&self, evaluator: &mut Evaluator<'_, O>) -> Result<Point, Halt>
+    /// [`Status::Solved`] after an attempt that solved it, [`Status::Stalled`] after the last one.
+    pub(super) fn next_start<O>(&self, evaluator: &mut Evaluator<'_, O>) -> Result<Point, Status>
     where
         O: Objective + ?Sized,
     {
         evaluator.check_solved()?;
         if evaluator.attempts() >= self.max_starts {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         let mut x = Point::from_elem(0.0, evaluator.dimension());
         evaluator.next_attempt(&mut x);
@@ -121,21 +127,25 @@ impl RestartRule {
 impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for MultiStart<S> {
     type State = State<S::State>;
 
-    fn conduct(&self) -> Conduct {
-        self.solver.conduct()
+    fn domain(&self) -> Domain {
+        self.solver.domain()
     }
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Halt> {
+    fn has_own_threshold(&self) -> bool {
+        self.solver.has_own_threshold()
+    }
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Status> {
         let inner = self.solver.start(evaluator, x0)?;
-        Ok(State { inner, attempt: Attempt::begun_at(evaluator.attempt_value()) })
+        Ok(State { inner, attempt: AttemptProgress::begun_at(evaluator.attempt_value()) })
     }
 
-    fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let step = self.solver.step(&mut state.inner, evaluator);
         if self.rule.begins_again(step, &mut state.attempt, evaluator.attempt_value())? {
             let x = self.rule.next_start(evaluator)?;
             self.solver.restart(&mut state.inner, evaluator, &x)?;
-            state.attempt = Attempt::begun_at(evaluator.attempt_value());
+            state.attempt = AttemptProgress::begun_at(evaluator.attempt_value());
         }
         Ok(())
     }

@@ -2,7 +2,8 @@
 //! nothing keeps it from stepping too far, or from circling, and it says so by spending its budget.
 
 use super::driver::Solver;
-use super::evaluator::{Evaluator, Halt};
+use super::evaluator::Evaluator;
+use super::status::Status;
 use crate::error::{Error, Result};
 use crate::math::box_step::BoxStep;
 use crate::objective::{LeastSquares, Linearization, Point};
@@ -44,17 +45,17 @@ pub struct State {
 impl<O: LeastSquares + ?Sized> Solver<O> for NewtonRaphson {
     type State = State;
 
-    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Halt> {
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
         let mut x = Point::from_slice(x0);
         let mut linearization = Linearization::default();
         let value = evaluator.linearize(&mut x, &mut linearization)?;
         Ok(State { x, value, linearization })
     }
 
-    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Halt> {
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         let State { x, value, linearization } = state;
         if !value.is_finite() {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         let bounds = evaluator.bounds();
         let aim = linearization.residual.map(|r| self.step_fraction * r);
@@ -62,7 +63,7 @@ impl<O: LeastSquares + ?Sized> Solver<O> for NewtonRaphson {
         let (columns, lower, upper) = (&linearization.columns, bounds.lower(), bounds.upper());
         BoxStep { columns, residual: &aim, lambda: 0.0, x, lower, upper }.write(&mut next);
         if next == *x {
-            return Err(Halt::Stalled);
+            return Err(Status::Stalled);
         }
         *value = evaluator.linearize(&mut next, linearization)?;
         *x = next;

@@ -3,13 +3,13 @@
 //! Each run takes the decisions that [`run`](super::driver::run) would take for it alone, on the same bits; only the arithmetic of a
 //! step is done for four at once.
 
-use super::driver::Outcome;
-use super::evaluator::{Evaluator, Halt};
+use super::evaluator::Evaluator;
 use super::levenberg_marquardt::{Descent, LevenbergMarquardt};
-use super::multi_start::{Attempt, MultiStart};
+use super::multi_start::{AttemptProgress, MultiStart};
+use super::status::Status;
 use crate::math::MAX_DOF;
+use crate::math::f64x4::F64x4;
 use crate::math::four_box_steps::FourBoxSteps;
-use crate::math::quad::Quad;
 use crate::objective::{Bounds, FourLinearizations, Point, Score, SideBySide};
 
 /// Runs side by side.
@@ -25,14 +25,14 @@ pub(crate) fn run_side_by_side<'a, L, O: SideBySide + 'a>(
     solver: &MultiStart<LevenbergMarquardt>,
     bounds: &Bounds,
     mut runs: impl Iterator<Item = (L, Evaluator<'a, O>, Point)>,
-    ended: impl FnMut(L, Evaluator<'a, O>, Option<Outcome>),
+    ended: impl FnMut(L, Evaluator<'a, O>, Option<Status>),
 ) {
     let mut lanes = Lanes {
         solver,
         bounds,
         ended,
         lanes: std::array::from_fn(|_| None),
-        points: [[Quad::ZERO; MAX_DOF]; 2],
+        points: [[F64x4::ZERO; MAX_DOF]; 2],
         linearizations: [FourLinearizations::default(), FourLinearizations::default()],
         here: 0,
     };
@@ -58,7 +58,7 @@ struct Lanes<'s, 'a, L, O, F> {
     ended: F,
     lanes: [Option<Lane<'a, L, O>>; LANES],
     /// One for the points, one for the trials; `here` says which is which.
-    points: [[Quad; MAX_DOF]; 2],
+    points: [[F64x4; MAX_DOF]; 2],
     linearizations: [FourLinearizations; 2],
     here: usize,
 }
@@ -69,8 +69,7 @@ struct Lane<'a, L, O> {
     evaluator: Evaluator<'a, O>,
     next: Next,
     descent: Descent,
-    attempt: Attempt,
-    iterations: usize,
+    attempt: AttemptProgress,
 }
 
 /// What a run evaluates next.
@@ -83,7 +82,7 @@ enum Next {
     Trial,
 }
 
-impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Option<Outcome>)> Lanes<'_, 'a, L, O, F> {
+impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Option<Status>)> Lanes<'_, 'a, L, O, F> {
     /// Fills lanes that are empty.
     fn take_up(&mut self, runs: &mut impl Iterator<Item = (L, Evaluator<'a, O>, Point)>) {
         for lane in self.lanes.iter_mut().filter(|lane| lane.is_none()) {
@@ -93,8 +92,7 @@ impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Option<Outcome>)> 
                 evaluator,
                 next: Next::Start(x0),
                 descent: self.solver.solver.descent_from(f64::INFINITY),
-                attempt: Attempt::begun_at(f64::INFINITY),
-                iterations: 0,
+                attempt: AttemptProgress::begun_at(f64::INFINITY),
             });
         }
     }
@@ -128,7 +126,7 @@ impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Option<Outcome>)> 
         let steps = FourBoxSteps {
             columns: &columns[..n],
             residual,
-            lambda: Quad(std::array::from_fn(|l| lambda(&self.lanes[l]))),
+            lambda: F64x4(std::array::from_fn(|l| lambda(&self.lanes[l]))),
             x: &x[..n],
             lower: self.bounds.lower(),
             upper: self.bounds.upper(),
@@ -182,14 +180,14 @@ impl<'a, L, O: SideBySide + 'a, F: FnMut(L, Evaluator<'a, O>, Option<Outcome>)> 
     fn advance(
         &mut self,
         l: usize,
-        work: impl FnOnce(&mut Lane<'a, L, O>, &MultiStart<LevenbergMarquardt>) -> Result<(), Halt>,
+        work: impl FnOnce(&mut Lane<'a, L, O>, &MultiStart<LevenbergMarquardt>) -> Result<(), Status>,
     ) {
         let Some(lane) = &mut self.lanes[l] else { return };
-        if let Err(halt) = work(lane, self.solver)
-            && let Some(Lane { label, evaluator, iterations, .. }) = self.lanes[l].take()
+        if let Err(signal) = work(lane, self.solver)
+            && let Some(Lane { label, evaluator, .. }) = self.lanes[l].take()
         {
-            let outcome = Outcome::of(&evaluator, halt, iterations);
-            (self.ended)(label, evaluator, Some(outcome));
+            let status = evaluator.final_status(signal);
+            (self.ended)(label, evaluator, Some(status));
         }
     }
 
@@ -214,7 +212,7 @@ impl<L, O: SideBySide> Lane<'_, L, O> {
         score: Score,
         MultiStart { solver, rule }: &MultiStart<LevenbergMarquardt>,
         keeps: &mut bool,
-    ) -> Result<(), Halt> {
+    ) -> Result<(), Status> {
         let value = self.evaluator.record(x, score);
         if let Next::Trial = self.next {
             let verdict = solver.judge(&mut self.descent, value);
@@ -225,17 +223,16 @@ impl<L, O: SideBySide> Lane<'_, L, O> {
             }
         } else {
             self.descent = solver.descent_from(value);
-            self.attempt = Attempt::begun_at(self.evaluator.attempt_value());
+            self.attempt = AttemptProgress::begun_at(self.evaluator.attempt_value());
             if let Next::Start(_) = std::mem::replace(&mut self.next, Next::Trial) {
                 return self.evaluator.before_steps();
             }
         }
-        self.iterations += 1;
-        self.evaluator.after_step(self.iterations)
+        self.evaluator.after_step()
     }
 
     /// Gives an attempt up that came to its end.
-    fn begin_again(&mut self, solver: &MultiStart<LevenbergMarquardt>) -> Result<(), Halt> {
+    fn begin_again(&mut self, solver: &MultiStart<LevenbergMarquardt>) -> Result<(), Status> {
         self.next = Next::Restart(solver.rule.next_start(&mut self.evaluator)?);
         Ok(())
     }

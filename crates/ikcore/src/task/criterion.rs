@@ -1,12 +1,15 @@
-//! The weights of a target's six components, and the test whether it is reached.
+//! When a target counts as reached.
 
 use serde::{Deserialize, Serialize};
 
-use super::region::Outside;
-use super::{Region, SquaredError, Target, Tolerance};
-use crate::error::{Error, Result};
-use crate::math::box_step::ROWS;
-use crate::objective::{Linearization, Score};
+use super::components::Components;
+use super::region::{Outside, Region};
+use super::target::Target;
+use super::tip_error::Tolerance;
+use crate::error::Result;
+
+/// The widest margin (m): no tolerance, however wide, keeps the tip farther from the faces of its region.
+const WIDEST_MARGIN: f64 = 1e-3;
 
 /// When a target is reached, and what its components weigh.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -27,56 +30,6 @@ impl From<Tolerance> for Criterion {
     }
 }
 
-/// Weights and tolerances of the components: x, y, z (m) and the rotation vector's three (rad), along the axes of the
-/// target's frame; along those of the base for a target that is a position alone.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Components {
-    /// Factors on the residuals; a component of weight zero is left free.
-    pub weights: [f64; ROWS],
-    /// Largest error of each component (m, rad), instead of those of [`Tolerance`]. Of a pointing target, the fourth is
-    /// the angle between the axes.
-    pub tolerance: Option<[f64; ROWS]>,
-}
-
-/// How far a tip is from its target, by a criterion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Assessment {
-    /// The weighted sum of squares, and whether the target is reached.
-    pub score: Score,
-    /// The errors of the components that count, unweighted.
-    pub error: SquaredError,
-}
-
-impl Components {
-    /// Checks weights and tolerances.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] names the entry.
-    pub fn validate(&self) -> Result<()> {
-        check_weights(&self.weights)?;
-        self.tolerance.as_ref().map_or(Ok(()), |tolerance| check_tolerances(tolerance))
-    }
-}
-
-/// Checks that weights are not negative, and one is positive.
-pub(super) fn check_weights(weights: &[f64]) -> Result<()> {
-    match weights.iter().position(|weight| !(*weight >= 0.0 && weight.is_finite())) {
-        Some(i) => Err(Error::out_of_range(format!("weights[{i}]"), "zero or more, and finite", weights[i])),
-        None if weights.iter().all(|weight| *weight == 0.0) => {
-            Err(Error::out_of_range("the largest of weights", "positive", 0.0))
-        }
-        None => Ok(()),
-    }
-}
-
-/// Checks that tolerances are positive; infinite ones are.
-pub(super) fn check_tolerances(tolerances: &[f64]) -> Result<()> {
-    match tolerances.iter().position(|tolerance| !(*tolerance > 0.0)) {
-        Some(i) => Err(Error::out_of_range(format!("tolerance[{i}]"), "positive", tolerances[i])),
-        None => Ok(()),
-    }
-}
-
 impl Criterion {
     /// Checks tolerances and weights.
     ///
@@ -93,66 +46,31 @@ impl Criterion {
         self.components.is_some() || self.region.is_some()
     }
 
-    /// The assessment of `error` with the sum of squares `value`, where all components weigh the same.
-    #[inline(always)]
-    pub(super) fn assess_unweighted(&self, error: SquaredError, value: f64) -> Assessment {
-        Assessment { score: Score { value, solved: error.within(&self.tolerance) }, error }
+    /// The distance from the faces at which the tip is led (m).
+    pub(super) fn margin(&self) -> f64 {
+        let within = match self.components.and_then(|components| Some((components.weights, components.tolerance?))) {
+            Some((weights, tolerance)) => {
+                (0..3).filter(|k| weights[*k] != 0.0).map(|k| tolerance[k]).fold(f64::INFINITY, f64::min)
+            }
+            None => self.tolerance.position,
+        };
+        (0.5 * within).min(WIDEST_MARGIN)
     }
 
-    /// The assessment of the residual of `target`, in base coordinates, by `components`.
-    pub(super) fn assess_components(
-        &self,
-        components: &Components,
-        target: &Target,
-        residual: &[f64; ROWS],
-        error: SquaredError,
-    ) -> Assessment {
-        let Components { weights, tolerance } = components;
-        let turned = turned_into_frame(target, residual);
-        let mut entries: [f64; ROWS] = std::array::from_fn(|k| if weights[k] == 0.0 { 0.0 } else { turned[k] });
-        let value = (0..ROWS).map(|k| (weights[k] * turned[k]).powi(2)).sum();
-        if let (Target::Pointing { .. }, Some(squared)) = (target, error.rotation) {
-            let angle = if weights[3] == 0.0 { 0.0 } else { squared.sqrt() };
-            entries[3..].copy_from_slice(&[angle, 0.0, 0.0]);
-        }
-        let counted = |rows: std::ops::Range<usize>, asked: Option<f64>| {
-            let counts = asked.is_some() && weights[rows.clone()].iter().any(|weight| *weight != 0.0);
-            counts.then(|| entries[rows].iter().map(|entry| entry * entry).sum())
-        };
-        let error = SquaredError { position: counted(0..3, error.position), rotation: counted(3..6, error.rotation) };
-        let solved = match tolerance {
-            Some(tolerance) => entries.iter().zip(tolerance).all(|(entry, tolerance)| entry.abs() <= *tolerance),
-            None => error.within(&self.tolerance),
-        };
-        Assessment { score: Score { value, solved }, error }
-    }
-}
-
-impl Components {
-    /// Turns residual and columns, in base coordinates, into the target's frame and weights them.
-    pub(super) fn apply(&self, target: &Target, dof: usize, out: &mut Linearization) {
-        let weighted = |vector: &[f64; ROWS]| {
-            let turned = turned_into_frame(target, vector);
-            std::array::from_fn(|k| self.weights[k] * turned[k])
-        };
-        out.residual = weighted(&out.residual);
-        for column in &mut out.columns[..dof] {
-            *column = weighted(column);
+    /// Where the tip is led: the `target`, or the nearest place that the region allows.
+    pub fn aim(&self, target: &Target) -> Target {
+        match &self.region {
+            Some(region) => target.with_position(|wanted| region.nearest(wanted, self.margin())),
+            None => *target,
         }
     }
-}
 
-/// Both halves of a vector in base coordinates as components along the axes of the target's frame. The difference of two
-/// axes stays as it is: only its length counts.
-fn turned_into_frame(target: &Target, vector: &[f64; ROWS]) -> [f64; ROWS] {
-    let along = |frame: &crate::math::Frame, half: usize| -> [f64; 3] {
-        frame.axes.map(|axis| (0..3).map(|k| axis[k] * vector[3 * half + k]).sum())
-    };
-    let rest = [vector[3], vector[4], vector[5]];
-    let ([x, y, z], [u, v, w]) = match target {
-        Target::Position(_) => return *vector,
-        Target::Pointing { frame, .. } => (along(frame, 0), rest),
-        Target::Pose(frame) | Target::Orientation(frame) => (along(frame, 0), along(frame, 1)),
-    };
-    [x, y, z, u, v, w]
+    /// The coordinates of the tip that `target` leaves free.
+    pub(super) fn free(&self, target: &Target) -> [bool; 3] {
+        match (target, &self.components) {
+            (Target::Orientation(_), _) => [true; 3],
+            (_, Some(components)) => std::array::from_fn(|k| components.weights[k] == 0.0),
+            _ => [false; 3],
+        }
+    }
 }

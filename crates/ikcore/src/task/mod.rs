@@ -1,24 +1,31 @@
-//! What the tip is to reach: residuals of a frame task and their derivatives, and goals beside it.
+//! What the tip is to reach: targets, tasks, residuals and their derivatives; and goals beside the task.
+//!
+//! A [`Task`] turns what the caller wants into a [`Target`] and a [`Criterion`], which says when the target is reached
+//! ([`Tolerance`], [`Components`], [`Region`]). `residual` holds the mathematics of each kind of target; `tip_assessment`,
+//! `region_assessment` and `robot_assessment` apply it to a tip anywhere, a tip in a region and a robot at q. [`Goals`] are
+//! costs for the freedom that the task leaves.
 
+mod assessment;
+mod components;
 mod criterion;
-pub mod entrywise;
-mod error;
 mod four_targets;
 mod goal;
-mod kind;
-mod motion;
-mod orientation;
-mod pointing;
-mod pose;
-mod position;
-mod reach;
 mod region;
+mod region_assessment;
+pub(crate) mod residual;
+mod robot_assessment;
 mod target;
+mod target_motion;
+mod tip_assessment;
+mod tip_error;
+mod tip_task;
 
-pub use criterion::{Assessment, Components, Criterion};
-pub use error::{SquaredError, TipError, Tolerance};
+pub use assessment::Assessment;
+pub use components::Components;
+pub use criterion::Criterion;
 pub use goal::{Goal, Goals};
-pub use kind::{Kind, Task};
-pub use motion::{TargetMotion, Twist};
 pub use region::{Outside, Region};
 pub use target::Target;
+pub use target_motion::{TargetMotion, Twist};
+pub use tip_error::{SquaredError, TipError, Tolerance};
+pub use tip_task::{Task, TaskKind};

@@ -1,13 +1,7 @@
-//! Where the tip is to be, and how far a tip is from there.
+//! Where the tip is to be.
 
-use super::{Assessment, Criterion, SquaredError, orientation, pointing, pose, position};
 use crate::error::{Result, require_finite};
-use crate::math::box_step::ROWS;
-use crate::math::real::Real;
-use crate::math::so3::axes_of;
 use crate::math::{Frame, Pose};
-use crate::objective::Linearization;
-use crate::robot::Robot;
 
 /// Where the tip is to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,113 +50,24 @@ impl Target {
         }
     }
 
-    /// The assessment of the tip of `robot` at `q`, by `criterion`.
-    #[inline]
-    pub fn assess(&self, robot: &Robot, q: &[f64], criterion: &Criterion) -> Assessment {
-        match (self, criterion.is_componentwise()) {
-            (Self::Position(target), false) => position_alone(target, &robot.tip_position(q), criterion),
-            _ => self.assess_tip(&robot.tip(q), criterion),
-        }
-    }
-
-    /// Hands the [assessments](Self::assess) of the configurations stored one after another to `keep`, in order; several at a time
-    /// where only positions matter.
-    #[inline]
-    pub fn assess_all(&self, robot: &Robot, qs: &[f64], criterion: &Criterion, mut keep: impl FnMut(Assessment)) {
-        match (self, criterion.is_componentwise()) {
-            (Self::Position(target), false) => {
-                robot.tip_positions(qs, |tip| keep(position_alone(target, &tip, criterion)));
-            }
-            _ => qs.chunks(robot.dof()).for_each(|q| keep(self.assess(robot, q, criterion))),
-        }
-    }
-
-    /// The assessment of `tip`, by `criterion`.
-    #[inline]
-    pub fn assess_tip(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
-        if let Some(region) = &criterion.region {
-            return self.assess_tip_within(region, tip, criterion);
-        }
-        let (error, value) = self.error(tip);
-        match &criterion.components {
-            None => criterion.assess_unweighted(error, value),
-            Some(components) => criterion.assess_components(components, self, &self.residual(tip), error),
-        }
-    }
-
-    /// Weighted residual and Jacobian at `q`, and the assessment by `criterion`.
-    #[inline]
-    pub fn linearize(&self, robot: &Robot, q: &[f64], criterion: &Criterion, out: &mut Linearization) -> Assessment {
-        let tip = robot.tip_and_jacobian(q, &mut out.columns);
-        self.linearize_tip(&tip, q.len(), criterion, out)
-    }
-
-    /// The same from a tip and its geometric Jacobian, which stands in the first `dof` columns of `out`.
-    #[inline]
-    pub fn linearize_tip(&self, tip: &Frame, dof: usize, criterion: &Criterion, out: &mut Linearization) -> Assessment {
-        if let Some(region) = &criterion.region {
-            return self.linearize_tip_within(region, tip, dof, criterion, out);
-        }
-        let (error, value) = self.linearize_unweighted(tip, dof, out);
-        let Some(components) = &criterion.components else { return criterion.assess_unweighted(error, value) };
-        let assessment = criterion.assess_components(components, self, &out.residual, error);
-        components.apply(self, dof, out);
-        assessment
-    }
-
-    /// Unweighted residual and Jacobian, in base coordinates; the errors and r'r.
-    #[inline]
-    fn linearize_unweighted(&self, tip: &Frame, dof: usize, out: &mut Linearization) -> (SquaredError, f64) {
+    /// The frame asked for, if any.
+    pub(super) fn frame(&self) -> Option<&Frame> {
         match self {
-            Self::Pose(target) => summed(pose::linearize(target, tip, dof, out)),
-            Self::Position(target) => {
-                position::linearize(target, &tip.origin, dof, out);
-                self.error(tip)
-            }
-            Self::Pointing { frame, axis } => pointing::linearize(frame, axis, tip, dof, out),
-            Self::Orientation(target) => {
-                out.residual[..3].fill(0.0);
-                out.columns[..dof].iter_mut().for_each(|column| column[..3].fill(0.0));
-                let Linearization { residual, columns } = out;
-                let (target, tip) = (axes_of(target), axes_of(tip));
-                let rotation = orientation::linearize(&target, &tip, residual, &mut columns[..dof]);
-                summed(SquaredError { position: None, rotation: Some(rotation.stored()) })
-            }
+            Self::Position(_) => None,
+            Self::Pose(frame) | Self::Orientation(frame) | Self::Pointing { frame, .. } => Some(frame),
         }
     }
 
-    /// The errors and r'r.
-    #[inline]
-    fn error(&self, tip: &Frame) -> (SquaredError, f64) {
+    /// The same target with its position, if it asks for one, replaced.
+    pub(super) fn with_position(&self, replaced: impl Fn(&[f64; 3]) -> [f64; 3]) -> Self {
+        let moved = |frame: &Frame| Frame { origin: replaced(&frame.origin), ..*frame };
         match self {
-            Self::Pose(target) => summed(pose::error(target, tip)),
-            Self::Position(target) => {
-                summed(SquaredError { position: Some(position::error(target, &tip.origin)), rotation: None })
-            }
-            Self::Pointing { frame, axis } => pointing::error(frame, axis, tip),
-            Self::Orientation(target) => {
-                summed(SquaredError { position: None, rotation: Some(orientation::error(target, tip)) })
-            }
+            Self::Position(position) => Self::Position(replaced(position)),
+            Self::Pose(frame) => Self::Pose(moved(frame)),
+            Self::Pointing { frame, axis } => Self::Pointing { frame: moved(frame), axis: *axis },
+            Self::Orientation(_) => *self,
         }
     }
-
-    fn residual(&self, tip: &Frame) -> [f64; ROWS] {
-        let mut out = Linearization::default();
-        self.linearize_unweighted(tip, 0, &mut out);
-        out.residual
-    }
-}
-
-#[inline(always)]
-fn position_alone(target: &[f64; 3], tip: &[f64; 3], criterion: &Criterion) -> Assessment {
-    let squared = position::error(target, tip);
-    criterion.assess_unweighted(SquaredError { position: Some(squared), rotation: None }, squared)
-}
-
-/// Errors whose squares are those of the residual.
-#[inline(always)]
-fn summed(error: SquaredError) -> (SquaredError, f64) {
-    (error, error.sum())
 }
 
 fn check_point(point: &[f64; 3]) -> Result<()> {

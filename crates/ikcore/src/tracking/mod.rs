@@ -8,7 +8,7 @@
 //! - The tick's rule works until the error is in its band or, for random searches, below that of the tick before.
 //! - Time always advances, and the best configuration found is always kept.
 
-pub mod controller;
+mod controller;
 mod model_free;
 mod plant;
 mod record;
@@ -16,12 +16,14 @@ mod rule;
 mod session;
 mod step;
 mod track;
+mod track_options;
 
-pub use controller::Controller;
+pub use controller::{Acceptance, Antenna, ControlSession, Controller, Delay, Znnbas};
 pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
 pub use plant::{Fault, FunctionPlant, KinematicPlant, Plant};
 pub use record::Record;
 pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
 pub use session::Session;
 pub use step::Step;
-pub use track::{TrackOptions, track};
+pub use track::track;
+pub use track_options::TrackOptions;

@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::controller::{self, Controller};
+use super::controller::{ControlSession, Controller};
 use super::plant::{Fault, Plant, check};
 use super::record::Record;
 use super::step::Step;
 use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
 use crate::path::Reference;
-use crate::solver::stop::Stopwatch;
+use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status};
 use crate::task::Tolerance;
 use crate::wording::{number, time};
@@ -39,7 +39,7 @@ pub struct ModelFreeRecord {
     /// Rows as in any track: `q` what was accepted, `position` what was measured (m), at `command`. Its violations are those
     /// of all commands.
     pub track: Record,
-    /// The command at which each row's position was measured (k, n). [`Znnbas`](controller::Znnbas) measures an antenna
+    /// The command at which each row's position was measured (k, n). [`Znnbas`](super::controller::Znnbas) measures an antenna
     /// away from what it accepts.
     pub command: Vec<f64>,
     /// Why the plant ended the run, if it did.
@@ -64,7 +64,7 @@ pub fn track_model_free(
     let limits = options.limits.clone().unwrap_or_else(|| Limits::none_for(start.len()));
     limits.validate(reference.dt(), ticks)?;
     let ModelFreeOptions { controller, tolerance, seed, .. } = options;
-    let mut session = controller::Session::new(controller, start, reference.dt(), limits.clone(), *tolerance, *seed)?;
+    let mut session = ControlSession::new(controller, start, reference.dt(), limits.clone(), *tolerance, *seed)?;
     let band = Tolerance { position: *tolerance, rotation: f64::INFINITY };
     let track = Record::new(start.len(), reference.len(), limits, LimitAt::Interval, band.into(), reference.dt());
     let command = Vec::with_capacity(reference.len() * start.len());
@@ -109,7 +109,7 @@ fn check_call(reference: &Reference, options: &ModelFreeOptions) -> Result<()> {
 /// Commands and measurements until the controller has no more to ask in this tick.
 fn tick(
     plant: &mut dyn Plant,
-    session: &mut controller::Session,
+    session: &mut ControlSession,
     target: [f64; 3],
     track: &mut Record,
 ) -> Result<Result<Step, Fault>> {
@@ -130,7 +130,7 @@ fn tick(
 }
 
 impl ModelFreeRecord {
-    fn push(&mut self, session: &controller::Session, reference: [f64; 3], step: &Step) {
+    fn push(&mut self, session: &ControlSession, reference: [f64; 3], step: &Step) {
         self.track.push(&session.accepted(), reference, step);
         self.command.extend_from_slice(session.measured_command());
     }

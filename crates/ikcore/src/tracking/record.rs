@@ -5,9 +5,9 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::step::Step;
+use crate::kinematics::Beyond;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::math::ordered::larger;
-use crate::robot::Beyond;
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::wording::{number, time};

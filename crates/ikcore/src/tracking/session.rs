@@ -2,15 +2,17 @@
 
 use std::borrow::Cow;
 
-use super::TrackOptions;
 use super::record::Accepted;
-use super::rule::{Running, Tick, TickResult, TickRule};
+use super::rule::{RunningRule, Tick, TickResult, TickRule};
 use super::step::Step;
+use super::track_options::TrackOptions;
 use crate::error::{Result, require_finite, require_positive};
+use crate::kinematics::Beyond;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point, Score};
+use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
-use crate::robot::{Beyond, Robot};
+use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{Assessment, Criterion, Goals, Target, Task};
 
@@ -24,7 +26,7 @@ pub struct Session {
     limits: Limits,
     limit_at: LimitAt,
     rule: TickRule,
-    running: Running,
+    running: RunningRule,
     task: Option<Task>,
     criterion: Criterion,
     goals: Goals,
@@ -135,7 +137,7 @@ impl Session {
     /// As [`step`](Self::step).
     pub(super) fn beyond_reach(&self, wanted: &Target, bounds: &Bounds) -> Result<Option<Beyond>> {
         let target = self.read(wanted)?;
-        Ok(self.criterion.beyond_reach(&target, &self.robot, bounds))
+        Ok(Problem::new(&self.robot, &target, self.criterion).beyond_reach(bounds))
     }
 
     /// What the last tick has accepted.

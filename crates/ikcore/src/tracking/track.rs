@@ -1,65 +1,23 @@
 //! A path followed to its end.
 
 use super::record::Record;
-use super::rule::TickRule;
 use super::session::Session;
-use crate::error::{Error, Result};
+use super::track_options::TrackOptions;
+use crate::error::Result;
 use crate::ik::{Prefer, SolveOptions, solve};
-use crate::limits::{Field, LimitAt, Limits, Profile};
+use crate::kinematics::Beyond;
+use crate::limits::{Field, Limits, Profile};
 use crate::manipulability::Motion;
 use crate::path::Reference;
-use crate::robot::{Beyond, Robot};
-use crate::solver::stop::Stopwatch;
+use crate::robot::Robot;
+use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status, Stop};
-use crate::task::{Criterion, Goal, Target, Task, Tolerance};
-
-/// How to track.
-#[derive(Debug, Clone, Default)]
-pub struct TrackOptions {
-    /// What runs in every tick.
-    pub rule: TickRule,
-    /// What of the path matters; None: all that it says.
-    pub task: Option<Task>,
-    /// What to do with the freedom that the task leaves.
-    pub goals: Vec<Goal>,
-    /// The error band.
-    pub tolerance: Tolerance,
-    /// Limits to keep; None keeps the robot's.
-    pub limits: Option<Limits>,
-    /// Where in a tick its velocity limit is taken.
-    pub limit_at: LimitAt,
-    /// Seed of the random draws: the same seed, the same bits.
-    pub seed: u64,
-}
-
-impl TrackOptions {
-    /// When a tick is within its band.
-    pub(super) fn criterion(&self) -> Result<Criterion> {
-        self.task.as_ref().map_or(Ok(()), Task::validate)?;
-        let criterion = self.task.map_or(self.tolerance.into(), |task| task.criterion(self.tolerance));
-        criterion.validate().map(|()| criterion)
-    }
-
-    /// Checks that the rule serves the goals, and the goals the robot.
-    pub(super) fn check_goals(&self, robot: &Robot) -> Result<()> {
-        if !self.goals.is_empty() && !self.rule.serves_goals() {
-            let problem = "goals beside the path are served by the library's own rule and by WeightedPseudoInverse: leave \
-                           solver out";
-            return Err(Error::Contradiction { problem: problem.into() });
-        }
-        self.goals.iter().try_for_each(|goal| goal.validate(robot))
-    }
-
-    /// The limits in force for `robot`.
-    pub(super) fn limits_for(&self, robot: &Robot) -> Limits {
-        self.limits.clone().unwrap_or_else(|| Limits::of(robot))
-    }
-}
+use crate::task::{Goal, Target, Tolerance};
 
 /// Follows `reference` with the tip of `robot`, from `start` (n,), or from a configuration solved for its first point.
 ///
 /// # Errors
-/// Any [`enum@Error`] for wrong input. A path that cannot be followed is a status, not an error. A monitor that
+/// Any [`Error`](crate::Error) for wrong input. A path that cannot be followed is a status, not an error. A monitor that
 /// asks to stop leaves the record of the ticks that were finished.
 pub fn track(
     robot: &Robot,
@@ -95,7 +53,7 @@ fn farthest_out_of_reach(reference: &Reference, first: usize, session: &Session)
     let Ok(bounds) = session.limits().position_box() else { return Ok(None) }; // they vary in time
     for i in first..reference.len() {
         if let Some(beyond) = session.beyond_reach(&target(reference, i), &bounds)?
-            && farthest.is_none_or(|(most, _)| (beyond.distance, beyond.lean) > (most.distance, most.lean))
+            && farthest.is_none_or(|(most, _)| (beyond.distance, beyond.angle) > (most.distance, most.angle))
         {
             farthest = Some((beyond, reference.time(i)));
         }

@@ -1,7 +1,9 @@
 //! Joint motion in time.
 
+mod coefficients;
+mod hermite_segment;
 mod piecewise;
-mod segment;
 mod sequence;
 
-pub use piecewise::{Coefficients, POWERS, Trajectory, polynomial};
+pub use coefficients::{Coefficients, POWERS, polynomial};
+pub use piecewise::Trajectory;

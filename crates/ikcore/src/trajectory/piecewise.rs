@@ -2,31 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::segment;
+use super::coefficients::{Coefficients, POWERS};
+use super::hermite_segment;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Knots;
 use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range};
 use crate::math::ticks::ticks;
-
-/// Powers of time that a segment may use: up to the sixth, which a cubic in a path parameter takes where that parameter is
-/// a parabola in time.
-pub const POWERS: usize = 7;
-
-/// A polynomial up to degree 6 in the time s (s) since the segment began: q = c\[0\] + c\[1\] s + ... + c\[6\] s^6, in
-/// rad or m and powers of s.
-pub type Coefficients = [f64; POWERS];
-
-/// The polynomial with these coefficients, at most [`POWERS`] of them in ascending powers, and zeros above.
-pub const fn polynomial<const N: usize>(given: [f64; N]) -> Coefficients {
-    const { assert!(N <= POWERS) };
-    let mut padded = [0.0; POWERS];
-    let mut power = 0;
-    while power < N {
-        padded[power] = given[power];
-        power += 1;
-    }
-    padded
-}
 
 /// How far a joint may jump at a knot (rad or m, relative beyond 1): coefficients that were stored or computed meet only
 /// up to rounding.
@@ -99,9 +80,9 @@ impl Trajectory {
             for i in row * n..(row + 1) * n {
                 let pair = |samples: &[f64]| [samples[i], samples[i + n]];
                 coefficients.push(match (qd, qdd) {
-                    (None, _) => segment::line(h, pair(q)),
-                    (Some(qd), None) => segment::cubic(h, pair(q), pair(qd)),
-                    (Some(qd), Some(qdd)) => segment::quintic(h, pair(q), pair(qd), pair(qdd)),
+                    (None, _) => hermite_segment::line(h, pair(q)),
+                    (Some(qd), None) => hermite_segment::cubic(h, pair(q), pair(qd)),
+                    (Some(qd), Some(qdd)) => hermite_segment::quintic(h, pair(q), pair(qd), pair(qdd)),
                 });
             }
         }

@@ -1,4 +1,4 @@
-//! What a field of `Limits` was given.
+//! The value of a field of `Limits`, as given.
 
 use ikcore::limits::{Field, Profile};
 use pyo3::prelude::*;
@@ -35,7 +35,7 @@ impl GivenLimit {
         }
     }
 
-    /// Functions as Python compares them: two bound methods of one object are equal.
+    /// Compares functions as Python does: two bound methods of one object are equal.
     pub fn equals(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
         match (self, other) {
             (Self::Numbers(one), Self::Numbers(other)) => Ok(one == other),
@@ -45,7 +45,7 @@ impl GivenLimit {
         }
     }
 
-    /// Equal ones hash alike.
+    /// Equal values have equal hashes.
     pub fn hash(&self, py: Python<'_>) -> PyResult<isize> {
         match self {
             Self::Numbers(numbers) => Ok(content_hash(numbers) as isize),

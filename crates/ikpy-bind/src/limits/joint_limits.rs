@@ -1,4 +1,4 @@
-//! `Limits`: what was given, and what of it is in force.
+//! `Limits`: the given fields, and the limits in force.
 
 use ikcore::Error;
 use ikcore::limits::{Field, Limits};
@@ -12,17 +12,16 @@ use super::sampling::Sampling;
 use crate::error::raise;
 use crate::options::NewArguments;
 
-/// Limits on joint motion. A field that is given replaces the robot's, a field left None is the robot's, np.inf
-/// switches one off.
+/// Limits on joint motion. A given field replaces the robot's limit, None keeps the robot's limit, and np.inf removes it.
 ///
 /// Args:
-///     lower, upper: positions (rad, m).
-///     velocity: rad/s or m/s.
-///     acceleration, jerk: rad/s^2 or m/s^2, rad/s^3 or m/s^3.
+///     lower, upper: position limits (rad, m).
+///     velocity: velocity limits (rad/s, m/s).
+///     acceleration, jerk: acceleration limits (rad/s^2, m/s^2) and jerk limits (rad/s^3, m/s^3).
 ///
 /// Each is a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
-/// are sampled at the ends and in the middle of every tick. A method that cannot honour a field raises
-/// `UnsupportedLimit`; none ignores one.
+/// are sampled at the ends and in the middle of each tick. A method that cannot keep a field raises `UnsupportedLimit`;
+/// none ignores one.
 #[pyclass(name = "Limits", module = "beetle_ik", frozen)]
 pub struct PyLimits {
     /// In the order of the fields.
@@ -145,12 +144,12 @@ impl PyLimits {
         Self { given: [free(f64::NEG_INFINITY), free(f64::INFINITY), free(f64::INFINITY), None, None] }
     }
 
-    /// The limits in force for `robot`: these where given, else the robot's.
+    /// Returns the limits in force for `robot`: these, with missing fields from the robot.
     pub fn in_force(&self, py: Python<'_>, robot: &Robot) -> Self {
         self.else_of(py, Self::of(robot))
     }
 
-    /// These where given, else those of `other`.
+    /// Returns these limits, with missing fields from `other`.
     pub(super) fn else_of(&self, py: Python<'_>, other: Self) -> Self {
         let mut given = other.given;
         for (slot, replacement) in given.iter_mut().zip(&self.given) {
@@ -161,7 +160,7 @@ impl PyLimits {
         Self { given }
     }
 
-    /// Err if a field is a callable of t, for motions without a known end.
+    /// Refuses callables of t, for motions without a known end.
     pub fn require_no_functions(&self, method: &str, instead: &str) -> PyResult<()> {
         let is_function = |given: &Option<GivenLimit>| matches!(given, Some(GivenLimit::Function(_)));
         match self.given.iter().position(is_function) {
@@ -169,17 +168,19 @@ impl PyLimits {
             Some(i) => Err(raise(Error::UnsupportedLimit {
                 field: format!("callable {}", FIELDS[i]),
                 method: method.into(),
-                remedy: format!("it has no end to be sampled to; give numbers or a Sinusoid, or use {instead}"),
+                remedy: format!(
+                    "it has no end time up to which to sample; give numbers or a Sinusoid, or use {instead}"
+                ),
             })),
         }
     }
 
-    /// The same for the core, functions of time sampled.
+    /// Converts the limits for the core; samples functions of time.
     pub fn resolve(&self, py: Python<'_>, robot: &Robot, sampling: &Sampling) -> PyResult<Limits> {
         self.applied_to(py, Limits::of(robot), robot.dof(), sampling)
     }
 
-    /// The same for joints that belong to no robot: none where no limit is given.
+    /// Converts the limits for joints without a robot; missing fields are unlimited.
     pub fn for_joints(&self, py: Python<'_>, joints: &[String]) -> PyResult<Limits> {
         self.applied_to(py, Limits::none(joints.to_vec()), joints.len(), &Sampling::once())
     }
@@ -204,7 +205,7 @@ impl PyLimits {
     }
 }
 
-/// A field that was given one number per joint.
+/// A field with one number per joint.
 fn numbers(values: Vec<f64>) -> Option<GivenLimit> {
     Some(GivenLimit::Numbers(PerJoint { values, single: false }))
 }

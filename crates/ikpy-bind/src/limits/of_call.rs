@@ -1,4 +1,4 @@
-//! Limits as arguments: for the result of a call, and for the core.
+//! Reading of the `limits` argument: for the result of a call, and for the core.
 
 use ikcore::limits::Limits;
 use pyo3::prelude::*;
@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use super::{PyLimits, Sampling};
 use crate::robot::PyRobot;
 
-/// The limits of a call: those in force, for the result, and for the core those that differ from the robot's own.
+/// Reads the limits of a call: those in force, for the result, and those that differ from the robot's, for the core.
 pub fn limits_of_call(
     py: Python<'_>,
     limits: Option<&PyLimits>,
@@ -22,7 +22,7 @@ pub fn limits_of_call(
     }
 }
 
-/// The limits of a call that knows no robot, for `n` joints: for the result and for the core.
+/// Reads the limits of a call without a robot, for `n` joints: for the result and for the core.
 pub fn limits_without_robot(
     py: Python<'_>,
     limits: Option<&PyLimits>,

@@ -1,4 +1,4 @@
-//! Numbers that are one for all joints or one each.
+//! Numbers given once for all joints or once per joint.
 
 use pyo3::prelude::*;
 
@@ -22,7 +22,7 @@ impl PerJoint {
         Ok(Self { values, single })
     }
 
-    /// That of a joint.
+    /// The number of a joint.
     pub fn at(&self, joint: usize) -> f64 {
         self.values[if self.values.len() == 1 { 0 } else { joint }]
     }

@@ -26,10 +26,10 @@ impl Sampling {
     }
 }
 
-/// Functions written in C do not look for Ctrl-C themselves: so many calls take some milliseconds.
+/// Calls between two checks for Ctrl-C, some milliseconds; functions written in C do not check themselves.
 pub const CALLS_BETWEEN_SIGNAL_CHECKS: usize = 4096;
 
-/// The values of a function at all times of the sampling, for each of `n` joints or for all of them.
+/// Samples a function at all times, for each of `n` joints or for all of them.
 pub fn sampled(function: &Bound<'_, PyAny>, field: Field, sampling: &Sampling, n: usize) -> PyResult<Vec<Profile>> {
     let mut columns: Vec<Vec<f64>> = vec![];
     for i in 0..sampling.count {

@@ -8,13 +8,13 @@ use crate::error::invalid;
 use crate::hash::content_hash;
 use crate::options::{NewArguments, keywords};
 
-/// A limit that oscillates: mean + amplitude sin(angular_frequency t + phase), eq. (7) of Cheng et al. (2020) with its
-/// sign mended.
+/// A sinusoidal limit: mean + amplitude sin(angular_frequency t + phase), eq. (7) of Cheng et al. (2020) with its sign
+/// corrected.
 ///
 /// Args:
 ///     mean, amplitude: in the unit of the limit; a number for all joints, or (n,).
-///     angular_frequency: rad/s; a number or (n,).
-///     phase: rad at t = 0; a number or (n,).
+///     angular_frequency: angular frequency (rad/s); a number or (n,).
+///     phase: phase at t = 0 (rad); a number or (n,).
 #[pyclass(name = "Sinusoid", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PySinusoid {

@@ -1,4 +1,4 @@
-//! The user's own function as an objective.
+//! The user's function as an objective.
 
 use std::cell::RefCell;
 
@@ -13,7 +13,7 @@ use crate::convert::{array, shape_text, summary};
 use crate::error::invalid;
 use crate::monitor::Watcher;
 
-/// What the function, or a signal, raised; the search ends at the next look at the monitor.
+/// The exception of the function or of a signal; the search ends at the next check of the monitor.
 pub type Failure = RefCell<Option<PyErr>>;
 
 /// The user's function.
@@ -25,7 +25,7 @@ pub struct Function<'py, 'f> {
 }
 
 impl Function<'_, '_> {
-    /// Values of the function that did not raise, else NaN.
+    /// Returns the values; stores an exception and returns None.
     fn kept<T>(&self, values: PyResult<T>) -> Option<T> {
         values.map_err(|error| *self.failure.borrow_mut() = Some(error)).ok()
     }
@@ -59,7 +59,7 @@ impl Objective for Function<'_, '_> {
         self.dimension
     }
 
-    /// A call of Python takes so long that a poll of the monitor after each costs nothing.
+    /// A Python call is slow enough that a check of the monitor after each one costs nothing.
     fn call_pattern(&self) -> CallPattern {
         CallPattern { batch_size: if self.vectorized { usize::MAX } else { 1 }, poll_interval: 1 }
     }
@@ -85,14 +85,14 @@ impl Objective for Function<'_, '_> {
     }
 }
 
-/// Whether this is of numpy's or Python's complex numbers, which would lose their imaginary part.
+/// Whether this is a complex number of numpy or Python, which would lose its imaginary part.
 fn is_complex(value: &Bound<'_, PyAny>) -> PyResult<bool> {
     let py = value.py();
     let numpy = py.import(intern!(py, "numpy"))?;
     numpy.call_method1(intern!(py, "iscomplexobj"), (value,))?.extract()
 }
 
-/// A number that the function returned: a float, or whatever has the value of one and no dimension.
+/// Reads the function's return value: a float, or any zero-dimensional number.
 fn number(value: &Bound<'_, PyAny>) -> PyResult<f64> {
     if let Ok(number) = value.cast_exact::<pyo3::types::PyFloat>() {
         return Ok(number.value());
@@ -107,7 +107,7 @@ fn number(value: &Bound<'_, PyAny>) -> PyResult<f64> {
         .map_err(|error| if error.is_instance_of::<PyException>(value.py()) { no_number() } else { error })
 }
 
-/// Ends the search after a failure, and on Ctrl-C.
+/// The monitor: ends the search after an exception of the function, or on Ctrl-C.
 pub struct Attendant<'f> {
     pub watcher: &'f mut Watcher,
     pub failure: &'f Failure,

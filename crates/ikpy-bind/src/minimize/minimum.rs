@@ -12,30 +12,30 @@ use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
 use crate::monitor::followed;
 use crate::outcome::outcome;
+use crate::pickling::{self, Reduced};
 use crate::solver::{PyStop, derivative_free_solver};
-use crate::stored::{self, Reduced};
 
-/// The best point found by `minimize`, and what became of the search.
+/// The best point found by `minimize`, and how the search ended.
 #[pyclass(name = "Minimum", module = "beetle_ik", frozen)]
 pub struct PyMinimum {
     core: minimize::Minimum,
     /// The point (n,), inside the box.
     #[pyo3(get)]
     x: Py<PyArray1<f64>>,
-    /// (k, 2): evaluations made, and the best value then. A row for the start, for every improvement and for the end.
+    /// Progress of the search (k, 2): number of evaluations, best value so far. One row for the start, one for each
+    /// improvement and one for the end.
     #[pyo3(get)]
     history: Py<PyArrayDyn<f64>>,
-    /// The box, as `lower` and `upper`.
+    /// The box, given by `lower` and `upper`.
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
 
 outcome! {
     PyMinimum = |result|
-    /// Whether the value is below the one asked for by `Stop(value_below=...)`; without one, nothing is known to be good
-    /// enough, and this is False.
+    /// Whether the value is below that of `Stop(value_below=...)`; False if none was given.
     success,
-    /// SOLVED as `success`; STALLED by the solver's own rule; BUDGET_SPENT, TIME_UP or INTERRUPTED.
+    /// SOLVED on `success`; STALLED if the solver's own rule ended the search; BUDGET_SPENT, TIME_UP or INTERRUPTED.
     status: result.core.status,
     message: result.core.message(),
     /// Evaluations of the function.
@@ -45,7 +45,7 @@ outcome! {
 
 #[pymethods]
 impl PyMinimum {
-    /// The function's value at `x`; inf where it was finite nowhere.
+    /// The function's value at `x`; inf if no value was finite.
     #[getter]
     fn value(&self) -> f64 {
         self.core.value
@@ -57,7 +57,7 @@ impl PyMinimum {
         self.core.iterations
     }
 
-    /// Starts beyond the first.
+    /// Restarts after the first start.
     #[getter]
     fn restarts(&self) -> usize {
         self.core.restarts
@@ -68,11 +68,11 @@ impl PyMinimum {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("minimum", &self.core))?;
-        stored::restored_from::<Self>(py, (core, &self.limits))
+        let core = pickling::bytes(py, to_bytes("minimum", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, &self.limits))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
         Self::new(py, from_bytes("minimum", bytes).map_err(raise)?, limits)
@@ -86,29 +86,29 @@ impl PyMinimum {
     }
 }
 
-/// Searches a box for the least value of a function of which nothing but values is known.
+/// Minimises a function over a box by a derivative-free solver.
 ///
 /// Args:
 ///     function: takes x (n,) and returns a number; NaN and infinities count as the worst value.
 ///     lower: (n,), finite.
 ///     upper: (n,), finite.
-///     solver: one that needs values alone, such as `PSO` or `BAS`, or `MultiStart` of one. BAS has antennae as long as
-///         c1 times the root of the value: it suits functions whose least value is zero.
-///     start: (n,), where to begin; None draws it. It is a member of the first generation of swarms.
-///     stop: budgets; None: 30000 evaluations. `Stop(value_below=...)` says what is good enough.
-///     seed: of the random draws: the same seed, the same bits.
-///     vectorized: the function takes (m, n) and returns (m,), whole generations at once.
-///     progress: True for a bar on the terminal, or a callable of (done, total), evaluations.
+///     solver: a derivative-free solver, such as `PSO` or `BAS`, or `MultiStart` of one. The antenna length of BAS is c1
+///         times the square root of the value: it suits functions with minimum zero.
+///     start: (n,), first point; None: drawn at random. Swarms include it in the first generation.
+///     stop: budgets; None: 30000 evaluations. `Stop(value_below=...)` sets a target value.
+///     seed: seed of the random draws; the same seed gives the same bits.
+///     vectorized: whether the function takes whole generations (m, n) and returns (m,).
+///     progress: True shows a progress bar; a callable is called with (done, total) evaluations.
 ///
 /// Returns:
-///     A `Minimum`, its `success` only where a value was asked for and found.
+///     A `Minimum`; its `success` is True only if a target value was given and reached.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, an open or an empty box, a start outside it, a population larger than the budget, a
-///         function that returns something else than numbers.
+///     InvalidInputError: wrong shape, an infinite or empty box, a start outside it, a population larger than the budget, or
+///         a function that does not return numbers.
 ///
-/// What the function raises comes out as it is, and so does KeyboardInterrupt; both have the best point so far, a
-/// `Minimum`, as attribute `best`, and a note that says so.
+/// Exceptions of the function and KeyboardInterrupt propagate unchanged. Their attribute `best` holds the best point so far,
+/// a `Minimum`, and a note on the exception says so.
 #[pyfunction(name = "minimize")]
 #[pyo3(signature = (function, lower, upper, *, solver, start=None, stop=None, seed=0, vectorized=false,
                     progress=None))]
@@ -148,7 +148,7 @@ pub fn minimize_function(
     }
 }
 
-/// The error with what was found before it.
+/// Attaches the best point found so far to the error.
 fn with_best(py: Python<'_>, error: PyErr, found: PyMinimum) -> PyResult<PyErr> {
     let value = error.value(py);
     let note = match found.core.value.is_finite() {

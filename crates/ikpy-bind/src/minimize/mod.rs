@@ -1,4 +1,4 @@
-//! `minimize`: any derivative-free solver on a function of Python's.
+//! `minimize`: derivative-free minimisation of a Python function.
 
 mod function;
 mod minimum;

@@ -1,4 +1,4 @@
-//! Obstacles as arguments.
+//! Reading of obstacle arguments.
 
 use ikcore::obstacle::Obstacle;
 use pyo3::prelude::*;
@@ -8,16 +8,16 @@ use super::body::PyObstacle;
 use crate::convert::summary;
 use crate::error::invalid;
 
-/// Obstacles as a caller gave them.
+/// The obstacles of a call.
 pub struct Obstacles {
     /// For the core.
     pub core: Vec<Obstacle>,
-    /// For results that carry them along.
+    /// For results, which store them.
     pub tuple: Py<PyTuple>,
 }
 
 impl Obstacles {
-    /// Any sequence of obstacles; None is none.
+    /// Reads any sequence of obstacles; None means no obstacles.
     pub fn read(py: Python<'_>, value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let wrong = |place: &str, got: &Bound<'_, PyAny>| {
             let got = summary(got);

@@ -1,4 +1,4 @@
-//! `Obstacle`: what all shapes have in common.
+//! `Obstacle`, the base class of all shapes.
 
 use ikcore::math::Pose;
 use ikcore::nalgebra::Matrix3;
@@ -10,7 +10,7 @@ use crate::convert::{Array, table};
 use crate::hash::content_hash;
 use crate::options::NewArguments;
 
-/// A convex body that stands still in the frame of the robot's base: what all obstacles have in common.
+/// The base class of obstacles: a convex body, fixed in the frame of the robot's base.
 #[pyclass(name = "Obstacle", module = "beetle_ik.obstacles", frozen, eq, subclass)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyObstacle {
@@ -19,8 +19,7 @@ pub struct PyObstacle {
 
 #[pymethods]
 impl PyObstacle {
-    /// Corners (t, 3, 3) (m) of triangles that show its surface, for drawing; those of round shapes touch it with their
-    /// corners.
+    /// Triangles of the surface (t, 3, 3) (m), for drawing. The corners of triangles lie on the surface.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         let triangles = self.core.triangles();

@@ -8,19 +8,19 @@ use crate::convert::{Rows, row, rows};
 use crate::error::raise;
 use crate::robot::PyRobot;
 
-/// Distance between `robot` and what it is nearest to, at q (n,) or (m, n): a number or (m,) (m). Negative by the depth
-/// of the deepest overlap; inf where nothing can touch.
+/// Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
+/// for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
 ///
 /// Args:
 ///     robot: an arm with capsules.
-///     q: joint angles.
-///     obstacles: in the frame of the robot's base. Links that no joint moves are not held against them.
+///     q: joint positions (n,) or (m, n) (rad, m).
+///     obstacles: obstacles in the frame of the robot's base. Links that no joint moves are not compared with them.
 ///
-/// Of the links' own capsules those are compared that have another one between them and do not touch with all joints in
-/// the middle of their ranges.
+/// Two links of the robot are compared if at least one link lies between them and their capsules do not overlap with all
+/// joints in the middle of their ranges.
 ///
 /// Raises:
-///     InvalidInputError: a robot without capsules, an obstacle of another kind.
+///     InvalidInputError: a robot without capsules, or an obstacle that is not of `bik.obstacles`.
 #[pyfunction]
 #[pyo3(signature = (robot, q, obstacles=None))]
 pub fn clearance<'py>(

@@ -1,4 +1,4 @@
-//! The shapes that obstacles have: a class each, which keeps what it was given.
+//! The shapes of obstacles, one class each.
 
 use std::convert::Infallible;
 
@@ -12,7 +12,7 @@ use super::body::PyObstacle;
 use crate::convert::{Array, array, copied, entries, matrix3, point, shape_text, table};
 use crate::error::{invalid, raise};
 
-/// A point or the like as a class keeps it; Python gets a read-only vector.
+/// A vector stored by a class; Python gets a read-only array.
 #[derive(Clone, Copy)]
 struct Coordinates<const N: usize>([f64; N]);
 
@@ -26,12 +26,12 @@ impl<'py, const N: usize> IntoPyObject<'py> for Coordinates<N> {
     }
 }
 
-/// How something is turned, as a class keeps it; Python gets a read-only matrix (3, 3).
+/// A rotation stored by a class; Python gets a read-only matrix (3, 3).
 #[derive(Clone, Copy)]
 struct Rotation(Matrix3<f64>);
 
 impl Rotation {
-    /// This one, or that of something that was not turned.
+    /// Returns this rotation, or the identity if none was given.
     fn or_none(given: Option<Matrix3<f64>>) -> Self {
         Self(given.unwrap_or_else(Matrix3::identity))
     }
@@ -51,7 +51,7 @@ fn read_rotation(rotation: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Matrix3
     rotation.map(|rotation| matrix3("rotation", rotation)).transpose()
 }
 
-/// An obstacle with what its class alone has, as given.
+/// Makes an instance of an obstacle's class, with its own fields.
 fn made<C>(core: ikcore::Result<Obstacle>, own: C) -> PyResult<PyClassInitializer<C>>
 where
     C: PyClass<BaseType = PyObstacle>,
@@ -59,7 +59,7 @@ where
     Ok(PyClassInitializer::from(PyObstacle { core: core.map_err(raise)? }).add_subclass(own))
 }
 
-/// A ball: centre (3,) and radius (m).
+/// A sphere: centre (3,) and radius (m).
 #[pyclass(name = "Sphere", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PySphere {
     /// Centre (3,) (m).
@@ -79,13 +79,13 @@ impl PySphere {
     }
 }
 
-/// A box: centre (3,), edges (3,) along its own axes (m), and how those are turned (3, 3).
+/// A box: centre (3,), edge lengths (3,) along its own axes (m), and the rotation (3, 3) of these axes.
 #[pyclass(name = "Box", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PyBox {
     /// Centre (3,) (m).
     #[pyo3(get)]
     center: Coordinates<3>,
-    /// Edges (3,) (m).
+    /// Edge lengths (3,) (m).
     #[pyo3(get)]
     size: Coordinates<3>,
     /// Its axes as columns (3, 3).
@@ -109,7 +109,7 @@ impl PyBox {
     }
 }
 
-/// All points within `radius` (m) of the segment from a (3,) to b (3,).
+/// A capsule: all points within `radius` (m) of the segment from a (3,) to b (3,).
 #[pyclass(name = "Capsule", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PyCapsule {
     /// One end of its axis (3,) (m).
@@ -132,13 +132,13 @@ impl PyCapsule {
     }
 }
 
-/// An ellipsoid: centre (3,), semi-axes (3,) (m), and how they are turned (3, 3).
+/// An ellipsoid: centre (3,), lengths of the semi-axes (3,) (m), and their rotation (3, 3).
 #[pyclass(name = "Ellipsoid", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PyEllipsoid {
     /// Centre (3,) (m).
     #[pyo3(get)]
     center: Coordinates<3>,
-    /// Semi-axes (3,) (m).
+    /// Lengths of the semi-axes (3,) (m).
     #[pyo3(get)]
     semi_axes: Coordinates<3>,
     /// Its axes as columns (3, 3).
@@ -166,13 +166,14 @@ impl PyEllipsoid {
     }
 }
 
-/// An ellipse in the plane z = 0, for planar arms: centre (2,), semi-axes (2,) (m), angle of the first one (rad).
+/// An ellipse in the plane z = 0, for planar arms: centre (2,), lengths of the semi-axes (2,) (m), angle of the first
+/// one (rad).
 #[pyclass(name = "Ellipse", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PyEllipse {
     /// Centre (2,) (m).
     #[pyo3(get)]
     center: Coordinates<2>,
-    /// Semi-axes (2,) (m).
+    /// Lengths of the semi-axes (2,) (m).
     #[pyo3(get)]
     semi_axes: Coordinates<2>,
     /// Angle of the first semi-axis (rad).
@@ -191,7 +192,7 @@ impl PyEllipse {
     }
 }
 
-/// The smallest convex body that holds points (k, 3) (m), at least four that do not lie in a plane.
+/// The convex hull of points (k, 3) (m): at least four, not all in one plane.
 #[pyclass(name = "ConvexMesh", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
 pub struct PyConvexMesh {
     points: Vec<[f64; 3]>,

@@ -8,7 +8,7 @@ use super::PyPath;
 use crate::convert::{array, count, point, rigid_matrices, shape_text, summary, vector};
 use crate::error::{invalid, raise};
 
-/// A direction of the plane that a curve lies in.
+/// A direction in the plane of a curve.
 pub struct Direction([f64; 3]);
 
 impl<'py> FromPyObject<'_, 'py> for Direction {
@@ -23,8 +23,8 @@ fn plane(center: &Bound<'_, PyAny>, a: Direction, b: Direction) -> PyResult<Plan
     Plane::new(point("center", center)?, a.0, b.0).map_err(raise)
 }
 
-/// A circle about `center` (3,) (m) of this diameter (m), once around in `duration` (s), from the side of `a` towards
-/// `b`: eq. (14) of Cheng et al. (2020). `a` and `b` (3,) are orthonormal.
+/// A circle around `center` (3,) (m), traversed once in `duration` (s), from the direction `a` towards `b`: eq. (14) of
+/// Cheng et al. (2020). `a` and `b` (3,) are orthonormal vectors in its plane.
 #[pyfunction]
 #[pyo3(signature = (center, diameter, duration, *, a=Direction([1.0, 0.0, 0.0]), b=Direction([0.0, 1.0, 0.0])),
        text_signature = "(center, diameter, duration, *, a=(1, 0, 0), b=(0, 1, 0))")]
@@ -32,8 +32,8 @@ pub fn circle(center: &Bound<'_, PyAny>, diameter: f64, duration: f64, a: Direct
     Ok(Path::new(Circle::new(plane(center, a, b)?, diameter, duration).map_err(raise)?).into())
 }
 
-/// The letter M about `center` (3,), `width` along `a` and `height` along `b` (m), its four segments equally long in
-/// time (Khan et al. 2022).
+/// The letter M around `center` (3,), `width` along `a` and `height` along `b` (m). Its four segments take equal times
+/// (Khan et al. 2022).
 #[pyfunction]
 #[pyo3(signature = (center, duration, *, width, height, a=Direction([0.0, 1.0, 0.0]), b=Direction([0.0, 0.0, 1.0])),
        text_signature = "(center, duration, *, width, height, a=(0, 1, 0), b=(0, 0, 1))")]
@@ -48,8 +48,8 @@ pub fn letter_m(
     Ok(Path::new(Polyline::letter_m(&plane(center, a, b)?, width, height, duration).map_err(raise)?).into())
 }
 
-/// A hypotrochoid about `center` (3,): the path of a point at `distance` from the centre of a circle that rolls inside
-/// another (m). Eq. (20) of Khan et al. (2022) as it was meant; the ratio of the radii is one of small whole numbers.
+/// A hypotrochoid around `center` (3,): the path of a point at `distance` (m) from the centre of a circle that rolls inside
+/// another. Eq. (20) of Khan et al. (2022), corrected. The ratio of the radii must be a ratio of small integers.
 #[pyfunction]
 #[pyo3(signature = (center, duration, *, outer_radius, inner_radius, distance, a=Direction([0.0, 1.0, 0.0]), b=Direction([0.0, 0.0, 1.0])),
        text_signature = "(center, duration, *, outer_radius, inner_radius, distance, a=(0, 1, 0), b=(0, 0, 1))")]
@@ -66,8 +66,8 @@ pub fn hypotrochoid(
     Ok(Path::new(curve.map_err(raise)?).into())
 }
 
-/// A five-pointed star about `center` (3,), its points `radius` (m) away, drawn in five segments at constant speed from
-/// the point on the side of `b`.
+/// A five-pointed star around `center` (3,), with its points at `radius` (m): five segments at constant speed, starting at
+/// the point in direction `b`.
 #[pyfunction]
 #[pyo3(signature = (center, duration, *, radius, a=Direction([1.0, 0.0, 0.0]), b=Direction([0.0, 1.0, 0.0])),
        text_signature = "(center, duration, *, radius, a=(1, 0, 0), b=(0, 1, 0))")]
@@ -81,7 +81,7 @@ pub fn pentagram(
     Ok(Path::new(Polyline::pentagram(&plane(center, a, b)?, radius, duration).map_err(raise)?).into())
 }
 
-/// A rose about `center` (3,): at angle u the distance is radius cos(k u) (m). Odd k gives k petals, even k 2 k.
+/// A rose around `center` (3,): at angle u its radius is radius cos(k u) (m). Odd k gives k petals, even k gives 2 k.
 #[pyfunction]
 #[pyo3(signature = (center, duration, *, radius, k, a=Direction([1.0, 0.0, 0.0]), b=Direction([0.0, 1.0, 0.0])),
        text_signature = "(center, duration, *, radius, k, a=(1, 0, 0), b=(0, 1, 0))")]
@@ -96,14 +96,14 @@ pub fn rose(
     Ok(Path::new(Rose::new(plane(center, a, b)?, radius, count("k", k)?, duration).map_err(raise)?).into())
 }
 
-/// Straight segments through `points` (k, 3) (m) at constant speed, `duration` (s) in all.
+/// Straight segments through `points` (k, 3) (m) at constant speed, in `duration` (s).
 #[pyfunction]
 pub fn polyline(points: &Bound<'_, PyAny>, duration: f64) -> PyResult<PyPath> {
     Ok(Path::new(Polyline::new(&positions("points", points)?, duration).map_err(raise)?).into())
 }
 
-/// The path through samples: `time` (k,) (s) from 0, and positions (k, 3) (m) or poses (k, 4, 4). Straight in between,
-/// rotations along the shortest turn.
+/// A path through samples: `time` (k,) (s) from 0, and positions (k, 3) (m) or poses (k, 4, 4). Positions are interpolated
+/// linearly, rotations along the shortest rotation.
 #[pyfunction]
 pub fn from_samples(time: &Bound<'_, PyAny>, positions_or_poses: &Bound<'_, PyAny>) -> PyResult<PyPath> {
     let time = vector("time", time)?;
@@ -115,8 +115,8 @@ pub fn from_samples(time: &Bound<'_, PyAny>, positions_or_poses: &Bound<'_, PyAn
     Ok(Path::new(samples.map_err(raise)?).into())
 }
 
-/// The path that `function(t)` describes: t (s) in [0, duration] to a position (3,) (m). It is called before a tracker
-/// runs, at the times of its ticks.
+/// A path given by `function(t)`, which returns a position (3,) (m) for t (s) in [0, duration]. Trackers sample it at the
+/// times of their ticks before they run.
 #[pyfunction]
 pub fn from_function(function: &Bound<'_, PyAny>, duration: f64) -> PyResult<PyPath> {
     if !function.is_callable() {

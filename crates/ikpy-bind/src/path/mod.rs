@@ -1,4 +1,4 @@
-//! `Path`, and `bik.paths`, which makes them.
+//! `Path` and the functions of `bik.paths`.
 
 mod curves;
 mod reference;

@@ -1,4 +1,4 @@
-//! `Path`: a curve and an orientation, of the core or of a Python function.
+//! `Path`: a curve and an orientation, each from the core or from a Python function.
 
 use ikcore::nalgebra::Matrix3;
 use ikcore::path::Path;
@@ -9,17 +9,17 @@ use pyo3::types::{PyBytes, PyTuple};
 
 use crate::convert::{Array, matrix3, point, row, table, times};
 use crate::error::{invalid, raise};
-use crate::stored::{self, Reduced};
+use crate::pickling::{self, Reduced};
 
-/// A reference for the tip: a position for every time in [0, duration], and an orientation where one was given. Times
-/// outside are clamped.
+/// A reference path of the tip: position, and optionally orientation, for each time in [0, duration]. Times outside are
+/// clamped.
 #[pyclass(name = "Path", module = "beetle_ik", frozen)]
 pub struct PyPath {
     pub(super) curve: Curve,
     pub(super) orientation: Orientation,
 }
 
-/// Where the orientation comes from.
+/// The source of the orientation.
 pub(super) enum Orientation {
     OfCurve,
     Constant(Matrix3<f64>),
@@ -31,12 +31,12 @@ pub(super) enum Curve {
     Function { function: Py<PyAny>, duration: f64 },
 }
 
-/// Half the time over which the velocity of a user's function is differenced, as a share of its duration.
+/// Half the time over which the velocity of a user's function is differenced, as a fraction of its duration.
 const DIFFERENCE: f64 = 1e-5;
 
 #[pymethods]
 impl PyPath {
-    /// How long the path lasts (s).
+    /// Duration (s).
     #[getter]
     pub fn duration(&self) -> f64 {
         match &self.curve {
@@ -45,17 +45,17 @@ impl PyPath {
         }
     }
 
-    /// Position (m): (3,) for a number t (s), (k, 3) for t (k,).
+    /// Returns the position (m): (3,) for a number t (s), (k, 3) for t (k,).
     fn position<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
         each(py, t, [3], |t| Ok(self.position_at(py, t)?.to_vec()))
     }
 
-    /// Velocity (m/s): (3,) for a number t (s), (k, 3) for t (k,). Of a Python function, by central differences.
+    /// Returns the velocity (m/s): (3,) for a number t (s), (k, 3) for t (k,). For Python functions by central differences.
     fn velocity<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
         each(py, t, [3], |t| Ok(self.velocity_at(py, t)?.to_vec()))
     }
 
-    /// Pose: (4, 4) for a number t (s), (k, 4, 4) for t (k,). The path must have an orientation.
+    /// Returns the pose: (4, 4) for a number t (s), (k, 4, 4) for t (k,). The path must have an orientation.
     fn pose<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
         each(py, t, [4, 4], |t| {
             let Some(rotation) = self.rotation_at(py, t)? else {
@@ -65,7 +65,7 @@ impl PyPath {
         })
     }
 
-    /// Times (k,) (s) from 0 in steps of dt, and the positions (k, 3) (m) there: what a tracker follows.
+    /// Returns the times (k,) (s) from 0 in steps of `dt`, and the positions (k, 3) (m): the samples that a tracker follows.
     fn sample<'py>(&self, py: Python<'py>, dt: f64) -> PyResult<(Bound<'py, PyArray1<f64>>, Array<'py>)> {
         let reference = self.reference(py, dt)?;
         let count = reference.len();
@@ -73,7 +73,7 @@ impl PyPath {
         Ok((row(py, (0..count).map(|i| reference.time(i)).collect()), table(py, positions, &[count, 3])?))
     }
 
-    /// The same path with an orientation: a rotation matrix (3, 3), or a callable of t (s) that returns one.
+    /// Returns a copy with an orientation: a rotation matrix (3, 3), or a callable of t (s) that returns one.
     fn with_orientation(&self, py: Python<'_>, orientation: &Bound<'_, PyAny>) -> PyResult<Self> {
         let orientation = if orientation.is_callable() {
             Orientation::Function(orientation.clone().unbind())
@@ -102,12 +102,12 @@ impl PyPath {
         self.state(py)?.hash()
     }
 
-    /// Functions go along as far as they pickle themselves: those that a module names do, lambdas do not.
+    /// Functions of a module can be pickled, lambdas cannot.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        stored::restored_from::<Self>(py, self.state(py)?)
+        pickling::restored_from::<Self>(py, self.state(py)?)
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     #[pyo3(signature = (curve, duration, orientation))]
     fn _restore(curve: &Bound<'_, PyAny>, duration: f64, orientation: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
@@ -144,20 +144,20 @@ impl Curve {
 }
 
 impl PyPath {
-    /// The path that a function of t describes.
+    /// Makes a path from a function of t.
     pub(super) fn of_function(function: Py<PyAny>, duration: f64) -> Self {
         Self { curve: Curve::Function { function, duration }, orientation: Orientation::OfCurve }
     }
 
-    /// What makes it what it is: (curve, duration, orientation), each as bytes or as the function that was given.
+    /// Returns the state for pickling and hashing: (curve, duration, orientation), each as bytes or as the function given.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let curve = match &self.curve {
-            Curve::Core(path) => stored::bytes(py, path.to_bytes())?.into_any(),
+            Curve::Core(path) => pickling::bytes(py, path.to_bytes())?.into_any(),
             Curve::Function { function, .. } => function.bind(py).clone(),
         };
         let orientation = match &self.orientation {
             Orientation::OfCurve => None,
-            Orientation::Constant(rotation) => Some(stored::bytes(py, to_bytes("orientation", rotation))?.into_any()),
+            Orientation::Constant(rotation) => Some(pickling::bytes(py, to_bytes("orientation", rotation))?.into_any()),
             Orientation::Function(function) => Some(function.bind(py).clone()),
         };
         (curve, self.duration(), orientation).into_pyobject(py)
@@ -198,7 +198,7 @@ impl PyPath {
     }
 }
 
-/// `value(t)` for a number t, or stacked for t (k,).
+/// Returns `value(t)` for a number t, stacked for t (k,).
 fn each<'py, const D: usize>(
     py: Python<'py>,
     t: &Bound<'py, PyAny>,

@@ -1,4 +1,4 @@
-//! Paths as the core runs along them: Python functions are called here, before it does.
+//! Sampling of paths for the core. Python functions are called here, before the core runs.
 
 use ikcore::math::ticks::ticks_of_path;
 use ikcore::nalgebra::Matrix3;
@@ -10,11 +10,11 @@ use super::reference::{Curve, Orientation, PyPath};
 use crate::error::raise;
 use crate::limits::CALLS_BETWEEN_SIGNAL_CHECKS;
 
-/// Positions (m), and orientations where there are any.
+/// Positions (m), and orientations if the path has them.
 type Sampled = (Vec<[f64; 3]>, Option<Vec<Matrix3<f64>>>);
 
 impl PyPath {
-    /// The path at all tick times; Python functions are called here, before the core runs.
+    /// Samples the path at all tick times.
     pub fn reference(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
         if let (Curve::Core(path), Orientation::OfCurve) = (&self.curve, &self.orientation) {
             return path.sample(dt).map_err(raise);
@@ -24,7 +24,7 @@ impl PyPath {
         Reference::new(dt, positions, rotations).map_err(raise)
     }
 
-    /// The same with the velocities at the ticks.
+    /// Samples positions, orientations and velocities at all tick times.
     pub fn reference_with_velocities(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
         let reference = self.reference(py, dt)?;
         let velocities = (0..reference.len())
@@ -33,7 +33,7 @@ impl PyPath {
         reference.with_velocities(velocities).map_err(raise)
     }
 
-    /// The path as a planner sees it; Python functions are called here, before the core runs.
+    /// Samples the path for a planner.
     pub fn tip_path(&self, py: Python<'_>) -> PyResult<TipPath> {
         let corners = match &self.curve {
             Curve::Core(path) => path.corners(),
@@ -44,7 +44,7 @@ impl PyPath {
         TipPath::sampled(times, positions, rotations).map_err(raise)
     }
 
-    /// Positions and, where there are any, orientations at these times.
+    /// Samples positions, and orientations if there are any, at these times.
     fn at(&self, py: Python<'_>, times: impl Iterator<Item = f64>) -> PyResult<Sampled> {
         let (mut positions, mut rotations) = (vec![], vec![]);
         for (i, t) in times.enumerate() {

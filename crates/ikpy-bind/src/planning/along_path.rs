@@ -1,6 +1,6 @@
 //! `plan_along_path`.
 
-use ikcore::path::Reference;
+use ikcore::path::Waypoints;
 use ikcore::planning::{self, AlongPathMethod, AlongPathOptions, TipPath};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
@@ -16,30 +16,30 @@ use crate::path::PyPath;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
 
-/// Plans a motion whose tip follows a path, in order.
+/// Plans a motion that moves the tip along a path.
 ///
 /// Args:
 ///     robot: the arm.
-///     path: a `Path`, whose times do not matter here, or points (k, 3) (m) or poses (k, 4, 4), straight in between.
-///     start_q: joint angles (n,) to start from; None: the planner's choice.
-///     limits: positions, velocities and accelerations to keep; None: the robot's.
-///     method: "timed": redundancy and the fastest timing found together; "tpbso": redundancy by a beetle swarm, uniform
-///         time, splines through every second point (Wang et al. 2019).
-///     objective: what to minimise: "time" or "joint_travel".
+///     path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
+///     start_q: joint positions (n,) at the start; None: chosen by the planner.
+///     limits: position, velocity and acceleration limits; None: the robot's.
+///     method: "timed": optimises redundancy and timing together; "tpbso": redundancy by a beetle swarm, uniform timing,
+///         splines through every second point (Wang et al. 2019).
+///     objective: quantity to minimise, "time" or "joint_travel".
 ///     elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it; None: 1.
-///     accuracy: how far the tip may be from the path (m), between its points too, and how far turned from it (rad); as
-///         many points are passed as that takes. None: a thousandth of the path's extent, for "tpbso" 4 %.
-///     solver: what searches; None: the method's own.
+///     accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
+///         decides how many points of the path the motion passes. None: a thousandth of the path's extent; for "tpbso" 4 %.
+///     solver: solver of the search; None: the method's own.
 ///     stop: budgets; None: the method's own.
-///     seed: of the random draws: the same seed, the same bits.
-///     progress: True for a bar on the terminal, or a callable of (done, total).
+///     seed: seed of the random draws; the same seed gives the same bits.
+///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
 /// Returns:
-///     A `Plan`. That no plan keeps everything is a status beside the least violating trajectory, not an error.
+///     A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach.
-///     LimitError: limits that contradict themselves.
+///     InvalidInputError: wrong shape, NaN, fewer than two points, or points out of reach.
+///     LimitError: limits that contradict each other.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
 #[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", elbow=None, accuracy=None,
@@ -82,7 +82,7 @@ pub fn plan_along_path(
     PyPlan::new(plan, Some(positions), robot, in_force, PyTuple::empty(py).unbind())
 }
 
-/// A `Path`, or points (k, 3), or poses (k, 4, 4).
+/// Reads a `Path`, points (k, 3) or poses (k, 4, 4).
 fn read_tip_path(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<TipPath> {
     match path.cast::<PyPath>() {
         Ok(path) => path.get().tip_path(py),
@@ -90,17 +90,17 @@ fn read_tip_path(py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<TipPath> {
     }
 }
 
-/// Points (k, 3), or poses (k, 4, 4).
-fn read_points(path: &Bound<'_, PyAny>) -> PyResult<Reference> {
+/// Reads points (k, 3) or poses (k, 4, 4).
+fn read_points(path: &Bound<'_, PyAny>) -> PyResult<Waypoints> {
     let rows = array("path", path)?;
     let numbers = rows.as_slice()?;
     match rows.shape() {
-        [_, 3] => Reference::new(1.0, numbers.as_chunks().0.to_vec(), None).map_err(raise),
+        [_, 3] => Waypoints::new(numbers.as_chunks().0.to_vec(), None).map_err(raise),
         [_, 4, 4] => {
             let poses = rigid_matrices(numbers)?;
             let positions = poses.iter().map(|pose| pose.translation.vector.into()).collect();
             let rotations = poses.iter().map(|pose| *pose.rotation.matrix()).collect();
-            Reference::new(1.0, positions, Some(rotations)).map_err(raise)
+            Waypoints::new(positions, Some(rotations)).map_err(raise)
         }
         shape => Err(invalid(format!(
             "path: expected a Path, points (k, 3) or poses (k, 4, 4), got shape {}",

@@ -1,4 +1,4 @@
-//! Planning: motions from end to end and along paths, and their fastest timing.
+//! Planning: point-to-point motions, motions along paths, and time-optimal timing.
 
 mod along_path;
 mod elbow;

@@ -11,33 +11,33 @@ use crate::convert::{array, table};
 use crate::error::raise;
 use crate::limits::PyLimits;
 use crate::outcome::outcome;
+use crate::pickling::{self, Reduced};
+use crate::python_calls;
 use crate::robot::PyRobot;
-use crate::stored::{self, Reduced};
 use crate::trajectory::PyTrajectory;
-use crate::upward;
 
 /// A planned motion, and what became of the search for it.
 #[pyclass(name = "Plan", module = "beetle_ik", frozen)]
 pub struct PyPlan {
     core: Plan,
-    /// The motion: the best that keeps everything, else the least violating one.
+    /// The motion: the best one that meets all requirements, otherwise the one that violates them least.
     #[pyo3(get)]
     trajectory: Py<PyTrajectory>,
-    /// How the search came to its best: rows (evaluations, lowest cost from then on), (h, 2); with penalties as long as
-    /// the plan breaks something.
+    /// Progress of the search (h, 2): number of evaluations, lowest cost from then on. The cost includes penalties while the
+    /// plan has violations.
     #[pyo3(get)]
     history: Py<PyArrayDyn<f64>>,
-    /// The absolute orientations that a planar arm was free to choose along the path (points, links, 3): value, lowest
-    /// and highest possible (rad), from the tip's link down; without such a choice (0, 0, 3).
+    /// Absolute orientations of the redundant links of a planar arm along the path (points, links, 3): value, lowest and
+    /// highest possible (rad), from the tip's link down; (0, 0, 3) without redundancy.
     #[pyo3(get)]
     redundancy: Py<PyArrayDyn<f64>>,
-    /// Positions (k, 3) (m) that the tip was to follow, straight in between; None for a plan from end to end.
+    /// Reference positions of the tip (k, 3) (m), joined by straight lines; None for a point-to-point plan.
     #[pyo3(get)]
     reference: Option<Py<PyArrayDyn<f64>>>,
-    /// What the robot was not to touch, as given.
+    /// The obstacles, as given.
     #[pyo3(get)]
     obstacles: Py<PyTuple>,
-    /// The robot that was planned for.
+    /// The robot.
     #[pyo3(get)]
     robot: Py<PyRobot>,
     /// The limits in force.
@@ -47,9 +47,9 @@ pub struct PyPlan {
 
 outcome! {
     PyPlan = |result|
-    /// Whether the trajectory keeps everything that was asked.
+    /// Whether the trajectory meets all requirements.
     success,
-    /// SOLVED as `success`; else why the search ended.
+    /// SOLVED on `success`; otherwise why the search ended.
     status: result.core.status,
     message: result.core.message(),
     /// Evaluations of the cost.
@@ -59,39 +59,40 @@ outcome! {
 
 #[pymethods]
 impl PyPlan {
-    /// What was minimised: "time", "joint_travel" or "tip_travel".
+    /// The quantity that was minimised: "time", "joint_travel" or "tip_travel".
     #[getter]
     fn objective(&self) -> String {
         self.core.objective.to_string()
     }
 
-    /// Its value on the trajectory (s, rad or m).
+    /// Value of the objective on the trajectory (s, rad or m).
     #[getter]
     fn cost(&self) -> f64 {
         self.core.cost
     }
 
-    /// Smallest distance between robot and obstacles on the trajectory (m); NaN without obstacles.
+    /// Smallest distance between robot and obstacles along the trajectory (m); NaN without obstacles.
     #[getter]
     fn clearance(&self) -> f64 {
         self.core.clearance.unwrap_or(f64::NAN)
     }
 
-    /// Largest distance of the tip from the path (m), at its points and between them; NaN for a plan from end to end.
+    /// Largest distance of the tip from the path (m), at its points and between them; NaN for a point-to-point plan.
     #[getter]
     fn accuracy(&self) -> f64 {
         self.core.accuracy.unwrap_or(f64::NAN)
     }
 
-    /// What the trajectory breaks, a list of `Violation`; empty for a plan that succeeded.
+    /// The bounds that the trajectory exceeds, a list of `Violation`; empty on success.
     #[getter]
     fn violations(&self) -> Vec<PyViolation> {
         self.core.violations.iter().cloned().map(PyViolation).collect()
     }
 
-    /// A matplotlib figure: the arm along its way, the cost against evaluations, the joints' motion with their limits.
+    /// Draws the arm along its path, the cost over evaluations, and the joint motions with their limits; returns a matplotlib
+    /// figure.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        upward::plot(slf.into_any(), "plan")
+        python_calls::plot(slf.into_any(), "plan")
     }
 
     fn __repr__(&self) -> String {
@@ -99,11 +100,11 @@ impl PyPlan {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("plan", &self.core))?;
-        stored::restored_from::<Self>(py, (core, &self.reference, &self.robot, &self.limits, &self.obstacles))
+        let core = pickling::bytes(py, to_bytes("plan", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, &self.reference, &self.robot, &self.limits, &self.obstacles))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     #[pyo3(signature = (bytes, reference, robot, limits, obstacles))]
     fn _restore(

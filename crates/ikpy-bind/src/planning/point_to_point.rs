@@ -15,30 +15,31 @@ use crate::obstacle::Obstacles;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
 
-/// Plans a motion from one end to another, at rest at both.
+/// Plans a motion between two ends, from rest to rest.
 ///
 /// Args:
 ///     robot: the arm.
-///     start, end: position (3,) (m) or pose (4, 4) of the tip; the configuration is the planner's choice.
-///     start_q, end_q: instead of them, joint angles (n,).
-///     limits: positions, velocities and accelerations to keep; None: the robot's.
-///     method: "minmax": the ends' configurations that are nearest in time, joined at the limits' pace; "tpbso":
-///         polynomials through a via point, searched by a beetle swarm (Wang et al. 2019).
-///     objective: what to minimise: "time", "joint_travel" or "tip_travel".
-///     obstacles: what the robot may not touch, from `bik.obstacles`; it may never touch itself if it has capsules.
-///     margin: distance to keep from obstacles and between links (m); None: 1 mm.
+///     start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration.
+///     start_q, end_q: joint positions (n,) instead.
+///     limits: position, velocity and acceleration limits; None: the robot's.
+///     method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
+///         "tpbso": polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
+///     objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
+///     obstacles: obstacles of `bik.obstacles` that the robot must not touch. A robot with capsules must not touch itself
+///         either.
+///     margin: least distance from obstacles and between links (m); None: 1 mm.
 ///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1; None: (1, 1).
-///     solver: what searches; None: the method's own.
+///     solver: solver of the search; None: the method's own.
 ///     stop: budgets; None: the method's own.
-///     seed: of the random draws: the same seed, the same bits.
-///     progress: True for a bar on the terminal, or a callable of (done, total).
+///     seed: seed of the random draws; the same seed gives the same bits.
+///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
 /// Returns:
-///     A `Plan`. That no plan keeps everything is a status beside the least violating trajectory, not an error.
+///     A `Plan`. If no plan meets all requirements, its status says so, and its trajectory violates them least.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, an end that cannot be reached (which, and by how much).
-///     LimitError: limits that contradict themselves or exclude an end.
+///     InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance).
+///     LimitError: limits that contradict each other or exclude an end.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
 #[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method="minmax",
@@ -83,7 +84,7 @@ pub fn plan_point_to_point(
     PyPlan::new(plan, None, robot, in_force, given)
 }
 
-/// An end given as a target or as joint angles.
+/// Reads an end given as a target or as joint positions.
 fn read_end(name: &str, target: Option<&Bound<'_, PyAny>>, q: Option<&Bound<'_, PyAny>>) -> PyResult<Endpoint> {
     match (target, q) {
         (Some(target), None) => match array(name, target)?.shape() {

@@ -9,32 +9,33 @@ use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
 use crate::trajectory::{PyTrajectory, names};
 
-/// The fastest motion through waypoints on a given path: its shape is kept, its timing is found.
+/// Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
 ///
-/// By reachability analysis (Pham and Pham 2018), with acceleration limits imposed on whole segments instead of grid
-/// points alone: velocity and acceleration limits hold at every instant, on any grid. Jerk limits, where there are any, are
-/// kept by smoothing the fastest motion in time: all limits hold, but it is no longer the fastest of all.
+/// The method is reachability analysis (Pham and Pham 2018), with acceleration limits imposed on whole segments instead of
+/// only at grid points: velocity and acceleration limits hold at every instant, on any grid. Jerk limits are kept by
+/// smoothing the motion in time: all limits hold, but the result is then slower than the optimum.
 ///
 /// Args:
-///     waypoints_q: (k, n), joint positions to pass (rad, m).
-///     limits: constant ones: `acceleration` for all joints; `velocity`, `jerk`, `lower`, `upper` as wanted.
-///     knots: (k,), the path parameter of each waypoint, increasing; None: uniform in [0, 1].
-///     spline: how the path's ends are shaped: "natural" without curvature, "not-a-knot" as their neighbours, "clamped"
-///         without slope; "polyline": straight lines, see `blend`.
-///     blend: of a polyline: its corners are rounded from so far before to so far after them (distance in joint space, at
+///     waypoints_q: (k, n), joint positions of the waypoints (rad, m).
+///     limits: constant limits: `acceleration` for all joints; optionally `velocity`, `jerk`, `lower`, `upper`.
+///     knots: (k,), increasing path parameters of the waypoints; None: uniform in [0, 1].
+///     spline: cubic spline with zero curvature at its ends ("natural"), with the cubic of the neighbouring segment
+///         ("not-a-knot") or with zero slope ("clamped"); or straight lines ("polyline"), see `blend`.
+///     blend: for a polyline: corners are rounded from this distance before to this distance after them (in joint space, at
 ///         most half a line); None or 0: the joints stop at each corner.
-///     gridpoints: where the acceleration along the path may change; None refines until it makes no difference.
-///     start_speed, end_speed: Euclidean length of the joint velocity at the ends (rad/s, m/s).
-///     joint_names: n names; None: "q1", "q2", ...
+///     gridpoints: number of points at which the acceleration along the path may change; None: refined until the duration
+///         no longer improves.
+///     start_speed, end_speed: Euclidean norm of the joint velocity at the ends (rad/s, m/s).
+///     joint_names: n names; None: "q1", "q2" and so on.
 ///
 /// Returns:
-///     A `Trajectory`, exactly on the path: a polynomial of degree 6 between grid points. With jerk limits quintic pieces
-///     that meet the path at their ends.
+///     A `Trajectory` exactly on the path: polynomials of degree 6 between grid points. With jerk limits it consists of
+///     quintic segments that meet the path at their ends.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, fewer than two waypoints, a waypoint that repeats the one before it.
-///     InfeasibleError: the path leaves the position limits, a joint must move that may not, too high speeds at the ends.
-///     UnsupportedLimit: limits that vary in time, no acceleration limit, jerk limits on a polyline.
+///     InvalidInputError: wrong shape, NaN, fewer than two waypoints, or a waypoint equal to the one before it.
+///     InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
+///     UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline.
 #[pyfunction]
 #[pyo3(signature = (waypoints_q, limits, *, knots=None, spline="natural", blend=None, gridpoints=None, start_speed=0.0,
                     end_speed=0.0, joint_names=None))]
@@ -62,13 +63,15 @@ pub fn time_optimal(
     let waypoints = waypoints.as_slice()?;
     let path = if spline == "polyline" {
         if knots.is_some() {
-            return Err(invalid("knots belong to a spline: the parameter of a polyline is its length".into()));
+            return Err(invalid(
+                "knots can only be given for a spline: the parameter of a polyline is its length".into(),
+            ));
         }
         JointPath::polyline(joints, waypoints, blend.unwrap_or(0.0))
     } else {
         let ends = spline.parse::<SplineEnds>().map_err(raise)?;
         if blend.is_some() {
-            return Err(invalid(format!("blend rounds the corners of spline='polyline', and '{spline}' has none")));
+            return Err(invalid(format!("blend can only be given for spline='polyline': '{spline}' has no corners")));
         }
         JointPath::spline(joints, waypoints, knots.as_deref(), ends)
     };

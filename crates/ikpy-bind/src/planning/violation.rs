@@ -6,34 +6,34 @@ use pyo3::prelude::*;
 
 use crate::error::raise;
 use crate::hash::content_hash;
-use crate::stored::{self, Reduced};
+use crate::pickling::{self, Reduced};
 
-/// A bound that a planned trajectory breaks; `str` says it in words.
+/// A bound that a planned trajectory exceeds; `str` describes it in words.
 #[pyclass(name = "Violation", module = "beetle_ik", frozen, eq)]
 #[derive(Debug, PartialEq)]
 pub struct PyViolation(pub Violation);
 
 #[pymethods]
 impl PyViolation {
-    /// What breaks it, such as "velocity of joint 'elbow'".
+    /// The quantity that exceeds it, such as "velocity of joint 'elbow'".
     #[getter]
     fn what(&self) -> &str {
         &self.0.what
     }
 
-    /// How far the trajectory goes, in `unit`.
+    /// Largest value on the trajectory, in `unit`.
     #[getter]
     fn value(&self) -> f64 {
         self.0.value
     }
 
-    /// How far it may go, in `unit`.
+    /// The bound, in `unit`.
     #[getter]
     fn bound(&self) -> f64 {
         self.0.bound
     }
 
-    /// "rad/s" and so on.
+    /// The unit, such as "rad/s".
     #[getter]
     fn unit(&self) -> &str {
         &self.0.unit
@@ -52,10 +52,10 @@ impl PyViolation {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        stored::restored_from::<Self>(py, (stored::bytes(py, to_bytes("violation", &self.0))?,))
+        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("violation", &self.0))?,))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     fn _restore(bytes: &[u8]) -> PyResult<Self> {
         from_bytes("violation", bytes).map(Self).map_err(raise)

@@ -1,4 +1,4 @@
-//! Where links are and how they move, for one configuration or many.
+//! Forward kinematics and Jacobians, for one configuration or many.
 
 use ikcore::math::pose;
 use ikcore::rng;
@@ -11,7 +11,7 @@ use crate::error::raise;
 
 #[pymethods]
 impl PyRobot {
-    /// Forward kinematics: the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n).
+    /// Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics.
     fn fk<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         match rows("joint angles", self.core.name(), self.core.dof(), q)? {
             Rows::One(q) => Ok(pose_array(py, &self.core.fk(q.as_slice()?).map_err(raise)?)?.into_any()),
@@ -23,8 +23,7 @@ impl PyRobot {
         }
     }
 
-    /// The nearest configuration inside the position limits: each joint brought to the limit that it is beyond. (n,) for q (n,),
-    /// (m, n) for q (m, n).
+    /// Clips q to the position limits: (n,) for q (n,), (m, n) for q (m, n).
     fn clip<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let n = self.core.dof();
         match rows("joint angles", self.core.name(), n, q)? {
@@ -36,15 +35,15 @@ impl PyRobot {
         }
     }
 
-    /// Poses of all links at q (n,), in the order of `link_names`: (links, 4, 4).
+    /// Returns the poses of all links at q (n,), in the order of `link_names`: (links, 4, 4).
     fn link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let poses = self.core.link_poses(&vector("joint angles", q)?).map_err(raise)?;
         let count = poses.len();
         table(py, poses.iter().flat_map(pose::rows).collect(), &[count, 4, 4])
     }
 
-    /// Geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m), then
-    /// angular rows, in the axes of the base.
+    /// Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m),
+    /// then angular rows, along the axes of the base.
     fn jacobian<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let n = self.core.dof();
         match rows("joint angles", self.core.name(), n, q)? {
@@ -59,7 +58,7 @@ impl PyRobot {
         }
     }
 
-    /// m configurations drawn uniformly between the limits, (m, n). Without limits: one turn, or 2 m, around zero.
+    /// Draws m configurations uniformly within the limits, (m, n). Joints without limits: one turn, or 2 m, around zero.
     #[pyo3(signature = (m, seed=0))]
     fn random_configurations<'py>(
         &self,
@@ -72,14 +71,14 @@ impl PyRobot {
     }
 }
 
-/// `work` on whole rows of `n` numbers, without the interpreter, looking for Ctrl-C in between.
+/// Runs `work` on rows of `n` numbers without the interpreter, and checks for Ctrl-C in between.
 pub fn in_pieces(
     py: Python<'_>,
     rows: &[f64],
     n: usize,
     work: impl Fn(&[f64]) -> ikcore::Result<Vec<f64>> + Sync,
 ) -> PyResult<Vec<f64>> {
-    /// Rows that take some ten milliseconds.
+    /// Rows that take about ten milliseconds.
     const PIECE: usize = 1 << 17;
     if rows.len() <= PIECE * n {
         return py.detach(|| work(rows)).map_err(raise);
@@ -87,7 +86,7 @@ pub fn in_pieces(
     let mut results = vec![];
     for piece in rows.chunks(PIECE * n) {
         py.check_signals()?;
-        // A wrong row is counted from the first of all rows.
+        // On an error, run again on all rows: its message counts from the first one.
         results.extend(py.detach(|| work(piece).or_else(|_| work(rows))).map_err(raise)?);
     }
     Ok(results)

@@ -1,4 +1,4 @@
-//! `VelocityEllipsoid`, and how well a posture lets the robot move.
+//! Manipulability and `VelocityEllipsoid`.
 
 use ikcore::manipulability::{Ellipsoid, Manipulability, Motion, manipulability, manipulability_all};
 use ikcore::stored::{from_bytes, to_bytes};
@@ -10,10 +10,10 @@ use super::kinematics::in_pieces;
 use crate::convert::{Rows, row, rows, table, vector};
 use crate::error::raise;
 use crate::hash::content_hash;
-use crate::stored::{self, Reduced};
+use crate::pickling::{self, Reduced};
 
-/// The tip velocities that unit joint speeds give, |q'| = 1: an ellipsoid with one semi-axis per direction in which the
-/// tip can move, the longest first.
+/// The ellipsoid of tip velocities for unit joint speeds, |q'| = 1. It has one semi-axis for each direction in which the
+/// tip can move, longest first.
 #[pyclass(name = "VelocityEllipsoid", module = "beetle_ik", frozen, eq)]
 #[derive(Debug, PartialEq)]
 pub struct PyVelocityEllipsoid(Ellipsoid);
@@ -26,25 +26,25 @@ impl PyVelocityEllipsoid {
         row(py, self.0.lengths.clone())
     }
 
-    /// Unit vectors along them (directions, 6): linear, then angular part, in the base's axes.
+    /// Unit vectors along the semi-axes (directions, 6): linear, then angular part, along the axes of the base.
     #[getter]
     fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         table(py, self.0.axes.as_flattened().to_vec(), &[self.0.axes.len(), 6])
     }
 
-    /// Yoshikawa's index: the product of the lengths.
+    /// Yoshikawa's manipulability index: the product of the lengths.
     #[getter]
     fn index(&self) -> f64 {
         self.0.index()
     }
 
-    /// The longest over the shortest; inf where a direction is lost.
+    /// Ratio of the longest to the shortest length; inf if a direction is lost.
     #[getter]
     fn condition(&self) -> f64 {
         self.0.condition()
     }
 
-    /// Geometric over arithmetic mean of the squared lengths (Kim and Khosla 1991): 1 for a sphere, 0 where a direction
+    /// Ratio of geometric to arithmetic mean of the squared lengths (Kim and Khosla 1991): 1 for a sphere, 0 if a direction
     /// is lost.
     #[getter]
     fn isotropy(&self) -> f64 {
@@ -61,10 +61,10 @@ impl PyVelocityEllipsoid {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        stored::restored_from::<Self>(py, (stored::bytes(py, to_bytes("ellipsoid", &self.0))?,))
+        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("ellipsoid", &self.0))?,))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     fn _restore(bytes: &[u8]) -> PyResult<Self> {
         from_bytes("ellipsoid", bytes).map(Self).map_err(raise)
@@ -73,11 +73,11 @@ impl PyVelocityEllipsoid {
 
 #[pymethods]
 impl PyRobot {
-    /// Yoshikawa's manipulability at q (n,) or (m, n): sqrt(det(J J')), the product of the singular values of the
-    /// Jacobian, one per direction in which the tip can move at all.
+    /// Returns Yoshikawa's manipulability index, a number for q (n,), (m,) for q (m, n): sqrt(det(J J')), the product of the
+    /// singular values of the Jacobian, over the directions in which the tip can move at all.
     ///
     /// Args:
-    ///     motion: what counts, "pose", "position" or "rotation".
+    ///     motion: motion of the tip that counts, "pose", "position" or "rotation".
     #[pyo3(signature = (q, *, motion="pose"))]
     fn manipulability<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyAny>> {
         let motion: Motion = motion.parse().map_err(raise)?;
@@ -94,7 +94,7 @@ impl PyRobot {
         }
     }
 
-    /// Gradient (n,) of the manipulability at q (n,), exact; `motion` as there.
+    /// Returns the exact gradient (n,) of `manipulability` at q (n,).
     #[pyo3(signature = (q, *, motion="pose"))]
     fn manipulability_gradient<'py>(&self, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (measure, values) = self.measure_at(q, motion)?;
@@ -103,17 +103,17 @@ impl PyRobot {
         Ok(row(q.py(), gradient))
     }
 
-    /// Manipulability of the tip of every moving link, moved by the joints before it, times the volume of the unit ball
-    /// (pi in the plane): (links,), the last one the tip's. Their sum is a measure of the whole arm.
+    /// Returns the manipulability of the tip of each moving link, moved by the joints before it, times the volume of the unit
+    /// ball (pi in the plane): (links,), the tip's last. The sum measures the manipulability of the whole arm.
     ///
-    /// Links with fewer joints before them than there are directions have zero. `motion` as in `manipulability`.
+    /// A link with fewer joints before it than directions has zero. `motion` as in `manipulability`.
     #[pyo3(signature = (q, *, motion="position"))]
     fn link_manipulability<'py>(&self, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (measure, values) = self.measure_at(q, motion)?;
         Ok(row(q.py(), measure.link_indices(&self.core, &values).values().to_vec()))
     }
 
-    /// The ellipsoid of tip velocities at q (n,) for unit joint speeds; `motion` as in `manipulability`.
+    /// Returns the velocity ellipsoid of the tip at q (n,) for unit joint speeds; `motion` as in `manipulability`.
     #[pyo3(signature = (q, *, motion="position"))]
     fn velocity_ellipsoid(&self, q: &Bound<'_, PyAny>, motion: &str) -> PyResult<PyVelocityEllipsoid> {
         let (measure, values) = self.measure_at(q, motion)?;
@@ -122,7 +122,7 @@ impl PyRobot {
 }
 
 impl PyRobot {
-    /// What the methods above have in common: the word, the check, the measure.
+    /// Reads the arguments of the methods above.
     fn measure_at(&self, q: &Bound<'_, PyAny>, motion: &str) -> PyResult<(Manipulability, Vec<f64>)> {
         let motion: Motion = motion.parse().map_err(raise)?;
         let q = vector("joint angles", q)?;

@@ -1,11 +1,11 @@
-//! `Robot`, its methods by what they are about.
+//! `Robot`: its methods, grouped by topic.
 
-mod chain;
+mod chain_elements;
+mod constructors;
 mod kinematics;
-mod make;
 mod manipulability;
 mod model;
-mod variants;
+mod modified_copies;
 
 pub use manipulability::PyVelocityEllipsoid;
 pub use model::PyRobot;

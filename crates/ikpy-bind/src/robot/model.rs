@@ -1,4 +1,4 @@
-//! `Robot`: what it is and what it has.
+//! `Robot`: the class and its properties.
 
 use std::sync::Arc;
 
@@ -13,20 +13,20 @@ use crate::convert::{copied, counted, row};
 use crate::error::raise;
 use crate::hash::content_hash;
 use crate::limits::PyLimits;
-use crate::stored::{self, Reduced};
+use crate::pickling::{self, Reduced};
 
-/// Link, a (3,), b (3,) and radius (m).
+/// (link, a (3,), b (3,), radius (m)).
 type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);
 
-/// A robot arm: the chain of joints from a base link to a tip link. Immutable; make one with `from_urdf`, `from_dh`,
-/// `planar` or `named`.
+/// A robot arm: the chain of joints from a base link to a tip link. Immutable; made by `from_urdf`, `from_dh`, `planar` or
+/// `named`.
 ///
-/// Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow theirs. Poses are 4x4
-/// matrices in the frame of the robot's base.
+/// Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow them. Poses are 4x4 matrices in
+/// the frame of the robot's base.
 #[pyclass(name = "Robot", module = "beetle_ik", frozen, eq)]
 pub struct PyRobot {
     pub core: Arc<Robot>,
-    /// Made when it is first asked for: most results only carry it along.
+    /// Made on first use: most results only store it.
     limits: PyOnceLock<Py<PyLimits>>,
 }
 
@@ -69,7 +69,7 @@ impl PyRobot {
         self.core.joints().iter().map(|joint| joint.name.as_str()).collect()
     }
 
-    /// "revolute", "continuous" or "prismatic" per independent joint.
+    /// Kinds of the independent joints: "revolute", "continuous" or "prismatic".
     #[getter]
     fn joint_kinds(&self) -> Vec<&'static str> {
         self.core.joints().iter().map(|joint| joint.kind.name()).collect()
@@ -81,19 +81,19 @@ impl PyRobot {
         self.core.link_names().collect()
     }
 
-    /// Lower position limits (n,) (rad, m); -inf where there is none.
+    /// Lower position limits (n,) (rad, m); -inf for none.
     #[getter]
     fn lower<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.core.joints().iter().map(|joint| joint.lower).collect())
     }
 
-    /// Upper position limits (n,) (rad, m); inf where there is none.
+    /// Upper position limits (n,) (rad, m); inf for none.
     #[getter]
     fn upper<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.core.joints().iter().map(|joint| joint.upper).collect())
     }
 
-    /// Velocity limits (n,) (rad/s, m/s); inf where unknown, 0 for a locked joint.
+    /// Velocity limits (n,) (rad/s, m/s); inf if unknown, 0 for a locked joint.
     #[getter]
     fn velocity_limit<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         row(py, self.core.joints().iter().map(|joint| joint.velocity).collect())
@@ -106,15 +106,15 @@ impl PyRobot {
         Ok(limits.clone_ref(py))
     }
 
-    /// The room that the links take up: (link, a, b, radius) each, all points within `radius` (m) of the segment from a
-    /// (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to a URDF's collision shapes.
+    /// Collision capsules of the links, each (link, a, b, radius): all points within `radius` (m) of the segment from a (3,)
+    /// to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a URDF.
     #[getter]
     fn capsules<'py>(&self, py: Python<'py>) -> Vec<Capsule<'py>> {
         let capsules = self.core.capsules().iter();
         capsules.map(|c| (c.link.clone(), copied(py, &c.a), copied(py, &c.b), c.radius)).collect()
     }
 
-    /// Of what tells most robots apart: the name, the joints with their limits, the links.
+    /// Hashes the name, the joints with their limits, and the links.
     fn __hash__(&self) -> u64 {
         content_hash(&(self.core.name(), self.core.joints(), self.core.link_names().collect::<Vec<_>>()))
     }
@@ -127,10 +127,10 @@ impl PyRobot {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        stored::restored_from::<Self>(py, (stored::bytes(py, self.core.to_bytes())?,))
+        pickling::restored_from::<Self>(py, (pickling::bytes(py, self.core.to_bytes())?,))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     fn _restore(bytes: &[u8]) -> PyResult<Self> {
         Robot::from_bytes(bytes).map(Self::from).map_err(raise)

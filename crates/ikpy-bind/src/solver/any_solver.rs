@@ -1,4 +1,4 @@
-//! The one list of solver classes, and solvers as arguments.
+//! The list of solver classes, and reading of solver arguments.
 
 use ikcore::solver::{Algorithm, AnySolver, DerivativeFree};
 use pyo3::PyClass;
@@ -16,12 +16,12 @@ use super::swarm::{PyBeeColony, PyBeetleSwarm, PyDifferentialEvolution, PyFirefl
 use crate::convert::summary;
 use crate::error::invalid;
 
-/// The one list of solver classes, by the names that the core has for what they hold.
+/// The list of solver classes, by the names of the core's variants.
 macro_rules! solvers {
     (derivative_free: $($simple:ident = $simple_class:ident),+; with_more: $($richer:ident = $richer_class:ident),+ $(;)?) => {
-        /// The names of those that need values alone, for messages.
+        /// Names of the derivative-free solvers, for messages.
         const DERIVATIVE_FREE: &[&str] = &[$(<$simple_class as PyClass>::NAME),+];
-        /// The names of those that need more.
+        /// Names of the others.
         const WITH_MORE: &[&str] = &[$(<$richer_class as PyClass>::NAME),+];
 
         pub(super) fn add_classes(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -30,7 +30,7 @@ macro_rules! solvers {
             Ok(())
         }
 
-        /// The algorithm that a Python value holds; None for anything else.
+        /// Returns the algorithm in a Python value; None for anything else.
         fn algorithm(value: &Bound<'_, PyAny>) -> Option<Algorithm> {
             $(if let Ok(solver) = value.cast::<$simple_class>() {
                 return Some(solver.get().0.clone().into());
@@ -41,7 +41,7 @@ macro_rules! solvers {
             None
         }
 
-        /// The Python value of an algorithm.
+        /// Returns an algorithm as a Python value.
         pub(super) fn to_python<'py>(py: Python<'py>, algorithm: &Algorithm) -> PyResult<Bound<'py, PyAny>> {
             Ok(match algorithm {
                 $(Algorithm::DerivativeFree(DerivativeFree::$simple(solver)) => {
@@ -60,23 +60,23 @@ solvers! {
         LevenbergMarquardt = PyLevenbergMarquardt, NewtonRaphson = PyNewtonRaphson;
 }
 
-/// A solver argument.
+/// Reads a `solver` argument.
 pub fn any_solver(solver: &Bound<'_, PyAny>) -> PyResult<AnySolver> {
     known_solver(solver).ok_or_else(|| invalid(format!("solver must be {}, got {}", solver_names(), summary(solver))))
 }
 
-/// The solver that a Python value is; None for anything else.
+/// Returns the solver in a Python value; None for anything else.
 pub fn known_solver(value: &Bound<'_, PyAny>) -> Option<AnySolver> {
     let multi_start = || value.cast::<PyMultiStart>().ok().map(|solver| AnySolver::MultiStart(solver.get().0.clone()));
     algorithm(value).map(AnySolver::Single).or_else(multi_start)
 }
 
-/// What an argument may be that takes any solver, for messages.
+/// Names of all solvers, for messages.
 pub fn solver_names() -> String {
     format!("{} or MultiStart of one of them", [DERIVATIVE_FREE, WITH_MORE].concat().join(", "))
 }
 
-/// A solver argument of a method that knows values alone.
+/// Reads the `solver` argument of a method without derivatives.
 pub fn derivative_free_solver(method: &str, solver: &Bound<'_, PyAny>) -> PyResult<AnySolver<DerivativeFree>> {
     any_solver(solver)?.into_derivative_free().ok_or_else(|| {
         let (names, got) = (DERIVATIVE_FREE.join(", "), summary(solver));

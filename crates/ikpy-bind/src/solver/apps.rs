@@ -7,18 +7,18 @@ use super::rate::number_or_auto;
 use crate::error::raise;
 use crate::options::options;
 
-/// Autonomous path planning solution (Yuan et al. 2016): descent down the gradient of the error by steps that are cut off
-/// joint by joint. No Jacobian and no inverse.
+/// Autonomous path planning solution (Yuan et al. 2016): gradient descent with a step limit for each joint. Needs no
+/// Jacobian and no inverse.
 ///
-/// The error is E of eq. (11): half the sum of squared differences between the entries of the target's matrix and the
-/// tip's (of the positions, for a position). The search may leave the limits; whole turns bring revolute joints back,
-/// eq. (12). Where they cannot, the status is `OUTSIDE_LIMITS` and the best configuration inside is returned.
+/// The error is E of eq. (11): half the sum of squared differences between the matrices of target and tip (between the
+/// positions, for a position). The search may leave the limits; whole turns bring revolute joints back, eq. (12). If they
+/// cannot, the status is `OUTSIDE_LIMITS`, and the best configuration inside the limits is returned.
 ///
 /// Args:
 ///     learning_rate: eta of eq. (13); "auto": from the curvature along the last step (Barzilai and Borwein 1988).
-///     step_limit: largest change of a joint in an iteration, eq. (20) (rad or m).
-///     error_threshold: E_0; the search ends after the first update from an E of at most this much, whether the
-///         tolerances of the call are met or not. None: it ends when they are met.
+///     step_limit: largest change of a joint per iteration, eq. (20) (rad or m).
+///     error_threshold: E_0; the search ends after the first update from an E of at most this value, even if the
+///         tolerances of the call are not met. None: it ends when they are met.
 #[pyclass(name = "APPS", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyApps(pub Apps);
@@ -38,8 +38,8 @@ impl PyApps {
         Ok(Self(solver))
     }
 
-    /// The paper's parameters, in the scale of its eq. (11): rate 0.2, step limit one degree, threshold 5e-10. Its budget
-    /// is `Stop(max_iterations=1000)`.
+    /// Returns the paper's parameters, in the scale of its eq. (11): rate 0.2, step limit one degree, threshold 5e-10. The
+    /// paper's budget is `Stop(max_iterations=1000)`.
     #[staticmethod]
     fn paper() -> Self {
         Self(Apps::paper())
@@ -50,7 +50,7 @@ options! {
     PyApps, "APPS" {
         /// eta of eq. (13), or "auto".
         learning_rate: LearningRate,
-        /// Largest change of a joint in an iteration (rad or m).
+        /// Largest change of a joint per iteration (rad or m).
         step_limit: f64,
         /// E_0, or None.
         error_threshold: Option<f64>,

@@ -1,22 +1,22 @@
 //! `BAS`.
 
-use ikcore::solver::{Bas, Variant};
+use ikcore::solver::{Bas, BasVariant};
 use pyo3::prelude::*;
 
 use crate::convert::{count, optional_count};
 use crate::error::raise;
 use crate::options::options;
 
-/// Beetle antennae search (Cheng et al. 2020, Algorithm 1): uses values of the error alone, no derivative.
+/// Beetle antennae search (Cheng et al. 2020, Algorithm 1): needs only values of the error, no derivatives.
 ///
 /// Args:
-///     variant: "star", each exploration of a pass from the same point (eq. 8-11 to the letter); "chain", from where
-///         the beetle went (the original beetle search, faster); "greedy", from the better of the two, the antennae
-///         following the error at once (fastest for small tolerances).
-///     c1: antenna length over error, eq. (12) (rad per m); None: what suits the variant (3, 1 and 3).
-///     c2: step length over antenna length, eq. (13); None: 1.
-///     explorations: per pass, the paper's n; None: what suits the variant (50, 30 and 5).
-///     max_passes: after so many it gives up; the paper would go on for ever.
+///     variant: "star": all explorations of a pass start from the same point (eq. 8-11, literally); "chain": each
+///         exploration starts where the last one ended (the original beetle search, faster); "greedy": each starts from
+///         the better of the two points, and the antennae adapt to the error at once (fastest for small tolerances).
+///     c1: ratio of antenna length to error, eq. (12) (rad per m); None: 3 for "star", 1 for "chain", 3 for "greedy".
+///     c2: ratio of step length to antenna length, eq. (13); None: 1.
+///     explorations: explorations per pass, n in the paper; None: 50 for "star", 30 for "chain", 5 for "greedy".
+///     max_passes: largest number of passes; the paper has no such bound.
 ///
 /// The error band of the paper is the tolerance of the call.
 #[pyclass(name = "BAS", module = "beetle_ik", frozen, eq, from_py_object)]
@@ -34,7 +34,7 @@ impl PyBas {
         explorations: Option<i128>,
         max_passes: i128,
     ) -> PyResult<Self> {
-        let standard = Bas::of(variant.parse::<Variant>().map_err(raise)?);
+        let standard = Bas::of(variant.parse::<BasVariant>().map_err(raise)?);
         let bas = Bas {
             c1: c1.unwrap_or(standard.c1),
             c2: c2.unwrap_or(standard.c2),
@@ -50,14 +50,14 @@ impl PyBas {
 options! {
     PyBas, "BAS" {
         /// "star", "chain" or "greedy".
-        variant: Variant,
-        /// Antenna length over error (rad per m).
+        variant: BasVariant,
+        /// Ratio of antenna length to error (rad per m).
         c1: f64,
-        /// Step length over antenna length.
+        /// Ratio of step length to antenna length.
         c2: f64,
         /// Explorations per pass.
         explorations: usize,
-        /// Passes after which it gives up.
+        /// Largest number of passes.
         max_passes: usize,
     }
 }

@@ -8,22 +8,22 @@ use crate::convert::count;
 use crate::error::raise;
 use crate::options::options;
 
-/// Antenna differences as secants: f(q + antenna) - f(q) is a column of the Jacobian, and every step made is an antenna
-/// too (Broyden 1965). It needs what the tip did, not a model.
+/// A quasi-Newton method that uses antenna differences as secants: f(q + antenna) - f(q) estimates a column of the
+/// Jacobian, and each step made is another secant (Broyden 1965). It needs measurements of the tip, not a model.
 ///
-/// As the controller of `track_model_free` it is the one to choose: the Jacobian estimate is carried along the path, and
-/// antennae are put out again where steps stop predicting. A measurement that surprises is asked for again before it is
-/// believed, so that noise and outliers of the sensor do no harm. As a solver, in `solve` and `track`, it serves
-/// where residuals are cheap and a Jacobian is not; `LevenbergMarquardt` needs fewer evaluations.
+/// It is the recommended controller for `track_model_free`: it updates its Jacobian estimate along the path, and
+/// estimates columns anew when the predictions of steps become wrong. An unexpected measurement is repeated before it is
+/// used, which makes the controller robust against noise and outliers of the sensor. As a solver, in `solve` and `track`,
+/// it suits problems with cheap residuals and no Jacobian; `LevenbergMarquardt` needs fewer evaluations.
 ///
 /// Defaults: `BroydenBAS(antenna_length=0.01, max_evaluations_per_step=20, sensor_delay=0)`.
 ///
 /// Args:
-///     antenna_length: of the controller's antennae (rad, m): well above the noise of the sensor once the arm has levered
-///         it up. A solver, without noise to be afraid of, uses 1e-6.
-///     max_evaluations_per_step: measurements after which a step of a path ends; 1: one command a tick.
-///     sensor_delay: measurements by which the plant's sensor is late: every command is sent so many times more, and the
-///         last answer counts.
+///     antenna_length: length of the controller's antennae (rad, m). The tip displacement that they cause should be well
+///         above the noise of the sensor. As a solver, without noise, it uses 1e-6.
+///     max_evaluations_per_step: measurements per step of a path; 1: one command per tick.
+///     sensor_delay: delay of the plant's sensor, in measurements. Each command is repeated this many times, and the last
+///         measurement counts.
 #[pyclass(name = "BroydenBAS", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyBroydenBas(pub BroydenBas);
@@ -47,9 +47,9 @@ options! {
     PyBroydenBas, "BroydenBAS" {
         /// Length of the controller's antennae (rad, m).
         antenna_length: f64,
-        /// Measurements after which a step ends.
+        /// Measurements per step.
         max_evaluations_per_step: usize,
-        /// Measurements by which the sensor is late.
+        /// Delay of the sensor, in measurements.
         sensor_delay: usize,
     }
 }

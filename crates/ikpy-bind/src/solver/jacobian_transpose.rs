@@ -7,12 +7,11 @@ use super::rate::number_or_auto;
 use crate::error::raise;
 use crate::options::options;
 
-/// Jacobian transpose: the steepest descent on the squared error, on the box of the limits. No inverse, so that singular
-/// configurations do no harm; many small steps instead.
+/// Jacobian transpose method: steepest descent on the squared error, inside the limits. It inverts nothing, so that singular
+/// configurations do no harm, but takes many small steps.
 ///
 /// Args:
-///     step_size: how far a step goes along the transposed Jacobian times the error; "auto": where the linearised error
-///         is smallest (Buss 2004).
+///     step_size: factor of the step J^T e; "auto": the factor that minimises the linearised error (Buss 2004).
 #[pyclass(name = "JacobianTranspose", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyJacobianTranspose(pub JacobianTranspose);
@@ -31,7 +30,7 @@ impl PyJacobianTranspose {
 
 options! {
     PyJacobianTranspose, "JacobianTranspose" {
-        /// How far a step goes, or "auto".
+        /// Factor of the step J^T e, or "auto".
         step_size: StepSize,
     }
 }

@@ -6,13 +6,13 @@ use pyo3::prelude::*;
 use crate::error::raise;
 use crate::options::options;
 
-/// Levenberg-Marquardt on the box of the limits, by the analytic Jacobian: joints at a bound are held and the step is
-/// solved again for the others.
+/// Levenberg-Marquardt with the analytic Jacobian, inside the limits: joints at a bound are held, and the step is solved
+/// again for the others.
 ///
 /// Defaults: `LevenbergMarquardt(initial_damping=0.05)`.
 ///
 /// Args:
-///     initial_damping: damping over squared error at the start; larger is more careful far from the target.
+///     initial_damping: initial ratio of damping to squared error; larger values take smaller steps far from the target.
 #[pyclass(name = "LevenbergMarquardt", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyLevenbergMarquardt(pub LevenbergMarquardt);
@@ -30,7 +30,7 @@ impl PyLevenbergMarquardt {
 
 options! {
     PyLevenbergMarquardt, "LevenbergMarquardt" {
-        /// Damping over squared error at the start.
+        /// Initial ratio of damping to squared error.
         initial_damping: f64,
     }
 }

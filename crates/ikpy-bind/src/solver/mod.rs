@@ -1,4 +1,4 @@
-//! Solvers, one family a file, budgets and statuses.
+//! Solvers, one family per file; budgets and statuses.
 
 mod any_solver;
 mod apps;

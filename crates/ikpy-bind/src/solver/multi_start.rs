@@ -10,12 +10,11 @@ use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::options::NewArguments;
 
-/// A solver begun again from random starts when it stalls, or when its attempt is hopeless: a few steps that bring
-/// little.
+/// Restarts a solver from random starts when it stalls or makes too little progress.
 ///
 /// Args:
-///     solver: any other, such as `BAS` or `LevenbergMarquardt`.
-///     max_starts: starts in all; None: as many as the evaluation budget allows.
+///     solver: any other solver, such as `BAS` or `LevenbergMarquardt`.
+///     max_starts: largest number of starts; None: as many as the evaluation budget allows.
 #[pyclass(name = "MultiStart", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyMultiStart(pub MultiStart<Algorithm>);
@@ -36,13 +35,13 @@ impl PyMultiStart {
         Ok(Self(multi_start))
     }
 
-    /// The solver that is begun again.
+    /// The solver that is restarted.
     #[getter]
     fn solver<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         to_python(py, &self.0.solver)
     }
 
-    /// Starts in all; None: as many as the evaluation budget allows.
+    /// Largest number of starts; None: as many as the evaluation budget allows.
     #[getter]
     fn max_starts(&self) -> Option<usize> {
         Some(self.0.rule.max_starts).filter(|starts| *starts != usize::MAX)

@@ -6,13 +6,13 @@ use pyo3::prelude::*;
 use crate::error::raise;
 use crate::options::options;
 
-/// Newton-Raphson by the pseudo-inverse of the Jacobian, on the box of the limits. Very quick from a start that is near
-/// enough; from others it may jump about until its budget is spent.
+/// Newton-Raphson with the pseudo-inverse of the Jacobian, inside the limits. It converges fast from a start near a
+/// solution; from others it may jump around until its budget is spent.
 ///
 /// Defaults: `NewtonRaphson(step_fraction=1.0)`.
 ///
 /// Args:
-///     step_fraction: share of the full step that is taken, above 0 and at most 1.
+///     step_fraction: fraction of the full step to take, above 0 and at most 1.
 #[pyclass(name = "NewtonRaphson", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyNewtonRaphson(pub NewtonRaphson);
@@ -30,7 +30,7 @@ impl PyNewtonRaphson {
 
 options! {
     PyNewtonRaphson, "NewtonRaphson" {
-        /// Share of the full step that is taken.
+        /// Fraction of the full step to take.
         step_fraction: f64,
     }
 }

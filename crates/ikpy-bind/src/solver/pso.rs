@@ -1,7 +1,7 @@
 //! `PSO`.
 
 use ikcore::solver::Pso;
-use ikcore::solver::pso::{Accept, Form, Walls};
+use ikcore::solver::{Acceptance, PsoForm, Walls};
 use pyo3::prelude::*;
 
 use super::schedule::{limited, schedule, scheduled, show_schedule};
@@ -9,25 +9,26 @@ use crate::error::raise;
 use crate::hash::content_hash;
 use crate::options::{NewArguments, Shown, keywords};
 
-/// Particle swarm optimisation: uses values alone.
+/// Particle swarm optimisation: needs only values.
 ///
 /// Defaults: `PSO(population=40, form='constriction', c1=2.05, c2=2.05, velocity_limit=0.5, accept='always',
 /// walls='absorbing', max_generations=None, stall_generations=50)`.
 ///
 /// Args:
-///     population: particles.
-///     form: "constriction", the whole velocity shrinks by a factor that follows from c1 + c2 > 4 (Clerc and Kennedy
-///         2002); "inertia", the old velocity has a weight (Shi and Eberhart 1998).
-///     inertia: that weight; None: 0.729. Only with form "inertia".
-///     c1: attraction to the particle's own best place; None: 2.05 with constriction, 1.49445 with inertia.
-///     c2: attraction to the swarm's best place; None: as c1's.
-///     velocity_limit: largest velocity, as a share of the box's width a generation; `inf`: none.
-///     accept: "always", a particle stays where it went (as published); "improving", it returns to its best place if that
-///         is better.
-///     walls: "absorbing", a coordinate that would leave the box stops at the wall, and has no velocity left; "random", it
-///         is drawn anew in the box, and keeps its velocity (compared by Helwig, Branke and Mostaghim 2013).
-///     max_generations: after so many it gives up; None: as many as the budget allows.
-///     stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None: never.
+///     population: number of particles.
+///     form: "constriction": a factor that follows from c1 + c2 > 4 scales the whole velocity (Clerc and Kennedy 2002);
+///         "inertia": a weight scales the old velocity (Shi and Eberhart 1998).
+///     inertia: weight of the old velocity, only with form "inertia"; None: 0.729.
+///     c1: attraction to the particle's own best point; None: 2.05 with constriction, 1.49445 with inertia.
+///     c2: attraction to the swarm's best point; None: the same default as c1.
+///     velocity_limit: largest velocity per generation, as a fraction of the box's width; `inf`: no limit.
+///     accept: "always": a particle keeps its new position (as published); "improving": it returns to its best position if
+///         that is better.
+///     walls: "absorbing": a coordinate that would leave the box stops at the wall with zero velocity; "random": it is drawn
+///         again inside the box and keeps its velocity (compared by Helwig, Branke and Mostaghim 2013).
+///     max_generations: largest number of generations; None: as many as the budget allows.
+///     stall_generations: the search ends after this many generations in a row improve the best value by less than a
+///         millionth; None: never.
 #[pyclass(name = "PSO", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyPso(pub Pso);
@@ -54,13 +55,13 @@ impl PyPso {
         max_generations: Option<i128>,
         stall_generations: Option<i128>,
     ) -> PyResult<Self> {
-        let standard = Pso::of(Form::named(form, inertia).map_err(raise)?);
+        let standard = Pso::of(PsoForm::named(form, inertia).map_err(raise)?);
         let solver = Pso {
             schedule: schedule(population, max_generations, stall_generations)?,
             c1: c1.unwrap_or(standard.c1),
             c2: c2.unwrap_or(standard.c2),
             velocity_limit,
-            accept: accept.parse::<Accept>().map_err(raise)?,
+            accept: accept.parse::<Acceptance>().map_err(raise)?,
             walls: walls.parse::<Walls>().map_err(raise)?,
             ..standard
         };
@@ -78,24 +79,24 @@ impl PyPso {
     #[getter]
     fn inertia(&self) -> Option<f64> {
         match self.0.form {
-            Form::Inertia(weight) => Some(weight),
-            Form::Constriction => None,
+            PsoForm::Inertia(weight) => Some(weight),
+            PsoForm::Constriction => None,
         }
     }
 
-    /// Attraction to the particle's own best place.
+    /// Attraction to the particle's own best point.
     #[getter]
     fn c1(&self) -> f64 {
         self.0.c1
     }
 
-    /// Attraction to the swarm's best place.
+    /// Attraction to the swarm's best point.
     #[getter]
     fn c2(&self) -> f64 {
         self.0.c2
     }
 
-    /// Largest velocity, as a share of the box's width a generation.
+    /// Largest velocity per generation, as a fraction of the box's width.
     #[getter]
     fn velocity_limit(&self) -> f64 {
         self.0.velocity_limit

@@ -1,4 +1,4 @@
-//! An option that is a number or "auto".
+//! Options that are a number or "auto".
 
 use ikcore::solver::{LearningRate, StepSize};
 use pyo3::prelude::*;
@@ -7,14 +7,14 @@ use crate::convert::summary;
 use crate::error::invalid;
 use crate::options::Shown;
 
-/// What Python shows of the option.
+/// The option as a Python value.
 #[derive(IntoPyObject)]
 pub enum Rate {
     Number(f64),
     Word(&'static str),
 }
 
-/// The options that have such values.
+/// Implements `Shown` for options with these values.
 macro_rules! rates {
     ($($option:ident),*) => {$(
         impl Shown for $option {
@@ -37,7 +37,7 @@ macro_rules! rates {
 
 rates!(LearningRate, StepSize);
 
-/// The number; None for "auto", or where nothing was given. `what` names the option in errors.
+/// Reads the number; None for "auto" or a missing argument. `what` names the option in errors.
 pub fn number_or_auto(what: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<f64>> {
     let Some(value) = value else { return Ok(None) };
     if let Ok(number) = value.extract::<f64>() {

@@ -6,12 +6,12 @@ use pyo3::PyResult;
 use crate::convert::{count, optional_count};
 use crate::options::Shown;
 
-/// None where a count is without limit.
+/// Returns None for an unlimited count.
 pub fn limited(count: usize) -> Option<usize> {
     Some(count).filter(|count| *count != usize::MAX)
 }
 
-/// The schedule of these arguments; None is without limit.
+/// Makes the schedule from the arguments; None means unlimited.
 pub fn schedule(population: i128, max_generations: Option<i128>, stall: Option<i128>) -> PyResult<Schedule> {
     Ok(Schedule {
         population: count("population", population)?,
@@ -20,30 +20,30 @@ pub fn schedule(population: i128, max_generations: Option<i128>, stall: Option<i
     })
 }
 
-/// The arguments of the schedule as Python writes them, population apart.
+/// Formats the arguments of the schedule except the population, in Python syntax.
 pub fn show_schedule(schedule: &Schedule) -> String {
     let [most, stall] = [schedule.max_generations, schedule.stall_generations].map(|count| limited(count).text());
     format!("max_generations={most}, stall_generations={stall}")
 }
 
-/// The getters of a solver that has a schedule.
+/// Defines the getters of a solver that has a schedule.
 macro_rules! scheduled {
     ($class:ident) => {
         #[pymethods]
         impl $class {
-            /// Members of a generation.
+            /// Size of a generation.
             #[getter]
             fn population(&self) -> usize {
                 self.0.schedule.population
             }
 
-            /// Generations after which it gives up; None: as many as the budget allows.
+            /// Largest number of generations; None: as many as the budget allows.
             #[getter]
             fn max_generations(&self) -> Option<usize> {
                 $crate::solver::schedule::limited(self.0.schedule.max_generations)
             }
 
-            /// Generations without gain after which it gives up; None: never.
+            /// Generations without improvement after which the search ends; None: never.
             #[getter]
             fn stall_generations(&self) -> Option<usize> {
                 $crate::solver::schedule::limited(self.0.schedule.stall_generations)

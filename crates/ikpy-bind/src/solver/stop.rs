@@ -36,7 +36,7 @@ pub fn status_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
 
 fn documentation() -> String {
     let members = Status::ALL.iter().map(|status| format!("- `{}`: {}\n", status.name(), status.meaning()));
-    let summary = "How a solve, one item of a batch or one step of a track ended. `SOLVED` alone is success.";
+    let summary = "How a solve, an item of a batch or a step of a track ended. Only `SOLVED` is success.";
     format!("{summary}\n\n{}", members.collect::<String>())
 }
 
@@ -45,28 +45,28 @@ pub fn status(py: Python<'_>, status: Status) -> PyResult<Bound<'_, PyAny>> {
     status_class(py)?.call1((status as u8,))
 }
 
-/// When to stop; whichever comes first. None leaves the default, a count of evaluations that keeps a 7-joint arm under
-/// about 10 ms.
+/// Budgets of a search, which ends when the first one is spent. Without any, the default is a number of evaluations that
+/// keeps a 7-joint arm under about 10 ms.
 ///
 /// Args:
-///     max_evaluations: evaluations of the forward kinematics, the start included.
-///     max_iterations: iterations of the solver; passes of BAS.
-///     max_time: seconds. Setting it gives up repeatability.
-///     value_below: a value that is good enough: of the function in `minimize`, where reaching it is success; elsewhere of
-///         the weighted sum of squared errors (m, rad), where a search that stops there ends as IMPROVED.
+///     max_evaluations: largest number of evaluations of the forward kinematics, including the start.
+///     max_iterations: largest number of iterations of the solver; passes of BAS.
+///     max_time: largest time (s). Results are then no longer repeatable.
+///     value_below: the search ends at a value below this one. In `minimize` it is a value of the function, and reaching it
+///         is success. Elsewhere it is a weighted sum of squared errors (m, rad), and the status is IMPROVED.
 #[pyclass(name = "Stop", module = "beetle_ik", frozen, eq)]
 #[derive(Debug, PartialEq)]
 pub struct PyStop {
-    /// See the class.
+    /// Largest number of evaluations, including the start.
     #[pyo3(get)]
     max_evaluations: Option<usize>,
-    /// See the class.
+    /// Largest number of iterations.
     #[pyo3(get)]
     max_iterations: Option<usize>,
-    /// See the class (s).
+    /// Largest time (s).
     #[pyo3(get)]
     max_time: Option<f64>,
-    /// See the class.
+    /// Value below which the search ends.
     #[pyo3(get)]
     value_below: Option<f64>,
 }
@@ -117,13 +117,13 @@ impl PyStop {
 }
 
 impl PyStop {
-    /// With the defaults filled in.
+    /// Returns the budgets with defaults filled in.
     pub fn core(&self) -> Stop {
         let standard = Stop::default();
         Stop {
             max_evaluations: match (self.max_evaluations, self.max_time) {
                 (Some(count), _) => count,
-                // Who gives a time and no count means the time.
+                // A time without a count means no limit on the count.
                 (None, Some(_)) => usize::MAX,
                 (None, None) => standard.max_evaluations,
             },

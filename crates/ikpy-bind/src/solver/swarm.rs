@@ -1,7 +1,7 @@
-//! Swarms and evolution: classes that are a population and a list of options.
+//! Swarms and evolutionary algorithms: classes of a population and options.
 
-use ikcore::solver::beetle_swarm::Direction;
-use ikcore::solver::differential_evolution::Update;
+use ikcore::solver::BeetleDirection;
+use ikcore::solver::TrialUpdate;
 use ikcore::solver::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Qpso};
 use pyo3::prelude::*;
 
@@ -10,13 +10,13 @@ use crate::error::raise;
 use crate::hash::content_hash;
 use crate::options::{NewArguments, Shown, Taken, keywords};
 
-/// The class of a solver whose options are a schedule and these.
+/// Defines the class of a solver whose options are a schedule and the listed ones.
 macro_rules! swarm {
     ($(#[$doc:meta])* $class:ident, $name:literal, $core:ident { $($(#[$note:meta])* $option:ident: $kind:ty,)* }) => {
         $(#[$doc])*
-        ///     max_generations: after so many it gives up; None: as many as the budget allows.
-        ///     stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
-        ///         never.
+        ///     max_generations: largest number of generations; None: as many as the budget allows.
+        ///     stall_generations: the search ends after this many generations in a row improve the best value by less than
+        ///         a millionth; None: never.
         #[pyclass(name = $name, module = "beetle_ik", frozen, eq, from_py_object)]
         #[derive(Debug, Clone, PartialEq)]
         pub struct $class(pub $core);
@@ -69,12 +69,12 @@ macro_rules! swarm {
 }
 
 swarm! {
-    /// Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): uses values alone.
+    /// Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): needs only values.
     ///
     /// Defaults: `QPSO(population=40, expansion=0.75, max_generations=None, stall_generations=50)`.
     ///
     /// Args:
-    ///     population: particles.
+    ///     population: number of particles.
     ///     expansion: contraction-expansion coefficient alpha; 0.75 is the fixed value of Sun et al. (2012).
     PyQpso, "QPSO", Qpso {
         /// Contraction-expansion coefficient.
@@ -83,133 +83,133 @@ swarm! {
 }
 
 swarm! {
-    /// Firefly algorithm (Yang 2009): uses values alone. Fireflies have turns to attract all that are less bright.
+    /// Firefly algorithm (Yang 2009): needs only values. In turn, each firefly attracts all less bright ones.
     ///
     /// Defaults: `Firefly(population=25, attractiveness=1.0, absorption=1.0, randomness=0.2, randomness_decay=0.97,
     /// max_generations=None, stall_generations=50)`.
     ///
     /// Args:
-    ///     population: fireflies.
-    ///     attractiveness: beta_0, at no distance.
-    ///     absorption: gamma, with distances in widths of the box.
-    ///     randomness: alpha, size of the random part, as a share of the box's width.
-    ///     randomness_decay: what alpha is multiplied by with every turn.
+    ///     population: number of fireflies.
+    ///     attractiveness: beta_0, attractiveness at distance zero.
+    ///     absorption: gamma, absorption of light, with distances in widths of the box.
+    ///     randomness: alpha, size of the random step, as a fraction of the box's width.
+    ///     randomness_decay: factor that multiplies alpha every turn.
     PyFirefly, "Firefly", Firefly {
-        /// Attractiveness at no distance.
+        /// Attractiveness at distance zero.
         attractiveness: f64,
         /// Absorption of light.
         absorption: f64,
-        /// Size of the random part at first, as a share of the box's width.
+        /// Initial size of the random step, as a fraction of the box's width.
         randomness: f64,
-        /// What it is multiplied by with every turn.
+        /// Factor that multiplies the randomness every turn.
         randomness_decay: f64,
     }
 }
 
 swarm! {
     /// Genetic algorithm with the operators of MATLAB's `ga`: elite, tournaments, scattered crossover, Gaussian mutation.
-    /// Uses values alone.
+    /// Needs only values.
     ///
     /// Defaults: `Genetic(population=50, elite_share=0.05, crossover_share=0.8, tournament=2,
     /// mutation_rate=1.0, mutation_scale=0.1, mutation_decay=0.97, max_generations=None, stall_generations=50)`.
     ///
     /// Args:
-    ///     population: members of a generation.
-    ///     elite_share: share that survives unchanged, rounded up.
-    ///     crossover_share: share of the others that is born by crossover; the rest by mutation.
-    ///     tournament: members of a tournament, the best of which becomes a parent.
-    ///     mutation_rate: probability that a coordinate of a mutant moves, one in any case; 1 moves all, as MATLAB does.
-    ///     mutation_scale: standard deviation of mutations at first, as a share of the box's width.
-    ///     mutation_decay: what it is multiplied by in a generation.
+    ///     population: size of a generation.
+    ///     elite_share: fraction that survives unchanged, rounded up.
+    ///     crossover_share: fraction of the others produced by crossover; the rest is produced by mutation.
+    ///     tournament: size of a tournament; its best member becomes a parent.
+    ///     mutation_rate: probability that a coordinate of a mutant changes; at least one does. 1 changes all, as in MATLAB.
+    ///     mutation_scale: initial standard deviation of mutations, as a fraction of the box's width.
+    ///     mutation_decay: factor that multiplies the standard deviation every generation.
     PyGenetic, "Genetic", Genetic {
-        /// Share that survives unchanged.
+        /// Fraction that survives unchanged.
         elite_share: f64,
-        /// Share of the others that is born by crossover.
+        /// Fraction of the others produced by crossover.
         crossover_share: f64,
-        /// Members of a tournament.
+        /// Size of a tournament.
         tournament: usize,
-        /// Probability that a coordinate of a mutant moves.
+        /// Probability that a coordinate of a mutant changes.
         mutation_rate: f64,
-        /// Standard deviation of mutations at first, as a share of the box's width.
+        /// Initial standard deviation of mutations, as a fraction of the box's width.
         mutation_scale: f64,
-        /// What it is multiplied by in a generation.
+        /// Factor that multiplies the standard deviation every generation.
         mutation_decay: f64,
     }
 }
 
 swarm! {
-    /// Artificial bee colony (Karaboga 2005): uses values alone.
+    /// Artificial bee colony (Karaboga 2005): needs only values.
     ///
     /// Defaults: `BeeColony(population=20, limit=None, max_generations=None, stall_generations=50)`.
     ///
     /// Args:
-    ///     population: food sources; there are as many employed bees, and as many onlookers.
-    ///     limit: trials in vain after which a source is abandoned; None: sources times dimensions.
+    ///     population: number of food sources, of employed bees and of onlookers.
+    ///     limit: unsuccessful trials after which a source is abandoned; None: sources times dimensions.
     PyBeeColony, "BeeColony", BeeColony {
-        /// Trials in vain after which a source is abandoned; None: sources times dimensions.
+        /// Unsuccessful trials after which a source is abandoned; None: sources times dimensions.
         limit: Option<usize>,
     }
 }
 
 swarm! {
-    /// Beetle swarm optimisation (Wang et al. 2019, eq. 26-32), particles with antennae: uses values alone. The equations
-    /// need an inertia weight and a limit on velocities to converge; with inertia=1 and velocity_limit=1 they are literal.
+    /// Beetle swarm optimisation (Wang et al. 2019, eq. 26-32), particles with antennae: needs only values. The equations
+    /// converge only with an inertia weight and a velocity limit; inertia=1 and velocity_limit=1 give them literally.
     ///
     /// Defaults: `BeetleSwarm(population=50, inertia=0.729, c1=1.494, c2=1.494, velocity_limit=0.2, velocity_share=0.9,
     /// step=1.0, step_decay=0.97, step_over_antennae=5.0, direction='printed', max_generations=None,
     /// stall_generations=50)`.
     ///
     /// Args:
-    ///     population: beetles; each takes three evaluations a generation.
+    ///     population: number of beetles; each needs three evaluations per generation.
     ///     inertia: weight of the old velocity.
-    ///     c1: attraction to the beetle's own best place, eq. (27).
-    ///     c2: attraction to the swarm's best place.
-    ///     velocity_limit: largest velocity, as a share of the box's width a generation.
-    ///     velocity_share: lambda of eq. (26), the share of the velocity in a move.
-    ///     step: delta at first, eq. (28).
-    ///     step_decay: eta of eq. (32).
-    ///     step_over_antennae: c of eq. (31).
+    ///     c1: attraction to the beetle's own best point, eq. (27).
+    ///     c2: attraction to the swarm's best point.
+    ///     velocity_limit: largest velocity per generation, as a fraction of the box's width.
+    ///     velocity_share: lambda of eq. (26), the fraction of the velocity in a move.
+    ///     step: initial delta, eq. (28).
+    ///     step_decay: eta of eq. (32), factor that multiplies delta every generation.
+    ///     step_over_antennae: c of eq. (31), ratio of delta to the distance between the antennae.
     ///     direction: the sign of eq. (28), as "printed" or "downhill".
     PyBeetleSwarm, "BeetleSwarm", BeetleSwarm {
         /// Weight of the old velocity.
         inertia: f64,
-        /// Attraction to the beetle's own best place.
+        /// Attraction to the beetle's own best point.
         c1: f64,
-        /// Attraction to the swarm's best place.
+        /// Attraction to the swarm's best point.
         c2: f64,
-        /// Largest velocity, as a share of the box's width.
+        /// Largest velocity, as a fraction of the box's width.
         velocity_limit: f64,
-        /// Share of the velocity in a move.
+        /// Fraction of the velocity in a move.
         velocity_share: f64,
-        /// delta at first.
+        /// Initial delta.
         step: f64,
-        /// What delta is multiplied by in a generation.
+        /// Factor that multiplies delta every generation.
         step_decay: f64,
-        /// delta over the distance of the antennae.
+        /// Ratio of delta to the distance between the antennae.
         step_over_antennae: f64,
         /// "printed" or "downhill".
-        direction: Direction,
+        direction: BeetleDirection,
     }
 }
 
 swarm! {
-    /// Differential evolution, DE/rand/1/bin (Storn and Price 1997): uses values alone.
+    /// Differential evolution, DE/rand/1/bin (Storn and Price 1997): needs only values.
     ///
     /// Defaults: `DifferentialEvolution(population=50, weight=0.5, crossover_rate=0.9,
     /// update='generation', max_generations=None, stall_generations=50)`.
     ///
     /// Args:
-    ///     population: vectors.
+    ///     population: number of vectors.
     ///     weight: F, weight of the difference of two vectors.
     ///     crossover_rate: CR, probability that a coordinate comes from the mutant.
-    ///     update: "generation", better trials take their vectors' places after all of them, evaluated together (as
-    ///         published); "immediate", at once: fewer evaluations, but one by one.
+    ///     update: "generation": better trials replace their vectors after the whole generation, which is evaluated together
+    ///         (as published); "immediate": at once, which needs fewer evaluations, but one by one.
     PyDifferentialEvolution, "DifferentialEvolution", DifferentialEvolution {
         /// Weight of the difference of two vectors.
         weight: f64,
         /// Probability that a coordinate comes from the mutant.
         crossover_rate: f64,
         /// "generation" or "immediate".
-        update: Update,
+        update: TrialUpdate,
     }
 }

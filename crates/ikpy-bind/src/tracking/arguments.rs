@@ -1,4 +1,4 @@
-//! What `track` and `Tracker` are asked: each argument is read here, for both of them.
+//! Reading of the arguments that `track` and `Tracker` share.
 
 use ikcore::limits::{LimitAt, Limits};
 use ikcore::task::Tolerance;

@@ -1,10 +1,10 @@
-//! `ControlSession`, and controllers as arguments.
+//! `ControlSession`, and reading of controller arguments.
 
 use std::sync::Mutex;
 
-use ikcore::solver::stop::Stopwatch;
+use ikcore::solver::Stopwatch;
+use ikcore::tracking::ControlSession;
 use ikcore::tracking::Controller;
-use ikcore::tracking::controller::Session;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -16,37 +16,37 @@ use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::solver::PyBroydenBas;
 
-/// A controller in your own loop, with your own hardware.
+/// A model-free controller for your own loop and hardware.
 ///
 ///     session = bik.BroydenBAS(max_evaluations_per_step=1).session(q0, dt=0.01, limits=limits)
 ///     while session.time < path.duration:
 ///         q = session.command(path.position(session.time + session.dt))
 ///         session.observe(measure_tip_after(q))
 ///
-/// The first command is the start itself: it only tells where the tip is, and time stands still. From then on a tick is over,
-/// and time advances by dt, when the controller has no more to ask: after every measurement for `ZNNBAS`, for
-/// `BroydenBAS` once it is in its band or has made max_evaluations_per_step.
+/// The first command is the start itself: it measures where the tip is and does not advance the time. After that, a tick
+/// ends, and the time advances by dt, when the controller needs no further measurement: for `ZNNBAS` after each one, for
+/// `BroydenBAS` when the error is in its band or max_evaluations_per_step are made.
 #[pyclass(name = "ControlSession", module = "beetle_ik", frozen)]
 pub struct PyControlSession {
-    session: Mutex<Session>,
+    session: Mutex<ControlSession>,
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
 
-in_progress!(PyControlSession, Session);
+in_progress!(PyControlSession, ControlSession);
 
 #[pymethods]
 impl PyControlSession {
-    /// Where to send the arm (n,) (rad, m), so that its tip comes to `target` (3,) (m) by the end of the tick. Within the
-    /// limits, and within what the velocity limits let the configuration accepted last reach.
+    /// Returns the next command (n,) (rad, m), which moves the tip towards `target` (3,) (m) for the end of the tick. It is
+    /// inside the limits, and the velocity limits allow it from the last accepted configuration.
     fn command<'py>(&self, py: Python<'py>, target: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let target = point("target", target)?;
         Ok(copied(py, self.session().command(target).map_err(raise)?))
     }
 
-    /// The tip was at `position` (3,) (m) at the last command. Returns what became of the tick, a `Step`; None while it
-    /// goes on.
+    /// Takes the `position` (3,) (m) of the tip measured at the last command. Returns a `Step` if the tick has ended, else
+    /// None.
     fn observe(&self, py: Python<'_>, position: &Bound<'_, PyAny>) -> PyResult<Option<PyStep>> {
         let position = point("position", position)?;
         let (watch, mut session) = (Stopwatch::start(), self.session());
@@ -77,12 +77,12 @@ impl PyControlSession {
         let start = vector("start", start)?;
         limits.map_or(Ok(()), |limits| limits.require_no_functions("session", "track_model_free"))?;
         let (in_force, limits) = limits_without_robot(py, limits, start.len(), &Sampling::once())?;
-        let session = Session::new(controller, &start, dt, limits, position_tolerance, count("seed", seed)?);
+        let session = ControlSession::new(controller, &start, dt, limits, position_tolerance, count("seed", seed)?);
         Ok(Self { session: Mutex::new(session.map_err(raise)?), limits: in_force })
     }
 }
 
-/// A controller argument.
+/// Reads a `controller` argument.
 pub fn controller(controller: Option<&Bound<'_, PyAny>>) -> PyResult<Controller> {
     let Some(controller) = controller else { return Ok(Controller::default()) };
     if let Ok(broyden) = controller.cast::<PyBroydenBas>() {
@@ -94,12 +94,12 @@ pub fn controller(controller: Option<&Bound<'_, PyAny>>) -> PyResult<Controller>
     Err(invalid(format!("controller must be BroydenBAS or ZNNBAS, got {}", summary(controller))))
 }
 
-/// The method `session` of a controller's class.
+/// Defines the method `session` of a controller's class.
 macro_rules! session {
     ($class:ty) => {
         #[pymethods]
         impl $class {
-            /// The controller at work in your own loop, from `start` (n,) and t = 0: see `ControlSession`.
+            /// Starts a `ControlSession` at `start` (n,) and t = 0, for your own loop.
             #[pyo3(signature = (start, *, dt, limits=None, position_tolerance=1e-9, seed=0))]
             fn session(
                 &self,

@@ -1,4 +1,4 @@
-//! Following a path: with a robot's model, and without one.
+//! Tracking of a path, with a model of the robot and without.
 
 mod arguments;
 mod control;

@@ -15,17 +15,17 @@ use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::monitor::{Watcher, attended};
 use crate::outcome::outcome;
 use crate::path::PyPath;
-use crate::stored::{self, Reduced};
-use crate::upward;
+use crate::pickling::{self, Reduced};
+use crate::python_calls;
 
-/// The record of a track without a model: k rows, row 0 the start at t = 0, row i the tick that ends at t_i = i dt; fewer than
-/// the path has where the plant failed.
+/// The record of a track without a model, k rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt. If the
+/// plant fails, the record ends there.
 #[pyclass(name = "ModelFreeResult", module = "beetle_ik", frozen)]
 pub struct PyModelFreeResult {
     core: ModelFreeRecord,
     columns: Columns,
-    /// The command at which each row's position was measured (k, n) (rad, m): q itself for `BroydenBAS`, an antenna away
-    /// from it for `ZNNBAS`.
+    /// Commands at which the positions were measured (k, n) (rad, m): equal to q for `BroydenBAS`, one antenna away from it
+    /// for `ZNNBAS`.
     #[pyo3(get)]
     command: Py<PyArrayDyn<f64>>,
     /// The limits in force.
@@ -36,9 +36,9 @@ pub struct PyModelFreeResult {
 
 record! {
     PyModelFreeResult = |result| result.core.track,
-    /// Configurations that the controller accepted (k, n) (rad, m).
+    /// Configurations accepted by the controller (k, n) (rad, m).
     q,
-    /// Positions of the tip as measured (k, 3) (m).
+    /// Measured positions of the tip (k, 3) (m).
     position,
     /// Measurements of the plant in each step (k,).
     step_evaluations,
@@ -48,13 +48,13 @@ record! {
 
 outcome! {
     PyModelFreeResult = |result|
-    /// Whether the tip came into the error band and stayed there.
+    /// Whether the tip reached the error band and stayed there.
     success,
-    /// SOLVED as `success`; LOST if the tip left its band again; PLANT_FAILED where the plant ended the run; else how the last
-    /// step ended.
+    /// SOLVED on `success`; LOST if the tip left its band again; PLANT_FAILED if the plant failed; otherwise the status of the
+    /// last step.
     status: result.core.track.status,
     message: result.core.message(),
-    /// Measurements of the plant in all.
+    /// Total number of measurements.
     evaluations: result.core.track.evaluations(),
     elapsed: result.core.track.elapsed,
 }
@@ -67,15 +67,15 @@ impl PyModelFreeResult {
         self.core.settled_error()
     }
 
-    /// What the plant raised, if it did.
+    /// The exception that the plant raised, or None.
     #[getter]
     fn exception<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyAny>> {
         self.exception.as_ref().map(|error| error.value(py).clone().into_any())
     }
 
-    /// A matplotlib figure: the tip's path, the error, joint angles, measurements.
+    /// Draws the path of the tip, the error, the joint positions and the measurements; returns a matplotlib figure.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        upward::plot(slf.into_any(), "model_free")
+        python_calls::plot(slf.into_any(), "model_free")
     }
 
     fn __repr__(&self) -> String {
@@ -83,13 +83,13 @@ impl PyModelFreeResult {
         format!("<ModelFreeResult {}: {} rows, {}>", track.status.name(), track.rows(), self.core.message())
     }
 
-    /// What the plant raised goes along as far as it pickles itself.
+    /// Keeps the exception of the plant if it can be pickled.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("track without a model", &self.core))?;
-        stored::restored_from::<Self>(py, (core, self.limits.clone_ref(py), self.exception(py)))
+        let core = pickling::bytes(py, to_bytes("track without a model", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, self.limits.clone_ref(py), self.exception(py)))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     #[pyo3(signature = (bytes, limits, exception))]
     fn _restore(
@@ -111,28 +111,28 @@ impl PyModelFreeResult {
     }
 }
 
-/// Follows `path` with whatever `plant` moves, knowing nothing of it but what it returns.
+/// Follows a path without a model: the controller commands joint positions and measures the tip.
 ///
 /// Args:
-///     plant: a callable q (n,) -> position of the tip (3,) (m), an object with move(q) that returns one, or a
-///         `KinematicPlant`, which needs no Python in the loop. One that raises, or returns what is no position, ends
-///         the run with what was recorded (at the very start, where nothing was: its exception comes out).
-///     path: positions over time.
+///     plant: a callable that takes q (n,) and returns the tip position (3,) (m); an object with such a method `move`; or a
+///         `KinematicPlant`, which runs without Python in the loop. If the plant raises an exception or returns anything
+///         else, the run ends with the record so far; on the first measurement, the exception propagates.
+///     path: reference positions over time.
 ///     start: (n,), configuration at t = 0 (rad, m).
-///     dt: time step (s). Where it does not divide the path's duration, the last step ends after it, at its end.
-///     controller: `BroydenBAS` (None) or `ZNNBAS`.
-///     limits: lower, upper and velocity, kept by every command, probes included: all commands of a step lie within reach of
-///         the configuration accepted at its start. Fields left None do not limit: there is no robot whose they could be.
-///     position_tolerance: the error band (m).
-///     seed: of the controller's random draws: the same seed, the same bits.
-///     progress: True for a bar on the terminal, or a callable of (done, total).
+///     dt: time step (s). If it does not divide the path's duration, the last step ends after it, at the path's end.
+///     controller: `BroydenBAS` or `ZNNBAS`; None: `BroydenBAS()`.
+///     limits: lower, upper and velocity limits, kept by all commands, including probes: each is reachable from the
+///         configuration accepted at the start of its step. None means unlimited.
+///     position_tolerance: error band (m).
+///     seed: seed of the controller's random draws; the same seed gives the same bits.
+///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
 /// Returns:
-///     A `ModelFreeResult`. A path that cannot be followed is a status, not an error.
+///     A `ModelFreeResult`. If the path cannot be followed, its status says why; that is not an error.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, dt not positive, a delay longer than the run.
-///     LimitError: a start outside the limits, a limit below zero.
+///     InvalidInputError: wrong shape, NaN, a time step that is not positive, or a delay longer than the run.
+///     LimitError: a start outside the limits, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, which no controller keeps.
 #[pyfunction]
 #[pyo3(signature = (plant, path, start, *, dt, controller=None, limits=None, position_tolerance=1e-9, seed=0, progress=None))]
@@ -163,7 +163,7 @@ pub fn track_model_free(
     PyModelFreeResult::new(py, core, in_force, exception)
 }
 
-/// The record, and what a plant of Python's raised. The interpreter is kept where the plant needs it.
+/// Returns the record, and the exception of a Python plant. Releases the interpreter unless the plant needs it.
 fn run(
     plant: &Bound<'_, PyAny>,
     reference: &Reference,
@@ -183,7 +183,7 @@ fn run(
     }
     match record {
         Ok(record) => Ok((record, plant.exception)),
-        // Nothing was recorded: what the plant raised says more than we could.
+        // Nothing was recorded: the plant's own exception is the best message.
         Err(error) => Err(plant.exception.unwrap_or_else(|| raise(error))),
     }
 }

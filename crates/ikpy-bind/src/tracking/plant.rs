@@ -1,4 +1,4 @@
-//! `KinematicPlant`, and plants that are Python's.
+//! `KinematicPlant`, and plants written in Python.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -15,21 +15,21 @@ use crate::hash::content_hash;
 use crate::options::NewArguments;
 use crate::robot::PyRobot;
 
-/// A robot that goes at once where it is sent, with a sensor at its tip; it runs without Python in the loop. Give it
-/// another robot than the one you have in mind, such as `robot.with_errors(...)`, and it is an arm with a wrong model.
+/// A simulated arm that executes commands exactly, with a sensor at its tip; it runs without Python in the loop. To simulate
+/// an arm whose model is wrong, pass a modified robot, such as `robot.with_errors(...)`.
 ///
 /// Args:
-///     robot: what moves.
+///     robot: the arm as built.
 ///     noise: standard deviation of the sensor on each axis (m).
-///     seed: of the noise. Every run of `track_model_free` begins the noise anew.
+///     seed: seed of the noise. Each run of `track_model_free` restarts the noise.
 #[pyclass(name = "KinematicPlant", module = "beetle_ik", frozen)]
 pub struct PyKinematicPlant {
-    /// What moves.
+    /// The arm as built.
     #[pyo3(get)]
     robot: Py<PyRobot>,
     seed: u64,
     core: KinematicPlant,
-    /// The same, for `move`, whose noise goes on from call to call.
+    /// A copy for `move`, whose noise continues from call to call.
     moving: Mutex<KinematicPlant>,
 }
 
@@ -55,7 +55,7 @@ impl PyKinematicPlant {
         self.seed
     }
 
-    /// Sends the arm to q (n,) (rad, m), and returns the measured position of its tip (3,) (m).
+    /// Moves the arm to q (n,) (rad, m), and returns the measured position of its tip (3,) (m).
     #[pyo3(name = "move")]
     fn move_to<'py>(&self, py: Python<'py>, q: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let q = vector("q", q)?;
@@ -89,21 +89,21 @@ impl PyKinematicPlant {
 }
 
 impl PyKinematicPlant {
-    /// A plant at the beginning of its noise; err unless it has `n` joints.
+    /// Returns a plant at the start of its noise; an error unless `start` fits its robot.
     pub fn fresh(&self, start: &[f64]) -> PyResult<KinematicPlant> {
         self.core.robot().check("start", start).map_err(raise)?;
         Ok(self.core.clone())
     }
 }
 
-/// A callable of q, with what it raised.
+/// A callable of q, and the exception that it raised.
 pub struct PythonPlant<'py> {
     call: Bound<'py, PyAny>,
     pub exception: Option<PyErr>,
 }
 
 impl<'py> PythonPlant<'py> {
-    /// A callable, or the `move` of an object that has one.
+    /// Takes a callable, or the method `move` of an object.
     pub fn new(plant: &Bound<'py, PyAny>) -> PyResult<Self> {
         let call = match plant.getattr_opt(intern!(plant.py(), "move"))? {
             Some(method) if method.is_callable() => method,
@@ -118,14 +118,14 @@ impl<'py> PythonPlant<'py> {
         Ok(Self { call, exception: None })
     }
 
-    /// Ends the run: by itself where this is an error, at once where it is Ctrl-C or an exit.
+    /// Stores the exception and ends the run.
     fn failed(&mut self, error: PyErr) -> Fault {
         let fault = Fault(format!("raised {error}"));
         self.exception = Some(error);
         fault
     }
 
-    /// What the plant raised, if that is no error but Ctrl-C or an exit.
+    /// Takes the exception if it is Ctrl-C or an exit, not an error.
     pub fn take_interrupt(&mut self) -> Option<PyErr> {
         let py = self.call.py();
         self.exception.take_if(|error| !error.is_instance_of::<PyException>(py))
@@ -143,7 +143,7 @@ impl Plant for PythonPlant<'_> {
     }
 }
 
-/// Three numbers; quick for what plants mostly return.
+/// Reads three numbers, with fast paths for tuples and lists.
 fn position(answer: &Bound<'_, PyAny>) -> Result<[f64; 3], Fault> {
     if let Ok(tuple) = answer.cast_exact::<PyTuple>()
         && let Ok((x, y, z)) = tuple.extract()

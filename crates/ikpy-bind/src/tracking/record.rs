@@ -1,4 +1,4 @@
-//! What the records of a track have in common, with a model of the arm and without.
+//! The common part of tracking records, with a model and without.
 
 use ikcore::tracking::Record;
 use numpy::{PyArray1, PyArrayDyn};
@@ -75,27 +75,27 @@ macro_rules! record {
                 self.columns.position.bind(py)
             }
 
-            /// Wanted positions (k, 3) (m).
+            /// Reference positions (k, 3) (m).
             #[getter]
             fn reference<'py>(&self, py: Python<'py>) -> &Bound<'py, PyArrayDyn<f64>> {
                 self.columns.reference.bind(py)
             }
 
-            /// Distances between the two (k,) (m).
+            /// Distances between tip and reference (k,) (m).
             #[getter]
             fn position_error<'py>(&self, py: Python<'py>) -> &Bound<'py, PyArray1<f64>> {
                 self.columns.position_error.bind(py)
             }
 
-            /// The error band (m), as asked.
+            /// The error band (m).
             #[getter]
             fn position_tolerance(&self) -> f64 {
                 let $result = self;
                 $record.criterion.tolerance.position
             }
 
-            /// How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED
-            /// neither.
+            /// Status of each step (k,), values of `Status`: SOLVED inside the band, IMPROVED nearer than in the previous step,
+            /// otherwise CAPPED.
             #[getter]
             fn step_status<'py>(&self, py: Python<'py>) -> &Bound<'py, PyArray1<u8>> {
                 self.columns.step_status.bind(py)

@@ -1,4 +1,4 @@
-//! What loops in progress have in common, with a model of the arm and without.
+//! The common part of `Tracker` and `ControlSession`.
 
 /// Access to the session of a class that has one, and the getters `q`, `time` and `dt`.
 macro_rules! in_progress {
@@ -12,13 +12,13 @@ macro_rules! in_progress {
 
         #[pymethods]
         impl $class {
-            /// The configuration accepted last (n,) (rad, m).
+            /// The last accepted configuration (n,) (rad, m).
             #[getter]
             fn q<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
                 $crate::convert::copied(py, self.session().q())
             }
 
-            /// Time of that configuration (s).
+            /// Time of the last accepted configuration (s).
             #[getter]
             fn time(&self) -> f64 {
                 self.session().time()

@@ -11,16 +11,16 @@ use crate::convert::row;
 use crate::error::raise;
 use crate::limits::PyLimits;
 use crate::outcome::outcome;
-use crate::stored::{self, Reduced};
+use crate::pickling::{self, Reduced};
 
-/// What became of one step of a `Tracker` or a `ControlSession`.
+/// The result of one step of a `Tracker` or a `ControlSession`.
 #[pyclass(name = "Step", module = "beetle_ik", frozen)]
 pub struct PyStep {
     core: Step,
     /// The configuration to command (n,) (rad, m).
     #[pyo3(get)]
     q: Py<PyArray1<f64>>,
-    /// The velocity that leads there (n,) (rad/s, m/s).
+    /// The joint velocity over the step (n,) (rad/s, m/s).
     #[pyo3(get)]
     qd: Py<PyArray1<f64>>,
     /// The limits in force.
@@ -33,7 +33,7 @@ outcome! {
     PyStep = |result|
     /// Whether the tip is within the tolerances.
     success,
-    /// SOLVED within the tolerances, IMPROVED nearer than the step before, CAPPED neither.
+    /// SOLVED within the tolerances, IMPROVED nearer than in the previous step, otherwise CAPPED.
     status: result.core.status,
     message: result.core.message(),
     /// Evaluations of the forward kinematics.
@@ -49,13 +49,13 @@ impl PyStep {
         self.core.error.position
     }
 
-    /// Geodesic angle to the target's orientation (rad); NaN where none was asked for.
+    /// Geodesic angle to the target's orientation (rad); NaN if the task leaves the orientation free.
     #[getter]
     fn rotation_error(&self) -> f64 {
         self.core.error.rotation
     }
 
-    /// False where a joint cannot be brought within its position limits in this step.
+    /// False if a joint cannot return to its position limits within this step.
     #[getter]
     fn inside_limits(&self) -> bool {
         self.core.inside_limits
@@ -67,10 +67,10 @@ impl PyStep {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
         let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed);
-        stored::restored_from::<Self>(py, (stored::bytes(py, to_bytes("step", &state))?, &self.limits))
+        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("step", &state))?, &self.limits))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>) -> PyResult<Self> {
         let (core, q, qd, elapsed): (_, Vec<f64>, Vec<f64>, _) = from_bytes("step", bytes).map_err(raise)?;
@@ -79,7 +79,7 @@ impl PyStep {
 }
 
 impl PyStep {
-    /// `motion`: the configuration to command and the velocity that leads there.
+    /// `motion`: the configuration to command and the joint velocity over the step.
     pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
         let [q, qd] = motion.map(|values| row(py, values).unbind());
         Self { core, q, qd, limits, elapsed }

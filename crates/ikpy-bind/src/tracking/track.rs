@@ -14,26 +14,26 @@ use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::outcome::outcome;
 use crate::path::PyPath;
+use crate::pickling::{self, Reduced};
+use crate::python_calls;
 use crate::robot::PyRobot;
-use crate::stored::{self, Reduced};
 use crate::trajectory::PyTrajectory;
-use crate::upward;
 
-/// The record of a track: k = steps + 1 rows; row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
+/// The record of a track, k = steps + 1 rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
 #[pyclass(name = "TrackResult", module = "beetle_ik", frozen)]
 pub struct PyTrackResult {
     core: Record,
     columns: Columns,
-    /// The limit that each velocity was held against (k, n); NaN in row 0, inf where there is none.
+    /// Velocity limits in force in each tick (k, n); NaN in row 0, inf for none.
     #[pyo3(get)]
     velocity_limit: Py<PyArrayDyn<f64>>,
-    /// Angles to the wanted orientations (k,) (rad); NaN where none was asked for.
+    /// Angles to the reference orientations (k,) (rad); NaN if the task leaves the orientation free.
     #[pyo3(get)]
     rotation_error: Py<PyArray1<f64>>,
     /// Iterations in each step (k,): passes of BAS, steps of Levenberg-Marquardt.
     #[pyo3(get)]
     step_iterations: Py<PyArray1<i64>>,
-    /// The robot that was tracked.
+    /// The robot.
     #[pyo3(get)]
     robot: Py<PyRobot>,
     /// The limits in force.
@@ -49,38 +49,38 @@ record! {
     position,
     /// Evaluations of the forward kinematics in each step (k,).
     step_evaluations,
-    /// Largest excess of a displacement over its limit times dt, or of a position over its limit (rad, m); 0 within
+    /// Largest excess of a displacement over velocity limit times dt, or of a position over its limit (rad, m); 0 within
     /// rounding.
     max_violation,
 }
 
 outcome! {
     PyTrackResult = |result|
-    /// Whether the tip came into the error band and stayed there.
+    /// Whether the tip reached the error band and stayed there.
     success,
-    /// SOLVED as `success`; LOST if the tip left its band again; else how the last step ended.
+    /// SOLVED on `success`; LOST if the tip left its band again; otherwise the status of the last step.
     status: result.core.status,
     message: result.core.message(),
-    /// Evaluations of the forward kinematics in all.
+    /// Total number of evaluations of the forward kinematics.
     evaluations: result.core.evaluations(),
     elapsed: result.core.elapsed,
 }
 
 #[pymethods]
 impl PyTrackResult {
-    /// The error band of orientations (rad), as asked.
+    /// The error band of orientations (rad).
     #[getter]
     fn rotation_tolerance(&self) -> f64 {
         self.core.criterion.tolerance.rotation
     }
 
-    /// Smallest distance of a speed from its limit (rad/s, m/s); inf without limits.
+    /// Smallest margin between a joint speed and its limit (rad/s, m/s); inf without limits.
     #[getter]
     fn limit_margin(&self) -> f64 {
         self.core.limit_margin
     }
 
-    /// The joint motion, straight between the ticks: its velocities are exactly `qd`.
+    /// The joint trajectory, linear between the ticks: its velocities are exactly `qd`.
     #[getter]
     fn trajectory(&self) -> PyResult<PyTrajectory> {
         let names = self.robot.get().core.joints().iter().map(|joint| joint.name.clone()).collect();
@@ -89,9 +89,10 @@ impl PyTrackResult {
             .map_err(raise)
     }
 
-    /// A matplotlib figure: the tip's path, the error, joint angles, velocities with their limits, evaluations.
+    /// Draws the path of the tip, the errors, joint positions, velocities with their limits, and evaluations; returns a
+    /// matplotlib figure.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        upward::plot(slf.into_any(), "track")
+        python_calls::plot(slf.into_any(), "track")
     }
 
     fn __repr__(&self) -> String {
@@ -99,11 +100,11 @@ impl PyTrackResult {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = stored::bytes(py, to_bytes("track", &self.core))?;
-        stored::restored_from::<Self>(py, (core, self.robot.clone_ref(py), self.limits.clone_ref(py)))
+        let core = pickling::bytes(py, to_bytes("track", &self.core))?;
+        pickling::restored_from::<Self>(py, (core, self.robot.clone_ref(py), self.limits.clone_ref(py)))
     }
 
-    /// What pickle stored.
+    /// Restores a pickled value.
     #[staticmethod]
     fn _restore(py: Python<'_>, bytes: &[u8], robot: Py<PyRobot>, limits: Py<PyLimits>) -> PyResult<Self> {
         Self::new(py, from_bytes("track", bytes).map_err(raise)?, robot, limits)
@@ -124,36 +125,37 @@ impl PyTrackResult {
     }
 }
 
-/// Follows `path` with the tip of `robot`, tick by tick, inside the limits.
+/// Follows a path with the tip of the robot, tick by tick, inside the limits.
 ///
-/// In every tick the joints may move within the position limits and within what the velocity limits let the last
-/// accepted configuration reach, so that neither can be broken (Cheng et al. 2020, Algorithm 1). Acceleration limits narrow
-/// that further, with room left to brake before position limits; the arm starts at rest.
+/// In each tick the joints stay in a box: the position limits, and the range that the velocity limits allow from the last
+/// accepted configuration. So neither limit can be violated (Cheng et al. 2020, Algorithm 1). Acceleration limits reduce the
+/// box further, so that joints can still brake before their position limits; the arm starts at rest.
 ///
 /// Args:
 ///     robot: the arm.
-///     path: positions or poses over time.
-///     start: (n,), configuration at t = 0; None solves for the path's first point, for the configuration that is best for
-///         the goals or, without goals, far from singularities and limits.
+///     path: reference positions or poses over time.
+///     start: (n,), configuration at t = 0; None: a solution for the first point of the path, the best one for the goals
+///         or, without goals, one far from singularities and limits.
 ///     dt: time step (s).
-///     task: of `tasks`, what of the path matters; None: all that it says.
-///     solver: what runs in every tick: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule, which
-///         needs one or two evaluations a step.
-///     limits: None: the robot's.
-///     goals: of `goals`, one or several: in every tick the freedom that the task leaves goes down their gradient by weight times
-///         dt. They need the library's own rule, or `WeightedPseudoInverse`.
-///     position_tolerance: the error band (m).
-///     rotation_tolerance: the same for orientations (rad).
-///     seed: of the random draws: the same seed, the same bits.
-///     limit_at: a tick's velocity limit is its smallest over the "interval", or, as in the paper, that at its "start".
-///     progress: True for a bar on the terminal, or a callable of (done, total).
+///     task: which part of the path counts, one of `tasks`; None: all of it.
+///     solver: a solver or `WeightedPseudoInverse`, which runs in each tick; None: the model-based rule, which needs one or
+///         two evaluations per step.
+///     limits: limits on the joint motion; None: the robot's.
+///     goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
+///         dt. They need the model-based rule or `WeightedPseudoInverse`.
+///     position_tolerance: error band of positions (m).
+///     rotation_tolerance: error band of orientations (rad).
+///     seed: seed of the random draws; the same seed gives the same bits.
+///     limit_at: which velocity limit holds in a tick: the smallest over its "interval", or, as in the paper, the one at its
+///         "start".
+///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
 /// Returns:
-///     A `TrackResult`. A path that cannot be followed is a status, not an error.
+///     A `TrackResult`. If the path cannot be followed, its status says why; that is not an error.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, dt not positive.
-///     LimitError: a start outside its limits, a limit below zero.
+///     InvalidInputError: wrong shape, NaN, or a time step that is not positive.
+///     LimitError: a start outside its limits, or a negative limit.
 ///     UnsupportedLimit: jerk limits, which this tracker does not keep.
 #[pyfunction]
 #[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,

@@ -2,8 +2,8 @@
 
 use std::sync::Mutex;
 
+use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
-use ikcore::solver::stop::Stopwatch;
 use ikcore::tracking::Session;
 use pyo3::prelude::*;
 
@@ -16,27 +16,28 @@ use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::robot::PyRobot;
 
-/// One control loop, one call a tick: the same as `track`, for targets that come one at a time.
+/// Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 ///
-/// A target may jump farther than a tick reaches: the model-based rule then moves all joints in proportion, the first of them at
-/// its velocity limit, and brakes in time where accelerations are limited.
+/// A target may jump farther than one tick can reach. The model-based rule then moves all joints in proportion, with one at
+/// its velocity limit, and brakes in time under acceleration limits.
 ///
 /// Args:
 ///     robot: the arm.
 ///     start: (n,), configuration at t = 0.
 ///     dt: time step (s).
 ///     task: as in `track`.
-///     solver: what runs in every step: a solver, `WeightedPseudoInverse`, or None: the library's model-based rule.
-///     limits: None: the robot's. Numbers and `Sinusoid`s; a callable has no end to be sampled to.
+///     solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
+///     limits: numbers and `Sinusoid`s; None: the robot's. Callables cannot be used: there is no end time up to which to
+///         sample them.
 ///     goals: as in `track`.
-///     position_tolerance: m.
-///     rotation_tolerance: rad.
-///     seed: of the random draws.
+///     position_tolerance: largest position error (m).
+///     rotation_tolerance: largest rotation error (rad).
+///     seed: seed of the random draws.
 ///     limit_at: as in `track`.
 #[pyclass(name = "Tracker", module = "beetle_ik", frozen)]
 pub struct PyTracker {
     session: Mutex<Session>,
-    /// The robot that is moved.
+    /// The robot.
     #[pyo3(get)]
     robot: Py<PyRobot>,
     /// The limits in force.
@@ -78,9 +79,9 @@ impl PyTracker {
     /// Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
     ///
     /// Args:
-    ///     target: where the tip is to be at the end of the tick.
-    ///     velocity: (3,) (m/s), that of the target then, for `WeightedPseudoInverse`; None: the way from where it was.
-    ///         Other rules need none.
+    ///     target: target of the tip at the end of the tick.
+    ///     velocity: (3,) (m/s), velocity of the target at the end of the tick, which only `WeightedPseudoInverse` uses;
+    ///         None: from the difference to the previous target.
     #[pyo3(signature = (target, *, velocity=None))]
     fn step(&self, py: Python<'_>, target: &Bound<'_, PyAny>, velocity: Option<&Bound<'_, PyAny>>) -> PyResult<PyStep> {
         let target = read_target("target", target)?;
@@ -91,7 +92,7 @@ impl PyTracker {
         Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()))
     }
 
-    /// Back to rest in q (n,), at t = 0.
+    /// Resets to rest at q (n,) and t = 0.
     fn reset(&self, q: &Bound<'_, PyAny>) -> PyResult<()> {
         self.session().reset(&vector("q", q)?).map_err(raise)
     }

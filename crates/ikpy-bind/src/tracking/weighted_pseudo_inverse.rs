@@ -11,25 +11,25 @@ use crate::hash::content_hash;
 use crate::options::{NewArguments, Shown, keywords};
 use crate::trajectory::PyTrajectory;
 
-/// Resolved motion rate, a tick rule for `track` and `Tracker`: joint velocities from the velocity of the target by the
-/// weighted pseudo-inverse of the Jacobian, inside the limits,
+/// Resolved motion rate control, a tick rule for `track` and `Tracker`: joint velocities follow from the velocity of the
+/// target by the weighted pseudo-inverse of the Jacobian, inside the limits,
 ///
 /// q' = Jw+ (x' + gain (x - f(q))) + (I - Jw+ J) q0',  Jw+ = W^-1 J' (J W^-1 J')^-1,
 ///
-/// with q0' down the gradient of the goals and towards `posture`. Joints at a limit leave their share to the others.
+/// where q0' is the negative gradient of the goals plus a velocity towards `posture`. The other joints compensate for
+/// joints at a limit.
 ///
 /// Defaults: `WeightedPseudoInverse(gain=None, integrator='euler', weights=None, posture=None, posture_gain=20.0,
 /// damping=0.0)`.
 ///
 /// Args:
-///     gain: share of the error that is taken back per second (1/s); below 2 / dt. None: half of it in every tick.
-///     integrator: "euler", the velocity at the beginning of a tick, or "rk4", four evaluations a tick and far smaller
-///         errors.
-///     weights: W (n,), the cost of each joint's squared velocity. None: 1 / (vU - vL)^2 from the velocity limits.
-///     posture: a `Trajectory` for the joints to follow, as far as the target leaves them free.
-///     posture_gain: share of the distance from it that is taken back per second (1/s).
-///     damping: over the squared size of the weighted Jacobian; 0 is the pseudo-inverse itself, which near a singular
-///         posture asks for all the speed that there is.
+///     gain: feedback gain of the tip error (1/s), below 2 / dt. None: corrects half of the error in each tick.
+///     integrator: "euler": the velocity at the start of a tick; "rk4": four evaluations per tick and far smaller errors.
+///     weights: W (n,), weights of the squared joint velocities. None: 1 / (vU - vL)^2 from the velocity limits.
+///     posture: a `Trajectory` that the joints follow in the null space.
+///     posture_gain: feedback gain of the distance from `posture` (1/s).
+///     damping: damping relative to the squared norm of the weighted Jacobian. 0 gives the pseudo-inverse itself, which
+///         demands unbounded speed near singularities.
 #[pyclass(name = "WeightedPseudoInverse", module = "beetle_ik", frozen, eq)]
 #[derive(Debug, PartialEq)]
 pub struct PyWeightedPseudoInverse(WeightedPseudoInverse);
@@ -59,7 +59,7 @@ impl PyWeightedPseudoInverse {
         Ok(Self(rule))
     }
 
-    /// Share of the error that is taken back per second (1/s); None: half of it in every tick.
+    /// Feedback gain of the tip error (1/s); None: half of the error in each tick.
     #[getter]
     fn gain(&self) -> Option<f64> {
         self.0.gain
@@ -71,25 +71,25 @@ impl PyWeightedPseudoInverse {
         self.0.integrator.name()
     }
 
-    /// The cost of each joint's squared velocity (n,); None: from the velocity limits.
+    /// Weights of the squared joint velocities (n,); None: from the velocity limits.
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyAny>> {
         self.0.weights.as_ref().map(|weights| row(py, weights.clone()).into_any())
     }
 
-    /// What the joints follow, as far as the target leaves them free.
+    /// The trajectory that the joints follow in the null space.
     #[getter]
     fn posture(&self) -> Option<PyTrajectory> {
         self.0.posture.as_ref().map(|posture| PyTrajectory::from((**posture).clone()))
     }
 
-    /// Share of the distance from it that is taken back per second (1/s).
+    /// Feedback gain of the distance from `posture` (1/s).
     #[getter]
     fn posture_gain(&self) -> f64 {
         self.0.posture_gain
     }
 
-    /// Damping over the squared size of the weighted Jacobian.
+    /// Damping relative to the squared norm of the weighted Jacobian.
     #[getter]
     fn damping(&self) -> f64 {
         self.0.damping

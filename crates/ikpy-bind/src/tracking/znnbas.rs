@@ -1,7 +1,7 @@
 //! `ZNNBAS`.
 
 use ikcore::tracking::Controller;
-use ikcore::tracking::controller::{Accept, Antenna, Delay, Znnbas};
+use ikcore::tracking::{Acceptance, Antenna, Delay, Znnbas};
 use pyo3::prelude::*;
 
 use crate::convert::count;
@@ -10,26 +10,26 @@ use crate::hash::content_hash;
 use crate::limits::PerJoint;
 use crate::options::{NewArguments, keywords};
 
-/// Zeroing neural network with beetle antennae search (Khan et al. 2022, eq. 10 to 16): a controller that measures once a
-/// tick, a random antenna away from where it is, and moves by the sign of what that brought.
+/// Zeroing neural network with beetle antennae search (Khan et al. 2022, eq. 10 to 16): a controller that measures once per
+/// tick, one random antenna away from its configuration, and moves by the sign of the change in error.
 ///
-/// It is here to repeat the paper, and for plants that answer a thousand times a second: it learns nothing, its error grows
-/// with the speed of the target (about 3.5 v / (gain c1)), and its antennae shake the tool. `BroydenBAS` is better
-/// by orders of magnitude in all three.
+/// It serves to reproduce the paper, and for plants that respond within a millisecond. It learns nothing, its error grows
+/// with the speed of the target (about 3.5 v / (gain c1)), and its antennae shake the tool. `BroydenBAS` is better by orders
+/// of magnitude in all three respects.
 ///
 /// Args:
-///     gain: k of eq. (14) (1/s), positive. The paper's listing has -10, the gain of a block that takes in the minus of
-///         eq. (14): a negative gain is allowed here, and diverges. gain * dt should not exceed 0.3.
+///     gain: k of eq. (14) (1/s), positive. The paper's listing has -10, the gain of a block that includes the minus sign of
+///         eq. (14); here a negative gain is allowed, and diverges. gain * dt should not exceed 0.3.
 ///     antenna_length: lambda of eq. (10) (rad), a number or (n,); 0.1 in the paper.
-///     c1: instead, an antenna of c1 sqrt(h), eq. (16) (rad per m), up to 0.5 rad. None for both: c1 = 0.3.
+///     c1: instead of antenna_length, an antenna of c1 sqrt(h), eq. (16) (rad per m), up to 0.5 rad. None for both: c1 = 0.3.
 ///     delay_steps: alpha of eq. (13), in ticks (10 in the paper); gain * dt * delay_steps should stay below 1.
-///     delay: "sliding", the measurement so many ticks before; "held", one that is taken anew every so many ticks, as in
-///         the paper's listing.
-///     accept: "always", eq. (15); "improving", the algorithm of the proof of Theorem 1: the arm stays at an antenna that is
-///         nearer, and else goes back. Gain and delay have no part in that.
-///     sensor_delay: ticks by which the plant's sensor is late.
+///     delay: "sliding": the measurement delay_steps ago; "held": a measurement renewed every delay_steps ticks, as in the
+///         paper's listing.
+///     accept: "always": eq. (15); "improving": the algorithm in the proof of Theorem 1, in which the arm stays at an
+///         antenna that is nearer and otherwise returns. It uses neither gain nor delay.
+///     sensor_delay: delay of the plant's sensor, in ticks.
 ///
-/// The constants of the paper: `ZNNBAS(gain=10, antenna_length=0.1, delay_steps=10)`.
+/// The paper's constants: `ZNNBAS(gain=10, antenna_length=0.1, delay_steps=10)`.
 #[pyclass(name = "ZNNBAS", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyZnnbas {
@@ -58,7 +58,7 @@ impl PyZnnbas {
             gain,
             antenna: match (&antenna, c1) {
                 (Some(_), Some(_)) => {
-                    let problem = "antenna_length and c1 exclude each other: a constant antenna, or one of c1 sqrt(h)";
+                    let problem = "give either antenna_length, for a constant antenna, or c1, for one of c1 sqrt(h)";
                     return Err(invalid(problem.into()));
                 }
                 (Some(lengths), None) => Antenna::Constant(lengths.values.clone()),
@@ -67,7 +67,7 @@ impl PyZnnbas {
             },
             delay_steps: count("delay_steps", delay_steps)?,
             delay: delay.parse::<Delay>().map_err(raise)?,
-            accept: accept.parse::<Accept>().map_err(raise)?,
+            accept: accept.parse::<Acceptance>().map_err(raise)?,
             sensor_delay: count("sensor_delay", sensor_delay)?,
         };
         core.validate_numbers().map_err(raise)?;
@@ -80,13 +80,13 @@ impl PyZnnbas {
         self.core.gain
     }
 
-    /// The constant antenna (rad), as given; None where it follows the error.
+    /// Constant antenna length (rad), as given; None if it follows the error.
     #[getter]
     fn antenna_length<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.antenna.as_ref().map(|numbers| numbers.show(py)).transpose()
     }
 
-    /// Antenna length over error (rad per m); None where it is constant.
+    /// Ratio of antenna length to error (rad per m); None if the antenna is constant.
     #[getter]
     fn c1(&self) -> Option<f64> {
         match self.core.antenna {
@@ -113,7 +113,7 @@ impl PyZnnbas {
         self.core.accept.to_string()
     }
 
-    /// Ticks by which the sensor is late.
+    /// Delay of the sensor, in ticks.
     #[getter]
     fn sensor_delay(&self) -> usize {
         self.core.sensor_delay

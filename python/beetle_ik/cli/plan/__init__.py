@@ -1,4 +1,4 @@
-"""`beetle-ik plan ...`: motions that do not exist yet."""
+"""`beetle-ik plan ...`: motion planning."""
 
 import typer
 

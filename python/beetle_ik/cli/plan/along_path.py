@@ -1,4 +1,4 @@
-"""`beetle-ik plan along-path`: the tip follows a path."""
+"""`beetle-ik plan along-path`: plans a motion along a path of the tip."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -24,7 +24,7 @@ from ..options import (
 )
 from .planned import Animated, Budget, Out, Solver, options, report
 
-_DURATION = 1.0  # s; the planner does not look at it
+_DURATION = 1.0  # s; the planner ignores it
 
 
 class Method(StrEnum):
@@ -35,7 +35,7 @@ class Method(StrEnum):
 
 
 class Objective(StrEnum):
-    """What is minimised."""
+    """Objectives by their names."""
 
     TIME = "time"
     JOINT_TRAVEL = "joint_travel"
@@ -44,13 +44,13 @@ class Objective(StrEnum):
 def along_path(
     robot: RobotName = None,
     *,
-    curve: Annotated[CurveName | None, typer.Option(help="A built-in curve, sized and placed to suit the arm.")] = None,
-    points: Annotated[Path | None, typer.Option("--path", help="Or a CSV file: columns x,y,z in m.")] = None,
+    curve: Annotated[CurveName | None, typer.Option(help="A built-in curve, placed and sized to suit the arm.")] = None,
+    points: Annotated[Path | None, typer.Option("--path", help="A CSV file: columns x,y,z in m.")] = None,
     method: Annotated[
-        Method, typer.Option(help="Redundancy and timing together, or a beetle swarm in uniform time.")
+        Method, typer.Option(help="timed: redundancy and timing together; tpbso: a beetle swarm with uniform timing.")
     ] = Method.TIMED,
     objective: Annotated[Objective, typer.Option(help="What to minimise.")] = Objective.TIME,
-    accuracy: Annotated[float | None, typer.Option(help="Allowed distance from the path in m.")] = None,
+    accuracy: Annotated[float | None, typer.Option(help="Largest distance of the tip from the path in m.")] = None,
     start_q: StartQ = None,
     velocity: Velocity = None,
     acceleration: Acceleration = None,
@@ -64,7 +64,7 @@ def along_path(
     base: BaseLink = None,
     as_json: AsJson = False,
 ) -> None:
-    """Plan a motion whose tip follows a path, in order."""
+    """Plan a motion that moves the tip along a path."""
     arm = load_robot(robot, urdf, base, tip)
     path = _path(arm, curve, points)
     chosen = options(velocity, acceleration, solver, max_evaluations)
@@ -94,4 +94,4 @@ def _path(robot: Robot, curve: CurveName | None, points: Path | None) -> Referen
             return read_points(points, _DURATION)
         case CurveName(), None:
             return make_curve(curve, robot, _DURATION, {})
-    raise InvalidInputError(f"give one of --path FILE and --curve with one of {', '.join(CurveName)}")
+    raise InvalidInputError(f"give either --path FILE or --curve with one of {', '.join(CurveName)}")

@@ -1,4 +1,4 @@
-"""What a planned motion is reported by: options, figures, files."""
+"""Options and output that both planners share."""
 
 import math
 from collections.abc import Callable
@@ -14,14 +14,14 @@ from ..options import SolverName, limit, make_solver
 from ..show import print_json, print_pairs
 
 Budget = Annotated[
-    int | None, typer.Option("--max-evaluations", min=1, help="Budget of the search; else the method's own.")
+    int | None, typer.Option("--max-evaluations", min=1, help="Budget of the search; default: the method's own.")
 ]
 Out = Annotated[Path | None, typer.Option(help="Folder for trajectory.csv, trajectory.npz, plan.png and summary.json.")]
 Animated = Annotated[bool, typer.Option("--animation", help="Write plan.gif too; needs --out.")]
 
 
 class SearchName(StrEnum):
-    """Those of the solvers that need values alone."""
+    """The solvers that need only values of the objective."""
 
     BAS = SolverName.BAS
     BEE_COLONY = SolverName.BEE_COLONY
@@ -33,13 +33,13 @@ class SearchName(StrEnum):
     QPSO = SolverName.QPSO
 
 
-Solver = Annotated[SearchName | None, typer.Option(help="What searches; else the method's own.")]
+Solver = Annotated[SearchName | None, typer.Option(help="Solver of the search; default: the method's own.")]
 
 
 def options(
     velocity: str | None, acceleration: str | None, solver: SearchName | None, max_evaluations: int | None
 ) -> dict[str, Any]:
-    """What both planners take."""
+    """Returns the arguments that both planners take."""
     chosen: dict[str, Any] = {
         "limits": Limits(
             velocity=limit("--velocity-limit", velocity), acceleration=limit("--acceleration-limit", acceleration)
@@ -52,7 +52,7 @@ def options(
 
 
 def report(make: Callable[[], Plan], method: str, seed: int, out: Path | None, animated: bool, as_json: bool) -> None:
-    """Plan, write the files, print, and leave with the exit status of the plan."""
+    """Plans, writes the files, prints the summary and exits with the status of the plan."""
     if animated and out is None:
         raise InvalidInputError("--animation writes a file: use --out DIR too")
     with results_folder(out) as folder:
@@ -98,7 +98,7 @@ def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
         rows.append(("distance from the path, at most [m]", f"{plan.accuracy:.3g}"))
     if not math.isnan(plan.clearance):  # planned among obstacles
         rows.append(("smallest clearance [m]", f"{plan.clearance:.3g}"))
-    rows += [("breaks", violation) for violation in summary["violations"]]
+    rows += [("violation", violation) for violation in summary["violations"]]
     rows += [("evaluations", str(plan.evaluations)), ("time [ms]", f"{1e3 * plan.elapsed:.3g}")]
     print_pairs(f"{plan.robot.name}: {plan.message}", rows)
     print_files(out)

@@ -1,4 +1,4 @@
-"""`beetle-ik plan point-to-point`: from one place to another."""
+"""`beetle-ik plan point-to-point`: plans a motion between two positions."""
 
 from enum import StrEnum
 from typing import Annotated, Any
@@ -30,7 +30,7 @@ class Method(StrEnum):
 
 
 class Objective(StrEnum):
-    """What is minimised."""
+    """Objectives by their names."""
 
     TIME = "time"
     JOINT_TRAVEL = "joint_travel"
@@ -40,7 +40,9 @@ class Objective(StrEnum):
 _ELLIPSE_NUMBERS = 5
 
 Place = Annotated[str | None, typer.Option(metavar="X,Y,Z", help="Position of the tip in m.")]
-Configuration = Annotated[str | None, typer.Option(metavar="Q1,Q2,...", help="Or joint positions.")]
+Configuration = Annotated[
+    str | None, typer.Option(metavar="Q1,Q2,...", help="Joint positions, instead of a position of the tip.")
+]
 
 
 def point_to_point(
@@ -51,12 +53,17 @@ def point_to_point(
     end: Place = None,
     end_q: Configuration = None,
     method: Annotated[
-        Method, typer.Option(help="Nearest configurations joined straight, or a beetle swarm's via point.")
+        Method,
+        typer.Option(
+            help="minmax: the nearest configurations, joined directly; tpbso: via point found by a beetle swarm."
+        ),
     ] = Method.MINMAX,
     objective: Annotated[Objective, typer.Option(help="What to minimise.")] = Objective.TIME,
     ellipses: Annotated[
         list[str] | None,
-        typer.Option("--ellipse", metavar="X,Y,A,B,ANGLE", help="An obstacle of a planar arm; may be repeated."),
+        typer.Option(
+            "--ellipse", metavar="X,Y,A,B,ANGLE", help="An elliptical obstacle for a planar arm; may be repeated."
+        ),
     ] = None,
     velocity: Velocity = None,
     acceleration: Acceleration = None,
@@ -70,7 +77,7 @@ def point_to_point(
     base: BaseLink = None,
     as_json: AsJson = False,
 ) -> None:
-    """Plan a motion from one place to another, at rest at both."""
+    """Plan a motion between two positions, from rest to rest."""
     arm = load_robot(robot, urdf, base, tip)
     ends = _end("start", start, start_q) | _end("end", end, end_q)
     chosen = options(velocity, acceleration, solver, max_evaluations)
@@ -95,7 +102,7 @@ def point_to_point(
 
 
 def _end(name: str, place: str | None, configuration: str | None) -> dict[str, Any]:
-    """An end of the motion as `plan_point_to_point` takes it: a place of the tip, or joint positions."""
+    """Returns an end of the motion as an argument of `plan_point_to_point`: a tip position or joint positions."""
     match place, configuration:
         case str(), None:
             return {name: numbers(f"--{name}", place, 3)}

@@ -1,4 +1,4 @@
-"""`beetle-ik plan retime`: the fastest timing of joint positions from a file."""
+"""`beetle-ik plan retime`: time-optimal timing of joint positions from a file."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -29,24 +29,20 @@ class SplineName(StrEnum):
 def retime(
     file: Annotated[
         Path,
-        typer.Argument(help="CSV with a column per joint, named by it or 'q:joint'; a column 'time' sets the knots."),
+        typer.Argument(help="CSV with a column per joint, named 'joint' or 'q:joint'; a column 'time' sets the knots."),
     ],
     *,
     acceleration: Annotated[
-        str, typer.Option("--acceleration-limit", help="In rad/s^2: a number, or one a joint: a1,a2,...")
+        str, typer.Option("--acceleration-limit", help="rad/s^2: one number, or one per joint: a1,a2,...")
     ],
-    velocity: Annotated[
-        str | None, typer.Option("--velocity-limit", help="The same in rad/s; without it there is none.")
-    ] = None,
-    jerk: Annotated[
-        str | None, typer.Option("--jerk-limit", help="The same in rad/s^3; without it there is none.")
-    ] = None,
-    spline: Annotated[SplineName, typer.Option(help="What joins the rows.")] = SplineName.NATURAL,
+    velocity: Annotated[str | None, typer.Option("--velocity-limit", help="The same in rad/s; default: none.")] = None,
+    jerk: Annotated[str | None, typer.Option("--jerk-limit", help="The same in rad/s^3; default: none.")] = None,
+    spline: Annotated[SplineName, typer.Option(help="Curve through the rows.")] = SplineName.NATURAL,
     blend: Annotated[
-        float | None, typer.Option(help="Of a polyline: corners are rounded from so far before them, in rad.")
+        float | None, typer.Option(help="For a polyline: corners are rounded from this distance before them, in rad.")
     ] = None,
     gridpoints: Annotated[
-        int | None, typer.Option(help="Points where the acceleration may change; chosen if absent.")
+        int | None, typer.Option(help="Points where the acceleration may change; chosen automatically by default.")
     ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for trajectory.csv, trajectory.npz, limits.png and summary.json.")

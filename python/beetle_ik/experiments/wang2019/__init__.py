@@ -3,24 +3,31 @@
 from ...report import Report
 from ..experiment import Context, Experiment
 from .along_path import along_path
+from .comparison import comparison
 from .complexity import complexity
+from .equations import equations
+from .freedom import freedom
+from .motions import plan_motions
 from .obstacle import obstacle
 from .point_to_point import point_to_point
 from .table_1 import table_1
 
 _SUMMARY = """
 The planner works as published, once its gaps are filled: the swarm plans all motions of the paper, and every limit is
-kept *exactly*, since the extremes of the polynomials are computed and not sampled. That the beetle swarm is the best
-search is not what we find: it beats neither a particle swarm nor differential evolution that may spend as many
-evaluations. And no search helps as much as the right question: the ends' configurations that lie nearest to each
-other, joined by one polynomial, are quicker than what any swarm finds, within milliseconds.
+kept *exactly*, since the extremes of the polynomials are computed and not sampled. **Whether the beetle swarm is the
+best search depends on what is held equal.** At equal iterations, where it spends three times the evaluations, neither
+PSO nor GA beats it; with equal evaluations PSO does, with equal tuning both do, and differential evolution does best.
+The swarm does not converge well as links are added. With the same freedom for all, the nearest configurations of the
+ends, joined by one polynomial, are quicker than the mean of every search for 3 to 5 links, and within 2 % for 2 links.
 """
 
 
 def run(context: Context) -> Report:
     """Run all of it."""
-    parts = [part(context) for part in (point_to_point, obstacle, along_path, table_1, complexity)]
-    return Report.of(_SUMMARY, parts)
+    motions = plan_motions(context)
+    of_motions = [part(context, motions) for part in (point_to_point, comparison, freedom)]
+    others = [part(context) for part in (obstacle, along_path, table_1, complexity, equations)]
+    return Report.of(_SUMMARY, [*of_motions, *others])
 
 
 EXPERIMENT = Experiment(

@@ -1,4 +1,4 @@
-"""What several figures show: the arm on its way, the cost against evaluations, the joints."""
+"""What several figures show: cost against evaluations, the arm on its way, joint positions and velocities."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import BLACK, BLUE, SKY, line
-from .settings import UNITS, Criterion, best_so_far
+from ...report import BLACK, BLUE, FORBIDDEN, SKY, line
+from .searches import Plans, Search, best_so_far
+from .settings import UNITS, Criterion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,15 +40,20 @@ def legend_above(axes: Axes, *, columns: int) -> None:
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, fontsize="small", columnspacing=1.0)
 
 
-def draw_search(axes: Axes, plans: Sequence[bik.Plan], *, name: str, color: str, evaluations: int) -> None:
-    """Mean and spread (one standard deviation) of the best cost so far, from where all plans keep what they must."""
-    counts = np.unique(np.geomspace(100, evaluations, 120).astype(int)).astype(float)
-    costs = best_so_far(plans, counts)
-    costs[costs > _WITH_PENALTIES[plans[0].objective]] = np.nan
-    found = np.isfinite(costs).all(axis=0)
-    mean, spread = costs[:, found].mean(axis=0), costs[:, found].std(axis=0)
-    axes.fill_between(counts[found], mean - spread, mean + spread, color=color, alpha=0.2, linewidth=0)
-    axes.plot(counts[found], mean, color=color, label=name)
+def draw_searches(axes: Axes, searches: Sequence[Search], plans: Plans) -> None:
+    """The mean best cost so far of each search, from where all its plans keep what they must.
+
+    Shaded is one standard deviation of the first search.
+    """
+    for i, search in enumerate(searches):
+        counts = np.unique(np.geomspace(100, search.evaluations, 120).astype(int)).astype(float)
+        best = best_so_far(plans[search.name], counts)
+        best[best > _WITH_PENALTIES[plans[search.name][0].objective]] = np.nan
+        found = np.isfinite(best).all(axis=0)
+        mean, spread = best[:, found].mean(axis=0), best[:, found].std(axis=0)
+        if i == 0:
+            axes.fill_between(counts[found], mean - spread, mean + spread, color=search.color, alpha=0.2, linewidth=0)
+        axes.plot(counts[found], mean, label=search.name, **line(i) | {"color": search.color})
     axes.set(xscale="log", yscale="log", xlabel="evaluations")
 
 
@@ -61,10 +67,22 @@ def label(objective: Criterion) -> str:
     return f"{objective.replace('_', ' ')} [{UNITS[objective]}]"
 
 
-def draw_joints(axes: Axes, plan: bik.Plan) -> None:
+def draw_positions(axes: Axes, plan: bik.Plan) -> None:
     """Joint positions over time."""
     time = np.linspace(0.0, plan.trajectory.duration, _POINTS)
     for j, q in enumerate(plan.trajectory.at(time)[0].T):
         axes.plot(time, q, label=f"joint {j + 1}", **line(j))
     axes.set(xlabel="time [s]", ylabel="joint position [rad]")
-    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
+    legend_above(axes, columns=5)
+
+
+def draw_velocities(axes: Axes, plan: bik.Plan, limit: float) -> None:
+    """Joint velocities over time; shaded, where the axis reaches so far, is what lies beyond `limit` (rad/s)."""
+    time = np.linspace(0.0, plan.trajectory.duration, _POINTS)
+    velocities = plan.trajectory.at(time)[1]
+    for j, velocity in enumerate(velocities.T):
+        axes.plot(time, velocity, **line(j))
+    top = 1.15 * min(limit, float(np.abs(velocities).max()))
+    for sign in (-1.0, 1.0):
+        axes.axhspan(sign * limit, sign * 1.15 * limit, color=FORBIDDEN, linewidth=0)
+    axes.set(xlabel="time [s]", ylabel="joint velocity [rad/s]", ylim=(-top, top))

@@ -1,14 +1,15 @@
 //! Plans among obstacles: collision-free configurations for both ends, a collision-free path between them, and a timing whose
 //! whole motion is certified.
 
-use super::ends::{NAMES, Pair, PairSearch};
+use super::end_pair::EndPair;
 use super::line_timing::JointPolyline;
+use super::pair_search::{NAMES, PairSearch};
 use super::rrt_connect::{Connection, TreeSearch};
-use super::straight::{PAIRS, no_pair, straight};
+use super::straight_line_plan::{PAIRS, no_pair, straight};
 use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::obstacle::{Scene, Sweep};
-use crate::planning::collision::{RESERVE, TimedMotion, as_lines, refuse_collision, scene, too_near};
+use crate::planning::collision_checks::{RESERVE, TimedMotion, as_lines, refuse_collision, scene, too_near};
 use crate::planning::{Endpoint, Improvement, MotionLimits, Plan, PointToPointOptions};
 use crate::rng;
 use crate::solver::{Monitor, Status};
@@ -40,8 +41,8 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
             refuse_collision(what, &scene, q, margin)?;
         }
     }
-    let is_open = |pair: &Pair| is_clear(&pair.start) && is_clear(&pair.end);
-    let mut open: Vec<Pair> = pairs.iter().filter(|pair| is_open(pair)).cloned().collect();
+    let is_open = |pair: &EndPair| is_clear(&pair.start) && is_clear(&pair.end);
+    let mut open: Vec<EndPair> = pairs.iter().filter(|pair| is_open(pair)).cloned().collect();
     let given = search.ends.iter().all(|end| matches!(end, Endpoint::Configuration(_)));
     if open.len() < FEW_PAIRS && !given {
         open.extend(search.random_pairs(PAIRS, TRIES, is_open, monitor)?);
@@ -65,8 +66,8 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
 }
 
 /// The pair whose straight line penetrates least, by samples.
-fn least_penetrating<'p>(scene: &Scene, pairs: &'p [Pair]) -> Option<&'p Pair> {
-    let distance = |pair: &Pair| {
+fn least_penetrating<'p>(scene: &Scene, pairs: &'p [EndPair]) -> Option<&'p EndPair> {
+    let distance = |pair: &EndPair| {
         let at = |i: usize| -> Vec<f64> {
             let share = i as f64 / INTERVALS as f64;
             pair.start.iter().zip(&pair.end).map(|(start, end)| start + share * (end - start)).collect()
@@ -87,7 +88,7 @@ enum Certified {
 fn best_path(
     trees: &mut TreeSearch,
     limits: &MotionLimits,
-    open: &[Pair],
+    open: &[EndPair],
     seed: u64,
     margin: f64,
     monitor: &mut dyn Monitor,

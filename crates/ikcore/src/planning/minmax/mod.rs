@@ -3,22 +3,23 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | [`point_to_point`] | the planner |
-//! | [`ends`] | pairs of configurations for start and end |
-//! | [`branches`] | the same from all solutions of inverse kinematics |
-//! | [`displacement`] | both moved along their self-motion, to the smallest largest displacement |
-//! | [`straight`] | straight lines between pairs, of which the best is taken |
+//! | [`minmax_planner`] | the planner |
+//! | [`pair_search`] | pairs of configurations for start and end |
+//! | [`branch_pairs`] | the same from all solutions of inverse kinematics |
+//! | [`least_displacement`] | both moved along their self-motion, to the smallest largest displacement |
+//! | [`straight_line_plan`] | straight lines between pairs, of which the best is taken |
 //! | [`line_timing`] | the quickest smooth timing of straight lines |
 //! | [`among_obstacles`] | a path around obstacles, its timing certified |
 //! | [`rrt_connect`] | two trees that grow towards each other, and shortcuts |
 
 mod among_obstacles;
-mod branches;
-mod displacement;
-mod ends;
+mod branch_pairs;
+mod end_pair;
+mod least_displacement;
 mod line_timing;
-mod point_to_point;
+mod minmax_planner;
+mod pair_search;
 mod rrt_connect;
-mod straight;
+mod straight_line_plan;
 
-pub(super) use point_to_point::point_to_point;
+pub(super) use minmax_planner::point_to_point;

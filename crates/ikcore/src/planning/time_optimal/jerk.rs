@@ -6,8 +6,8 @@
 //! under jerk limits.
 
 use super::joint_path::JointPath;
-use super::limits::TimingLimits;
 use super::reachability::SpeedProfile;
+use super::timing_limits::TimingLimits;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
 

@@ -5,7 +5,7 @@
 //! | `timing` | [`time_optimal`]: the call and its options |
 //! | `joint_path` | [`JointPath`]: where the joints go, cubics in a path parameter |
 //! | `spline`, `polyline` | paths through waypoints |
-//! | `limits` | [`TimingLimits`] |
+//! | `timing_limits` | [`TimingLimits`] |
 //! | `grid` | the path cut into segments |
 //! | `derivatives` | derivatives of the path over a segment |
 //! | `velocity_curve` | the velocity limits |
@@ -20,17 +20,17 @@ mod derivatives;
 mod grid;
 mod jerk;
 mod joint_path;
-mod limits;
 mod polyline;
 mod reachability;
 mod refine;
 mod spline;
 mod strips;
 mod timing;
+mod timing_limits;
 mod velocity_curve;
 
 pub use crate::math::cubic_spline::SplineEnds;
 pub use joint_path::JointPath;
-pub use limits::TimingLimits;
 pub use timing::{TimingOptions, time_optimal};
 pub(super) use timing::{coarse_duration, time};
+pub use timing_limits::TimingLimits;

@@ -8,8 +8,8 @@
 use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
-use super::limits::TimingLimits;
 use super::strips::{Line, Strips};
+use super::timing_limits::TimingLimits;
 use super::velocity_curve::{UNLIMITED, maximum_velocity_curve};
 use crate::error::{Error, Result};
 

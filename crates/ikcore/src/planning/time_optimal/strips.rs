@@ -4,7 +4,7 @@
 //! upper lines and the highest of their lower lines; both are broken lines, convex towards each other.
 
 use super::derivatives::PathDerivatives;
-use super::limits::TimingLimits;
+use super::timing_limits::TimingLimits;
 
 /// The line u = offset - slope x.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,9 +4,9 @@ use super::compose::compose;
 use super::grid::{check_gridpoints, cut};
 use super::jerk::smooth;
 use super::joint_path::{JointPath, PathEnd};
-use super::limits::TimingLimits;
 use super::reachability::{Range, SpeedProfile};
 use super::refine::refine;
+use super::timing_limits::TimingLimits;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
 

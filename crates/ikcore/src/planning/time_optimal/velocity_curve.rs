@@ -3,7 +3,7 @@
 use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
-use super::limits::TimingLimits;
+use super::timing_limits::TimingLimits;
 use crate::math::polynomial::quadratic_roots;
 
 /// Stands for "as fast as you like", and leaves room to calculate.

@@ -11,7 +11,7 @@ use crate::robot::Robot;
 
 /// Joint positions along a path.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Waypoints {
+pub struct JointWaypoints {
     /// Path parameters, from 0 to 1.
     pub knots: Vec<f64>,
     /// The joint positions at each knot, row after row.
@@ -65,7 +65,7 @@ impl Interpolation<'_> {
     ///
     /// # Errors
     /// None in practice: waypoints that differ make a spline.
-    pub fn path(&self, waypoints: &Waypoints) -> Result<JointPath> {
+    pub fn path(&self, waypoints: &JointWaypoints) -> Result<JointPath> {
         let n = self.robot.dof();
         let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
         // Natural ends, without curvature, would be less accurate.
@@ -88,7 +88,7 @@ impl Interpolation<'_> {
     ///
     /// # Errors
     /// None in practice, as for [`path`](Self::path).
-    pub fn refined(&self, mut waypoints: Waypoints, accuracy: f64) -> Result<Waypoints> {
+    pub fn refined(&self, mut waypoints: JointWaypoints, accuracy: f64) -> Result<JointWaypoints> {
         for _ in 0..HALVINGS {
             let path = self.path(&waypoints)?;
             let deviation = TipDeviation {
@@ -115,11 +115,11 @@ impl Interpolation<'_> {
     }
 
     /// The waypoints with a knot in the middle of each of these intervals, where the path can be reached there.
-    fn halved(&self, waypoints: &Waypoints, intervals: &[usize], path: &JointPath) -> Waypoints {
+    fn halved(&self, waypoints: &JointWaypoints, intervals: &[usize], path: &JointPath) -> JointWaypoints {
         let n = self.robot.dof();
         let bounds = Bounds::from_ranges(self.robot.joints().iter().map(|joint| (joint.lower, joint.upper)));
         let mut scratch = Linearization::default();
-        let mut finer = Waypoints { knots: vec![], rows: vec![] };
+        let mut finer = JointWaypoints { knots: vec![], rows: vec![] };
         let mut intervals = intervals.iter().peekable();
         for (i, knot) in waypoints.knots.iter().enumerate() {
             finer.knots.push(*knot);

@@ -6,18 +6,18 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `along_path` | the planner |
-//! | `self_motion` | configurations along the path, and the freedom to choose them |
+//! | `timed_planner` | the planner |
+//! | `redundant_motion` | configurations along the path, and the freedom to choose them |
 //! | `null_space` | directions that move the joints and leave the tip where it is |
 //! | `projection` | the nearest configuration that reaches a target |
 //! | `interpolation` | splines through configurations, fine enough to keep to the path |
-//! | `cost` | the duration as a function of the choice |
+//! | `timed_cost` | the duration as a function of the choice |
 
-mod along_path;
-mod cost;
 mod interpolation;
 mod null_space;
 mod projection;
-mod self_motion;
+mod redundant_motion;
+mod timed_cost;
+mod timed_planner;
 
-pub(super) use along_path::along_path;
+pub(super) use timed_planner::along_path;

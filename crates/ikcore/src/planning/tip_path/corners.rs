@@ -1,7 +1,7 @@
 //! The corners of a path.
 
 use super::TipPath;
-use super::segment::turn;
+use super::segment_geometry::turn;
 
 /// A change of direction by more than this (rad) within a short part of the path is a corner, by less a bend.
 const CORNER: f64 = 0.5;

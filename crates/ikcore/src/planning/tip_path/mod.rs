@@ -2,17 +2,17 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `curve` | [`TipPath`]: straight segments from place to place |
+//! | `tip_curve` | [`TipPath`]: straight segments from place to place |
 //! | `sampling` | the same of a path in time |
 //! | `corners` | where its direction jumps |
-//! | `segment` | angles and distances of single segments |
+//! | `segment_geometry` | angles and distances of single segments |
 //! | `repetition` | points that must differ |
 
 mod corners;
-mod curve;
 mod repetition;
 mod sampling;
-mod segment;
+mod segment_geometry;
+mod tip_curve;
 
-pub use curve::TipPath;
 pub(super) use repetition::refuse_repetition;
+pub use tip_curve::TipPath;

@@ -1,13 +1,13 @@
 //! Points that repeat the one before them.
 
 use crate::error::{Error, Result};
-use crate::path::Reference;
+use crate::path::Waypoints;
 
 /// Err where a point repeats the one before it: a spline needs points that differ.
 ///
 /// # Errors
 /// [`Error::InvalidPath`].
-pub fn refuse_repetition(points: &Reference) -> Result<()> {
+pub fn refuse_repetition(points: &Waypoints) -> Result<()> {
     let repeats =
         |i: &usize| points.position(*i) == points.position(i - 1) && points.rotation(*i) == points.rotation(i - 1);
     match (1..points.len()).find(repeats) {

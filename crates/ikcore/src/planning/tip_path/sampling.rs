@@ -3,9 +3,9 @@
 use nalgebra::Matrix3;
 
 use super::TipPath;
-use super::curve::PAUSE;
+use super::tip_curve::PAUSE;
 use crate::error::Result;
-use crate::path::{Path, Reference};
+use crate::path::{Path, Waypoints};
 
 /// Intervals of equal time in which a [`Path`] is sampled: on a circle their chords err by 5e-6 of the radius.
 const INTERVALS: usize = 1000;
@@ -38,16 +38,16 @@ impl TipPath {
     /// Through a path's `positions` (m) and rotations at its [`times`](Self::times). Pauses are left out.
     ///
     /// # Errors
-    /// [`Error::InvalidPath`](crate::Error::InvalidPath) for a path that stays in one place; those of [`Reference::new`].
+    /// [`Error::InvalidPath`](crate::Error::InvalidPath) for a path that stays in one place; those of [`Waypoints::new`].
     pub fn sampled(times: Vec<f64>, positions: Vec<[f64; 3]>, rotations: Option<Vec<Matrix3<f64>>>) -> Result<Self> {
-        let reference = Reference::new(1.0, positions, rotations)?;
+        let waypoints = Waypoints::new(positions, rotations)?;
         let last = times.len() - 1;
         let at = |i: usize| {
             let t = times[last] * (i as f64 / POINTS as f64);
             let after = times.partition_point(|time| *time < t).clamp(1, last);
             if t - times[after - 1] < times[after] - t { after - 1 } else { after }
         };
-        let rows = (0..=POINTS).map(at).collect();
-        Self::from_rows(reference, rows, Some(times))
+        let rows: Vec<usize> = (0..=POINTS).map(at).collect();
+        Self::from_rows(&waypoints, &rows, Some(&times))
     }
 }

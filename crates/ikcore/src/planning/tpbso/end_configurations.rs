@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::error::{Error, Result};
-use crate::ik::{Prepared, Solution, SolveOptions};
+use crate::ik::{Query, Solution, SolveContext, SolveOptions, solve_query};
 use crate::planning::endpoint::Endpoint;
 use crate::planning::motion_limits::MotionLimits;
 use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Place, PlanarArm};
@@ -127,12 +127,13 @@ fn solutions(
     monitor: &mut dyn Monitor,
 ) -> Result<Vec<Vec<f64>>> {
     let options = SolveOptions { seed, ..SolveOptions::default() };
-    let prepared = Prepared::new(robot, &options)?;
+    let context = SolveContext::new(robot, &options)?;
     let starts = robot.random_configurations(STARTS, &mut rng::stream(seed, 0))?;
     let mut found: Vec<Vec<f64>> = vec![];
     let mut nearest: Option<Solution> = None;
     for (i, start) in starts.chunks_exact(robot.dof()).enumerate() {
-        let solution = prepared.run(target, Some(start), i as u64 + 1, monitor);
+        let query = Query { target: *target, start: Some(start), stream: i as u64 + 1 };
+        let solution = solve_query(&context, &query, monitor);
         if solution.status == Status::Solved {
             if found.iter().all(|other| distance(other, &solution.q) > DISTINCT) {
                 found.push(solution.q.to_vec());

@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 
 use crate::error::{Error, Result};
 use crate::math::cubic_spline::CubicSpline;
-use crate::path::Reference;
+use crate::path::Waypoints;
 use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Orientation, Orientations, Place, PlanarArm, wrapped};
 use crate::task::Target;
 use crate::wording::number;
@@ -29,7 +29,7 @@ impl Redundancy {
     /// # Errors
     /// [`Error::Unreachable`] for a point beside the arm's plane or out of its reach, or a path of poses for an arm of two
     /// links.
-    pub fn new(arm: PlanarArm, path: &Reference, elbow: Elbow) -> Result<Self> {
+    pub fn new(arm: PlanarArm, path: &Waypoints, elbow: Elbow) -> Result<Self> {
         let nodes = CubicSpline::natural((0..NODES).map(|i| i as f64 / (NODES - 1) as f64).collect());
         let places = (0..path.len()).map(|i| place(&arm, path, i)).collect::<Result<Vec<_>>>()?;
         Ok(Self { arm, elbow, places, nodes })
@@ -128,7 +128,7 @@ const START_TOLERANCE: f64 = 1e-6;
 /// Stands for a cosine where not even its triangle exists.
 const OUT_OF_REACH: f64 = 2.0;
 
-fn place(arm: &PlanarArm, path: &Reference, i: usize) -> Result<Place> {
+fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<Place> {
     let target = match path.pose(i) {
         Some(pose) => Target::from(&pose),
         None => Target::Position(path.position(i)),

@@ -2,9 +2,10 @@
 
 use std::mem;
 
-use super::{Evaluator, Halt};
+use super::budgeted::Evaluator;
 use crate::math::box_step::ROWS;
 use crate::objective::{Differentiable, Gradient, LeastSquares, Linearization, Objective, Residual, SmoothScore};
+use crate::solver::status::Status;
 
 impl<O: Residual + ?Sized> Evaluator<'_, O> {
     /// Clips `x` to the box; value and residual there.
@@ -12,7 +13,7 @@ impl<O: Residual + ?Sized> Evaluator<'_, O> {
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
     #[inline]
-    pub fn residual(&mut self, x: &mut [f64], out: &mut [f64; ROWS]) -> Result<f64, Halt> {
+    pub fn residual(&mut self, x: &mut [f64], out: &mut [f64; ROWS]) -> Result<f64, Status> {
         self.spend(1)?;
         self.admit(x);
         let score = self.objective.residual(x, out);
@@ -26,7 +27,7 @@ impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
     #[inline]
-    pub fn linearize(&mut self, x: &mut [f64], out: &mut Linearization) -> Result<f64, Halt> {
+    pub fn linearize(&mut self, x: &mut [f64], out: &mut Linearization) -> Result<f64, Status> {
         self.spend(1)?;
         self.admit(x);
         let score = self.objective.linearize(x, out);
@@ -41,7 +42,7 @@ impl<O: Gradient + ?Sized> Evaluator<'_, O> {
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
     #[inline]
-    pub fn differentiate(&mut self, x: &mut [f64], gradient: &mut [f64]) -> Result<f64, Halt> {
+    pub fn differentiate(&mut self, x: &mut [f64], gradient: &mut [f64]) -> Result<f64, Status> {
         self.spend(1)?;
         self.admit(x);
         let SmoothScore { error, score } = self.objective.differentiate(x, gradient);
@@ -53,7 +54,10 @@ impl<O: Gradient + ?Sized> Evaluator<'_, O> {
 impl Evaluator<'_, dyn Differentiable + '_> {
     /// Lends the run to a solver that uses values alone, so that such a solver is compiled once, whatever else the objective
     /// offers.
-    pub fn with_values_only<R>(&mut self, work: impl FnOnce(&mut Evaluator<'_, dyn Objective + '_>) -> R) -> R {
+    pub(in crate::solver) fn with_values_only<R>(
+        &mut self,
+        work: impl FnOnce(&mut Evaluator<'_, dyn Objective + '_>) -> R,
+    ) -> R {
         let mut narrowed = Evaluator {
             objective: &mut *self.objective as &mut dyn Objective,
             bounds: self.bounds,
@@ -64,7 +68,8 @@ impl Evaluator<'_, dyn Differentiable + '_> {
             progress: mem::take(&mut self.progress),
             dimension: self.dimension,
             pattern: self.pattern,
-            conduct: self.conduct,
+            domain: self.domain,
+            own_threshold: self.own_threshold,
             periods: Vec::new(),
             solved_outside: false,
         };

@@ -7,8 +7,8 @@
 //! other steps only that is learned which noise does not explain, and an error that it explains is no reason to put out
 //! antennae. How noisy the sensor is to begin with, three measurements of the start tell.
 
+use super::control_tick::{ControlTick, Verdict};
 use super::noise::{Noise, median};
-use super::{Tick, Verdict};
 use crate::math::box_step::LEAST_DAMPING;
 use crate::math::secant::{Secant, antenna};
 use crate::math::vector::{distance, norm, squared_distance};
@@ -27,7 +27,7 @@ const FAILED_STEPS: usize = 2;
 
 /// What the controller remembers.
 #[derive(Debug)]
-pub(super) struct Memory {
+pub(super) struct BroydenBasState {
     options: BroydenBas,
     tolerance: f64,
     jacobian: Secant<3>,
@@ -67,7 +67,7 @@ enum Purpose {
     Again { first: [f64; 3] },
 }
 
-impl Memory {
+impl BroydenBasState {
     pub fn new(options: BroydenBas, start: &[f64], tolerance: f64) -> Box<Self> {
         Box::new(Self {
             options,
@@ -105,7 +105,7 @@ impl Memory {
         &self.sent
     }
 
-    pub fn choose_command(&mut self, tick: Tick<'_>) {
+    pub fn choose_command(&mut self, tick: ControlTick<'_>) {
         if self.due > 0 {
             tick.bounds.clip(&mut self.sent);
             return;
@@ -124,7 +124,7 @@ impl Memory {
     }
 
     /// A limit may close in on the accepted configuration: then the arm has to be measured where it may stand.
-    fn return_to_box(&mut self, tick: Tick<'_>) {
+    fn return_to_box(&mut self, tick: ControlTick<'_>) {
         if !tick.bounds.contains(&self.q) {
             tick.bounds.clip(&mut self.q);
             self.next = Purpose::Stand;
@@ -132,7 +132,7 @@ impl Memory {
     }
 
     /// The first antenna, from `joint` on, that has room; the first step where none has.
-    fn put_out_antenna(&mut self, joint: usize, tick: Tick<'_>) -> Purpose {
+    fn put_out_antenna(&mut self, joint: usize, tick: ControlTick<'_>) -> Purpose {
         let (lower, upper) = (tick.bounds.lower(), tick.bounds.upper());
         for j in joint..self.q.len() {
             let length = antenna(self.q[j], self.options.antenna_length, lower[j], upper[j]);
@@ -150,7 +150,7 @@ impl Memory {
         (self.next, self.slow, self.failed, self.fresh) = (Purpose::Step, 0, 0, true);
     }
 
-    fn step(&mut self, tick: Tick<'_>) {
+    fn step(&mut self, tick: ControlTick<'_>) {
         let residual = difference(self.position, tick.target);
         let bounds = [tick.bounds.lower(), tick.bounds.upper()];
         self.jacobian.step(&residual, self.damping(), &self.q, bounds, &mut self.sent);
@@ -165,7 +165,7 @@ impl Memory {
         self.damping + doubt * doubt / self.jacobian.size(self.q.len()).max(f64::MIN_POSITIVE)
     }
 
-    pub fn observe(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
+    pub fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> Verdict {
         self.measurements += 1;
         let spent = self.measurements >= self.options.max_evaluations_per_step;
         self.due -= 1;
@@ -178,7 +178,7 @@ impl Memory {
     }
 
     /// The answer to the last command was `position`.
-    fn learn(&mut self, tick: Tick<'_>, position: [f64; 3]) -> Verdict {
+    fn learn(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> Verdict {
         let verdict = match self.purpose {
             Purpose::Repeat { first, second: None } => {
                 self.next = Purpose::Repeat { first, second: Some(position) };
@@ -220,7 +220,7 @@ impl Memory {
     }
 
     /// A step was measured at `position`, and if it was sent again, at `first` before.
-    fn believe(&mut self, tick: Tick<'_>, position: [f64; 3], first: Option<[f64; 3]>) -> Verdict {
+    fn believe(&mut self, tick: ControlTick<'_>, position: [f64; 3], first: Option<[f64; 3]>) -> Verdict {
         let Self { q, sent, jacobian, .. } = self;
         let dq = || sent.iter().zip(q.iter()).map(|(to, from)| to - from);
         let predicted = jacobian.predict(dq());
@@ -247,7 +247,7 @@ impl Memory {
     }
 
     /// Keeps a step that came nearer; else does something about it, unless noise hides what.
-    fn judge(&mut self, tick: Tick<'_>, position: [f64; 3], noisy: bool) -> Verdict {
+    fn judge(&mut self, tick: ControlTick<'_>, position: [f64; 3], noisy: bool) -> Verdict {
         let squared_error = |position: [f64; 3]| squared_distance(&position, &tick.target);
         let (before, after) = (squared_error(self.position), squared_error(position));
         if after < before {

@@ -1,9 +1,9 @@
 //! Any solver as a tick rule: begun anew from the accepted configuration, in the box of the tick.
 
-use super::{Tick, TickResult};
+use super::tick::{Tick, TickResult};
 use crate::objective::Differentiable;
 use crate::problem::Problem;
-use crate::solver::{AnySolver, Evaluator, Halt, Stop};
+use crate::solver::{AnySolver, Evaluator, Status, Stop};
 use crate::task::{Criterion, Outside};
 
 pub fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> TickResult {
@@ -13,15 +13,15 @@ pub fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> TickResult {
     let mut problem = Problem::new(robot, target, kept);
     let objective: &mut dyn Differentiable = &mut problem;
     let mut evaluator = Evaluator::new(objective, tick_box, stop(solver, last_value), rng, monitor);
-    let outcome = solver.run(&mut evaluator, q);
+    let status = solver.run(&mut evaluator, q);
     let best = evaluator.best().x.clone();
     TickResult {
         assessment: target.assess(robot, &best, criterion),
         position: robot.tip_position(&best),
         q: best,
         evaluations: evaluator.evaluations(),
-        iterations: outcome.iterations,
-        interrupted: outcome.halt == Halt::Interrupted,
+        iterations: evaluator.iterations(),
+        interrupted: status == Status::Interrupted,
     }
 }
 

@@ -5,11 +5,11 @@
 //! a tick covers the largest share of it that every joint's limits allow. Where accelerations are limited, every joint can also
 //! still stop before its displacement ends. A target that moves is caught up with on top of its own motion.
 
-use super::Tick;
+use super::tick::Tick;
+use crate::kinematics::Columns;
 use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::{Frame, MAX_DOF};
 use crate::objective::{Linearization, Point};
-use crate::robot::Columns;
 use crate::solver::LevenbergMarquardt;
 use crate::task::Target;
 

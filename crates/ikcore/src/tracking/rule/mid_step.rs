@@ -7,7 +7,8 @@
 //! ever lowers it, takes over for the tick.
 
 use super::approach::Approach;
-use super::{Tick, TickResult};
+use super::tick::{Tick, TickResult};
+use crate::kinematics::Columns;
 use crate::limits::Field;
 use crate::math::{
     Frame, MAX_DOF,
@@ -15,8 +16,8 @@ use crate::math::{
 };
 use crate::objective::{Differentiable, Linearization, Point};
 use crate::problem::Problem;
-use crate::robot::{Columns, Robot};
-use crate::solver::{Evaluator, Halt, LevenbergMarquardt, Stop, run};
+use crate::robot::Robot;
+use crate::solver::{Evaluator, LevenbergMarquardt, Status, Stop, run};
 use crate::task::Assessment;
 
 /// Steps by the model in one tick; they converge quadratically, so that more would not help.
@@ -24,7 +25,7 @@ const MOST_STEPS: usize = 10;
 
 /// What the rule remembers from tick to tick. Boxed, so that handing a Jacobian on is handing on a pointer.
 #[derive(Debug, Default)]
-pub struct Memory {
+pub struct MidStepState {
     /// At the accepted configuration, once there was a tick.
     begin: Box<Kinematics>,
     begin_known: bool,
@@ -73,7 +74,7 @@ impl Kinematics {
     }
 }
 
-pub fn advance(memory: &mut Memory, q: &[f64], mut tick: Tick<'_>) -> TickResult {
+pub fn advance(memory: &mut MidStepState, q: &[f64], mut tick: Tick<'_>) -> TickResult {
     let mut found = TickResult::at(q);
     tick.tick_box.clip(&mut found.q);
     if !memory.begin_known || *found.q != *q {
@@ -98,7 +99,7 @@ pub fn advance(memory: &mut Memory, q: &[f64], mut tick: Tick<'_>) -> TickResult
     found
 }
 
-impl Memory {
+impl MidStepState {
     /// Drops what is known: the arm is not where the last tick ended.
     pub fn forget(&mut self) {
         (self.begin_known, self.before_known) = (false, false);
@@ -247,15 +248,15 @@ impl Memory {
         let mut problem = Problem::new(tick.robot, tick.target, *tick.criterion);
         let objective: &mut dyn Differentiable = &mut problem;
         let mut evaluator = Evaluator::new(objective, tick.tick_box, Stop::default(), tick.rng, tick.monitor);
-        let outcome = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
-        let evaluations = evaluator.evaluations();
+        let status = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
+        let (evaluations, iterations) = (evaluator.evaluations(), evaluator.iterations());
         found.q.copy_from_slice(&evaluator.best().x);
         self.here.place(&found.q);
         self.here.update(tick.robot);
         found.set_tip(&self.here.tip, tick.target, tick.criterion);
         found.evaluations += evaluations + 1;
-        found.iterations += outcome.iterations;
-        found.interrupted = outcome.halt == Halt::Interrupted;
+        found.iterations += iterations;
+        found.interrupted = status == Status::Interrupted;
     }
 
     /// Hands the kinematics at the end of this tick on to the beginning of the next.

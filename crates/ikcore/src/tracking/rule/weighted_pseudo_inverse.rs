@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use super::{Tick, TickResult};
+use super::tick::{Tick, TickResult};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::MAX_DOF;
 use crate::math::box_step::BoxStep;

@@ -1,0 +1,165 @@
+//! The work of a batch: rows, groups of rows, and who solves them.
+//!
+//! Items share nothing that changes: item i draws from stream i of the seed and writes to row i. So the bits of an item
+//! depend neither on the number of threads nor on the other items. Where the solver allows it, a thread solves four targets
+//! side by side in the lanes of its registers.
+
+use std::cell::RefCell;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
+
+use rayon::ThreadPool;
+use rayon::prelude::*;
+
+use super::monitors::{SharedMonitor, StopFlag};
+use super::options::BatchOptions;
+use super::results::{Batch, BatchItem};
+use super::targets::Targets;
+use crate::error::{Error, Result};
+use crate::ik::{Query, Solution, SolveContext, solve_queries};
+use crate::robot::Robot;
+use crate::solver::{Monitor, Status};
+use crate::task::Target;
+
+/// What all threads share.
+pub(super) struct Job<'a> {
+    context: SolveContext<'a>,
+    targets: Targets<'a>,
+    starts: Option<&'a [f64]>,
+    common_start: Option<&'a [f64]>,
+    dof: usize,
+}
+
+/// Rows checked between two looks at the monitor: some 100 microseconds.
+const CHECKED_AT_ONCE: usize = 1024;
+
+/// The fewest and the most targets that a thread takes at once to solve them four side by side: few, and lanes stand empty at the end;
+/// many, and threads do.
+const GROUP: (usize, usize) = (8, 256);
+
+/// Groups for each thread, where there are targets enough: what makes threads end together.
+const GROUPS_A_THREAD: usize = 4;
+
+/// Time between two looks at the monitor while threads work.
+const INTERVAL: Duration = Duration::from_millis(20);
+
+impl<'a> Job<'a> {
+    pub fn new(robot: &'a Robot, targets: Targets<'a>, options: &'a BatchOptions<'a>) -> Result<Self> {
+        let (dof, rows) = (robot.dof(), targets.len());
+        if let Some(starts) = options.starts
+            && starts.len() != rows * dof
+        {
+            let expected = format!("{} numbers, {rows} rows (one per target) of {dof} joints", rows * dof);
+            return Err(Error::WrongLength { what: "starts".into(), expected, got: starts.len() });
+        }
+        let context = SolveContext::new(robot, &options.each)?;
+        let common_start = options.each.start.as_deref();
+        common_start.map_or(Ok(()), |q| context.check_start(q))?;
+        context.require_reference(options.starts.or(common_start))?;
+        Ok(Self { context, targets, starts: options.starts, common_start, dof })
+    }
+
+    /// Target `i` and where it begins, both checked.
+    fn read(&self, i: usize) -> Result<(Target, Option<&'a [f64]>)> {
+        let target = self.context.read(&self.targets.read(i)?)?;
+        let Some(starts) = self.starts else { return Ok((target, self.common_start)) };
+        let start = &starts[i * self.dof..(i + 1) * self.dof];
+        self.context.check_start(start).map(|()| (target, Some(start)))
+    }
+
+    /// Finds a wrong row before any work is spent on the others.
+    pub fn check_rows(&self, monitor: &mut dyn Monitor) -> Result<()> {
+        for row in 0..self.targets.len() {
+            if row.is_multiple_of(CHECKED_AT_ONCE) && !monitor.keep_going() {
+                break;
+            }
+            self.read(row).map_err(|error| Error::InRow { row, error: Box::new(error) })?;
+        }
+        Ok(())
+    }
+
+    /// How many targets a thread takes at once.
+    fn group(&self, threads: usize) -> usize {
+        let (fewest, most) = GROUP;
+        let together = self.context.side_by_side_descent().is_some();
+        if together { (self.targets.len() / (GROUPS_A_THREAD * threads)).clamp(fewest, most) } else { 1 }
+    }
+
+    /// Solves the targets from number `first` on, as many as there are `items`; `done` is told of each.
+    fn solve_rows<M: Monitor + Clone>(
+        &self,
+        first: usize,
+        qs: &mut [f64],
+        items: &mut [BatchItem],
+        monitor: &M,
+        mut done: impl FnMut(),
+    ) {
+        if !monitor.clone().keep_going() {
+            return;
+        }
+        let mut rows = Vec::with_capacity(items.len());
+        let mut queries = Vec::with_capacity(items.len());
+        for (row, item) in items.iter_mut().enumerate() {
+            match self.read(first + row) {
+                Ok((target, start)) => {
+                    rows.push(row);
+                    queries.push(Query { target, start, stream: (first + row) as u64 });
+                }
+                Err(_) => {
+                    *item = BatchItem::untouched(Status::Invalid);
+                    done();
+                }
+            }
+        }
+        solve_queries(&self.context, &queries, monitor, |query, solution| {
+            let Solution { q, status, error, obstruction, iterations, restarts, evaluations, elapsed } = solution;
+            let row = rows[query];
+            qs[row * self.dof..(row + 1) * self.dof].copy_from_slice(&q);
+            items[row] = BatchItem { status, error, obstruction, iterations, restarts, evaluations, elapsed };
+            done();
+        });
+    }
+
+    pub fn run_here(&self, batch: &mut Batch, monitor: &mut dyn Monitor) {
+        let (mut done, total) = (0, batch.items.len());
+        let monitor = SharedMonitor(&RefCell::new(monitor));
+        let group = self.group(1);
+        let groups = batch.q.chunks_mut(group * self.dof).zip(batch.items.chunks_mut(group)).enumerate();
+        for (i, (qs, items)) in groups {
+            self.solve_rows(i * group, qs, items, &monitor, || {
+                done += 1;
+                monitor.clone().progress(done, total);
+            });
+        }
+    }
+
+    pub fn run_on(&self, pool: &ThreadPool, batch: &mut Batch, monitor: &mut dyn Monitor) {
+        let (done, total) = (AtomicUsize::new(0), batch.items.len());
+        let stopped = AtomicBool::new(false);
+        let group = self.group(pool.current_num_threads());
+        let groups = batch.q.par_chunks_mut(group * self.dof).zip(batch.items.par_chunks_mut(group)).enumerate();
+        let work = || {
+            groups.for_each(|(i, (qs, items))| {
+                self.solve_rows(i * group, qs, items, &StopFlag(&stopped), || {
+                    done.fetch_add(1, Ordering::Relaxed);
+                });
+            });
+        };
+        // Nothing is ever sent: that the threads are done shows in the sender's end.
+        let (working, finished) = mpsc::channel::<()>();
+        pool.in_place_scope(|scope| {
+            scope.spawn(move |_| {
+                let _working = working;
+                work();
+            });
+            while let Err(RecvTimeoutError::Timeout) = finished.recv_timeout(INTERVAL) {
+                if !monitor.keep_going() {
+                    stopped.store(true, Ordering::Relaxed);
+                }
+                monitor.progress(done.load(Ordering::Relaxed), total);
+            }
+        });
+        monitor.progress(done.into_inner(), total);
+    }
+}

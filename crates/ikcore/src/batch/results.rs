@@ -1,0 +1,96 @@
+//! What became of a batch.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use crate::ik::Solution;
+use crate::objective::Point;
+use crate::solver::Status;
+use crate::task::TipError;
+
+/// What became of one target; its configuration is a row of [`Batch::q`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BatchItem {
+    /// Why the search ended.
+    pub status: Status,
+    /// Errors by forward kinematics; NaN where nothing was solved.
+    pub error: TipError,
+    /// What is in the way of a target that was not reached, in words; empty where nothing is known.
+    pub obstruction: String,
+    /// Iterations over all starts.
+    pub iterations: usize,
+    /// Starts beyond the first.
+    pub restarts: usize,
+    /// Evaluations of the forward kinematics.
+    pub evaluations: usize,
+    /// Time taken by this target; its share of the time that it was solved side by side with others.
+    pub elapsed: Duration,
+}
+
+impl BatchItem {
+    /// An item that nothing was done about.
+    pub(super) fn untouched(status: Status) -> Self {
+        let error = TipError { position: f64::NAN, rotation: f64::NAN };
+        let obstruction = String::new();
+        Self { status, error, obstruction, iterations: 0, restarts: 0, evaluations: 0, elapsed: Duration::ZERO }
+    }
+
+    /// The same with its configuration.
+    pub fn solution(&self, q: &[f64]) -> Solution {
+        let Self { status, error, obstruction, iterations, restarts, evaluations, elapsed } = self.clone();
+        Solution { q: Point::from_slice(q), status, error, obstruction, iterations, restarts, evaluations, elapsed }
+    }
+}
+
+/// Solutions in the order of the targets.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Batch {
+    /// Degrees of freedom, n.
+    pub dof: usize,
+    /// The best configurations found, (m, n) row after row (rad, m); NaN where nothing was solved.
+    pub q: Vec<f64>,
+    /// What became of each target (m,).
+    pub items: Vec<BatchItem>,
+    /// Time taken in all.
+    pub elapsed: Duration,
+}
+
+impl Batch {
+    pub(super) fn untouched(dof: usize, len: usize) -> Self {
+        let items = vec![BatchItem::untouched(Status::Interrupted); len];
+        Self { dof, q: vec![f64::NAN; dof * len], items, elapsed: Duration::ZERO }
+    }
+
+    /// BatchItem `i` on its own; None past the end.
+    pub fn solution(&self, i: usize) -> Option<Solution> {
+        self.items.get(i).map(|item| item.solution(&self.q[i * self.dof..(i + 1) * self.dof]))
+    }
+
+    /// Some of the items, in this order; the time is the sum of theirs.
+    ///
+    /// # Panics
+    /// If a row is past the end.
+    pub fn select(&self, rows: &[usize]) -> Self {
+        let items: Vec<BatchItem> = rows.iter().map(|i| self.items[*i].clone()).collect();
+        let q = rows.iter().flat_map(|i| &self.q[i * self.dof..(i + 1) * self.dof]).copied().collect();
+        let elapsed = items.iter().map(|item| item.elapsed).sum();
+        Self { dof: self.dof, q, items, elapsed }
+    }
+
+    /// How many were solved, and what to try for the others.
+    pub fn message(&self) -> String {
+        let count = |status| self.items.iter().filter(|item| item.status == status).count();
+        let (solved, total) = (count(Status::Solved), self.items.len());
+        if total == 0 {
+            return "no targets".into();
+        }
+        if solved == total {
+            return format!("all {total} solved");
+        }
+        let unsolved = Status::ALL[1..].iter().map(|status| (count(*status), status)).filter(|(count, _)| *count > 0);
+        let reasons: Vec<String> =
+            unsolved.map(|(count, status)| format!("{count} {}: {}", status.name(), status.advice())).collect();
+        format!("{solved} of {total} solved; {}", reasons.join("; "))
+    }
+}

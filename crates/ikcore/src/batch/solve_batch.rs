@@ -1,0 +1,39 @@
+//! Solves a batch, in the calling thread or on a pool.
+
+use super::job::Job;
+use super::options::{BatchOptions, OnInvalid};
+use super::pool;
+use super::results::Batch;
+use super::targets::Targets;
+use crate::error::Result;
+use crate::robot::Robot;
+use crate::solver::{Monitor, Stopwatch};
+
+/// Solves every target of `targets`; item i is what [`solve`](crate::ik::solve) would find from stream i of the seed.
+///
+/// The monitor is asked and told from the calling thread alone.
+///
+/// # Errors
+/// Any [`Error`] for wrong input; [`Error::InRow`] for a wrong target or start, unless those are to be skipped. A
+/// target that is not reached is a status, not an error.
+pub fn solve_batch(
+    robot: &Robot,
+    targets: Targets<'_>,
+    options: &BatchOptions<'_>,
+    monitor: &mut dyn Monitor,
+) -> Result<Batch> {
+    let stopwatch = Stopwatch::start();
+    let job = Job::new(robot, targets, options)?;
+    let threads = pool::thread_count(options.threads)?;
+    if options.on_invalid == OnInvalid::Raise {
+        job.check_rows(monitor)?;
+    }
+    let mut batch = Batch::untouched(robot.dof(), targets.len());
+    if threads == 1 || targets.len() <= 1 {
+        job.run_here(&mut batch, monitor);
+    } else {
+        job.run_on(&*pool::pool(threads)?, &mut batch, monitor);
+    }
+    batch.elapsed = stopwatch.elapsed();
+    Ok(batch)
+}

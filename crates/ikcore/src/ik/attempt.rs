@@ -1,0 +1,157 @@
+//! The attempt at one target: runs of the solver within the target's budget, and a last descent from the best miss.
+
+use super::budget::Budget;
+use super::context::SolveContext;
+use super::goal_descent::GoalDescent;
+use super::solution::Solution;
+use crate::objective::{Bounds, Differentiable, Objective, Point};
+use crate::problem::Problem;
+use crate::rng::LazyRng;
+use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, Status, run};
+use crate::task::Goals;
+
+/// Starts from which a target beyond the reach is approached.
+const APPROACHES: usize = 8;
+
+/// Everything that solving one target needs.
+pub(super) struct Attempt<'m, 'p> {
+    pub context: &'p SolveContext<'p>,
+    pub problem: &'m mut Problem<'p>,
+    pub rng: &'m mut LazyRng,
+    pub monitor: &'m mut dyn Monitor,
+    pub budget: Budget,
+}
+
+impl<'m, 'p> Attempt<'m, 'p> {
+    /// An attempt with its whole budget.
+    pub fn new(
+        context: &'p SolveContext<'p>,
+        problem: &'m mut Problem<'p>,
+        rng: &'m mut LazyRng,
+        monitor: &'m mut dyn Monitor,
+    ) -> Self {
+        Self { context, problem, rng, monitor, budget: Budget::new(context.options().stop) }
+    }
+
+    /// The caller's start, or the best that is known of.
+    pub fn first_start(&mut self, start: Option<&[f64]>) -> Point {
+        self.context.first_start(self.problem, start, self.rng)
+    }
+
+    /// Writes another start into `x`.
+    pub fn next_start(&mut self, x: &mut [f64]) {
+        self.problem.propose_start(1, self.context.bounds(), self.rng, x);
+    }
+
+    /// Runs the solver from `x0` and, where it misses, descends from its best point. A target provably beyond the reach is
+    /// only approached.
+    pub fn solve_from(&mut self, x0: &[f64]) -> Solution {
+        let bounds = self.context.bounds();
+        let Some(MultiStart { solver: descent, .. }) = self.context.options().solver.restarted_descent() else {
+            let (status, q) = self.search(bounds, x0, 0);
+            return self.explained(status, q);
+        };
+        if self.problem.beyond_reach(bounds).is_some() {
+            let q = self.approach(&descent, x0);
+            return self.explained(Status::OutOfReach, q);
+        }
+        let (status, q) = self.search(bounds, x0, self.budget.reserve());
+        self.finish(&descent, status, q)
+    }
+
+    /// Runs the solver from `x0` within `bounds`, leaving `reserve` evaluations.
+    pub fn search(&mut self, bounds: &Bounds, x0: &[f64], reserve: usize) -> (Status, Point) {
+        let objective: &mut dyn Differentiable = self.problem;
+        let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(reserve), self.rng, self.monitor);
+        let status = self.context.options().solver.run(&mut evaluator, x0);
+        self.budget.add(&evaluator);
+        (status, Point::from_slice(&evaluator.best().x))
+    }
+
+    /// The solution of a search that ended with `status` at `q`; a miss is followed by a descent from there.
+    pub fn finish(&mut self, descent: &LevenbergMarquardt, status: Status, q: Point) -> Solution {
+        if !matches!(status, Status::BudgetSpent | Status::Stalled) {
+            return self.explained(status, q);
+        }
+        let (solved, q) = self.descend(descent, q);
+        self.explained(if solved { Status::Solved } else { status }, q)
+    }
+
+    /// Descends once from `q` to the end; whether that solved, and the best point.
+    fn descend(&mut self, descent: &LevenbergMarquardt, q: Point) -> (bool, Point) {
+        if self.budget.is_spent() {
+            return (false, q);
+        }
+        let (objective, bounds): (&mut dyn Differentiable, _) = (self.problem, self.context.bounds());
+        let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(0), self.rng, self.monitor);
+        run(descent, &mut evaluator, &q);
+        self.budget.add(&evaluator);
+        (evaluator.best().solved, Point::from_slice(&evaluator.best().x))
+    }
+
+    /// The nearest of a few descents towards a target that cannot be reached.
+    fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64]) -> Point {
+        let mut best: Option<(f64, Point)> = None;
+        let mut x = Point::from_slice(x0);
+        for approach in 0..APPROACHES {
+            if approach > 0 {
+                self.next_start(&mut x);
+                self.budget.restarts += 1;
+            }
+            let (_, q) = self.descend(descent, x.clone());
+            let value = self.problem.assess(&q).score.value;
+            if best.as_ref().is_none_or(|(least, _)| value < *least) {
+                best = Some((value, q));
+            }
+        }
+        best.map_or(x, |(_, q)| q)
+    }
+
+    /// Moves `q` along its self-motion to the nearest optimum of `goals`; false where `q` is at no solution, nor near one.
+    pub fn descend_goals(&mut self, goals: &mut Goals, q: &mut Point) -> bool {
+        let mut descent = GoalDescent {
+            robot: self.context.robot(),
+            problem: self.problem,
+            goals,
+            bounds: self.context.bounds(),
+            evaluations: 0,
+            max_evaluations: self.budget.left(),
+        };
+        let is_solved = descent.descend(q);
+        self.budget.evaluations += descent.evaluations;
+        is_solved
+    }
+
+    /// The result at `q`, with the reason of a miss.
+    fn explained(&self, status: Status, q: Point) -> Solution {
+        let mut solution = self.solution(status, q);
+        if status != Status::Solved {
+            solution.obstruction = self.problem.obstruction(self.context.bounds(), &solution.q);
+        }
+        solution
+    }
+
+    /// The result at `q`.
+    pub fn solution(&self, status: Status, q: Point) -> Solution {
+        Solution {
+            status,
+            error: self.problem.assess(&q).error.into(),
+            obstruction: String::new(),
+            iterations: self.budget.iterations,
+            restarts: self.budget.restarts,
+            evaluations: self.budget.evaluations,
+            elapsed: self.budget.elapsed(),
+            q,
+        }
+    }
+
+    /// Gives a solved `solution` the status [`Status::HeldInRegion`] where the region keeps the tip from the target itself.
+    pub fn mark_held_in_region(&self, solution: Solution) -> Solution {
+        match self.problem.criterion().blocked_by_region(self.problem.target()) {
+            Some(obstruction) if solution.status == Status::Solved => {
+                Solution { status: Status::HeldInRegion, obstruction, ..solution }
+            }
+            _ => solution,
+        }
+    }
+}

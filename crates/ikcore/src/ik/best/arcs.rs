@@ -1,0 +1,101 @@
+//! What the joint limits leave of a curve: arcs, and the places on them that promise to be best.
+//!
+//! Between two places of a walk joints follow cubics, and so, nearly, does the cost of the goals between two places where it
+//! and its slope were asked: where that cubic is lowest is where to go on from.
+
+use smallvec::SmallVec;
+
+use super::curve_walk::CurvePoint;
+use super::wrapped_limits::WrappedLimits;
+use crate::math::MAX_DOF;
+use crate::math::hermite::Cubic;
+use crate::math::vector::dot;
+use crate::objective::Point;
+use crate::robot::Robot;
+use crate::task::Goals;
+
+/// By this share of what a cost is hoped to fall below those asked, it may be still lower.
+const DOUBT: f64 = 0.1;
+
+/// A place nearly on a curve, within the limits or nearly so, and a cost of the goals that is hoped for there: hardly more
+/// than the least near it.
+pub(super) struct Candidate {
+    pub cost: f64,
+    pub q: Point,
+}
+
+/// What the limits leave of the curves, and what it candidates.
+pub(super) struct Arcs<'r, 'a> {
+    robot: &'a Robot,
+    limits: &'r WrappedLimits<'a>,
+    goals: &'r mut Goals,
+    /// At the end of the last step, if within the limits.
+    last: Option<Asked>,
+    candidates: Vec<Candidate>,
+}
+
+/// The goals' cost at a place, and its slope from joint to joint.
+struct Asked {
+    cost: f64,
+    gradient: Point,
+}
+
+impl<'r, 'a> Arcs<'r, 'a> {
+    pub fn new(robot: &'a Robot, limits: &'r WrappedLimits<'a>, goals: &'r mut Goals) -> Self {
+        Self { robot, limits, goals, last: None, candidates: Vec::new() }
+    }
+
+    /// The candidates made, the best first.
+    pub fn into_candidates(mut self) -> Vec<Candidate> {
+        self.candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        self.candidates
+    }
+
+    /// The next step does not begin where the last one ended.
+    pub fn interrupt(&mut self) {
+        self.last = None;
+    }
+
+    /// Looks at the step from `begin` to `end`, the chord between them `length` long.
+    pub fn look(&mut self, begin: &CurvePoint, end: &CurvePoint, length: f64) {
+        let ways: SmallVec<[Cubic; MAX_DOF]> = (0..begin.q.len())
+            .map(|j| {
+                let from = self.limits.near_middle(j, begin.q[j]);
+                let slopes = [begin.along[j], end.along[j]].map(|slope| length * slope);
+                Cubic::new([from, from + end.q[j] - begin.q[j]], slopes)
+            })
+            .collect();
+        let mut last = self.last.take();
+        for [from, to] in self.limits.pieces(&ways) {
+            let before = last.take().filter(|_| from == 0.0);
+            let asked = [before.unwrap_or_else(|| self.ask(&ways, from)), self.ask(&ways, to)];
+            self.promise(&ways, [from, to], &asked);
+            let [_, after] = asked;
+            self.last = (to == 1.0).then_some(after);
+        }
+    }
+
+    /// Where on a piece the cubic between the costs at its ends is lowest.
+    fn promise(&mut self, ways: &[Cubic], [from, to]: [f64; 2], asked: &[Asked; 2]) {
+        let slope = |asked: &Asked, share: f64| -> f64 {
+            let along: Point = ways.iter().map(|way| way.slope(share)).collect();
+            (to - from) * dot(&along, &asked.gradient)
+        };
+        let [left, right] = asked;
+        let cost = Cubic::new([left.cost, right.cost], [slope(left, from), slope(right, to)]);
+        let lowest = cost.lowest();
+        let fall = left.cost.min(right.cost) - cost.at(lowest);
+        let q = self.place(ways, from + lowest * (to - from));
+        self.candidates.push(Candidate { cost: cost.at(lowest) - DOUBT * fall, q });
+    }
+
+    fn ask(&mut self, ways: &[Cubic], share: f64) -> Asked {
+        let q = self.place(ways, share);
+        let mut gradient = Point::from_elem(0.0, q.len());
+        Asked { cost: self.goals.cost(self.robot, &q, &mut gradient), gradient }
+    }
+
+    fn place(&self, ways: &[Cubic], share: f64) -> Point {
+        ways.iter().enumerate().map(|(j, way)| self.limits.near_middle(j, way.at(share))).collect()
+    }
+}

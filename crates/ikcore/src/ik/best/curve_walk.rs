@@ -1,0 +1,176 @@
+//! The self-motion of an arm with one joint more than its task needs, as a curve that is walked along in long steps, as if
+//! there were no joint limits.
+//!
+//! Predictor and corrector: a step follows the curve's direction and its bend since the step before; Gauss-Newton brings it
+//! back to the task. Between two places, joints follow the cubics that meet the curve's directions at both.
+
+use crate::ik::goal_descent::difference;
+use crate::math::MAX_DOF;
+use crate::math::box_step::{BoxStep, least_damping};
+use crate::math::vector::{distance, dot, norm};
+use crate::objective::{LeastSquares, Linearization, Point};
+use crate::problem::Problem;
+
+/// Longest step (rad, m), and the first.
+pub(super) const LONGEST: f64 = 0.2;
+/// Shortest step: below, the curve has a corner, which is a singular posture.
+const SHORTEST: f64 = 0.01;
+/// Cosine of the angle by which a step may turn the curve's direction; beyond, it is halved.
+const SHARPEST: f64 = 0.94;
+/// Cosine above which the next step is twice as long.
+const STRAIGHT: f64 = 0.985;
+/// A step that was off the curve by more than this share of its length is halved.
+const ASTRAY: f64 = 0.3;
+/// A step that was off the curve by more than this (rad, m) is corrected again: what is left goes with its square.
+const ASIDE: f64 = 0.01;
+/// Gauss-Newton steps back to the task.
+const MOST_CORRECTIONS: usize = 2;
+
+/// A place on a curve, and the curve's direction there.
+#[derive(Debug, Clone)]
+pub(super) struct CurvePoint {
+    pub q: Point,
+    pub along: Point,
+}
+
+/// What a step led along.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum StepKind {
+    /// A stretch of the curve, from the place before to here.
+    Smooth,
+    /// Past a corner: another curve may have been caught, what lies between is not known.
+    Corner,
+}
+
+/// A walk along a curve.
+pub(super) struct Walk<'w, 'p> {
+    problem: &'w mut Problem<'p>,
+    here: CurvePoint,
+    /// How fast the direction changes along the curve.
+    bend: Point,
+    length: f64,
+    /// The task at the last place it was asked.
+    at: Linearization,
+    /// Evaluations of the forward kinematics so far, and the most there may be.
+    evaluations: usize,
+    max_evaluations: usize,
+}
+
+impl<'w, 'p> Walk<'w, 'p> {
+    /// At `q`, a solution, on the only curve through it; None where the task leaves no freedom, or more than that of a curve,
+    /// or where no evaluation is left to tell.
+    pub fn enter(problem: &'w mut Problem<'p>, q: &[f64], max_evaluations: usize) -> Option<Self> {
+        if max_evaluations == 0 {
+            return None;
+        }
+        let mut at = Linearization::default();
+        problem.linearize(q, &mut at);
+        let mut along = Point::new();
+        let (mut freedom, mut longest) = (0.0, 0.0);
+        for j in 0..q.len() {
+            let mut unit = Point::from_elem(0.0, q.len());
+            unit[j] = 1.0;
+            let free = tangent(&at, q, &unit);
+            // The trace of the projection on what the task leaves free is the dimension of that.
+            freedom += free[j];
+            let length = norm(&free);
+            if length > longest {
+                (longest, along) = (length, free);
+            }
+        }
+        let is_curve = (freedom - 1.0_f64).abs() < 0.5;
+        let here = CurvePoint { q: q.into(), along: normalized(along) };
+        let bend = Point::from_elem(0.0, q.len());
+        is_curve.then(|| Self { problem, here, bend, length: LONGEST, at, evaluations: 1, max_evaluations })
+    }
+
+    /// Where it has come to.
+    pub fn here(&self) -> &CurvePoint {
+        &self.here
+    }
+
+    /// Evaluations of the forward kinematics so far.
+    pub fn evaluations(&self) -> usize {
+        self.evaluations
+    }
+
+    /// Goes on from `place`, the other way.
+    pub fn turn_back_at(&mut self, place: &CurvePoint) {
+        let along = place.along.iter().map(|slope| -slope).collect();
+        self.here = CurvePoint { q: place.q.clone(), along };
+        self.bend.fill(0.0);
+        self.length = LONGEST;
+    }
+
+    /// The next step: the place it leaves, and what it leads along. None where no evaluations are left for it.
+    pub fn step(&mut self) -> Option<(CurvePoint, StepKind)> {
+        while self.evaluations + MOST_CORRECTIONS <= self.max_evaluations {
+            let (there, aside) = self.try_step();
+            let cosine = dot(&self.here.along, &there.along);
+            let is_smooth = cosine > SHARPEST && aside < ASTRAY * self.length;
+            if !is_smooth && self.length > SHORTEST {
+                self.length *= 0.5;
+                continue;
+            }
+            let from = std::mem::replace(&mut self.here, there);
+            if !is_smooth {
+                self.bend.fill(0.0);
+                return Some((from, StepKind::Corner));
+            }
+            let turn = difference(&self.here.along, &from.along);
+            self.bend = turn.into_iter().map(|turn| turn / self.length).collect();
+            if cosine > STRAIGHT {
+                self.length = (2.0 * self.length).min(LONGEST);
+            }
+            return Some((from, StepKind::Smooth));
+        }
+        None
+    }
+
+    /// A step of the present length, and by how much it was off the curve before it was brought back.
+    fn try_step(&mut self) -> (CurvePoint, f64) {
+        let (h, CurvePoint { q: from, along }) = (self.length, &self.here);
+        let predicted: Point = (0..from.len()).map(|j| from[j] + h * (along[j] + 0.5 * h * self.bend[j])).collect();
+        let mut q = Point::from_slice(&predicted);
+        for _ in 0..MOST_CORRECTIONS {
+            self.evaluations += 1;
+            self.problem.linearize(&q, &mut self.at);
+            let before = Point::from_slice(&q);
+            back_to_task(&self.at, &before, &mut q);
+            if distance(&q, &before) < ASIDE {
+                break;
+            }
+        }
+        let along = normalized(tangent(&self.at, &q, along));
+        let aside = distance(&q, &predicted);
+        (CurvePoint { q, along }, aside)
+    }
+}
+
+const NOWHERE: [f64; MAX_DOF] = [f64::NEG_INFINITY; MAX_DOF];
+const ANYWHERE: [f64; MAX_DOF] = [f64::INFINITY; MAX_DOF];
+
+/// What of `direction` the linearised task leaves free.
+fn tangent(at: &Linearization, q: &[f64], direction: &[f64]) -> Point {
+    let preferred: Point = q.iter().zip(direction).map(|(q, along)| q + along).collect();
+    let mut out = Point::from_slice(&preferred);
+    BoxStep { residual: &[0.0; 6], ..unbounded(at, q) }.write_near(&preferred, &mut out);
+    difference(&out, q)
+}
+
+/// A Gauss-Newton step.
+fn back_to_task(at: &Linearization, from: &[f64], q: &mut [f64]) {
+    unbounded(at, from).write(q);
+}
+
+/// The step from `x` without limits.
+fn unbounded<'a>(at: &'a Linearization, x: &'a [f64]) -> BoxStep<'a> {
+    let (n, Linearization { columns, residual }) = (x.len(), at);
+    let lambda = least_damping(&columns[..n]);
+    BoxStep { columns, residual, lambda, x, lower: &NOWHERE[..n], upper: &ANYWHERE[..n] }
+}
+
+fn normalized(vector: Point) -> Point {
+    let length = norm(&vector);
+    vector.into_iter().map(|entry| entry / length).collect()
+}

@@ -1,0 +1,82 @@
+//! The room between the joint limits, as seen from a curve that knows none: whole turns of a joint do not matter.
+
+use std::f64::consts::{PI, TAU};
+
+use smallvec::{SmallVec, smallvec};
+
+use crate::math::MAX_DOF;
+use crate::math::hermite::Cubic;
+use crate::math::polynomial::roots;
+use crate::objective::{Bounds, Point};
+use crate::robot::Robot;
+
+/// Between the joint limits.
+pub(super) struct WrappedLimits<'a> {
+    bounds: &'a Bounds,
+    middle: Point,
+    /// Which joints repeat themselves after a turn.
+    repeats: SmallVec<[bool; MAX_DOF]>,
+}
+
+/// Pieces of a way, from share to share of it.
+pub(super) type Pieces = SmallVec<[[f64; 2]; 4]>;
+
+impl<'a> WrappedLimits<'a> {
+    pub fn new(robot: &Robot, bounds: &'a Bounds) -> Self {
+        // A joint that turns without end has no middle; any angle may serve.
+        let middle = |(lower, upper): (f64, f64)| {
+            if lower.is_finite() && upper.is_finite() { 0.5 * (lower + upper) } else { 0.0 }
+        };
+        let repeats = (0..robot.dof()).map(|j| robot.repeats_every_turn(j)).collect();
+        Self { bounds, middle: bounds.ranges().map(middle).collect(), repeats }
+    }
+
+    /// a - b, whole turns aside.
+    pub fn apart(&self, a: &[f64], b: &[f64]) -> Point {
+        (0..a.len()).map(|j| self.turned(j, a[j] - b[j])).collect()
+    }
+
+    /// `angle` of joint `j`, brought near zero by whole turns.
+    #[inline]
+    pub fn turned(&self, j: usize, angle: f64) -> f64 {
+        if angle.abs() > PI && self.repeats[j] { angle - TAU * (angle / TAU).round() } else { angle }
+    }
+
+    /// The angle of joint `j`, by whole turns as near as it can be to the middle of its limits.
+    #[inline]
+    pub fn near_middle(&self, j: usize, angle: f64) -> f64 {
+        self.middle[j] + self.turned(j, angle - self.middle[j])
+    }
+
+    /// The pieces of a short way that lie within the limits. Joints follow `ways`, which begin near their middles.
+    pub fn pieces(&self, ways: &[Cubic]) -> Pieces {
+        let mut shares: SmallVec<[f64; 8]> = smallvec![0.0, 1.0];
+        for (j, way) in ways.iter().enumerate() {
+            let [low, high] = way.hull();
+            let mut is_crossed = false;
+            for limit in self.limits_near(j).filter(|limit| low <= *limit && *limit <= high) {
+                let [a, b, c, d] = way.coefficients;
+                shares.extend(roots(&[a - limit, b, c, d], 0.0, 1.0));
+                is_crossed = true;
+            }
+            if !is_crossed && !self.is_within(j, low) {
+                return Pieces::new();
+            }
+        }
+        shares.sort_by(f64::total_cmp);
+        let between = shares.windows(2).map(|ends| [ends[0], ends[1]]).filter(|[from, to]| from < to);
+        between.filter(|[from, to]| (0..ways.len()).all(|j| self.is_within(j, ways[j].at(0.5 * (from + to))))).collect()
+    }
+
+    /// The limits of joint `j`, and where they are met again a turn away.
+    fn limits_near(&self, j: usize) -> impl Iterator<Item = f64> {
+        let turns = if self.repeats[j] { -1..=1 } else { 0..=0 };
+        let (lower, upper) = (self.bounds.lower()[j], self.bounds.upper()[j]);
+        turns.flat_map(move |turn: i32| [lower, upper].map(|limit| limit + TAU * f64::from(turn)))
+    }
+
+    fn is_within(&self, j: usize, angle: f64) -> bool {
+        let angle = self.near_middle(j, angle);
+        self.bounds.lower()[j] <= angle && angle <= self.bounds.upper()[j]
+    }
+}

@@ -1,0 +1,62 @@
+//! The budgets of one target over several runs of a solver.
+
+use crate::objective::Objective;
+use crate::solver::{Evaluator, Stop, Stopwatch};
+
+/// Evaluations kept back for a last descent from the best miss: multi-start abandons attempts long before they converge.
+const RESERVE: usize = 200;
+
+/// The counts of one target so far, and the limits on them.
+pub(super) struct Budget {
+    stop: Stop,
+    stopwatch: Stopwatch,
+    pub iterations: usize,
+    pub restarts: usize,
+    pub evaluations: usize,
+}
+
+impl Budget {
+    /// Nothing spent yet.
+    pub fn new(stop: Stop) -> Self {
+        Self { stop, stopwatch: Stopwatch::start(), iterations: 0, restarts: 0, evaluations: 0 }
+    }
+
+    /// Time since the first run began.
+    pub fn elapsed(&self) -> std::time::Duration {
+        self.stopwatch.elapsed()
+    }
+
+    /// Evaluations that may still be made.
+    pub fn left(&self) -> usize {
+        self.stop.max_evaluations.saturating_sub(self.evaluations)
+    }
+
+    /// Evaluations that the first search leaves over.
+    pub fn reserve(&self) -> usize {
+        if self.left() > 10 * RESERVE { RESERVE } else { 0 }
+    }
+
+    /// Whether a budget is used up.
+    pub fn is_spent(&self) -> bool {
+        self.left() == 0
+            || self.iterations >= self.stop.max_iterations
+            || self.stop.max_time.is_some_and(|limit| self.stopwatch.elapsed() >= limit)
+    }
+
+    /// What is left of the budgets, less `reserve` evaluations.
+    pub fn rest(&self, reserve: usize) -> Stop {
+        Stop {
+            max_evaluations: self.left() - reserve,
+            max_iterations: self.stop.max_iterations.saturating_sub(self.iterations),
+            max_time: self.stop.max_time.map(|limit| limit.saturating_sub(self.stopwatch.elapsed())),
+            ..self.stop
+        }
+    }
+
+    /// Adds the counts of a finished run.
+    pub fn add<O: Objective + ?Sized>(&mut self, run: &Evaluator<'_, O>) {
+        self.evaluations += run.evaluations();
+        self.restarts += run.attempts() - 1;
+        self.iterations += run.iterations();
+    }
+}

@@ -1,0 +1,141 @@
+//! What all targets of a call have in common, validated once.
+
+use super::options::{Prefer, SolveOptions};
+use crate::error::{Error, Result};
+use crate::limits::{Field, Limits};
+use crate::objective::{Bounds, Objective, Point};
+use crate::problem::Problem;
+use crate::rng::LazyRng;
+use crate::robot::Robot;
+use crate::solver::{LevenbergMarquardt, MultiStart};
+use crate::task::{Criterion, Goals, Target, Task};
+
+/// A validated target and start.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Query<'a> {
+    /// Where the tip is to be, as [`SolveContext::read`] returns it.
+    pub target: Target,
+    /// Where to begin.
+    pub start: Option<&'a [f64]>,
+    /// Which stream of the seed the draws come from.
+    pub stream: u64,
+}
+
+/// Validated robot and options, ready to solve any number of targets.
+#[derive(Debug)]
+pub(crate) struct SolveContext<'a> {
+    robot: &'a Robot,
+    /// The robot with the tool of the task, where it has one; boxed, since what is prepared is moved about.
+    with_tool: Option<Box<Robot>>,
+    options: &'a SolveOptions,
+    criterion: Criterion,
+    goals: Goals,
+    bounds: Bounds,
+}
+
+impl<'a> SolveContext<'a> {
+    /// Checks what all targets have in common, but for [`SolveOptions::start`]: that is an argument of each.
+    ///
+    /// # Errors
+    /// Any [`Error`] for wrong options.
+    pub(crate) fn new(robot: &'a Robot, options: &'a SolveOptions) -> Result<Self> {
+        options.solver.validate()?;
+        options.stop.validate()?;
+        options.task.as_ref().map_or(Ok(()), Task::validate)?;
+        let criterion = options.task.map_or(options.tolerance.into(), |task| task.criterion(options.tolerance));
+        criterion.validate()?;
+        options.goals.iter().try_for_each(|goal| goal.validate(robot))?;
+        if options.prefer == Prefer::Nearest && !options.goals.is_empty() {
+            return Err(Error::Contradiction {
+                problem: "prefer=\"nearest\" is a goal itself: leave goals out".into(),
+            });
+        }
+        if options.prefer == Prefer::Best && options.goals.is_empty() {
+            return Err(Error::Contradiction { problem: "prefer=\"best\" needs goals: best for what?".into() });
+        }
+        let bounds = position_box(robot, options.limits.as_ref())?;
+        let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?.map(Box::new);
+        let goals = Goals::new(&options.goals, with_tool.as_deref().unwrap_or(robot), &bounds);
+        Ok(Self { robot, with_tool, options, criterion, goals, bounds })
+    }
+
+    pub(super) fn robot(&self) -> &Robot {
+        self.with_tool.as_deref().unwrap_or(self.robot)
+    }
+
+    pub(super) fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    pub(super) fn goals(&self) -> &Goals {
+        &self.goals
+    }
+
+    pub(super) fn options(&self) -> &SolveOptions {
+        self.options
+    }
+
+    /// The default solver's descent where it can run side by side: nothing follows it and no clock runs.
+    pub(crate) fn side_by_side_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
+        let alone = self.options.prefer == Prefer::Any && self.goals.is_empty();
+        let descent = self.options.solver.restarted_descent();
+        descent.filter(|_| alone && self.options.stop.max_time.is_none())
+    }
+
+    /// The problem of reaching `target`.
+    pub(super) fn problem<'p>(&'p self, target: &'p Target) -> Problem<'p> {
+        Problem::new(self.robot(), target, self.criterion).disregarding_turns()
+    }
+
+    /// What of `wanted` the task asks for, checked.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::WrongTarget`].
+    pub(crate) fn read(&self, wanted: &Target) -> Result<Target> {
+        wanted.validate()?;
+        self.options.task.map_or(Ok(*wanted), |task| task.target(wanted))
+    }
+
+    /// Checks a start.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::NotFinite`] or [`Error::OutsideLimits`].
+    pub(crate) fn check_start(&self, q: &[f64]) -> Result<()> {
+        self.robot().check("start", q)?;
+        self.robot().require_within("start", q, self.bounds.lower(), self.bounds.upper())
+    }
+
+    /// Checks that there is a start where the nearest solution is asked for.
+    ///
+    /// # Errors
+    /// [`Error::Contradiction`].
+    pub(crate) fn require_reference(&self, start: Option<&[f64]>) -> Result<()> {
+        match (self.options.prefer, start) {
+            (Prefer::Nearest, None) => {
+                Err(Error::Contradiction { problem: "prefer=\"nearest\" needs a start: nearest to what?".into() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The caller's start, or the best that is known of.
+    pub(super) fn first_start(&self, problem: &mut Problem<'_>, start: Option<&[f64]>, rng: &mut LazyRng) -> Point {
+        if let Some(start) = start {
+            return Point::from_slice(start);
+        }
+        let mut x0 = Point::from_elem(0.0, self.robot().dof());
+        problem.propose_start(0, &self.bounds, rng, &mut x0);
+        x0
+    }
+}
+
+/// The position limits as a box. Velocities do not matter to a single configuration.
+fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
+    let Some(limits) = limits else {
+        return Ok(Bounds::from_ranges(robot.joints().iter().map(|joint| (joint.lower, joint.upper))));
+    };
+    let remedy = "a single configuration has no motion; leave it out";
+    limits.require_for(robot)?;
+    limits.require_none(&[Field::Acceleration, Field::Jerk], "solve", remedy)?;
+    limits.position_box()
+}

@@ -1,0 +1,170 @@
+//! Along the self-motion of a solution: the joints move, the tip stays.
+//!
+//! Projected gradient descent: of the gradient of the goals, what the linearised task and the box leave is followed; a step
+//! is brought back to the task by Gauss-Newton; its length follows Barzilai and Borwein (1988), which on the one-dimensional
+//! self-motion of a 7-joint arm is the secant method.
+
+use crate::math::box_step::{BoxStep, least_damping};
+use crate::math::vector::dot;
+use crate::objective::{Bounds, LeastSquares, Linearization, Point};
+use crate::problem::Problem;
+use crate::robot::Robot;
+use crate::task::Goals;
+
+/// Longest step of a joint (rad, m): beyond, the linearised task says little.
+const LONGEST: f64 = 0.3;
+/// A step that moves no joint by as much (rad, m) ends the descent.
+const SHORTEST: f64 = 1e-7;
+/// The step by which a gradient is projected (rad, m): so short that only joints at their limits feel them.
+const PROBE: f64 = 1e-5;
+/// Descents end by themselves; this many steps bound what a flat goal may cost.
+const MOST_STEPS: usize = 100;
+/// Gauss-Newton steps back to the task before a step counts as too long.
+const MOST_CORRECTIONS: usize = 5;
+/// Factor on a step that was too long.
+const SHORTEN: f64 = 0.3;
+
+/// A problem, the goals beside it, and what has been spent on them.
+pub(super) struct GoalDescent<'a, 'p> {
+    pub robot: &'a Robot,
+    pub problem: &'a mut Problem<'p>,
+    pub goals: &'a mut Goals,
+    pub bounds: &'a Bounds,
+    /// Evaluations of the forward kinematics.
+    pub evaluations: usize,
+    pub max_evaluations: usize,
+}
+
+/// A point that solves the task, and the goals there.
+struct TaskPoint {
+    q: Point,
+    cost: f64,
+    gradient: Point,
+}
+
+impl GoalDescent<'_, '_> {
+    /// Moves `q`, which solves the task or nearly so, to where the goals are best near it; false where there is no solution near.
+    pub fn descend(&mut self, q: &mut Point) -> bool {
+        let begin = self.place(q.clone());
+        let was_solved = self.problem.assess(q).score.solved;
+        if self.max_evaluations < MOST_CORRECTIONS || !self.correct(q) {
+            *q = begin.q;
+            return was_solved;
+        }
+        let exact = self.place(q.clone());
+        let end = self.follow_slope(exact);
+        // Brought exactly to the task, an arm that had nowhere to go may have lost what it gained by leaning on the tolerance.
+        *q = if end.cost < begin.cost || !was_solved { end.q } else { begin.q };
+        true
+    }
+
+    /// Steps down the slope from `here` to where there is none.
+    fn follow_slope(&mut self, mut here: TaskPoint) -> TaskPoint {
+        let mut linearization = Linearization::default();
+        let mut rate = f64::INFINITY;
+        // The last step and the slope that it went down: what the next rate is estimated from.
+        let mut last: Option<(Point, Point)> = None;
+        for _ in 0..MOST_STEPS {
+            if self.evaluations + MOST_CORRECTIONS + 1 > self.max_evaluations {
+                break;
+            }
+            self.linearize(&here.q, &mut linearization);
+            let slope = self.projected(&here, &linearization);
+            if let Some((step, before)) = last.take() {
+                let bend = dot(&step, &difference(&slope, &before));
+                rate = if bend > 0.0 { dot(&step, &step) / bend } else { f64::INFINITY };
+            }
+            rate = rate.min(LONGEST / largest(&slope));
+            let Some(there) = self.shorter_until_better(&here, &linearization, &slope, &mut rate) else { break };
+            last = Some((difference(&there.q, &here.q), slope));
+            here = there;
+        }
+        here
+    }
+
+    /// The step down `slope` at `rate`, or at the longest shorter one that lowers the cost and solves the task; None where
+    /// there is none worth the while.
+    fn shorter_until_better(
+        &mut self,
+        here: &TaskPoint,
+        at: &Linearization,
+        slope: &[f64],
+        rate: &mut f64,
+    ) -> Option<TaskPoint> {
+        while *rate * largest(slope) > SHORTEST && self.evaluations + MOST_CORRECTIONS <= self.max_evaluations {
+            let mut q = self.near(at, here, slope, *rate);
+            if self.correct(&mut q) {
+                let there = self.place(q);
+                if there.cost < here.cost {
+                    return Some(there);
+                }
+            }
+            *rate *= SHORTEN;
+        }
+        None
+    }
+
+    /// Brings `q` back to the task; whether that succeeded. One step is made beyond the tolerance: what the goals gained from
+    /// leaning on it, the next step could not gain again.
+    fn correct(&mut self, q: &mut Point) -> bool {
+        let mut linearization = Linearization::default();
+        let mut was_solved = false;
+        for _ in 0..MOST_CORRECTIONS {
+            let is_solved = self.linearize(q, &mut linearization);
+            if is_solved && was_solved {
+                return true;
+            }
+            was_solved = is_solved;
+            let from = q.clone();
+            self.box_step(&linearization, &from).write(q);
+        }
+        false
+    }
+
+    /// What is left of the gradient once the task and the box are respected.
+    fn projected(&self, here: &TaskPoint, at: &Linearization) -> Point {
+        let rate = PROBE / largest(&here.gradient);
+        let out = self.near(at, here, &here.gradient, rate);
+        // The task itself may be missed by what its tolerance allows: that part is no slope.
+        let still = self.near(at, here, &here.gradient, 0.0);
+        difference(&still, &out).into_iter().map(|step| step / rate).collect()
+    }
+
+    /// The point of the linearised task that is nearest to a step of `rate` down `slope`.
+    fn near(&self, at: &Linearization, here: &TaskPoint, slope: &[f64], rate: f64) -> Point {
+        let mut preferred: Point = here.q.iter().zip(slope).map(|(q, slope)| q - rate * slope).collect();
+        self.bounds.clip(&mut preferred);
+        let mut out = preferred.clone();
+        self.box_step(at, &here.q).write_near(&preferred, &mut out);
+        out
+    }
+
+    /// The step from `x` within the limits.
+    fn box_step<'b>(&'b self, at: &'b Linearization, x: &'b [f64]) -> BoxStep<'b> {
+        let Linearization { columns, residual } = at;
+        let lambda = least_damping(&columns[..x.len()]);
+        BoxStep { columns, residual, lambda, x, lower: self.bounds.lower(), upper: self.bounds.upper() }
+    }
+
+    /// Residual and Jacobian at `q`; whether it solves the task.
+    fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> bool {
+        self.evaluations += 1;
+        self.problem.linearize(q, out).solved
+    }
+
+    fn place(&mut self, q: Point) -> TaskPoint {
+        let mut gradient = q.clone();
+        let cost = self.goals.cost(self.robot, &q, &mut gradient);
+        TaskPoint { q, cost, gradient }
+    }
+}
+
+/// The largest entry, as a size; never zero, so that it may divide.
+fn largest(slope: &[f64]) -> f64 {
+    slope.iter().fold(f64::MIN_POSITIVE, |largest, slope| largest.max(slope.abs()))
+}
+
+/// a - b.
+pub(super) fn difference(a: &[f64], b: &[f64]) -> Point {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}

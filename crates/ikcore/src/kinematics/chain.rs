@@ -1,0 +1,124 @@
+//! A serial chain as the kernels run through it: per moving element (a *stage*) one constant frame, then a turn about and
+//! a slide along its own z axis. Constant transforms and the directions of axes are folded in when the chain is built.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::stages::Stages;
+use crate::math::{Frame, Pose, pose};
+
+/// Motion of a stage: turn = turn_scale * q\[joint\] + turn_offset (rad), and likewise the slide (m). One of the scales
+/// is zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct StageMotion {
+    pub joint: usize,
+    pub turn_scale: f64,
+    pub turn_offset: f64,
+    pub slide_scale: f64,
+    pub slide_offset: f64,
+}
+
+impl StageMotion {
+    const NONE: Self = Self { joint: 0, turn_scale: 0.0, turn_offset: 0.0, slide_scale: 0.0, slide_offset: 0.0 };
+
+    /// A turn by `scale * q[joint] + offset` (rad).
+    pub fn turn(joint: usize, scale: f64, offset: f64) -> Self {
+        Self { joint, turn_scale: scale, turn_offset: offset, ..Self::NONE }
+    }
+
+    /// A slide by `scale * q[joint] + offset` (m).
+    pub fn slide(joint: usize, scale: f64, offset: f64) -> Self {
+        Self { joint, slide_scale: scale, slide_offset: offset, ..Self::NONE }
+    }
+}
+
+/// Constant frame of a link, seen from the frame reached after `stages` stages.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LinkFrame {
+    pub stages: usize,
+    pub offset: Frame,
+}
+
+/// The folded chain.
+#[derive(Debug, Clone)]
+pub(crate) struct Chain {
+    /// Number of moving elements; the stages behind them are padding.
+    pub moving: usize,
+    /// One per moving element.
+    pub stages: Stages,
+    /// One per moving element, then padding that moves nothing.
+    pub motions: Vec<StageMotion>,
+    /// The tip, seen from the last stage.
+    pub tip: Frame,
+    pub links: Vec<LinkFrame>,
+}
+
+/// Numbers of stages that kernels are compiled for. Chains are padded up to the next one.
+pub(super) const SIZES: [usize; 8] = [4, 5, 6, 7, 8, 12, 16, 32];
+
+/// Sines are taken four at a time: a remainder of one to three costs as much as all the rest (measured).
+const LANES: usize = 4;
+
+impl Chain {
+    /// Number of stages with padding: one of [`SIZES`].
+    pub(super) fn padded_stages(&self) -> usize {
+        padded(self.moving)
+    }
+
+    /// Constant frames of the moving elements, each seen from the one before.
+    pub(super) fn moving_frames(&self) -> impl Iterator<Item = Frame> {
+        (0..self.moving).map(|stage| self.stages.frame(stage))
+    }
+}
+
+fn padded(moving: usize) -> usize {
+    SIZES.into_iter().find(|size| *size >= moving).unwrap_or(moving)
+}
+
+/// Folds the elements of a chain, given one after another from base to tip.
+pub(crate) struct ChainFolder {
+    /// Constant transform since the last moving element, from that element's z-aligned frame.
+    constant: Pose,
+    frames: Vec<Frame>,
+    motions: Vec<StageMotion>,
+    links: Vec<LinkFrame>,
+}
+
+impl ChainFolder {
+    /// An empty chain that starts at `base`.
+    pub fn new(base: &Pose) -> Self {
+        Self { constant: *base, frames: vec![], motions: vec![], links: vec![] }
+    }
+
+    /// Appends a constant transform.
+    pub fn fixed(&mut self, transform: &Pose) {
+        self.constant *= transform;
+    }
+
+    /// Marks the frame reached so far as that of the next link.
+    pub fn link(&mut self) {
+        self.links.push(LinkFrame { stages: self.frames.len(), offset: Frame::from(&self.constant) });
+    }
+
+    /// Appends a motion about or along `axis`, of unit length.
+    pub fn moving(&mut self, axis: &Vector3<f64>, motion: StageMotion) {
+        let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
+        self.frames.push(Frame::from(&(self.constant * aligned)));
+        self.motions.push(motion);
+        self.constant = aligned.inverse();
+    }
+
+    /// The chain, its tip moved by `tool`. At least one element moves, at most [`MAX_DOF`](crate::math::MAX_DOF).
+    pub fn finish(self, tool: &Pose) -> Chain {
+        let Self { constant, frames, mut motions, links } = self;
+        let moving = frames.len();
+        motions.resize(padded(moving).next_multiple_of(LANES), StageMotion::NONE);
+        Chain { moving, stages: Stages::new(&frames), motions, tip: Frame::from(&(constant * tool)), links }
+    }
+}
+
+/// A rotation whose z axis is `axis`; exact where the axis is a coordinate axis.
+fn basis_with_z_along(axis: &Vector3<f64>) -> Matrix3<f64> {
+    let helper = if axis.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
+    let x = (helper - axis * axis.dot(&helper)).normalize();
+    Matrix3::from_columns(&[x, axis.cross(&x), *axis])
+}

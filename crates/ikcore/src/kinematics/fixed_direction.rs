@@ -1,0 +1,38 @@
+//! The direction that a tip keeps when all joints turn about parallel axes: planar arms, palletisers.
+
+use super::chain::StageMotion;
+use crate::math::Frame;
+use crate::math::arithmetic::NoFma;
+use crate::math::so3::{cross, norm};
+
+/// Largest angle between axes that count as parallel (rad): far below any tolerance over the length of an arm.
+const PARALLEL: f64 = 1e-12;
+
+/// A direction fixed in the base and in the tip at every configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FixedDirection {
+    /// Of unit length, in the base's coordinates.
+    pub base: [f64; 3],
+    /// The same direction in the tip's coordinates.
+    pub tip: [f64; 3],
+}
+
+impl FixedDirection {
+    /// The fixed direction of a chain whose axes are parallel, None for other chains. `at_zero` holds the frame of each
+    /// moving element, z along its axis, and then the tip's, with no joint turned.
+    pub(super) fn of_chain(at_zero: &[Frame], motions: &[StageMotion]) -> Option<Self> {
+        let (tip, moving) = at_zero.split_last()?;
+        let mut axes =
+            moving.iter().zip(motions).filter(|(_, motion)| motion.turn_scale != 0.0).map(|(frame, _)| frame.axes[2]);
+        let base = axes.next()?;
+        let fixed = Self { base, tip: tip.inverse().turn::<NoFma>(&base) };
+        axes.all(|axis| norm(&cross(&base, &axis)) < PARALLEL).then_some(fixed)
+    }
+
+    /// Smallest angle between the orientation of `frame` and one that the tip can have (rad).
+    pub fn angle_to(&self, frame: &Frame) -> f64 {
+        let wanted = frame.turn::<NoFma>(&self.tip);
+        let cosine = (0..3).map(|k| wanted[k] * self.base[k]).sum::<f64>();
+        norm(&cross(&self.base, &wanted)).atan2(cosine)
+    }
+}

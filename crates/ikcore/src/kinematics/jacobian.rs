@@ -1,0 +1,39 @@
+//! The geometric Jacobian at the tip.
+
+use super::chain::Chain;
+use super::forward_pass::forward_pass;
+use crate::math::arithmetic::Arithmetic;
+use crate::math::f64x4::F64x4;
+use crate::math::{Frame, MAX_DOF};
+
+/// Columns of a 6 x n matrix, one per joint: linear rows (m per rad or m), then angular rows; the first n are in use.
+pub type Columns = [[f64; 6]; MAX_DOF];
+
+/// Writes the Jacobian in world axes into `columns`, linear rows before angular rows, and returns the tip's frame.
+#[inline(always)]
+pub(super) fn jacobian<A: Arithmetic, const N: usize, const L: usize>(
+    chain: &Chain,
+    q: &[f64],
+    columns: &mut Columns,
+) -> Frame {
+    let (mut axes, mut origins) = ([F64x4::ZERO; N], [F64x4::ZERO; N]);
+    let tip = forward_pass::<A, N, L>(chain, q, |i, frame| {
+        axes[i] = frame.axes[2];
+        origins[i] = frame.origin;
+    });
+    columns[..N].fill([0.0; 6]);
+    for (i, motion) in chain.motions[..N].iter().enumerate() {
+        let (axis, lever) = (axes[i], A::sub_x4(tip.origin, origins[i]));
+        let moment = A::cross_x4(axis, lever);
+        let [turn, slide] = [motion.turn_scale, motion.slide_scale].map(F64x4::splat);
+        let linear = A::mul_add_x4(turn, moment, A::mul_x4(slide, axis)).vector();
+        let angular = A::mul_x4(turn, axis).vector();
+        // Several stages may share a joint (mimics), so columns are summed.
+        let column = &mut columns[motion.joint];
+        for k in 0..3 {
+            column[k] += linear[k];
+            column[3 + k] += angular[k];
+        }
+    }
+    tip.into()
+}

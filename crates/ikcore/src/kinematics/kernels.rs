@@ -1,0 +1,187 @@
+//! Which compilation of the kernels a chain runs: one table for every padded number of stages, for machines with and
+//! without AVX2 and FMA.
+
+use super::chain::Chain;
+use super::four_jacobians::{self, FourColumns};
+use super::jacobian::{self, Columns};
+use super::link_frames::{self, StageFrames};
+use super::tip;
+use super::torques::{self, Wrench};
+use crate::math::arithmetic::by_instructions;
+use crate::math::f64x4::F64x4;
+use crate::math::{Frame, MAX_DOF};
+
+/// The kernels compiled for one padded number of stages and one instruction set.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Kernels {
+    /// The tip's frame. `q` has one finite entry per independent joint, here and below.
+    pub tip: fn(&Chain, &[f64]) -> Frame,
+    /// The tip's position (m), at half the work.
+    pub tip_position: fn(&Chain, &[f64]) -> [f64; 3],
+    /// Positions (m) at two configurations, coordinate by coordinate.
+    tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
+    /// The same at four.
+    tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
+    /// Writes the geometric Jacobian and returns the tip's frame.
+    pub jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
+    /// The same for four configurations, to the same bits; one entry of `columns` per joint.
+    pub jacobian_four: fn(&Chain, &[F64x4], &mut FourColumns) -> Frame<F64x4>,
+    /// Writes the joint torques J'w of a wrench w(tip) and returns the tip's frame.
+    pub torques: Torques,
+    /// Writes the frames of all stages.
+    pub stage_frames: fn(&Chain, &[f64], &mut StageFrames),
+}
+
+type Torques = fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Frame;
+
+impl Kernels {
+    /// The fastest that this machine runs.
+    pub fn for_chain(chain: &Chain) -> Self {
+        for_stages(chain.padded_stages())
+    }
+
+    /// Calls `visit` with the tip's position (m) at each of the configurations `qs`, stored one after another with `n`
+    /// entries each: four at once as long as there are four, then two; the same bits as `tip_position`.
+    #[inline]
+    pub fn tip_positions(&self, chain: &Chain, mut qs: &[f64], n: usize, mut visit: impl FnMut([f64; 3])) {
+        while let Some((group, rest)) = qs.split_at_checked(4 * n) {
+            transposed((self.tip_four)(chain, group)).into_iter().for_each(&mut visit);
+            qs = rest;
+        }
+        if let Some((group, rest)) = qs.split_at_checked(2 * n) {
+            transposed((self.tip_pair)(chain, group)).into_iter().for_each(&mut visit);
+            qs = rest;
+        }
+        if qs.len() == n {
+            visit((self.tip_position)(chain, qs));
+        }
+    }
+
+    /// Frames of all stages.
+    pub fn reached(&self, chain: &Chain, q: &[f64]) -> StageFrames {
+        let mut reached = [Frame::IDENTITY; MAX_DOF + 1];
+        (self.stage_frames)(chain, q, &mut reached);
+        reached
+    }
+}
+
+/// Turns arrays of coordinates into an array of points. Kept out of the kernels: there it makes the compiler vectorise
+/// along coordinates instead of lanes (27 ns a configuration instead of 17).
+#[inline]
+fn transposed<const W: usize>(coordinates: [[f64; W]; 3]) -> [[f64; 3]; W] {
+    std::array::from_fn(|w| coordinates.map(|coordinate| coordinate[w]))
+}
+
+/// `$table!(A, N, L)` for the size that `$stages` is: N stages, their sines padded to L.
+macro_rules! for_each_size {
+    ($stages:expr, $table:ident, $arithmetic:ty) => {
+        match $stages {
+            4 => $table!($arithmetic, 4, 4),
+            5 => $table!($arithmetic, 5, 8),
+            6 => $table!($arithmetic, 6, 8),
+            7 => $table!($arithmetic, 7, 8),
+            8 => $table!($arithmetic, 8, 8),
+            12 => $table!($arithmetic, 12, 12),
+            16 => $table!($arithmetic, 16, 16),
+            _ => $table!($arithmetic, 32, 32),
+        }
+    };
+}
+
+/// The kernels for N stages. Closures are compiled for the instructions of the function that they stand in.
+macro_rules! table {
+    ($a:ty, $n:literal, $l:literal) => {
+        Kernels {
+            tip: |chain, q| tip::tip::<$a, $n, $l>(chain, q),
+            tip_position: |chain, q| tip::tip_position::<$a, $n, $l>(chain, q),
+            tip_pair: |chain, qs| tip::tip_positions::<$a, $n, $l, 2>(chain, qs),
+            tip_four: |chain, qs| tip::tip_positions::<$a, $n, $n, 4>(chain, qs),
+            jacobian: |chain, q, columns| jacobian::jacobian::<$a, $n, $l>(chain, q, columns),
+            jacobian_four: |chain, qs, columns| four_jacobians::four_jacobians::<$a, $n>(chain, qs, columns),
+            torques: |chain, q, wrench, torques| torques::torques::<$a, $n, $l>(chain, q, wrench, torques),
+            stage_frames: |chain, q, reached| link_frames::stage_frames::<$a, $n, $l>(chain, q, reached),
+        }
+    };
+}
+
+by_instructions! {
+    /// The fastest kernels that this machine runs, for a chain padded to `stages`.
+    fn for_stages(stages: usize) -> Kernels {
+        for_each_size!(stages, table, A)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chain::{ChainFolder, SIZES, StageMotion};
+    use super::*;
+    use crate::math::arithmetic::Baseline;
+    use crate::math::{Pose, pose};
+    use nalgebra::Vector3;
+
+    /// An arm of so many joints, every third of them sliding, on axes of no special direction.
+    fn arm(joints: usize) -> Chain {
+        let mut arm = ChainFolder::new(&Pose::identity());
+        for i in 0..joints {
+            let x = i as f64;
+            let motion = if i % 3 == 2 { StageMotion::slide } else { StageMotion::turn };
+            arm.fixed(&pose::from_rpy([0.3 * x, 0.7 - x, 0.1], [0.1, 0.05 * x, 0.2]));
+            arm.moving(&Vector3::new(x.sin(), 0.4, x.cos()).normalize(), motion(i, 1.0, 0.01 * x));
+        }
+        arm.finish(&pose::translation(0.0, 0.1, 0.2))
+    }
+
+    fn baseline(stages: usize) -> Kernels {
+        for_each_size!(stages, table, Baseline)
+    }
+
+    #[test]
+    fn four_side_by_side_are_what_each_is_alone_to_the_bit() {
+        for joints in SIZES {
+            let chain = arm(joints);
+            for kernels in [for_stages(joints), baseline(joints)] {
+                let angle = |joint: usize, lane: usize| (1.7 * joint as f64 + 0.9 * lane as f64).sin();
+                let qs: Vec<F64x4> = (0..joints).map(|i| F64x4(std::array::from_fn(|lane| angle(i, lane)))).collect();
+                let mut four = vec![[F64x4::ZERO; 6]; joints];
+                let tips = (kernels.jacobian_four)(&chain, &qs, &mut four);
+                for lane in 0..4 {
+                    let q: Vec<f64> = qs.iter().map(|lanes| lanes.0[lane]).collect();
+                    let mut columns = [[0.0; 6]; MAX_DOF];
+                    let tip = (kernels.jacobian)(&chain, &q, &mut columns);
+                    assert_eq!(tips.axes.map(|axis| axis.map(|k| k.0[lane])), tip.axes, "{joints} joints");
+                    assert_eq!(tips.origin.map(|k| k.0[lane]), tip.origin, "{joints} joints");
+                    let column = |j: usize| four[j].map(|row| row.0[lane]);
+                    assert!((0..joints).all(|j| column(j) == columns[j]), "{joints} joints");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn machines_without_fma_get_the_same_kinematics() {
+        for joints in SIZES {
+            let chain = arm(joints);
+            let (best, baseline) = (for_stages(joints), baseline(joints));
+            let q: Vec<f64> = (0..joints).map(|i| (1.7 * i as f64).sin()).collect();
+            let (mut columns, mut others) = ([[0.0; 6]; MAX_DOF], [[0.0; 6]; MAX_DOF]);
+            let tip = (best.jacobian)(&chain, &q, &mut columns);
+            let other = (baseline.jacobian)(&chain, &q, &mut others);
+            let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+            assert!(near(tip.axes.as_flattened(), other.axes.as_flattened()), "{joints} joints");
+            assert!(near(&tip.origin, &other.origin), "{joints} joints");
+            assert!(near(columns.as_flattened(), others.as_flattened()), "{joints} joints");
+            let wrench = [0.3, -1.0, 2.0, 0.5, 0.7, -0.2];
+            let (mut torques, mut theirs) = (vec![0.0; joints], vec![0.0; joints]);
+            (best.torques)(&chain, &q, &|_| wrench, &mut torques);
+            (baseline.torques)(&chain, &q, &|_| wrench, &mut theirs);
+            let work = |column: &[f64; 6]| column.iter().zip(wrench).map(|(c, w)| c * w).sum::<f64>();
+            assert!(near(&torques, &columns.iter().take(joints).map(work).collect::<Vec<_>>()), "{joints} joints");
+            assert!(near(&torques, &theirs), "{joints} joints");
+            assert!(near(&(baseline.tip_position)(&chain, &q), &tip.origin), "{joints} joints");
+            assert!(near(&(baseline.tip)(&chain, &q).origin, &tip.origin), "{joints} joints");
+            let four = (baseline.tip_four)(&chain, &q.repeat(4));
+            assert_eq!(four.map(|lane| lane[3]), (baseline.tip_position)(&chain, &q), "{joints} joints");
+            assert_eq!((baseline.tip_pair)(&chain, &q.repeat(2)).map(|lane| lane[1]), four.map(|lane| lane[0]));
+        }
+    }
+}

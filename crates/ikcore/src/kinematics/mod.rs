@@ -1,0 +1,38 @@
+//! Kinematics of a serial chain as plain data: no names, limits or files, and no `Robot`.
+//!
+//! Read [`chain`] for the data and [`forward_pass`] for the walk along it; then one algorithm a file. [`kernels`] compiles
+//! them for each number of stages and for the processor's instructions.
+//!
+//! | file | what |
+//! |---|---|
+//! | `chain`, `stages` | constant frames, and what drives each stage |
+//! | `forward_pass`, `wide_frame` | from the base to the tip, one frame per stage |
+//! | `tip`, `jacobian`, `torques`, `link_frames` | the kernels |
+//! | `four_jacobians` | Jacobians of four configurations at once |
+//! | `kernels` | table of compiled kernels |
+//! | `screws` | axis and velocity of every stage |
+//! | `reach`, `fixed_direction` | bounds on where the tip can be |
+//! | `task_rank` | rank of the Jacobian by task |
+
+pub(crate) mod chain;
+mod fixed_direction;
+mod forward_pass;
+mod four_jacobians;
+mod jacobian;
+pub(crate) mod kernels;
+pub(crate) mod link_frames;
+mod reach;
+mod screws;
+mod stages;
+mod task_rank;
+mod tip;
+mod torques;
+mod wide_frame;
+
+pub use fixed_direction::FixedDirection;
+pub(crate) use four_jacobians::FourColumns;
+pub use jacobian::Columns;
+pub use reach::{Beyond, Reach};
+pub use screws::{Screw, Screws};
+pub use task_rank::TaskRank;
+pub use torques::Wrench;

@@ -1,0 +1,143 @@
+//! Bounds on where the tip can be, from the lengths of the links.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::chain::{Chain, StageMotion};
+use super::fixed_direction::FixedDirection;
+use crate::math::Frame;
+use crate::math::arithmetic::NoFma;
+use crate::math::so3::norm;
+use crate::wording::number;
+
+/// The ball that the tip cannot leave, or the disk where all joints turn about parallel axes. Not all of it can be
+/// reached.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// On the axis of the first joint (m); in the plane of the disk.
+    pub center: [f64; 3],
+    /// Infinite where a sliding joint has no limit (m).
+    pub radius: f64,
+    /// Unit normal of the disk; None for a ball.
+    pub normal: Option<[f64; 3]>,
+    /// The direction that the tip keeps, if it keeps one.
+    pub fixed_direction: Option<FixedDirection>,
+}
+
+/// Lower bounds on how far a target is out of reach.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Beyond {
+    /// From the nearest point that the tip can be at (m).
+    pub distance: f64,
+    /// From the plane in which the tip of a planar arm moves (m); 0 for other arms.
+    pub off_plane: f64,
+    /// From the nearest orientation that the tip can have (rad).
+    pub angle: f64,
+}
+
+impl fmt::Display for Beyond {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = [
+            (self.distance, "out of reach by at least ", " m"),
+            (self.off_plane, "", " m off the plane that the tip moves in"),
+            (self.angle, "", " rad off any orientation that the tip can have"),
+        ];
+        let given = parts.into_iter().filter(|(size, ..)| *size > 0.0);
+        let given: Vec<_> = given.map(|(size, before, after)| format!("{before}{}{after}", number(size))).collect();
+        f.write_str(&given.join(", "))
+    }
+}
+
+impl Reach {
+    /// How far a position, an orientation, or both are outside; None within `tolerance` (m, rad).
+    pub fn beyond(
+        &self,
+        position: Option<&[f64; 3]>,
+        orientation: Option<&Frame>,
+        tolerance: [f64; 2],
+    ) -> Option<Beyond> {
+        let [metres, radians] = tolerance;
+        let above = |size: f64, tolerance: f64| if size > tolerance { size } else { 0.0 };
+        let beyond = Beyond {
+            distance: position.map_or(0.0, |position| above(self.excess(position), metres)),
+            off_plane: position.map_or(0.0, |position| above(self.off_plane(position).abs(), metres)),
+            angle: orientation
+                .zip(self.fixed_direction)
+                .map_or(0.0, |(frame, fixed)| above(fixed.angle_to(frame), radians)),
+        };
+        (beyond != Beyond::default()).then_some(beyond)
+    }
+
+    /// How far `position` is outside (m); zero or less inside.
+    pub fn excess(&self, position: &[f64; 3]) -> f64 {
+        let offset: [f64; 3] = std::array::from_fn(|k| position[k] - self.center[k]);
+        let Some(normal) = self.normal else { return norm(&offset) - self.radius };
+        let height = self.off_plane(position);
+        let in_plane: [f64; 3] = std::array::from_fn(|k| offset[k] - height * normal[k]);
+        let beyond = norm(&in_plane) - self.radius;
+        if beyond > 0.0 { height.hypot(beyond) } else { height.abs() }
+    }
+
+    /// How far `position` is off the plane of the disk, along its normal (m); 0 for a ball.
+    pub fn off_plane(&self, position: &[f64; 3]) -> f64 {
+        let along = |normal: [f64; 3]| (0..3).map(|k| (position[k] - self.center[k]) * normal[k]).sum();
+        self.normal.map_or(0.0, along)
+    }
+}
+
+impl Reach {
+    /// The reach of the links stretched out, without what joints slide.
+    pub(crate) fn of_links(chain: &Chain) -> Self {
+        let at_zero: Vec<Frame> = chain
+            .moving_frames()
+            .chain([chain.tip])
+            .scan(Frame::IDENTITY, |from, link| {
+                *from = from.then::<NoFma>(&link);
+                Some(*from)
+            })
+            .collect();
+        let motions = &chain.motions;
+        let fixed_direction = FixedDirection::of_chain(&at_zero, motions);
+        let slides = motions.iter().any(|motion| motion.slide_scale != 0.0 || motion.slide_offset != 0.0);
+        if let Some(FixedDirection { base: normal, .. }) = fixed_direction.filter(|_| !slides) {
+            return Self { fixed_direction, ..Self::of_planar_links(&at_zero, normal) };
+        }
+        // A first joint that turns keeps the height at which the second one begins, so that only the distance from its axis
+        // counts; of every other link all its length does.
+        let mut links = chain.moving_frames().skip(1).chain([chain.tip]).map(|frame| frame.origin);
+        let [x, y, height] = links.next().unwrap_or_default();
+        let (on_axis, first) = match motions[0].slide_scale {
+            0.0 => (height, x.hypot(y)),
+            _ => (0.0, norm(&[x, y, height])),
+        };
+        let center = chain.stages.frame(0).place::<NoFma>(&[0.0, 0.0, on_axis]);
+        Self { center, radius: first + links.map(|link| norm(&link)).sum::<f64>(), normal: None, fixed_direction }
+    }
+
+    /// This reach of the links of `chain`, and what its joints slide between these limits.
+    pub(crate) fn with_slides(self, chain: &Chain, lower: &[f64], upper: &[f64]) -> Self {
+        let slides: f64 = chain.motions.iter().map(|motion| longest_slide(motion, lower, upper)).sum();
+        Self { radius: self.radius + slides, ..self }
+    }
+
+    /// The disk of links between axes along `normal`. `at_zero` holds the frames of the stages and the tip at zero.
+    fn of_planar_links(at_zero: &[Frame], normal: [f64; 3]) -> Self {
+        let (mut center, mut radius) = (at_zero[0].origin, 0.0);
+        for ends in at_zero.windows(2) {
+            let link: [f64; 3] = std::array::from_fn(|k| ends[1].origin[k] - ends[0].origin[k]);
+            let along = (0..3).map(|k| link[k] * normal[k]).sum::<f64>();
+            radius += norm(&std::array::from_fn(|k| link[k] - along * normal[k]));
+            center = std::array::from_fn(|k| center[k] + along * normal[k]);
+        }
+        Self { center, radius, normal: Some(normal), fixed_direction: None }
+    }
+}
+
+fn longest_slide(motion: &StageMotion, lower: &[f64], upper: &[f64]) -> f64 {
+    if motion.slide_scale == 0.0 {
+        return 0.0;
+    }
+    let at = |q: f64| (motion.slide_scale * q + motion.slide_offset).abs();
+    at(lower[motion.joint]).max(at(upper[motion.joint]))
+}

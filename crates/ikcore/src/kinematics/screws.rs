@@ -1,0 +1,74 @@
+//! Screws of a chain at a configuration: the velocity that each moving element gives to everything behind it.
+
+use super::chain::{Chain, StageMotion};
+use super::link_frames::StageFrames;
+use crate::math::arithmetic::NoFma;
+use crate::math::so3::cross;
+use crate::math::{Frame, MAX_DOF};
+
+/// Screw of a moving element in the base's axes, per unit speed of the joint that drives it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Screw {
+    /// Index in q of the joint that drives it.
+    pub joint: usize,
+    /// Angular velocity.
+    pub turn: [f64; 3],
+    /// Linear velocity of the points on its axis.
+    pub slide: [f64; 3],
+    /// A point on its axis (m).
+    pub origin: [f64; 3],
+    /// Origin of the next moving element, or the tip behind the last one (m).
+    pub end: [f64; 3],
+}
+
+impl Screw {
+    const NONE: Self = Self { joint: 0, turn: [0.0; 3], slide: [0.0; 3], origin: [0.0; 3], end: [0.0; 3] };
+
+    /// Linear and angular velocity of a point behind it: its share of its joint's column of the Jacobian.
+    pub fn column(&self, point: &[f64; 3]) -> [f64; 6] {
+        let lever = std::array::from_fn(|k| point[k] - self.origin[k]);
+        let [x, y, z] = cross(&self.turn, &lever);
+        let ([sx, sy, sz], [wx, wy, wz]) = (self.slide, self.turn);
+        [x + sx, y + sy, z + sz, wx, wy, wz]
+    }
+}
+
+/// The screws of a chain, base to tip.
+#[derive(Debug, Clone)]
+pub struct Screws {
+    all: [Screw; MAX_DOF],
+    count: usize,
+}
+
+impl std::ops::Deref for Screws {
+    type Target = [Screw];
+
+    fn deref(&self) -> &[Screw] {
+        &self.all[..self.count]
+    }
+}
+
+impl Screws {
+    /// The screws of `chain` with its stages at `reached`, mimics included.
+    pub(crate) fn of(chain: &Chain, reached: &StageFrames) -> Self {
+        // Padding moves nothing; so does a mimic of factor zero, but elements may follow it.
+        let count = chain.motions.iter().rposition(moves).map_or(0, |last| last + 1);
+        let mut screws = Self { all: [Screw::NONE; MAX_DOF], count };
+        for (i, screw) in screws.all[..count].iter_mut().enumerate() {
+            let (motion, Frame { axes: [_, _, axis], origin }) = (&chain.motions[i], reached[i + 1]);
+            let end = if i + 1 < count { chain.stages.frame(i + 1).origin } else { chain.tip.origin };
+            *screw = Screw {
+                joint: motion.joint,
+                turn: axis.map(|entry| motion.turn_scale * entry),
+                slide: axis.map(|entry| motion.slide_scale * entry),
+                origin,
+                end: reached[i + 1].place::<NoFma>(&end),
+            };
+        }
+        screws
+    }
+}
+
+fn moves(motion: &StageMotion) -> bool {
+    motion.turn_scale != 0.0 || motion.slide_scale != 0.0
+}

@@ -1,0 +1,53 @@
+//! Rank of the tip's Jacobian by task: the number of directions in which the tip can move, almost everywhere.
+
+use super::chain::Chain;
+use super::jacobian::Columns;
+use super::kernels::Kernels;
+use crate::math::MAX_DOF;
+use crate::math::singular::SingularValues;
+use crate::rng;
+
+/// Rank of the Jacobian at configurations that are not singular.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TaskRank {
+    /// Of all six rows.
+    pub pose: usize,
+    /// Of the linear rows, at most 3.
+    pub position: usize,
+    /// Of the angular rows, at most 3.
+    pub rotation: usize,
+}
+
+/// Singular values below this share of the largest count as zero.
+const NEGLIGIBLE: f64 = 1e-9;
+
+/// Configurations tried; one would do but for an unlucky draw.
+const DRAWS: u64 = 3;
+
+impl TaskRank {
+    /// The largest ranks at random configurations within `ranges`, one per joint.
+    pub(crate) fn of(chain: &Chain, kernels: &Kernels, ranges: &[(f64, f64)]) -> Self {
+        let mut most = Self { pose: 0, position: 0, rotation: 0 };
+        for draw in 0..DRAWS {
+            let mut rng = rng::stream(0, draw);
+            let q: Vec<f64> = ranges.iter().map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect();
+            let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+            (kernels.jacobian)(chain, &q, &mut columns);
+            let columns = &columns[..q.len()];
+            most.pose = most.pose.max(rank(columns));
+            most.position = most.position.max(rank(&rows(columns, 0)));
+            most.rotation = most.rotation.max(rank(&rows(columns, 3)));
+        }
+        most
+    }
+}
+
+/// The three rows from `first` on; the others are zero.
+fn rows(columns: &[[f64; 6]], first: usize) -> Vec<[f64; 6]> {
+    columns.iter().map(|c| [c[first], c[first + 1], c[first + 2], 0.0, 0.0, 0.0]).collect()
+}
+
+fn rank(columns: &[[f64; 6]]) -> usize {
+    let SingularValues { lengths, .. } = SingularValues::of(columns);
+    lengths.iter().filter(|length| **length > NEGLIGIBLE * lengths[0]).count()
+}

@@ -1,0 +1,80 @@
+//! Tables of arms as makers print them: one DH row per joint, lengths in m, angles in degrees.
+
+use nalgebra::Vector3;
+
+use crate::error::Result;
+use crate::load::dh::{Dh, DhTable};
+use crate::math::pose;
+use crate::robot::{ChainBuilder, JointKind, Robot};
+
+/// A robot arm as a table.
+pub(super) struct Arm {
+    pub convention: Dh,
+    /// Turn of DH frame 0 about the x axis of the base (deg).
+    pub base_roll: f64,
+    pub joints: &'static [DhRow],
+    /// Distance of the flange from the last DH frame, along its z (m).
+    pub flange: f64,
+}
+
+/// One joint: its DH parameters (m, deg) and limits.
+pub(super) struct DhRow {
+    a: f64,
+    alpha: f64,
+    d: f64,
+    theta: f64,
+    limits: JointRange,
+}
+
+/// Position and velocity limits (rad, rad/s).
+pub(super) struct JointRange {
+    kind: JointKind,
+    lower: f64,
+    upper: f64,
+    velocity: f64,
+}
+
+/// A row: a and d in m, alpha and theta in degrees.
+pub(super) const fn row(a: f64, alpha: f64, d: f64, theta: f64, limits: JointRange) -> DhRow {
+    DhRow { a, alpha, d, theta, limits }
+}
+
+/// JointRange printed in rad and rad/s.
+pub(super) const fn radians(lower: f64, upper: f64, velocity: f64) -> JointRange {
+    JointRange { kind: JointKind::Revolute, lower, upper, velocity }
+}
+
+/// JointRange printed in degrees and degrees per second.
+pub(super) const fn degrees(lower: f64, upper: f64, velocity: f64) -> JointRange {
+    radians(lower.to_radians(), upper.to_radians(), velocity.to_radians())
+}
+
+/// A joint that turns without end, its speed in degrees per second.
+pub(super) const fn endless(velocity: f64) -> JointRange {
+    let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
+    JointRange { kind: JointKind::Continuous, lower, upper, velocity: velocity.to_radians() }
+}
+
+impl Arm {
+    /// The robot; its last link is `flange` where the table has one.
+    pub(super) fn build(&self, name: &str) -> Result<Robot> {
+        let column = |value: fn(&DhRow) -> f64| self.joints.iter().map(value).collect::<Vec<f64>>();
+        let (a, alpha, d) = (column(|row| row.a), column(|row| row.alpha.to_radians()), column(|row| row.d));
+        let table = DhTable {
+            theta: column(|row| row.theta.to_radians()),
+            kinds: self.joints.iter().map(|row| row.limits.kind).collect(),
+            lower: column(|row| row.limits.lower),
+            upper: column(|row| row.limits.upper),
+            velocity: column(|row| row.limits.velocity),
+            ..DhTable::new(self.convention, a, alpha, d)
+        };
+        let mut chain = ChainBuilder::new(name, "base");
+        chain.fixed(pose::rotation(Vector3::x(), self.base_roll.to_radians()));
+        table.append_to(&mut chain)?;
+        if self.flange != 0.0 {
+            chain.fixed(pose::translation(0.0, 0.0, self.flange));
+            chain.link("flange");
+        }
+        chain.build()
+    }
+}

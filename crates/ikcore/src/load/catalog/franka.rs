@@ -1,0 +1,40 @@
+//! Arms of Franka Robotics.
+
+use super::arm::{Arm, radians, row};
+use crate::load::dh::Dh::Modified;
+
+/// Distance of the flange from frame 7 (m).
+const FLANGE: f64 = 0.107;
+
+/// Franka Emika Robot (Panda): modified DH parameters and joint limits of the maker's control interface documentation,
+/// "Robot and interface specifications".
+pub(super) const PANDA: Arm = Arm {
+    convention: Modified,
+    base_roll: 0.0,
+    joints: &[
+        row(0.0, 0.0, 0.333, 0.0, radians(-2.8973, 2.8973, 2.175)),
+        row(0.0, -90.0, 0.0, 0.0, radians(-1.7628, 1.7628, 2.175)),
+        row(0.0, 90.0, 0.316, 0.0, radians(-2.8973, 2.8973, 2.175)),
+        row(0.0825, 90.0, 0.0, 0.0, radians(-3.0718, -0.0698, 2.175)),
+        row(-0.0825, -90.0, 0.384, 0.0, radians(-2.8973, 2.8973, 2.61)),
+        row(0.0, 90.0, 0.0, 0.0, radians(-0.0175, 3.7525, 2.61)),
+        row(0.088, 90.0, 0.0, 0.0, radians(-2.8973, 2.8973, 2.61)),
+    ],
+    flange: FLANGE,
+};
+
+/// Franka Research 3: the geometry of the Panda with its own joint limits; same document.
+pub(super) const FR3: Arm = Arm {
+    convention: Modified,
+    base_roll: 0.0,
+    joints: &[
+        row(0.0, 0.0, 0.333, 0.0, radians(-2.7437, 2.7437, 2.62)),
+        row(0.0, -90.0, 0.0, 0.0, radians(-1.7837, 1.7837, 2.62)),
+        row(0.0, 90.0, 0.316, 0.0, radians(-2.9007, 2.9007, 2.62)),
+        row(0.0825, 90.0, 0.0, 0.0, radians(-3.0421, -0.1518, 2.62)),
+        row(-0.0825, -90.0, 0.384, 0.0, radians(-2.8065, 2.8065, 5.26)),
+        row(0.0, 90.0, 0.0, 0.0, radians(0.5445, 4.5169, 4.18)),
+        row(0.088, 90.0, 0.0, 0.0, radians(-3.0159, 3.0159, 5.26)),
+    ],
+    flange: FLANGE,
+};

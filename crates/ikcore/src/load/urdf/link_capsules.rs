@@ -1,0 +1,69 @@
+//! Collision shapes of a link as capsules that contain them.
+
+use nalgebra::{Point3, Vector3};
+use roxmltree::Node;
+
+use super::xml;
+use crate::math::{Pose, pose};
+use crate::robot::LinkCapsule;
+
+/// The collision shapes of one link.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LinkCapsules {
+    pub(super) capsules: Vec<LinkCapsule>,
+    /// Shapes without a capsule, in words.
+    pub(super) unread: Vec<String>,
+}
+
+/// Reads the shapes of a link. A shape that cannot be read is no error: most callers never ask for it.
+pub(super) fn read(name: &str, link: Node) -> LinkCapsules {
+    let mut read = LinkCapsules::default();
+    for collision in xml::children(link, "collision") {
+        let geometry = xml::children(collision, "geometry").next();
+        let Some(shape) = geometry.and_then(|geometry| geometry.first_element_child()) else { continue };
+        let tag = shape.tag_name().name();
+        match origin(collision).zip(axis(shape)) {
+            Some((origin, (half, radius))) => {
+                let end = |sign: f64| (origin * Point3::from(sign * half)).coords.into();
+                read.capsules.push(LinkCapsule { link: name.into(), a: end(-1.0), b: end(1.0), radius });
+            }
+            None => read.unread.push(format!("a {tag} of link '{name}'")),
+        }
+    }
+    read
+}
+
+/// Half of the axis, and the radius, of the capsule that contains a shape at the origin; None for unknown shapes.
+fn axis(shape: Node) -> Option<(Vector3<f64>, f64)> {
+    let size = |name: &str| xml::number(shape, name, name).ok()?.filter(|size| *size > 0.0 && size.is_finite());
+    match shape.tag_name().name() {
+        "sphere" => Some((Vector3::zeros(), size("radius")?)),
+        // The caps stick out of a cylinder, whose ends are flat.
+        "cylinder" | "capsule" => Some((Vector3::z() * 0.5 * size("length")?, size("radius")?)),
+        "box" => {
+            let edges = Vector3::from(xml::vector(shape, "size", "size").ok()??);
+            if edges.min() <= 0.0 {
+                return None;
+            }
+            // Along the longest edge; the radius reaches the corners of the section across.
+            let along = edges.imax();
+            let mut across = 0.5 * edges;
+            across[along] = 0.0;
+            let mut half = Vector3::zeros();
+            half[along] = 0.5 * edges[along];
+            Some((half, across.norm()))
+        }
+        _ => None,
+    }
+}
+
+/// Pose of the shape in its link; None where it cannot be read.
+fn origin(collision: Node) -> Option<Pose> {
+    let Some(origin) = xml::children(collision, "origin").next() else { return Some(Pose::identity()) };
+    let xyz = xml::vector(origin, "xyz", "xyz").ok()?.unwrap_or_default();
+    let rpy = xml::vector(origin, "rpy", "rpy").ok()?;
+    if rpy.is_none() && origin.has_attribute("quat_xyzw") {
+        return None;
+    }
+    Some(pose::from_rpy(rpy.unwrap_or_default(), xyz))
+}

@@ -1,0 +1,106 @@
+//! The box that a search is confined to.
+
+use crate::error::{Error, Result};
+use crate::math::interval;
+use crate::math::ordered::{larger, smaller};
+use crate::rng::LazyRng;
+
+use super::point::Point;
+
+/// A box, entry by entry: lower <= upper; infinite bounds are allowed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bounds {
+    lower: Point,
+    upper: Point,
+}
+
+/// How far samples reach on an open side.
+const HALF_TURN: f64 = std::f64::consts::PI;
+
+impl Bounds {
+    /// # Errors
+    /// [`Error::WrongLength`] for unequal lengths, [`Error::OutOfRange`] for NaN or lower > upper.
+    pub fn new(lower: &[f64], upper: &[f64]) -> Result<Self> {
+        if lower.len() != upper.len() {
+            let expected = format!("{} entries as in lower", lower.len());
+            return Err(Error::WrongLength { what: "upper".into(), expected, got: upper.len() });
+        }
+        match lower.iter().zip(upper).position(|(l, u)| l.is_nan() || u.is_nan() || l > u) {
+            Some(i) => {
+                Err(Error::out_of_range(format!("lower[{i}]"), &format!("at most upper[{i}] = {}", upper[i]), lower[i]))
+            }
+            None => Ok(Self { lower: lower.into(), upper: upper.into() }),
+        }
+    }
+
+    /// The box of these (lower, upper), which are known to be in order.
+    pub(crate) fn from_ranges(ranges: impl Iterator<Item = (f64, f64)>) -> Self {
+        let mut bounds = Self { lower: Point::new(), upper: Point::new() };
+        for (lower, upper) in ranges {
+            bounds.lower.push(lower);
+            bounds.upper.push(upper);
+        }
+        bounds
+    }
+
+    /// Lower bounds.
+    pub fn lower(&self) -> &[f64] {
+        &self.lower
+    }
+
+    /// Upper bounds.
+    pub fn upper(&self) -> &[f64] {
+        &self.upper
+    }
+
+    /// Writable lower and upper bounds. Whoever writes keeps lower <= upper.
+    pub(crate) fn parts_mut(&mut self) -> (&mut [f64], &mut [f64]) {
+        (&mut self.lower, &mut self.upper)
+    }
+
+    /// Clips `x` to the box: R(.) of BAS, eq. (10).
+    #[inline]
+    pub fn clip(&self, x: &mut [f64]) {
+        for ((x, lower), upper) in x.iter_mut().zip(self.lower()).zip(self.upper()) {
+            // A NaN becomes the lower bound.
+            *x = smaller(larger(*x, *lower), *upper);
+        }
+    }
+
+    /// Brings every entry of `x` into its range by the fewest whole periods: eq. (12) of Yuan et al. 2016, which turns
+    /// once at most. An entry without a period is clipped; one that no number of periods brings inside stays outside.
+    pub fn wrap(&self, x: &mut [f64], periods: &[Option<f64>]) {
+        for (i, x) in x.iter_mut().enumerate() {
+            let (lower, upper) = (self.lower[i], self.upper[i]);
+            if lower <= *x && *x <= upper {
+                continue;
+            }
+            let nearest = if *x > upper { upper } else { lower };
+            *x = match periods[i] {
+                None => nearest,
+                Some(period) => {
+                    let turns = ((nearest - *x) / period).abs().ceil();
+                    let wrapped = if *x > upper { *x - turns * period } else { *x + turns * period };
+                    if lower <= wrapped && wrapped <= upper { wrapped } else { *x }
+                }
+            }
+        }
+    }
+
+    /// Whether `x` lies in the box, bounds included.
+    pub fn contains(&self, x: &[f64]) -> bool {
+        x.iter().zip(&self.lower).zip(&self.upper).all(|((x, lower), upper)| lower <= x && x <= upper)
+    }
+
+    /// The ranges to draw from; an open side reaches one turn from the other bound, or half a turn from zero.
+    pub fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.lower.iter().zip(&self.upper).map(|(lower, upper)| interval::finite(*lower, *upper, HALF_TURN))
+    }
+
+    /// A uniform draw from the [`ranges`](Self::ranges).
+    pub fn sample(&self, rng: &mut LazyRng, x: &mut [f64]) {
+        for (x, (from, to)) in x.iter_mut().zip(self.ranges()) {
+            *x = rng.uniform_in(from, to);
+        }
+    }
+}

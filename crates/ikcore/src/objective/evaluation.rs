@@ -1,0 +1,62 @@
+//! Objectives: values and scores of points.
+
+use super::bounds::Bounds;
+use crate::rng::LazyRng;
+
+/// The value of an objective at a point, and whether that is good enough.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Score {
+    /// The weighted sum of squares r'r.
+    pub value: f64,
+    /// The problem's own test, such as metres AND radians within their tolerances.
+    pub solved: bool,
+}
+
+/// How an objective is best evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CallPattern {
+    /// Points to evaluate together, where a solver has that many.
+    pub batch_size: usize,
+    /// Evaluations after which the monitor and the clock are asked again.
+    pub poll_interval: usize,
+}
+
+impl Default for CallPattern {
+    /// For evaluations of tens of nanoseconds: a poll every ten microseconds.
+    fn default() -> Self {
+        Self { batch_size: 8, poll_interval: 256 }
+    }
+}
+
+/// Something to minimise. It owns its scratch and is cloned per thread.
+pub trait Objective {
+    /// Number of entries of a point.
+    fn dimension(&self) -> usize;
+
+    /// The score of `x`, which lies inside the box.
+    fn evaluate(&mut self, x: &[f64]) -> Score;
+
+    /// Scores of many points, stored one after another in `xs`.
+    fn evaluate_all(&mut self, xs: &[f64], out: &mut [Score]) {
+        for (x, score) in xs.chunks_exact(self.dimension()).zip(out) {
+            *score = self.evaluate(x);
+        }
+    }
+
+    /// How it is best evaluated; asked once a run.
+    fn call_pattern(&self) -> CallPattern {
+        CallPattern::default()
+    }
+
+    /// The start of attempt number `attempt` (from 1; attempt 0 is the caller's start). By default uniform in the box.
+    fn propose_start(&mut self, attempt: usize, bounds: &Bounds, rng: &mut LazyRng, x: &mut [f64]) {
+        let _ = attempt;
+        bounds.sample(rng, x);
+    }
+
+    /// The period of entry number `entry` of a point, if it has one: 2 pi for an angle whose turns do not count.
+    fn period(&self, entry: usize) -> Option<f64> {
+        let _ = entry;
+        None
+    }
+}

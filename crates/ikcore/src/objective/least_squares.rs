@@ -1,0 +1,70 @@
+//! Objectives that are sums of squares: residuals and Jacobians, one at a time or four side by side.
+
+use super::evaluation::{Objective, Score};
+use super::gradient::Gradient;
+use crate::math::MAX_DOF;
+use crate::math::box_step::ROWS;
+use crate::math::f64x4::F64x4;
+
+/// Residual r and Jacobian dr/dx at a point.
+#[derive(Debug, Clone)]
+pub struct Linearization {
+    /// Weighted residual, current minus wanted; rows that a task does not use are zero.
+    pub residual: [f64; ROWS],
+    /// Columns of the weighted Jacobian, one per entry of x; the first `dimension` are in use.
+    pub columns: [[f64; ROWS]; MAX_DOF],
+}
+
+impl Default for Linearization {
+    fn default() -> Self {
+        Self { residual: [0.0; ROWS], columns: [[0.0; ROWS]; MAX_DOF] }
+    }
+}
+
+/// An objective that is a sum of at most six squares.
+pub trait Residual: Objective {
+    /// The weighted residual at `x`, current minus wanted, and the score; rows that a task does not use are zero.
+    fn residual(&mut self, x: &[f64], out: &mut [f64; ROWS]) -> Score;
+}
+
+/// One that knows its derivative too.
+pub trait LeastSquares: Residual {
+    /// Residual and Jacobian at `x` in one pass, and the score.
+    fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score;
+}
+
+/// Four linearizations side by side: each number for all four in one register.
+#[derive(Debug, Clone)]
+pub struct FourLinearizations {
+    /// As [`Linearization::residual`].
+    pub residual: [F64x4; ROWS],
+    /// As [`Linearization::columns`].
+    pub columns: [[F64x4; ROWS]; MAX_DOF],
+}
+
+impl Default for FourLinearizations {
+    fn default() -> Self {
+        Self { residual: [F64x4::ZERO; ROWS], columns: [[F64x4::ZERO; ROWS]; MAX_DOF] }
+    }
+}
+
+/// Objectives that are linearized faster four at a time than one after another. They differ in what is asked of one and the same
+/// system: for a robot, in the targets, which are of one kind.
+pub trait SideBySide: LeastSquares + Sized {
+    /// [`linearize`](LeastSquares::linearize) of each objective at its lane of `xs`, to the same bits.
+    fn linearize_four(objectives: [&Self; 4], xs: &[F64x4], out: &mut FourLinearizations) -> [Score; 4];
+}
+
+impl Linearization {
+    /// J'r into `gradient`, which has one entry per entry of x: the gradient of r'r / 2.
+    pub fn gradient(&self, gradient: &mut [f64]) {
+        for (slope, column) in gradient.iter_mut().zip(&self.columns) {
+            *slope = column.iter().zip(&self.residual).map(|(c, r)| c * r).sum();
+        }
+    }
+}
+
+/// All that an algorithm can ask of inverse kinematics.
+pub trait Differentiable: LeastSquares + Gradient {}
+
+impl<O: LeastSquares + Gradient + ?Sized> Differentiable for O {}

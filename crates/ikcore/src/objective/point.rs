@@ -1,0 +1,9 @@
+//! Points of a search space.
+
+use smallvec::SmallVec;
+
+use crate::math::MAX_DOF;
+
+/// A point of the search space; on the stack up to [`MAX_DOF`] entries. `clone` copies entry by entry: hot paths take
+/// `from_slice`, which copies all at once.
+pub type Point = SmallVec<[f64; MAX_DOF]>;

@@ -1,0 +1,106 @@
+//! What all planners among obstacles share: the robot's body, the distance that is kept, and trajectories as motions that
+//! can be certified.
+
+use super::planar_arm::PlanarArm;
+use super::violation::Violation;
+use crate::error::{Error, Result};
+use crate::math::polynomial::evaluate;
+use crate::obstacle::{Contact, JointMotion, Obstacle, Scene};
+use crate::robot::Robot;
+use crate::trajectory::{Coefficients, POWERS, Trajectory};
+use crate::wording::number;
+
+/// What is kept beyond the margin at the ends and on straight lines, so that their timed motion can be certified too (m).
+pub(super) const RESERVE: f64 = 5e-5;
+
+/// Whether there is anything that `robot` could touch: an obstacle, or itself where its shape is known.
+pub(super) fn can_collide(robot: &Robot, obstacles: &[Obstacle]) -> bool {
+    let shape_known = !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
+    !obstacles.is_empty() || shape_known
+}
+
+/// `robot` with a line for every link where it is a planar arm of which no shape is given, as in Wang et al. (2019); None for
+/// any other robot.
+///
+/// # Errors
+/// As [`Robot::with_capsules_along_links`].
+pub(super) fn as_lines(robot: &Robot) -> Result<Option<Robot>> {
+    let no_shape = robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
+    let is_planar = || PlanarArm::of(robot).is_some();
+    if no_shape && is_planar() { robot.with_capsules_along_links(0.0).map(Some) } else { Ok(None) }
+}
+
+/// `robot`, or its `lines` where it has no other shape, among `obstacles`. Lines may cross each other: they have no thickness.
+///
+/// # Errors
+/// As [`Scene::new`].
+pub(super) fn scene<'a>(robot: &'a Robot, lines: Option<&'a Robot>, obstacles: &'a [Obstacle]) -> Result<Scene<'a>> {
+    match lines {
+        Some(lines) => Ok(Scene::new(lines, obstacles)?.without_self_collision()),
+        None => Scene::new(robot, obstacles),
+    }
+}
+
+/// Err for a configuration nearer to something than the margin; `what` names it.
+///
+/// # Errors
+/// [`Error::InCollision`].
+pub(super) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64) -> Result<()> {
+    let kept = margin + RESERVE;
+    match scene.nearest(q)? {
+        Some(Contact { link, other, distance }) if distance < kept => {
+            let depth = if distance < 0.0 {
+                format!("{} m inside", number(-distance))
+            } else {
+                format!("only {} m (of a margin of {} m) from", number(distance), number(kept))
+            };
+            Err(Error::InCollision { what: what.into(), link, other: other.to_string(), depth })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The violation of a distance below the margin.
+pub(super) fn too_near(contact: &Contact, margin: f64) -> Violation {
+    let what = format!("distance of link '{}' from {}", contact.link, contact.other);
+    Violation { what, value: contact.distance, bound: margin, unit: "m".into() }
+}
+
+/// A trajectory as a motion that can be certified; its parameter is time (s).
+pub(super) struct TimedMotion<'a>(pub &'a Trajectory);
+
+impl JointMotion for TimedMotion<'_> {
+    fn around(&self, from: f64, to: f64, middle: &mut [f64], reach: &mut [f64]) {
+        let (knots, polynomials) = (self.0.knots(), self.0.coefficients());
+        let n = middle.len();
+        let last = knots.len() - 2;
+        let piece_of = |t: f64| knots.partition_point(|knot| *knot <= t).saturating_sub(1).min(last);
+        let center = 0.5 * (from + to);
+        let home = piece_of(center);
+        for j in 0..n {
+            middle[j] = evaluate(&polynomials[home * n + j], center - knots[home])[0];
+        }
+        reach.fill(0.0);
+        for piece in piece_of(from)..=piece_of(to) {
+            let (begin, end) = (knots[piece].max(from), knots[piece + 1].min(to));
+            let half = 0.5 * (end - begin).max(0.0);
+            for j in 0..n {
+                let local = shifted(&polynomials[piece * n + j], 0.5 * (begin + end) - knots[piece]);
+                // Taylor's series about the middle of the piece ends, so that its terms bound it.
+                let swing = local[1..].iter().rev().fold(0.0, |sum, c| (sum + c.abs()) * half);
+                reach[j] = reach[j].max((local[0] - middle[j]).abs() + swing);
+            }
+        }
+    }
+}
+
+/// The same polynomial in powers of s - `by`, by repeated synthetic division.
+fn shifted(coefficients: &Coefficients, by: f64) -> Coefficients {
+    let mut c = *coefficients;
+    for low in 0..POWERS - 1 {
+        for power in (low..POWERS - 1).rev() {
+            c[power] += by * c[power + 1];
+        }
+    }
+    c
+}

@@ -1,0 +1,52 @@
+//! Pairs over all branches of inverse kinematics of both ends, each at the whole turns nearest to the other end.
+
+use super::end_pair::EndPair;
+use super::pair_search::PairSearch;
+use crate::error::Result;
+use crate::ik::{AllOptions, SolveOptions, bring_near, solve_all};
+use crate::objective::{Bounds, Point};
+use crate::planning::Endpoint;
+use crate::solver::Monitor;
+
+/// Largest number of configurations of an end: all of them for a non-redundant arm, a sample for others.
+const BRANCHES: usize = 40;
+
+impl PairSearch<'_> {
+    /// The `count` quickest pairs of any configurations of both ends, the quickest first.
+    ///
+    /// # Errors
+    /// None for ends that have a configuration.
+    pub(super) fn branches(&mut self, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>> {
+        let [starts, ends] = [self.configurations(0, monitor)?, self.configurations(1, monitor)?];
+        let bounds = Bounds::from_ranges(self.limits.lower.iter().copied().zip(self.limits.upper.iter().copied()));
+        let start_is_free = matches!(self.ends[0], Endpoint::Target(_));
+        let mut pairs = Vec::with_capacity(starts.len() * ends.len());
+        for start in &starts {
+            for end in &ends {
+                let (mut start, mut end) = (start.clone(), end.clone());
+                match self.ends[1] {
+                    Endpoint::Target(_) => bring_near(self.robot, &bounds, &start, &mut end),
+                    Endpoint::Configuration(_) if start_is_free => bring_near(self.robot, &bounds, &end, &mut start),
+                    Endpoint::Configuration(_) => {}
+                }
+                pairs.push(self.pair(start, end));
+            }
+        }
+        pairs.sort_by(|one, other| one.duration.total_cmp(&other.duration));
+        pairs.truncate(count);
+        Ok(pairs)
+    }
+
+    fn configurations(&mut self, end: usize, monitor: &mut dyn Monitor) -> Result<Vec<Point>> {
+        let target = match self.ends[end] {
+            Endpoint::Configuration(q) => return Ok(vec![q.as_slice().into()]),
+            Endpoint::Target(target) => target,
+        };
+        let each =
+            SolveOptions { limits: Some(self.position_limits.clone()), seed: self.seed, ..SolveOptions::default() };
+        let options = AllOptions { each, limit: BRANCHES, ..AllOptions::default() };
+        let found = solve_all(self.robot, target, &options, monitor)?;
+        self.evaluations += found.evaluations;
+        Ok(found.solutions.into_iter().map(|solution| solution.q).collect())
+    }
+}

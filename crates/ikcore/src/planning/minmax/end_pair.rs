@@ -1,0 +1,33 @@
+//! Configurations of both ends of a motion.
+
+use crate::error::{Error, Result};
+use crate::objective::Point;
+use crate::wording::number;
+
+/// Configurations of both ends, and the time of a quintic between them (s).
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct EndPair {
+    pub start: Point,
+    pub end: Point,
+    pub duration: f64,
+}
+
+/// Pairs that differ by less are one (rad, m).
+const SAME: f64 = 1e-3;
+
+impl EndPair {
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        let near = |a: &Point, b: &Point| a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME);
+        near(&self.start, &other.start) && near(&self.end, &other.end)
+    }
+
+    /// Err unless the ends differ.
+    pub(super) fn require_motion(&self) -> Result<()> {
+        let largest = self.start.iter().zip(&self.end).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if largest > 0.0 {
+            return Ok(());
+        }
+        let problem = format!("start and end are the same configuration (largest difference {} rad)", number(largest));
+        Err(Error::InvalidTrajectory { problem })
+    }
+}

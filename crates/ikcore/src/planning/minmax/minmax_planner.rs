@@ -1,0 +1,49 @@
+//! The planner: ends, then a straight line or a path around obstacles.
+
+use super::among_obstacles;
+use super::pair_search::PairSearch;
+use super::straight_line_plan::without_obstacles;
+use crate::error::{Error, Result};
+use crate::planning::collision_checks::can_collide;
+use crate::planning::{Endpoint, MotionLimits, Plan, PointToPointOptions};
+use crate::robot::Robot;
+use crate::solver::Monitor;
+use crate::solver::Stopwatch;
+
+const METHOD: &str = "method=\"minmax\"";
+
+/// Plans from `start` to `end`; see [`plan_point_to_point`](crate::planning::plan_point_to_point).
+pub fn point_to_point(
+    robot: &Robot,
+    start: &Endpoint,
+    end: &Endpoint,
+    options: &PointToPointOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
+    let stopwatch = Stopwatch::start();
+    let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    require_pace(robot, &limits)?;
+    if options.solver.is_some() {
+        let problem = format!("{METHOD} has a search of its own: leave solver out, or use method=\"tpbso\"");
+        return Err(Error::Contradiction { problem });
+    }
+    if options.elbows.is_some() {
+        let problem = format!("{METHOD} chooses how the arm bends: leave elbows out, or use method=\"tpbso\"");
+        return Err(Error::Contradiction { problem });
+    }
+    let mut search = PairSearch::new(robot, &limits, [start, end], options.seed, stopwatch)?;
+    if can_collide(robot, &options.obstacles) {
+        among_obstacles::plan(&mut search, options, monitor)
+    } else {
+        without_obstacles(&mut search, options.objective, monitor)
+    }
+}
+
+/// Err for a joint with neither a velocity nor an acceleration limit, which would take no time.
+fn require_pace(robot: &Robot, limits: &MotionLimits) -> Result<()> {
+    let unlimited = |j: &usize| limits.velocity[*j].is_infinite() && limits.acceleration[*j].is_infinite();
+    match (0..robot.dof()).find(unlimited) {
+        None => Ok(()),
+        Some(j) => Err(Error::NoPace { joint: limits.joint_name(j).into() }),
+    }
+}

@@ -1,0 +1,60 @@
+//! Plans without obstacles: straight lines between the pairs of configurations, of which the best is taken.
+
+use super::end_pair::EndPair;
+use super::line_timing::JointPolyline;
+use super::pair_search::PairSearch;
+use crate::error::{Error, Result};
+use crate::planning::{Cost, Improvement, MotionLimits, Plan};
+use crate::solver::{Monitor, Status};
+use crate::trajectory::Trajectory;
+
+/// Pairs of configurations that are tried from random starts, and as many of the quickest branches.
+pub const PAIRS: usize = 8;
+
+/// Straight from end to end.
+pub fn without_obstacles(search: &mut PairSearch, objective: Cost, monitor: &mut dyn Monitor) -> Result<Plan> {
+    let pairs = search.pairs(PAIRS, monitor)?;
+    let mut best: Option<(f64, Trajectory)> = None;
+    let mut history = vec![];
+    for pair in &pairs {
+        let trajectory = straight(pair, search.limits)?;
+        let cost = objective.of(search.robot, &trajectory);
+        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+            history.push(Improvement { evaluations: search.evaluations, cost });
+            best = Some((cost, trajectory));
+        }
+    }
+    let (cost, trajectory) = best.ok_or_else(no_pair)?;
+    let violations = search.limits.violations(&trajectory);
+    let status = if violations.is_empty() { Status::Solved } else { Status::Stalled };
+    let evaluations = search.evaluations;
+    Ok(Plan {
+        trajectory,
+        objective,
+        cost,
+        history,
+        clearance: None,
+        accuracy: None,
+        redundancy: vec![],
+        violations,
+        status,
+        evaluations,
+        elapsed: search.stopwatch.elapsed(),
+    })
+}
+
+/// The quicker of a quintic and of constant velocity between blends.
+pub fn straight(pair: &EndPair, limits: &MotionLimits) -> Result<Trajectory> {
+    pair.require_motion()?;
+    let line = JointPolyline(vec![pair.start.to_vec(), pair.end.to_vec()]);
+    let quintic = line.with_stops(limits)?;
+    match line.with_blends(limits, &[1.0, 1.0]).transpose()? {
+        Some(blended) if blended.duration() < quintic.duration() => Ok(blended),
+        _ => Ok(quintic),
+    }
+}
+
+/// The error of a search that met no configuration for an end.
+pub fn no_pair() -> Error {
+    Error::Unreachable { what: "end".into(), problem: "no configuration was found: try another seed".into() }
+}

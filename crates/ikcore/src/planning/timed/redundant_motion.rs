@@ -1,0 +1,257 @@
+//! The configurations in which an arm passes the points of a path, and what may be chosen of them.
+//!
+//! A nominal motion follows the path with the least joint motion from point to point. At a few nodes along it, offsets in
+//! the null space of the task's Jacobian are free; between nodes they follow natural splines. The nominal configurations
+//! with their offsets are then brought back onto the points by damped least squares: the nearest solutions.
+
+use nalgebra::DMatrix;
+
+use super::interpolation::JointWaypoints;
+use super::null_space::{null_space, turned};
+use super::projection::project;
+use crate::error::{Error, Result};
+use crate::math::MAX_DOF;
+use crate::math::cubic_spline::CubicSpline;
+use crate::objective::{Bounds, LeastSquares, Linearization};
+use crate::planning::tip_path::TipPath;
+use crate::problem::Problem;
+use crate::rng;
+use crate::robot::Robot;
+use crate::task::{Target, Tolerance};
+use crate::wording::number;
+
+/// Nodes of the offsets along the path: the published planner's number of knots.
+pub const NODES: usize = 5;
+
+/// Intervals between the points that the nominal motion passes, corners apart: half the published planner's.
+const INTERVALS: usize = 25;
+
+/// Starts tried for the nominal motion.
+const STARTS: usize = 16;
+
+/// Joints move by this much (rad, m) at the most from one point to the next of the nominal motion; more is a jump to
+/// another branch.
+const JUMP: f64 = 1.5;
+
+/// The arm on its path.
+pub struct RedundantMotion<'a> {
+    robot: &'a Robot,
+    tip_path: &'a TipPath,
+    bounds: Bounds,
+    /// What the tip reaches at the nominal motion's knots.
+    targets: Vec<Target>,
+    nominal: JointWaypoints,
+    /// Directions of the self-motion at each node: a column each.
+    bases: Vec<DMatrix<f64>>,
+    /// What the offset at a node contributes at a point: point by point, node by node.
+    weights: Vec<f64>,
+    /// Whether the first configuration is given, and stays as it is.
+    starts_as_given: bool,
+    linearization: Linearization,
+}
+
+impl<'a> RedundantMotion<'a> {
+    /// The arm on `path`.
+    ///
+    /// # Errors
+    /// [`Error::Unreachable`] names the first place that no motion from any start reached.
+    pub fn new(robot: &'a Robot, tip_path: &'a TipPath, start: Option<&[f64]>, seed: u64) -> Result<Self> {
+        let joints = robot.joints();
+        let knots = tip_path.knots(INTERVALS);
+        let mut motion = Self {
+            robot,
+            tip_path,
+            bounds: Bounds::from_ranges(joints.iter().map(|joint| (joint.lower, joint.upper))),
+            targets: knots.iter().map(|knot| tip_path.target(*knot)).collect(),
+            weights: node_weights(&knots),
+            nominal: JointWaypoints { knots, rows: vec![] },
+            bases: vec![],
+            starts_as_given: start.is_some(),
+            linearization: Linearization::default(),
+        };
+        motion.nominal.rows = match start {
+            Some(q) => motion.follow(q).map_err(|lost| motion.error(&lost))?,
+            None => motion.shortest(seed)?,
+        };
+        motion.bases = motion.self_motions();
+        Ok(motion)
+    }
+
+    /// The nominal motion.
+    pub fn nominal(&self) -> &JointWaypoints {
+        &self.nominal
+    }
+
+    /// Takes another nominal motion on the same path.
+    pub fn take(&mut self, nominal: JointWaypoints) {
+        self.targets = nominal.knots.iter().map(|knot| self.tip_path.target(*knot)).collect();
+        self.weights = node_weights(&nominal.knots);
+        self.nominal = nominal;
+        self.bases = self.self_motions();
+    }
+
+    /// Number of joints.
+    pub fn dof(&self) -> usize {
+        self.robot.dof()
+    }
+
+    /// Number of points passed.
+    pub fn points(&self) -> usize {
+        self.targets.len()
+    }
+
+    /// How many numbers are free at each node.
+    pub fn freedom(&self) -> usize {
+        self.bases[0].ncols()
+    }
+
+    /// Whether the first configuration is given.
+    pub fn starts_as_given(&self) -> bool {
+        self.starts_as_given
+    }
+
+    /// Writes the configurations at all points for the offsets `z` (node by node; rad, m along the self-motion) into
+    /// `waypoints`; returns by how much points are missed, summed (m, rad).
+    pub fn place(&mut self, z: &[f64], waypoints: &mut [f64]) -> f64 {
+        let n = self.dof();
+        let freedom = self.freedom();
+        let mut missed = 0.0;
+        let mut correction = [0.0; MAX_DOF];
+        for point in 0..self.points() {
+            let q = &mut waypoints[point * n..(point + 1) * n];
+            q.copy_from_slice(&self.nominal.rows[point * n..(point + 1) * n]);
+            for (node, basis) in self.bases.iter().enumerate() {
+                let weight = self.weights[point * NODES + node];
+                for (k, z) in z[node * freedom..(node + 1) * freedom].iter().enumerate() {
+                    q.iter_mut().zip(basis.column(k).iter()).for_each(|(q, b)| *q += weight * z * b);
+                }
+            }
+            // What the point before had to be moved by, this one needs about as much.
+            let mut from = [0.0; MAX_DOF];
+            from[..n].copy_from_slice(q);
+            q.iter_mut().zip(&correction).for_each(|(q, c)| *q += c);
+            self.bounds.clip(q);
+            if point > 0 || !self.starts_as_given {
+                missed += project(self.robot, &self.targets[point], &self.bounds, q, &mut self.linearization);
+            }
+            for j in 0..n {
+                correction[j] = q[j] - from[j];
+            }
+        }
+        missed
+    }
+
+    /// The nominal motion of least joint travel, over several starts.
+    fn shortest(&mut self, seed: u64) -> Result<Vec<f64>> {
+        let mut rng = rng::stream(seed, 0);
+        let starts = self.robot.random_configurations(STARTS, &mut rng)?;
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        let mut farthest: Option<Lost> = None;
+        for start in starts.chunks_exact(self.dof()) {
+            match self.follow(start) {
+                Ok(nominal) => {
+                    let travel = travel(&nominal, self.dof());
+                    if best.as_ref().is_none_or(|(least, _)| travel < *least) {
+                        best = Some((travel, nominal));
+                    }
+                }
+                Err(lost) => {
+                    if farthest.as_ref().is_none_or(|other| lost.is_farther_than(other)) {
+                        farthest = Some(lost);
+                    }
+                }
+            }
+        }
+        match (best, farthest) {
+            (Some((_, nominal)), _) => Ok(nominal),
+            (None, Some(lost)) => Err(self.error(&lost)),
+            (None, None) => Err(Error::InvalidPath { problem: "no start was tried".into() }),
+        }
+    }
+
+    fn error(&self, lost: &Lost) -> Error {
+        let problem = if lost.missed > 0.0 {
+            let unit = match self.targets[lost.point] {
+                Target::Position(_) => "m",
+                _ => "(m and rad)",
+            };
+            format!("the nearest configuration found within the limits misses it by {} {unit}", number(lost.missed))
+        } else {
+            "only another branch of configurations does, and the arm cannot jump to it".into()
+        };
+        Error::Unreachable { what: self.tip_path.place(self.nominal.knots[lost.point]), problem }
+    }
+
+    /// From `start` along all points, each from the one before.
+    fn follow(&mut self, start: &[f64]) -> Result<Vec<f64>, Lost> {
+        let n = self.dof();
+        let mut nominal = vec![0.0; self.points() * n];
+        let mut q = [0.0; MAX_DOF];
+        q[..n].copy_from_slice(start);
+        for (point, target) in self.targets.iter().enumerate() {
+            let before = q;
+            let missed = match point {
+                0 if self.starts_as_given => 0.0,
+                _ => project(self.robot, target, &self.bounds, &mut q[..n], &mut self.linearization),
+            };
+            let jump = (0..n).map(|j| (q[j] - before[j]).abs()).fold(0.0, f64::max);
+            if missed > 0.0 || (point > 0 && jump > JUMP) {
+                return Err(Lost { point, missed });
+            }
+            nominal[point * n..(point + 1) * n].copy_from_slice(&q[..n]);
+        }
+        Ok(nominal)
+    }
+
+    /// The null space of the task's Jacobian at each node, each basis turned towards the one before.
+    fn self_motions(&mut self) -> Vec<DMatrix<f64>> {
+        let n = self.dof();
+        let mut bases: Vec<DMatrix<f64>> = Vec::with_capacity(NODES);
+        for node in 0..NODES {
+            let point = self.nominal.knots.partition_point(|knot| *knot < node as f64 / (NODES - 1) as f64);
+            let point = point.min(self.points() - 1);
+            let q = &self.nominal.rows[point * n..(point + 1) * n];
+            let mut problem = Problem::new(self.robot, &self.targets[point], Tolerance::default());
+            problem.linearize(q, &mut self.linearization);
+            let jacobian = DMatrix::from_fn(6, n, |row, joint| self.linearization.columns[joint][row]);
+            let null = null_space(&jacobian);
+            bases.push(match bases.first() {
+                None => null,
+                Some(first) => turned(&null, bases.last().unwrap_or(first), first.ncols()),
+            });
+        }
+        bases
+    }
+}
+
+/// Where a nominal motion ended (its knot), and how far it missed the point (m, rad).
+struct Lost {
+    point: usize,
+    missed: f64,
+}
+
+impl Lost {
+    fn is_farther_than(&self, other: &Self) -> bool {
+        self.point > other.point || (self.point == other.point && self.missed < other.missed)
+    }
+}
+
+/// Sum over the joints of how far each goes.
+pub fn travel(waypoints: &[f64], n: usize) -> f64 {
+    (n..waypoints.len()).map(|i| (waypoints[i] - waypoints[i - n]).abs()).sum()
+}
+
+/// The splines through a unit offset at each node, at every knot.
+fn node_weights(knots: &[f64]) -> Vec<f64> {
+    let spline = CubicSpline::natural((0..NODES).map(|node| node as f64 / (NODES - 1) as f64).collect());
+    let mut weights = vec![0.0; knots.len() * NODES];
+    for node in 0..NODES {
+        let (mut values, mut curvatures) = ([0.0; NODES], [0.0; NODES]);
+        values[node] = 1.0;
+        spline.curvatures(&values, &mut curvatures);
+        for (point, knot) in knots.iter().enumerate() {
+            weights[point * NODES + node] = spline.at(*knot, &values, &curvatures);
+        }
+    }
+    weights
+}

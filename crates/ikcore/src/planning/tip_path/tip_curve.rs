@@ -1,0 +1,202 @@
+//! Straight segments from place to place, and what is asked of them.
+
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
+
+use super::refuse_repetition;
+use super::segment_geometry::{distance_to_segment, turn};
+use crate::error::{Error, Result};
+use crate::math::vector::distance;
+use crate::math::{Frame, pose};
+use crate::path::Waypoints;
+use crate::task::Target;
+use crate::wording::number;
+
+/// The curve that the tip is to follow: straight segments between positions, with a rotation about a fixed axis on each where
+/// orientations are given.
+///
+/// A place on it is named by its path parameter, its share of the whole length from 0 to 1, for which a radian of rotation
+/// counts as a metre.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TipPath {
+    pub(super) shares: Vec<f64>,
+    pub(super) positions: Vec<[f64; 3]>,
+    rotations: Option<Vec<UnitQuaternion<f64>>>,
+    /// Rows at which the direction jumps.
+    corners: Vec<usize>,
+    /// When each row of a timed path is passed (s); None for given points, which messages number.
+    times: Option<Vec<f64>>,
+    points: Waypoints,
+    /// Path parameters of those points.
+    point_shares: Vec<f64>,
+}
+
+/// A path pauses where it advances by less than this share of its length.
+pub(super) const PAUSE: f64 = 1e-9;
+
+impl TipPath {
+    /// Straight from point to point.
+    ///
+    /// # Errors
+    /// [`Error::InvalidPath`] where a point repeats the one before it.
+    pub fn through(points: &Waypoints) -> Result<Self> {
+        refuse_repetition(points)?;
+        Self::from_rows(points, &(0..points.len()).collect::<Vec<_>>(), None)
+    }
+
+    /// The curve through all `waypoints`, which passes those at the rows `points` as given; `times` (s) for a path in time.
+    pub(super) fn from_rows(waypoints: &Waypoints, points: &[usize], times: Option<&[f64]>) -> Result<Self> {
+        let rows = 0..waypoints.len();
+        let quaternion = |r: Matrix3<f64>| UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(r));
+        let rotations: Option<Vec<_>> = rows.clone().map(|i| waypoints.rotation(i).map(quaternion)).collect();
+        let step = |i: usize| {
+            let turned = rotations.as_ref().map_or(0.0, |rows| rows[i - 1].angle_to(&rows[i]));
+            distance(&waypoints.position(i), &waypoints.position(i - 1)).hypot(turned)
+        };
+        let steps: Vec<f64> = rows.clone().map(|i| if i == 0 { 0.0 } else { step(i) }).collect();
+        let way: f64 = steps.iter().sum();
+        if !(way > 0.0 && way.is_finite()) {
+            return Err(Error::InvalidPath { problem: format!("it must lead somewhere, but it is {way} m long") });
+        }
+        let mut travelled = 0.0;
+        let shares: Vec<f64> = steps
+            .iter()
+            .map(|step| {
+                travelled += step / way;
+                travelled
+            })
+            .collect();
+        // The last one is 1 whatever the rounding.
+        let share = |i: usize| shares[i] / travelled;
+        let kept: Vec<usize> = rows.filter(|i| *i == 0 || steps[*i] > PAUSE * way).collect();
+        let positions: Vec<[f64; 3]> = kept.iter().map(|i| waypoints.position(*i)).collect();
+        let place = points.iter().map(|i| waypoints.position(*i)).collect();
+        let turned = points.iter().map(|i| waypoints.rotation(*i)).collect();
+        let tip_path = Self {
+            shares: kept.iter().map(|i| share(*i)).collect(),
+            corners: vec![],
+            rotations: rotations.map(|rows| kept.iter().map(|i| rows[*i]).collect()),
+            times: times.map(|times| kept.iter().map(|i| times[*i]).collect()),
+            points: Waypoints::new(place, turned)?,
+            point_shares: points.iter().map(|i| share(*i)).collect(),
+            positions,
+        };
+        Ok(Self { corners: tip_path.sharpest_turns(), ..tip_path })
+    }
+
+    /// The points that the published planner passes: those given, or 51 at equal times.
+    pub fn points(&self) -> &Waypoints {
+        &self.points
+    }
+
+    /// Their path parameters.
+    pub fn point_shares(&self) -> &[f64] {
+        &self.point_shares
+    }
+
+    /// The ends of its straight segments (m).
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// The longest edge of the box that holds it (m); of a turn on the spot, its angle (rad).
+    pub fn extent(&self) -> f64 {
+        let along = |k: usize| {
+            let values = self.positions.iter().map(|p| p[k]);
+            values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
+        };
+        let extent = (0..3).map(along).fold(0.0, f64::max);
+        if extent > 0.0 { extent } else { self.turned() }
+    }
+
+    fn turned(&self) -> f64 {
+        self.rotations.as_ref().map_or(0.0, |rows| rows.windows(2).map(|pair| pair[0].angle_to(&pair[1])).sum())
+    }
+
+    /// By how much (m) the segments may leave the curve that was sampled: the rise of a circular arc with their lengths and
+    /// angles.
+    pub fn coarseness(&self) -> f64 {
+        let smooth = |row: &usize| self.corners.binary_search(row).is_err();
+        let rise = |row: usize| {
+            let [before, here, after] = [row - 1, row, row + 1].map(|i| self.positions[i]);
+            let chord = distance(&before, &here).max(distance(&here, &after));
+            0.5 * chord * (0.25 * turn(before, here, after)).tan()
+        };
+        (1..self.positions.len() - 1).filter(smooth).map(rise).fold(0.0, f64::max)
+    }
+
+    /// Path parameters at which its direction jumps.
+    pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
+        self.corners.iter().map(|row| self.shares[*row])
+    }
+
+    /// Path parameters from 0 to 1, all corners among them, the others about 1 / `intervals` apart, at rows where rows are dense
+    /// enough.
+    pub fn knots(&self, intervals: usize) -> Vec<f64> {
+        let spacing = 1.0 / intervals as f64;
+        let (mut knots, mut fixed) = (vec![0.0], true);
+        for (row, share) in self.shares.iter().enumerate().skip(1) {
+            let needed = row + 1 == self.shares.len() || self.corners.binary_search(&row).is_ok();
+            let since = share - knots[knots.len() - 1];
+            if since < (1.0 - PAUSE) * spacing && !needed {
+                continue;
+            }
+            if since < 0.5 * spacing && !fixed {
+                knots.pop(); // too near to a knot that is needed
+            }
+            let from = knots[knots.len() - 1];
+            let count = ((share - from) / spacing).round().max(1.0) as usize;
+            knots.extend((1..count).map(|i| from + (share - from) * i as f64 / count as f64));
+            knots.push(*share);
+            fixed = needed;
+        }
+        knots
+    }
+
+    /// What the tip is to reach at this path parameter.
+    pub fn target(&self, share: f64) -> Target {
+        let (row, part) = self.locate(share);
+        let position = self.position(share);
+        match &self.rotations {
+            None => Target::Position(position),
+            Some(rows) => {
+                let rotation = rows[row].rotation_to(&rows[row + 1]).powf(part) * rows[row];
+                let pose = pose::from_parts(position, rotation.to_rotation_matrix().into_inner());
+                Target::Pose(Frame::from(&pose))
+            }
+        }
+    }
+
+    pub(super) fn position(&self, share: f64) -> [f64; 3] {
+        let (row, part) = self.locate(share);
+        let [from, to] = [self.positions[row], self.positions[row + 1]];
+        std::array::from_fn(|k| (1.0 - part) * from[k] + part * to[k])
+    }
+
+    /// The distance (m) of a position from the part of the curve between two path parameters.
+    pub fn distance(&self, position: [f64; 3], from: f64, to: f64) -> f64 {
+        let (first, last) = (self.locate(from.max(0.0)).0, self.locate(to.min(1.0)).0);
+        let segments = self.positions[first..=last + 1].windows(2);
+        segments.map(|ends| distance_to_segment(position, ends[0], ends[1])).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The place at this path parameter, in words.
+    pub fn place(&self, share: f64) -> String {
+        let (row, part) = self.locate(share);
+        match &self.times {
+            Some(times) => {
+                let time = times[row] + part * (times[row + 1] - times[row]);
+                format!("the path at t = {} s", number(time))
+            }
+            None if part == 0.0 => format!("point {row} of the path"),
+            None if part == 1.0 => format!("point {} of the path", row + 1),
+            None => format!("the path between points {row} and {}", row + 1),
+        }
+    }
+
+    /// The row at which the segment of this path parameter begins, and the share of the segment before it.
+    fn locate(&self, share: f64) -> (usize, f64) {
+        let row = self.shares.partition_point(|start| *start <= share).clamp(1, self.shares.len() - 1) - 1;
+        let [from, to] = [self.shares[row], self.shares[row + 1]];
+        (row, ((share - from) / (to - from)).clamp(0.0, 1.0))
+    }
+}

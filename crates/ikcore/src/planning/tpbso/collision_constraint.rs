@@ -1,0 +1,112 @@
+//! The collisions of a motion: tested at samples by the search, certified for the plan.
+
+use crate::error::Result;
+use crate::obstacle::{Obstacle, Scene, Shape, Sweep};
+use crate::planning::collision_checks::{self, TimedMotion, refuse_collision, too_near};
+use crate::planning::planar_arm::PlanarArm;
+use crate::planning::point_to_point::PointToPointOptions;
+use crate::planning::violation::Violation;
+use crate::robot::Robot;
+use crate::trajectory::Trajectory;
+
+/// What a motion of a robot may not touch.
+#[derive(Debug, Clone)]
+pub struct CollisionTest<'a> {
+    scene: Scene<'a>,
+    margin: f64,
+    /// For a planar arm of lines among ellipses: the exact test of section 4, several times quicker than distances.
+    flat: Option<(PlanarArm, Vec<UnitDisc>)>,
+}
+
+/// An ellipse, as the map that makes it the unit disc.
+#[derive(Debug, Clone, Copy)]
+struct UnitDisc {
+    center: [f64; 2],
+    /// cos and sin of its angle.
+    direction: [f64; 2],
+    semi_axes: [f64; 2],
+}
+
+/// What a search keeps beyond the margin, as a share of the arm's length, because the arm may come nearer between two samples.
+/// Without it 9 to 20 of 20 plans graze an obstacle that their samples miss.
+const ALLOWANCE: f64 = 0.005;
+
+impl<'a> CollisionTest<'a> {
+    /// What `robot`, seen as `lines` where it has no other shape, may not touch of the planner's `options`.
+    ///
+    /// # Errors
+    /// [`Error::NoCapsules`](crate::Error::NoCapsules), [`Error::InvalidObstacle`](crate::Error::InvalidObstacle),
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a negative margin.
+    pub fn new(robot: &'a Robot, lines: Option<&'a Robot>, options: &'a PointToPointOptions) -> Result<Self> {
+        let margin = options.kept_margin()?;
+        let scene = collision_checks::scene(robot, lines, &options.obstacles)?;
+        let flat = lines.and_then(|lines| {
+            let arm = PlanarArm::of(lines)?;
+            let kept = margin + ALLOWANCE * arm.lengths().iter().sum::<f64>();
+            let discs: Option<Vec<_>> = options.obstacles.iter().map(|obstacle| UnitDisc::of(obstacle, kept)).collect();
+            Some((arm, discs?))
+        });
+        Ok(Self { scene, margin, flat })
+    }
+
+    /// Err for a configuration that is too near to something; `what` names it.
+    ///
+    /// # Errors
+    /// [`Error::InCollision`](crate::Error::InCollision).
+    pub fn refuse_collision(&self, what: &str, q: &[f64]) -> Result<()> {
+        refuse_collision(what, &self.scene, q, self.margin)
+    }
+
+    /// How many links touch something at `q`, or whether any does: g_3 of eq. (15) for one moment.
+    pub fn touching(&self, q: &[f64]) -> f64 {
+        let Some((arm, discs)) = &self.flat else {
+            return if self.scene.is_clear(q, self.margin) { 0.0 } else { 1.0 };
+        };
+        let mut corners = arm.corners(q);
+        let mut from = corners.next().unwrap_or_default();
+        let mut touching = 0.0;
+        for to in corners {
+            touching += discs.iter().filter(|disc| disc.meets(from, to)).count() as f64;
+            from = to;
+        }
+        touching
+    }
+
+    /// The smallest distance (m) on all of the motion, proven between samples too, and what it breaks; None where nothing
+    /// can touch.
+    pub fn clearance(&self, trajectory: &Trajectory) -> Option<(f64, Option<Violation>)> {
+        let near = Sweep::new(&self.scene).smallest(&TimedMotion(trajectory), [0.0, trajectory.duration()])?;
+        let distance = near.contact.distance;
+        Some((distance, (distance < self.margin).then(|| too_near(&near.contact, self.margin))))
+    }
+}
+
+impl UnitDisc {
+    /// The ellipse of `obstacle` grown by `kept` (m); None for any other shape.
+    fn of(obstacle: &Obstacle, kept: f64) -> Option<Self> {
+        match *obstacle.shape() {
+            Shape::Ellipse { center, semi_axes, angle } => {
+                let semi_axes = semi_axes.map(|semi_axis| semi_axis + kept);
+                Some(Self { center, direction: [angle.cos(), angle.sin()], semi_axes })
+            }
+            _ => None,
+        }
+    }
+
+    fn map(&self, point: [f64; 2]) -> [f64; 2] {
+        let [x, y] = [point[0] - self.center[0], point[1] - self.center[1]];
+        let [cosine, sine] = self.direction;
+        [(cosine * x + sine * y) / self.semi_axes[0], (cosine * y - sine * x) / self.semi_axes[1]]
+    }
+
+    /// Whether the segment from `a` to `b` meets the ellipse: exactly, since the map keeps lines straight.
+    fn meets(&self, a: [f64; 2], b: [f64; 2]) -> bool {
+        let (a, b) = (self.map(a), self.map(b));
+        let along = [b[0] - a[0], b[1] - a[1]];
+        let squared = along[0] * along[0] + along[1] * along[1];
+        let share = if squared > 0.0 { -(a[0] * along[0] + a[1] * along[1]) / squared } else { 0.0 };
+        let share = share.clamp(0.0, 1.0);
+        let nearest = [a[0] + share * along[0], a[1] + share * along[1]];
+        nearest[0] * nearest[0] + nearest[1] * nearest[1] < 1.0
+    }
+}

@@ -1,0 +1,62 @@
+//! The planner from end to end.
+
+use super::collision_constraint::CollisionTest;
+use super::end_configurations::EndConfigurations;
+use super::published_settings::{METHOD, no_configuration, search};
+use super::via_point_cost::ViaPointCost;
+use crate::error::Result;
+use crate::planning::collision_checks::{as_lines, can_collide};
+use crate::planning::planar_arm::Elbow;
+use crate::planning::{Endpoint, MotionLimits, Plan, PointToPointOptions};
+use crate::robot::Robot;
+use crate::solver::Monitor;
+use crate::solver::Stopwatch;
+
+/// Plans from end to end.
+pub fn point_to_point(
+    robot: &Robot,
+    start: &Endpoint,
+    end: &Endpoint,
+    options: &PointToPointOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
+    let stopwatch = Stopwatch::start();
+    let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    limits.require_velocities(METHOD)?;
+    let can_collide = can_collide(robot, &options.obstacles);
+    let lines = if can_collide { as_lines(robot)? } else { None };
+    let collisions = can_collide.then(|| CollisionTest::new(robot, lines.as_ref(), options)).transpose()?;
+    let mut configurations = |what: &str, end: &Endpoint, elbow: Elbow| {
+        if let (Endpoint::Configuration(q), Some(collisions)) = (end, &collisions) {
+            collisions.refuse_collision(what, q)?;
+        }
+        EndConfigurations::new(what, end, robot, &limits, elbow, options.seed, monitor)
+    };
+    let [start_elbow, end_elbow] = options.elbows.unwrap_or_default();
+    let (start, end) = (configurations("start", start, start_elbow)?, configurations("end", end, end_elbow)?);
+    let mut cost = ViaPointCost::new(robot, &limits, [start, end], options.objective, collisions.as_ref());
+    let search = search(options.solver.as_ref(), options.stop, options.seed);
+    let bounds = cost.bounds();
+    let found = search.run(&mut cost, &bounds, monitor)?;
+    let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration("start or end")))?;
+    let mut violations = limits.violations(&trajectory);
+    let nearest = collisions.and_then(|collisions| collisions.clearance(&trajectory));
+    let clearance = nearest.map(|(distance, violation)| {
+        violations.extend(violation);
+        distance
+    });
+    let status = found.status(violations.is_empty());
+    Ok(Plan {
+        objective: options.objective,
+        cost: options.objective.of(robot, &trajectory),
+        accuracy: None,
+        redundancy: vec![],
+        history: found.history,
+        clearance,
+        status,
+        violations,
+        evaluations: found.evaluations,
+        elapsed: stopwatch.elapsed(),
+        trajectory,
+    })
+}

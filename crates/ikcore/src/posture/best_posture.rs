@@ -1,0 +1,146 @@
+//! The best posture of a planar arm: by the published swarm, or by differential evolution over the directions of all
+//! links but two, which close the gap on either side.
+
+use std::f64::consts::PI;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::circle_swarm::{CircleSwarm, FoundPosture};
+use super::linkage::{Linkage, Measure, Rectangle};
+use crate::error::Result;
+use crate::ik::{SolveOptions, solve};
+use crate::math::vector::distance;
+use crate::objective::{Bounds, Objective, Score};
+use crate::rng;
+use crate::robot::Robot;
+use crate::solver::{DifferentialEvolution, Evaluator, Monitor, Status, Stop, Stopwatch, run};
+use crate::task::{Target, TipError};
+
+/// How to search.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PostureOptions {
+    /// What makes a posture good.
+    pub measure: Measure,
+    /// Where joint points may be; None: anywhere.
+    pub region: Option<Rectangle>,
+    /// The published swarm, in place of our own search.
+    pub swarm: Option<CircleSwarm>,
+    /// Seed of the random draws: the same seed, the same bits.
+    pub seed: u64,
+}
+
+/// The best posture found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Posture {
+    /// The configuration (n,) (rad); as near as the tip gets where there is no posture.
+    pub q: Vec<f64>,
+    /// Its index; NaN where there is no posture.
+    pub index: f64,
+    /// The best index after each generation of a swarm; empty for our own search.
+    pub history: Vec<f64>,
+    /// [`Status::Solved`]; [`Status::Interrupted`] with the best so far; or why there is no posture.
+    pub status: Status,
+    /// Errors of the tip at `q`.
+    pub error: TipError,
+    /// Postures whose index was computed.
+    pub evaluations: usize,
+    /// Time taken.
+    pub elapsed: Duration,
+}
+
+impl Posture {
+    /// What happened, and what to try.
+    pub fn message(&self) -> String {
+        match self.status {
+            Status::Solved => format!("the best of {} postures, index {:.6}", self.evaluations, self.index),
+            Status::OutOfReach => format!("no posture: the tip stays {} away; move the target nearer", self.error),
+            Status::Interrupted => format!("interrupted: {}", Status::Interrupted.advice()),
+            _ => "no posture found inside the region and the joint limits: widen them".into(),
+        }
+    }
+}
+
+/// Evaluations of our own search, per link.
+const EVALUATIONS_A_LINK: usize = 2500;
+
+/// The best posture of the planar arm `robot` with its tip at `target` (m).
+///
+/// # Errors
+/// As [`Linkage::new`] and [`CircleSwarm::validate`]; [`Error::NotFinite`](crate::Error::NotFinite) for the target. A
+/// target that cannot be reached is a status, not an error.
+pub fn best_posture(
+    robot: &Robot,
+    target: &[f64; 3],
+    options: &PostureOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Posture> {
+    let stopwatch = Stopwatch::start();
+    Target::Position(*target).validate()?;
+    options.swarm.map_or(Ok(()), |swarm| swarm.validate())?;
+    let linkage = Linkage::new(robot, target, options.measure, options.region)?;
+    let found = match options.swarm {
+        Some(swarm) => swarm.search(&linkage, &mut rng::stream(options.seed, 0), monitor),
+        None => evolve(&linkage, options.seed, monitor),
+    };
+    let posture = |q: Vec<f64>, index, history, status, evaluations| {
+        let tip = robot.tip_position(&q);
+        let error = TipError { position: distance(&tip, target), rotation: f64::NAN };
+        Posture { q, index, history, status, error, evaluations, elapsed: stopwatch.elapsed() }
+    };
+    if let Some(FoundPosture { q, index, history, evaluations, status }) = found {
+        return Ok(posture(q, index, history, status, evaluations));
+    }
+    let nearest = solve(robot, &Target::Position(*target), &SolveOptions::default(), monitor)?;
+    let status = match nearest.status {
+        Status::Solved => Status::Stalled, // within reach, but not in a posture as asked for
+        status => status,
+    };
+    Ok(posture(nearest.q.to_vec(), f64::NAN, vec![], status, nearest.evaluations))
+}
+
+/// Our own search; None where no posture was met.
+fn evolve(linkage: &Linkage, seed: u64, monitor: &mut dyn Monitor) -> Option<FoundPosture> {
+    let links = linkage.links();
+    let mut objective = ClosedLinkage { linkage, q: vec![0.0; links], best: None, evaluations: 0 };
+    let bounds = Bounds::from_ranges((2..links).map(|_| (-PI, PI)));
+    let stop = Stop { max_evaluations: EVALUATIONS_A_LINK * links, ..Stop::default() };
+    let mut rng = rng::stream(seed, 0);
+    let x0 = vec![0.0; links - 2];
+    let mut evaluator = Evaluator::new(&mut objective, &bounds, stop, &mut rng, monitor);
+    let status = match run(&DifferentialEvolution::default(), &mut evaluator, &x0) {
+        Status::Interrupted => Status::Interrupted,
+        _ => Status::Solved,
+    };
+    let ClosedLinkage { best, evaluations, .. } = objective;
+    best.map(|(index, q)| FoundPosture { q, index, history: vec![], evaluations, status })
+}
+
+/// Minus the index as a function of the headings of all links but the last two, which close the linkage on one of two sides:
+/// the better of them.
+struct ClosedLinkage<'a> {
+    linkage: &'a Linkage,
+    q: Vec<f64>,
+    best: Option<(f64, Vec<f64>)>,
+    evaluations: usize,
+}
+
+impl Objective for ClosedLinkage<'_> {
+    fn dimension(&self) -> usize {
+        self.linkage.links() - 2
+    }
+
+    fn evaluate(&mut self, headings: &[f64]) -> Score {
+        let mut value = f64::INFINITY;
+        for side in [1.0, -1.0] {
+            let Some(points) = self.linkage.close(headings, side) else { continue };
+            let Some(index) = self.linkage.index(&points, &mut self.q) else { continue };
+            self.evaluations += 1;
+            value = value.min(-index);
+            if self.best.as_ref().is_none_or(|(best, _)| index > *best) {
+                self.best = Some((index, self.q.clone()));
+            }
+        }
+        Score { value, solved: false }
+    }
+}

@@ -1,0 +1,154 @@
+//! A robot and a target as something to minimise.
+
+use crate::math::box_step::ROWS;
+use crate::math::f64x4::F64x4;
+use crate::objective::{
+    Bounds, FourLinearizations, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SideBySide,
+    SmoothScore,
+};
+use crate::rng::LazyRng;
+use crate::robot::Robot;
+use crate::starts::Starts;
+use crate::task::residual::entrywise;
+use crate::task::{Assessment, Criterion, Target};
+
+/// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
+#[derive(Debug, Clone, Copy)]
+pub struct Problem<'a> {
+    robot: &'a Robot,
+    target: &'a Target,
+    criterion: Criterion,
+    /// Found when the first start is asked for.
+    seeds: Option<Starts<'a>>,
+    turns: Turns,
+}
+
+/// Whether configurations that differ by whole turns differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Turns {
+    /// They do: the arm would have to make the turns, as in tracking.
+    Distinct,
+    /// They do not, as for a configuration by itself.
+    Equivalent,
+}
+
+impl<'a> Problem<'a> {
+    /// The problem of bringing the tip of `robot` to `target`.
+    pub fn new(robot: &'a Robot, target: &'a Target, criterion: impl Into<Criterion>) -> Self {
+        Self { robot, target, criterion: criterion.into(), seeds: None, turns: Turns::Distinct }
+    }
+
+    /// The same problem where a joint may be brought back by whole turns.
+    pub fn disregarding_turns(self) -> Self {
+        Self { turns: Turns::Equivalent, ..self }
+    }
+
+    /// Where the tip is to be.
+    pub fn target(&self) -> &'a Target {
+        self.target
+    }
+
+    pub(super) fn robot(&self) -> &'a Robot {
+        self.robot
+    }
+
+    /// When the target counts as reached.
+    pub(crate) fn criterion(&self) -> &Criterion {
+        &self.criterion
+    }
+
+    /// The assessment of `q`, by forward kinematics.
+    pub fn assess(&self, q: &[f64]) -> Assessment {
+        self.target.assess(self.robot, q, &self.criterion)
+    }
+}
+
+impl Objective for Problem<'_> {
+    fn dimension(&self) -> usize {
+        self.robot.dof()
+    }
+
+    #[inline]
+    fn evaluate(&mut self, q: &[f64]) -> Score {
+        self.assess(q).score
+    }
+
+    fn evaluate_all(&mut self, qs: &[f64], out: &mut [Score]) {
+        let mut scores = out.iter_mut();
+        self.target.assess_all(self.robot, qs, &self.criterion, |assessment| {
+            if let Some(score) = scores.next() {
+                *score = assessment.score;
+            }
+        });
+    }
+
+    fn period(&self, joint: usize) -> Option<f64> {
+        let repeats = self.turns == Turns::Equivalent && self.robot.repeats_every_turn(joint);
+        repeats.then_some(std::f64::consts::TAU)
+    }
+
+    /// The robot's indexed configurations, the nearest first, then uniform draws in the box, where a side without a limit ends as
+    /// the joint's sampling range does. The indexed ones also follow a start that the caller gives.
+    fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
+        if self.seeds.is_none() {
+            let aim = self.criterion.aim(self.target);
+            self.seeds = match (&aim, aim.position()) {
+                (Target::Pose(pose), _) => Some(self.robot.starts_near_pose(pose)),
+                (_, Some(position)) => Some(self.robot.starts_near_position(&position)),
+                _ => None,
+            };
+        }
+        if self.seeds.as_mut().is_some_and(|seeds| seeds.write_next(bounds.lower(), bounds.upper(), q)) {
+            return;
+        }
+        for (i, joint) in self.robot.joints().iter().enumerate() {
+            let (lower, upper) = joint.sampling_range_within(bounds.lower()[i], bounds.upper()[i]);
+            q[i] = rng.uniform_in(lower, upper);
+        }
+    }
+}
+
+impl Residual for Problem<'_> {
+    fn residual(&mut self, q: &[f64], out: &mut [f64; ROWS]) -> Score {
+        // Without columns: the residual needs the tip alone.
+        let mut linearization = Linearization::default();
+        let assessment = self.target.linearize_tip(&self.robot.tip(q), 0, &self.criterion, &mut linearization);
+        *out = linearization.residual;
+        assessment.score
+    }
+}
+
+impl Gradient for Problem<'_> {
+    /// E of eq. (11) of Yuan et al. 2016; where components have weights, or the tip a region, half the weighted sum of squares.
+    #[inline]
+    fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> SmoothScore {
+        if self.criterion.components.is_some() || self.criterion.region.is_some() {
+            let mut linearization = Linearization::default();
+            let score = self.linearize(q, &mut linearization);
+            linearization.gradient(gradient);
+            return SmoothScore { error: 0.5 * score.value, score };
+        }
+        let target = self.target;
+        let tip = self.robot.tip_and_torques(q, &|tip| entrywise::wrench(target, tip), gradient);
+        gradient.iter_mut().for_each(|slope| *slope = -*slope);
+        SmoothScore { error: entrywise::error(target, &tip), score: target.assess_tip(&tip, &self.criterion).score }
+    }
+}
+
+impl LeastSquares for Problem<'_> {
+    #[inline]
+    fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> Score {
+        self.target.linearize(self.robot, q, &self.criterion, out).score
+    }
+}
+
+impl SideBySide for Problem<'_> {
+    /// The problems are of one robot and one criterion, their targets of one kind that
+    /// [goes side by side](Target::goes_side_by_side).
+    #[inline]
+    fn linearize_four(problems: [&Self; 4], qs: &[F64x4], out: &mut FourLinearizations) -> [Score; 4] {
+        let Problem { robot, criterion, .. } = &problems[0];
+        debug_assert!(problems.iter().all(|problem| std::ptr::eq(problem.robot, *robot)), "one robot for all four");
+        Target::linearize_four(problems.map(|problem| problem.target), robot, qs, criterion, out)
+    }
+}

@@ -1,0 +1,57 @@
+//! Why a target was missed: out of reach, kept away by its region, joints at their limits.
+
+use super::inverse_kinematics::Problem;
+use crate::kinematics::Beyond;
+use crate::objective::Bounds;
+use crate::task::Target;
+
+/// The most joints that a message names; the others are counted.
+const MOST_NAMED: usize = 3;
+
+impl Problem<'_> {
+    /// How far the target is beyond the reach within `bounds`; None unless that is certain.
+    pub(crate) fn beyond_reach(&self, bounds: &Bounds) -> Option<Beyond> {
+        let criterion = self.criterion();
+        if criterion.components.is_some() {
+            return None; // weights and tolerances of components may free the part that is out of reach
+        }
+        let aim = criterion.aim(self.target());
+        let orientation = match &aim {
+            Target::Pose(frame) | Target::Orientation(frame) => Some(frame),
+            Target::Position(_) | Target::Pointing { .. } => None,
+        };
+        let tolerance = [criterion.tolerance.position, criterion.tolerance.rotation];
+        self.robot().reach(bounds.lower(), bounds.upper()).beyond(aim.position().as_ref(), orientation, tolerance)
+    }
+
+    /// Describes what keeps the tip from the target at `q`; empty where nothing is known.
+    pub(crate) fn obstruction(&self, bounds: &Bounds, q: &[f64]) -> String {
+        let reach = self.beyond_reach(bounds).map(|beyond| beyond.to_string());
+        let reasons = reach.into_iter().chain(self.outside_region(q)).chain(self.joints_at_limits(bounds, q));
+        reasons.collect::<Vec<_>>().join("; ")
+    }
+
+    fn outside_region(&self, q: &[f64]) -> Option<String> {
+        let (region, tip) = (self.criterion().region.as_ref()?, self.robot().tip_position(q));
+        (!region.contains(&tip))
+            .then(|| format!("the tip is outside its region, which asks for {}", region.violated_faces(&tip)))
+    }
+
+    fn joints_at_limits(&self, bounds: &Bounds, q: &[f64]) -> Option<String> {
+        let side = |j: usize| match (q[j] == bounds.lower()[j], q[j] == bounds.upper()[j]) {
+            (true, true) => Some("held by limits that leave it no room"),
+            (true, false) => Some("at its lower limit"),
+            (false, true) => Some("at its upper limit"),
+            (false, false) => None,
+        };
+        let joints = self.robot().joints();
+        let stuck: Vec<_> = (0..q.len()).filter_map(|j| Some((&joints[j].name, side(j)?))).collect();
+        let named: Vec<_> = stuck
+            .iter()
+            .take(MOST_NAMED)
+            .map(|(name, side)| format!("joint '{name}' {side}"))
+            .chain((stuck.len() > MOST_NAMED).then(|| format!("{} more joints at theirs", stuck.len() - MOST_NAMED)))
+            .collect();
+        (!named.is_empty()).then(|| named.join(", "))
+    }
+}

@@ -1,0 +1,71 @@
+//! Kinematics of many configurations, in arrays stored row after row.
+
+use super::model::Robot;
+use crate::error::{Error, Result};
+use crate::kinematics::Columns;
+use crate::math::MAX_DOF;
+
+impl Robot {
+    /// Poses of the tip at `qs`, (m, n) row after row: (m, 4, 4) row after row.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] where `qs` is not whole rows, [`Error::NotFinite`] names row and joint.
+    pub fn fk_all(&self, qs: &[f64]) -> Result<Vec<f64>> {
+        let rows = self.rows(qs)?;
+        let mut poses = Vec::with_capacity(16 * rows.len());
+        for q in rows {
+            let frame = self.tip(q);
+            let ([x, y, z], p) = (frame.axes, frame.origin);
+            poses.extend_from_slice(&[
+                x[0], y[0], z[0], p[0], //
+                x[1], y[1], z[1], p[1], //
+                x[2], y[2], z[2], p[2], //
+                0.0, 0.0, 0.0, 1.0,
+            ]);
+        }
+        Ok(poses)
+    }
+
+    /// Geometric Jacobians at `qs`, (m, n) row after row: (m, 6, n) row after row.
+    ///
+    /// # Errors
+    /// As [`fk_all`](Self::fk_all).
+    pub fn jacobian_all(&self, qs: &[f64]) -> Result<Vec<f64>> {
+        let rows = self.rows(qs)?;
+        let n = self.dof();
+        let mut columns: Columns = [[0.0; 6]; MAX_DOF];
+        let mut jacobians = Vec::with_capacity(6 * qs.len());
+        for q in rows {
+            self.tip_and_jacobian(q, &mut columns);
+            for row in 0..6 {
+                jacobians.extend(columns[..n].iter().map(|column| column[row]));
+            }
+        }
+        Ok(jacobians)
+    }
+
+    /// The configurations inside the position limits that are nearest to `qs`, (m, n) row after row.
+    ///
+    /// # Errors
+    /// As [`fk_all`](Self::fk_all).
+    pub fn clip_all(&self, qs: &[f64]) -> Result<Vec<f64>> {
+        let rows = self.rows(qs)?;
+        Ok(rows
+            .flat_map(|q| q.iter().zip(self.joints()).map(|(q, joint)| q.max(joint.lower).min(joint.upper)))
+            .collect())
+    }
+
+    /// The rows of `qs`, all whole and finite.
+    pub(crate) fn rows<'q>(&self, qs: &'q [f64]) -> Result<std::slice::ChunksExact<'q, f64>> {
+        let n = self.dof();
+        if !qs.len().is_multiple_of(n) {
+            let what = format!("joint angles of robot '{}'", self.name());
+            return Err(Error::WrongLength { what, expected: format!("rows of {n} joints"), got: qs.len() });
+        }
+        if let Some(i) = qs.iter().position(|value| !value.is_finite()) {
+            let place = format!("joint '{}' of configuration {}", self.joints()[i % n].name, i / n);
+            return Err(Error::NotFinite { what: "joint angles".into(), place, value: qs[i] });
+        }
+        Ok(qs.chunks_exact(n))
+    }
+}

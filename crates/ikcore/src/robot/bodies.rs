@@ -1,0 +1,109 @@
+//! Bodies of a robot: the capsules on its links, given or laid along them.
+
+use super::link_capsule::{Bodies, LinkCapsule};
+use super::model::Robot;
+use crate::error::{Error, Result, require_finite, suggestion};
+use crate::kinematics::chain::{LinkFrame, StageMotion};
+use crate::math::arithmetic::NoFma;
+use crate::math::vector::distance;
+use crate::math::{Frame, MAX_DOF};
+
+/// Shorter segments count as points (m).
+const SHORTEST: f64 = 1e-9;
+
+impl Robot {
+    /// The capsules on the links; none unless given or fitted to the collision shapes of a URDF.
+    pub fn capsules(&self) -> &[LinkCapsule] {
+        &self.bodies().capsules
+    }
+
+    /// Collision shapes of a URDF that became no capsule, such as "a mesh of link 'hand'". Add capsules for them by
+    /// [`with_capsules`](Self::with_capsules).
+    pub fn unread_collision_shapes(&self) -> &[String] {
+        &self.bodies().unread
+    }
+
+    /// The same robot with these capsules and no others.
+    ///
+    /// # Errors
+    /// [`Error::UnknownLink`], [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius.
+    pub fn with_capsules(&self, capsules: Vec<LinkCapsule>) -> Result<Self> {
+        for (i, capsule) in capsules.iter().enumerate() {
+            if !self.link_names().any(|name| name == capsule.link) {
+                return Err(Error::UnknownLink {
+                    robot: self.name().into(),
+                    name: capsule.link.clone(),
+                    suggestion: suggestion(&capsule.link, self.link_names()),
+                    known: self.link_names().collect::<Vec<_>>().join(", "),
+                });
+            }
+            let ends = [capsule.a, capsule.b];
+            require_finite(&format!("capsule {i} of link '{}'", capsule.link), ends.as_flattened(), |k| {
+                format!("coordinate {} of end {}", ["x", "y", "z"][k % 3], ["a", "b"][k / 3])
+            })?;
+            checked_radius(&format!("radius of capsule {i} of link '{}'", capsule.link), capsule.radius)?;
+        }
+        Ok(self.with_bodies(Bodies { capsules, unread: vec![] }))
+    }
+
+    /// The same robot with a capsule of this `radius` (m) along every link: from the joint before it, through the frames
+    /// of its links, to the axis of the next joint; the last one ends at the tip. The gap that a sliding joint opens
+    /// between two links belongs to neither.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a negative radius; [`Error::InvalidRobot`] where nothing between two joints has a name.
+    pub fn with_capsules_along_links(&self, radius: f64) -> Result<Self> {
+        checked_radius("radius", radius)?;
+        let chain = self.chain();
+        let moving = chain.moving;
+        let mut capsules = vec![];
+        for body in 0..=moving {
+            // Everything that moves with this body, from its own joint's frame.
+            let links = chain.links.iter().zip(self.link_names());
+            let links: Vec<(&LinkFrame, &str)> = links.filter(|(link, _)| link.stages == body).collect();
+            let joint = (body > 0).then_some([0.0; 3]);
+            let end = if body < moving { chain.stages.frame(body).origin } else { chain.tip.origin };
+            let places = joint.into_iter().chain(links.iter().map(|(link, _)| link.offset.origin)).chain([end]);
+            let places: Vec<[f64; 3]> = places.collect();
+            for ends in places.windows(2).filter(|ends| distance(&ends[0], &ends[1]) > SHORTEST) {
+                let Some((carrier, name)) = links.first() else { return Err(self.nameless(body)) };
+                let from_link = carrier.offset.inverse();
+                let [a, b] = [ends[0], ends[1]].map(|end| from_link.place::<NoFma>(&end));
+                capsules.push(LinkCapsule { link: (*name).into(), a, b, radius });
+            }
+        }
+        Ok(self.with_bodies(Bodies { capsules, unread: vec![] }))
+    }
+
+    fn nameless(&self, body: usize) -> Error {
+        let problem = format!(
+            "no link is named between moving elements {} and {}, so that none can carry a capsule: name one there",
+            body,
+            body + 1
+        );
+        Error::InvalidRobot { robot: self.name().into(), problem }
+    }
+
+    /// Number of moving elements before a link, and the link's frame seen from the last of them.
+    pub(crate) fn place_of_link(&self, link: &str) -> Option<(usize, Frame)> {
+        let (found, _) = self.chain().links.iter().zip(self.link_names()).find(|(_, name)| *name == link)?;
+        Some((found.stages, found.offset))
+    }
+
+    /// The frames reached after 0, 1, 2, ... moving elements; the z axis of each but the first is the element's axis.
+    pub(crate) fn write_stage_frames(&self, q: &[f64], frames: &mut [Frame; MAX_DOF + 1]) {
+        (self.kernels().stage_frames)(self.chain(), q, frames);
+    }
+
+    /// By how much moving element `stage` turns (rad) and slides (m) when each joint changes by up to `reach`.
+    #[inline]
+    pub(crate) fn stage_travel(&self, stage: usize, reach: &[f64]) -> [f64; 2] {
+        let StageMotion { joint, turn_scale, slide_scale, .. } = self.chain().motions[stage];
+        [turn_scale.abs() * reach[joint], slide_scale.abs() * reach[joint]]
+    }
+}
+
+fn checked_radius(what: &str, radius: f64) -> Result<()> {
+    let valid = radius.is_finite() && radius >= 0.0;
+    if valid { Ok(()) } else { Err(Error::out_of_range(what, "zero or more and finite", radius)) }
+}

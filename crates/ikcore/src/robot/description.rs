@@ -1,0 +1,119 @@
+//! The description that a robot follows from: independent joints, and the elements of its chain from base to tip.
+
+use std::collections::HashSet;
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use super::joint::Joint;
+use crate::error::{Error, Result, require_finite};
+use crate::kinematics::chain::{Chain, ChainFolder, StageMotion};
+use crate::math::{MAX_DOF, Pose, pose};
+
+/// One element between base and tip, in order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Element {
+    /// A constant transform.
+    Fixed(Pose),
+    /// A motion by `scale * q[joint] + offset`.
+    Moving {
+        /// About or along this axis, of unit length.
+        axis: Vector3<f64>,
+        /// True for a turn (rad), false for a slide (m).
+        turns: bool,
+        /// The independent joint that drives it.
+        joint: usize,
+        /// Factor on q.
+        scale: f64,
+        /// Constant added (rad or m).
+        offset: f64,
+    },
+    /// Names the frame reached so far.
+    Link(String),
+}
+
+/// Drive of a moving element by an independent joint at q: `scale * q + offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive {
+    /// Factor on q: a mimic joint's multiplier, or -1 for a joint passed from child to parent.
+    pub scale: f64,
+    /// Constant added (rad or m).
+    pub offset: f64,
+}
+
+impl Drive {
+    /// The joint's own value.
+    pub const DIRECT: Self = Self { scale: 1.0, offset: 0.0 };
+}
+
+/// Name, independent joints in the order of q, and elements from base to tip.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Description {
+    pub name: String,
+    pub joints: Vec<Joint>,
+    pub elements: Vec<Element>,
+}
+
+impl Description {
+    /// Names of the links, base to tip.
+    pub fn link_names(&self) -> impl Iterator<Item = &str> {
+        self.elements.iter().filter_map(|element| match element {
+            Element::Link(name) => Some(name.as_str()),
+            Element::Fixed(_) | Element::Moving { .. } => None,
+        })
+    }
+
+    /// The chain between `base` and `tool`, in the form that the kernels run through.
+    pub fn folded(&self, base: &Pose, tool: &Pose) -> Chain {
+        let mut chain = ChainFolder::new(base);
+        for element in &self.elements {
+            match element {
+                Element::Fixed(transform) => chain.fixed(transform),
+                Element::Link(_) => chain.link(),
+                Element::Moving { axis, turns, joint, scale, offset } => {
+                    let motion = if *turns { StageMotion::turn } else { StageMotion::slide };
+                    chain.moving(axis, motion(*joint, *scale, *offset));
+                }
+            }
+        }
+        chain.finish(tool)
+    }
+
+    /// Checks everything that the kernels rely on.
+    pub fn validate(&self) -> Result<()> {
+        let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem };
+        let moving = self.elements.iter().filter(|e| matches!(e, Element::Moving { .. })).count();
+        if moving == 0 || self.joints.is_empty() {
+            return Err(invalid("no joint moves between base and tip".into()));
+        }
+        if moving > MAX_DOF || self.joints.len() > MAX_DOF {
+            return Err(invalid(format!(
+                "{moving} moving joints between base and tip; at most {MAX_DOF} are supported"
+            )));
+        }
+        let mut names = HashSet::new();
+        for joint in &self.joints {
+            if !names.insert(&joint.name) {
+                return Err(invalid(format!("two joints are named '{}'", joint.name)));
+            }
+            joint.validate()?;
+        }
+        let mut links = HashSet::new();
+        self.elements.iter().try_for_each(|element| match element {
+            Element::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
+            Element::Link(name) if !links.insert(name) => Err(invalid(format!("two links are named '{name}'"))),
+            Element::Link(_) => Ok(()),
+            Element::Moving { axis, joint, scale, offset, .. } => {
+                let Some(driver) = self.joints.get(*joint) else {
+                    return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
+                };
+                if !((axis.norm() - 1.0).abs() < 1e-9) {
+                    return Err(invalid(format!("joint '{}' has a zero or non-finite axis", driver.name)));
+                }
+                require_finite("scale and offset of a joint", &[*scale, *offset], |_| {
+                    format!("joint '{}'", driver.name)
+                })
+            }
+        })
+    }
+}

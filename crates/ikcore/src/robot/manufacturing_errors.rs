@@ -1,0 +1,37 @@
+//! Robots with random errors of manufacture.
+
+use super::description::Element;
+use super::model::Robot;
+use crate::error::{Error, Result};
+use crate::rng::LazyRng;
+
+impl Robot {
+    /// The same robot with errors of manufacture: every constant offset between two joints is longer or shorter by up to
+    /// `length` (m) along its own direction, every turning joint's zero is off by up to `angle` (rad), all drawn uniformly.
+    /// Base and tool are as given.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a length or angle that is negative or not finite.
+    pub fn with_errors(&self, length: f64, angle: f64, rng: &mut LazyRng) -> Result<Self> {
+        for (name, size) in [("length", length), ("angle", angle)] {
+            if !(size.is_finite() && size >= 0.0) {
+                return Err(Error::out_of_range(name, "zero or more and finite", size));
+            }
+        }
+        let mut description = self.description().clone();
+        for element in &mut description.elements {
+            match element {
+                Element::Fixed(transform) => {
+                    let offset = &mut transform.translation.vector;
+                    let distance = offset.norm();
+                    if distance > 0.0 {
+                        *offset *= 1.0 + rng.uniform_in(-length, length) / distance;
+                    }
+                }
+                Element::Moving { turns: true, offset, .. } => *offset += rng.uniform_in(-angle, angle),
+                Element::Moving { .. } | Element::Link(_) => {}
+            }
+        }
+        Self::assembled(description, *self.base(), *self.tool(), self.bodies().clone())
+    }
+}

@@ -1,0 +1,39 @@
+//! The best point of a run.
+
+use crate::objective::Point;
+
+/// The best point met so far.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BestPoint {
+    /// Where; empty before the first evaluation.
+    pub x: Point,
+    /// Its value; infinite where the objective was never finite.
+    pub value: f64,
+    /// Whether it passes the problem's own test.
+    pub solved: bool,
+}
+
+impl Default for BestPoint {
+    /// Nothing met yet.
+    fn default() -> Self {
+        Self { x: Point::new(), value: f64::INFINITY, solved: false }
+    }
+}
+
+impl BestPoint {
+    /// Takes a point in where it is better: solved before unsolved, then the lower value, then the earlier.
+    #[inline]
+    pub(super) fn challenge(&mut self, x: &[f64], value: f64, solved: bool) {
+        let better = (solved && !self.solved) || (solved == self.solved && value < self.value);
+        if better || self.x.is_empty() {
+            self.replace(x, value, solved);
+        }
+    }
+
+    #[cold]
+    fn replace(&mut self, x: &[f64], value: f64, solved: bool) {
+        self.x.resize(x.len(), 0.0);
+        self.x.copy_from_slice(x);
+        (self.value, self.solved) = (value, solved);
+    }
+}

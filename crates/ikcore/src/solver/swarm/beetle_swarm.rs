@@ -1,0 +1,190 @@
+//! Beetle swarm optimisation (Wang et al. 2019, "trajectory-planning beetle swarm optimization", equations (26) to (32)):
+//! particles with antennae, which lie along their velocity.
+//!
+//! The equations do not run as printed. Read so: eq. (27) has an inertia weight and a limit on the velocity, without
+//! which the swarm diverges; the antennae of eq. (28) to (30) stand at x +- V d/2 (the paper prints one name for both)
+//! with the velocity just updated, as line 7 of its Algorithm 1 has it. [`BeetleSwarm::literal`] has no inertia weight.
+
+use super::best_places::BestPlaces;
+use super::population::{Generation, Members, Population};
+use super::schedule::Schedule;
+use super::velocities::Velocities;
+use crate::error::{Error, Result, require_positive};
+use crate::math::ordered::sign;
+use crate::objective::Objective;
+use crate::solver::Status;
+use crate::solver::driver::Solver;
+use crate::solver::evaluator::Evaluator;
+use crate::wording::words;
+
+/// Which way a beetle goes along its velocity, given what its antennae smell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BeetleDirection {
+    /// With the sign of F(right) - F(left), as eq. (28) prints it: against the slope where the velocity leads downhill,
+    /// which slows the swarm's contraction.
+    Printed,
+    /// To the antenna with the lower value.
+    Downhill,
+}
+
+words!("direction": BeetleDirection { Printed => "printed", Downhill => "downhill" });
+
+/// Beetle swarm optimisation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeetleSwarm {
+    /// Beetles and generations; every beetle takes three evaluations a generation.
+    pub schedule: Schedule,
+    /// Inertia weight; eq. (27) has none, which is 1.
+    pub inertia: f64,
+    /// Attraction to the beetle's own best place, eq. (27).
+    pub c1: f64,
+    /// Attraction to the swarm's best place, eq. (27).
+    pub c2: f64,
+    /// Largest velocity, as a share of the box's width a generation.
+    pub velocity_limit: f64,
+    /// lambda of eq. (26): the share of the velocity in a move; the rest is the antennae's.
+    pub velocity_share: f64,
+    /// delta at first, eq. (28).
+    pub step: f64,
+    /// eta of eq. (32): what delta is multiplied by in a generation.
+    pub step_decay: f64,
+    /// c of eq. (31): delta over the distance d of the antennae.
+    pub step_over_antennae: f64,
+    /// The sign in eq. (28).
+    pub direction: BeetleDirection,
+}
+
+impl Default for BeetleSwarm {
+    /// The constants that did well for trajectories of arms with two to five joints; the paper prints none but delta's
+    /// update. Inertia and attractions are those of Eberhart and Shi (2000).
+    fn default() -> Self {
+        Self {
+            schedule: Schedule::of(50),
+            inertia: 0.729,
+            c1: 1.494,
+            c2: 1.494,
+            velocity_limit: 0.2,
+            velocity_share: 0.9,
+            step: 1.0,
+            step_decay: 0.97,
+            step_over_antennae: 5.0,
+            direction: BeetleDirection::Printed,
+        }
+    }
+}
+
+impl BeetleSwarm {
+    /// Eq. (27) as it is printed, without inertia weight; velocities may cross the whole box.
+    pub fn literal() -> Self {
+        Self { inertia: 1.0, velocity_limit: 1.0, ..Self::default() }
+    }
+
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        self.schedule.validate(2)?;
+        for (name, value) in [
+            ("c1", self.c1),
+            ("c2", self.c2),
+            ("velocity_limit", self.velocity_limit),
+            ("step", self.step),
+            ("step_over_antennae", self.step_over_antennae),
+        ] {
+            require_positive(name, value)?;
+        }
+        for (name, share) in [("inertia", self.inertia), ("velocity_share", self.velocity_share)] {
+            if !(0.0..=1.0).contains(&share) {
+                return Err(Error::out_of_range(name, "between 0 and 1", share));
+            }
+        }
+        if !(self.step_decay > 0.0 && self.step_decay <= 1.0) {
+            return Err(Error::out_of_range("step_decay", "above 0 and at most 1", self.step_decay));
+        }
+        Ok(())
+    }
+}
+
+/// The swarm between generations.
+#[derive(Debug, Clone)]
+pub struct State {
+    population: Population,
+    memory: BestPlaces,
+    velocities: Velocities,
+    /// Right and left antenna of each beetle in turn.
+    antennae: Members,
+    /// delta of eq. (32).
+    step: f64,
+}
+
+impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
+    type State = State;
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+        let population = Population::start(&self.schedule, evaluator, x0)?;
+        let beetles = self.schedule.population;
+        Ok(State {
+            memory: BestPlaces::new(beetles, x0.len()),
+            velocities: Velocities::new(&population, self.velocity_limit),
+            antennae: Members::new(2 * beetles, x0.len()),
+            step: self.step,
+            population,
+        })
+    }
+
+    /// Lines 5 to 21 of Algorithm 1.
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
+        let State { population, memory, velocities, antennae, step } = state;
+        if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
+            velocities.draw(population, evaluator.rng());
+            // The draw spans half the width; the limit is on all velocities.
+            velocities.all.iter_mut().for_each(|v| *v *= (2.0 * self.velocity_limit).min(1.0));
+        } else {
+            // eq. (27), with inertia and limit
+            velocities.update([self.inertia, self.c1, self.c2], population, memory, evaluator.rng());
+            self.feel(&population.members, &velocities.all, *step, antennae, evaluator)?;
+            self.advance(&mut population.members, &velocities.all, antennae, *step);
+            population.members.evaluate_from(0, evaluator)?;
+            *step *= self.step_decay; // eq. (32)
+        }
+        memory.update(population);
+        Ok(())
+    }
+}
+
+impl BeetleSwarm {
+    /// Smells at x + V d/2 and x - V d/2, eq. (29) and (30), with d = delta / c, eq. (31).
+    fn feel<O: Objective + ?Sized>(
+        &self,
+        beetles: &Members,
+        velocities: &[f64],
+        step: f64,
+        antennae: &mut Members,
+        evaluator: &mut Evaluator<'_, O>,
+    ) -> Result<(), Status> {
+        let n = evaluator.dimension();
+        let half = 0.5 * step / self.step_over_antennae;
+        let pairs = antennae.points.chunks_exact_mut(2 * n);
+        for ((pair, x), v) in pairs.zip(beetles.points()).zip(velocities.chunks_exact(n)) {
+            let (right, left) = pair.split_at_mut(n);
+            for k in 0..n {
+                right[k] = x[k] + half * v[k];
+                left[k] = x[k] - half * v[k];
+            }
+        }
+        antennae.evaluate_from(0, evaluator)
+    }
+
+    /// x = x + lambda V + (1 - lambda) xi, eq. (26), with xi = delta V sign(F(right) - F(left)), eq. (28).
+    fn advance(&self, beetles: &mut Members, velocities: &[f64], antennae: &Members, step: f64) {
+        let n = beetles.dimension();
+        let beetles = beetles.points.chunks_exact_mut(n).zip(velocities.chunks_exact(n));
+        for ((x, v), smells) in beetles.zip(antennae.values.chunks_exact(2)) {
+            let printed = sign(smells[0] - smells[1]);
+            let way = if self.direction == BeetleDirection::Printed { printed } else { -printed };
+            let share = self.velocity_share + (1.0 - self.velocity_share) * step * way;
+            x.iter_mut().zip(v).for_each(|(x, v)| *x += share * v);
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Firefly algorithm (Yang 2009): fireflies fly towards brighter ones, less so over a distance, and a little at random.
+//!
+//! The published loop runs over fireflies i and j, moves i towards j where j is brighter, and evaluates i at once. Here the
+//! loop over j is the outer one: every firefly has its turn to attract all that are less bright, and these are evaluated
+//! together. A step is one turn; a generation is a turn of each.
+
+use super::population::{Generation, Members, Population};
+use super::schedule::Schedule;
+use crate::error::{Error, Result, require_positive};
+use crate::objective::{Objective, Point};
+use crate::rng::split;
+use crate::solver::Status;
+use crate::solver::driver::Solver;
+use crate::solver::evaluator::Evaluator;
+
+/// Firefly algorithm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Firefly {
+    /// Fireflies and generations.
+    pub schedule: Schedule,
+    /// beta_0: attractiveness at no distance.
+    pub attractiveness: f64,
+    /// gamma: absorption of light, with distances measured in widths of the box.
+    pub absorption: f64,
+    /// alpha: size of the random part, as a share of the box's width.
+    pub randomness: f64,
+    /// What alpha is multiplied by with every turn.
+    pub randomness_decay: f64,
+}
+
+impl Default for Firefly {
+    /// beta_0 = 1, gamma = 1, alpha = 0.2 and 25 fireflies (Yang 2009, 2010); the decay is Yang's (2014) 0.97.
+    fn default() -> Self {
+        Self {
+            schedule: Schedule::of(25),
+            attractiveness: 1.0,
+            absorption: 1.0,
+            randomness: 0.2,
+            randomness_decay: 0.97,
+        }
+    }
+}
+
+impl Firefly {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        self.schedule.validate(2)?;
+        require_positive("attractiveness", self.attractiveness)?;
+        require_positive("randomness", self.randomness)?;
+        if !(self.absorption >= 0.0 && self.absorption.is_finite()) {
+            return Err(Error::out_of_range("absorption", "zero or more and finite", self.absorption));
+        }
+        if !(self.randomness_decay > 0.0 && self.randomness_decay <= 1.0) {
+            return Err(Error::out_of_range("randomness_decay", "above 0 and at most 1", self.randomness_decay));
+        }
+        Ok(())
+    }
+
+    /// The schedule in turns.
+    fn turns(&self) -> Schedule {
+        let Schedule { population, max_generations, stall_generations } = self.schedule;
+        Schedule {
+            population,
+            max_generations: max_generations.saturating_mul(population),
+            stall_generations: stall_generations.saturating_mul(population),
+        }
+    }
+}
+
+/// The swarm between turns.
+#[derive(Debug, Clone)]
+pub struct State {
+    population: Population,
+    /// Those who move in a turn, the first so many of the list, and where to.
+    moving: Vec<usize>,
+    moved: Members,
+    /// Whose turn it is.
+    attractor: usize,
+    /// alpha of this turn.
+    randomness: f64,
+    /// One over the widths of the box; zero for a locked coordinate, along which there is no distance.
+    scales: Point,
+    draws: Vec<f64>,
+}
+
+impl<O: Objective + ?Sized> Solver<O> for Firefly {
+    type State = State;
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+        let fireflies = self.schedule.population;
+        let population = Population::start(&self.schedule, evaluator, x0)?;
+        Ok(State {
+            scales: population.widths.iter().map(|width| if *width > 0.0 { 1.0 / width } else { 0.0 }).collect(),
+            population,
+            moving: vec![0; fireflies],
+            moved: Members::new(fireflies, x0.len()),
+            attractor: 0,
+            randomness: self.randomness,
+            draws: vec![0.0; fireflies * x0.len().div_ceil(2)],
+        })
+    }
+
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
+        let State { population, moving, moved, attractor, randomness, scales, draws } = state;
+        if population.begin_generation(&self.turns(), evaluator)? == Generation::First {
+            return Ok(());
+        }
+        let Population { members, widths, .. } = population;
+        let (light, x_j) = (members.values[*attractor], members.point(*attractor));
+        let count = list_dimmer(&members.values, light, moving);
+        let moving = &moving[..count];
+        let pairs = x_j.len().div_ceil(2);
+        evaluator.rng().fill(&mut draws[..pairs * moving.len()]);
+        let draws = draws.chunks_exact(pairs);
+        for ((i, to), draws) in moving.iter().zip(moved.points.chunks_exact_mut(x_j.len())).zip(draws) {
+            let x = members.point(*i);
+            let beta = self.attractiveness_at(x, x_j, scales);
+            fly(x, x_j, beta, *randomness, widths, draws, to);
+        }
+        moved.evaluate_first(moving.len(), evaluator)?;
+        for (place, i) in moving.iter().enumerate() {
+            members.take(*i, moved, place);
+        }
+        *attractor = (*attractor + 1) % members.values.len();
+        *randomness *= self.randomness_decay;
+        Ok(())
+    }
+}
+
+/// Lists in `moving` who is less bright than `light`, and counts them. Without a branch, which nobody could predict.
+fn list_dimmer(values: &[f64], light: f64, moving: &mut [usize]) -> usize {
+    let mut count = 0;
+    for (i, value) in values.iter().enumerate() {
+        moving[count] = i;
+        count += usize::from(*value > light);
+    }
+    count
+}
+
+impl Firefly {
+    /// beta = beta_0 exp(-gamma r^2), eq. (9) of Yang (2009).
+    #[inline]
+    fn attractiveness_at(&self, x: &[f64], x_j: &[f64], scales: &[f64]) -> f64 {
+        let apart = x.iter().zip(x_j).zip(scales).map(|((x, x_j), scale)| (x_j - x) * scale);
+        let squared: f64 = apart.map(|apart| apart * apart).sum();
+        self.attractiveness * (-self.absorption * squared).exp()
+    }
+}
+
+/// x + beta (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009); a draw makes two of u.
+#[inline]
+fn fly(x: &[f64], x_j: &[f64], beta: f64, randomness: f64, widths: &[f64], draws: &[f64], to: &mut [f64]) {
+    let n = to.len();
+    let (x, x_j, widths) = (&x[..n], &x_j[..n], &widths[..n]);
+    let moved = |k: usize, u: f64| x[k] + (beta * (x_j[k] - x[k]) + randomness * widths[k] * (u - 0.5));
+    for (j, draw) in draws[..n / 2].iter().enumerate() {
+        let [u, v] = split(*draw);
+        (to[2 * j], to[2 * j + 1]) = (moved(2 * j, u), moved(2 * j + 1, v));
+    }
+    if n % 2 == 1 {
+        to[n - 1] = moved(n - 1, split(draws[n / 2])[0]);
+    }
+}

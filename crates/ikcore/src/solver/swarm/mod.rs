@@ -1,0 +1,25 @@
+//! Population methods: swarms, colonies and evolution. They need objective values alone.
+//!
+//! `schedule` sizes a population and says when it gives up; `population` holds its members, `best_places` the best place of
+//! each, `velocities` the velocities of the two methods whose members have one. Every other file is one algorithm.
+
+mod bee_colony;
+mod beetle_swarm;
+mod best_places;
+mod differential_evolution;
+mod firefly;
+mod genetic;
+mod population;
+mod pso;
+mod qpso;
+mod schedule;
+mod velocities;
+
+pub use bee_colony::BeeColony;
+pub use beetle_swarm::{BeetleDirection, BeetleSwarm};
+pub use differential_evolution::{DifferentialEvolution, TrialUpdate};
+pub use firefly::Firefly;
+pub use genetic::Genetic;
+pub use pso::{Acceptance, Pso, PsoForm, Walls};
+pub use qpso::Qpso;
+pub use schedule::Schedule;

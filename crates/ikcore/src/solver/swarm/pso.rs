@@ -1,0 +1,248 @@
+//! Particle swarm optimisation, with a constriction factor (Clerc and Kennedy 2002) or an inertia weight (Shi and
+//! Eberhart 1998).
+//!
+//! The global-best swarm; velocities are clamped to a share of the box as Eberhart and Shi (2000) advise for both forms,
+//! and by default a particle stops at the walls of the box.
+
+use std::fmt;
+
+use super::best_places::BestPlaces;
+use super::population::{Generation, Population, tile};
+use super::schedule::Schedule;
+use super::velocities::Velocities;
+use crate::error::{Error, Result, require_positive};
+use crate::objective::{Bounds, Objective};
+use crate::rng::LazyRng;
+use crate::solver::Status;
+use crate::solver::driver::Solver;
+use crate::solver::evaluator::Evaluator;
+use crate::wording::words;
+
+/// What keeps velocities from growing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PsoForm {
+    /// The whole new velocity is multiplied by chi, which follows from the attractions.
+    Constriction,
+    /// The old velocity is multiplied by this weight.
+    Inertia(f64),
+}
+
+impl fmt::Display for PsoForm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Constriction => "constriction",
+            Self::Inertia(_) => "inertia",
+        })
+    }
+}
+
+impl PsoForm {
+    /// The form of this name; `inertia` is the weight of "inertia", 0.729 if left out (Eberhart and Shi 2000).
+    ///
+    /// # Errors
+    /// [`Error::UnknownOption`] lists the names; [`Error::OutOfRange`] for an inertia that the form does not have.
+    pub fn named(name: &str, inertia: Option<f64>) -> Result<Self> {
+        match (name, inertia) {
+            ("constriction", None) => Ok(Self::Constriction),
+            ("constriction", Some(weight)) => {
+                Err(Error::out_of_range("inertia", "left out with form 'constriction'", weight))
+            }
+            ("inertia", weight) => Ok(Self::Inertia(weight.unwrap_or(0.729))),
+            _ => Err(Error::unknown_option("form", name, &["constriction", "inertia"])),
+        }
+    }
+
+    /// The published attraction to either place: phi = c1 + c2 = 4.1 of Clerc and Kennedy (2002), 1.49445 of Eberhart and
+    /// Shi (2000).
+    pub fn attraction(self) -> f64 {
+        match self {
+            Self::Constriction => 2.05,
+            Self::Inertia(_) => 1.49445,
+        }
+    }
+}
+
+/// What becomes of a coordinate that would leave the box; techniques compared by Helwig, Branke and Mostaghim (2013).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Walls {
+    /// It stops at the wall, and has no velocity left.
+    Absorbing,
+    /// It is drawn anew in the box, and keeps its velocity. What mealpy's PSO does.
+    Random,
+}
+
+words!("walls": Walls { Absorbing => "absorbing", Random => "random" });
+
+/// Whether a particle stays where it went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Acceptance {
+    /// Always, as published.
+    Always,
+    /// Where that is its best place so far; else it returns there. Quicker on smooth functions, and what mealpy's PSO does.
+    Improving,
+}
+
+words!("accept": Acceptance { Always => "always", Improving => "improving" });
+
+/// Particle swarm optimisation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pso {
+    /// Particles and generations.
+    pub schedule: Schedule,
+    /// What keeps velocities from growing.
+    pub form: PsoForm,
+    /// Attraction to the particle's own best place.
+    pub c1: f64,
+    /// Attraction to the swarm's best place.
+    pub c2: f64,
+    /// Largest velocity, as a share of the box's width a generation.
+    pub velocity_limit: f64,
+    /// Whether a particle stays where it went.
+    pub accept: Acceptance,
+    /// What becomes of a coordinate that would leave the box.
+    pub walls: Walls,
+}
+
+impl Default for Pso {
+    fn default() -> Self {
+        Self::of(PsoForm::Constriction)
+    }
+}
+
+impl Pso {
+    /// A form with its published attractions. Half the width is the dynamic range X_max of Eberhart and Shi (2000).
+    pub fn of(form: PsoForm) -> Self {
+        let attraction = form.attraction();
+        Self {
+            schedule: Schedule::of(40),
+            form,
+            c1: attraction,
+            c2: attraction,
+            velocity_limit: 0.5,
+            accept: Acceptance::Always,
+            walls: Walls::Absorbing,
+        }
+    }
+
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        self.schedule.validate(2)?;
+        require_positive("c1", self.c1)?;
+        require_positive("c2", self.c2)?;
+        if !(self.velocity_limit > 0.0) {
+            return Err(Error::out_of_range("velocity_limit", "positive", self.velocity_limit));
+        }
+        match self.form {
+            PsoForm::Inertia(weight) if !(0.0..1.0).contains(&weight) => {
+                Err(Error::out_of_range("inertia", "at least 0 and below 1", weight))
+            }
+            PsoForm::Constriction if !(self.c1 + self.c2 > 4.0) => {
+                Err(Error::out_of_range("c1 + c2", "above 4 with form 'constriction'", self.c1 + self.c2))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The weights (w, c1, c2) of v = w v + c1 r1 (p - x) + c2 r2 (g - x).
+    fn weights(&self) -> [f64; 3] {
+        match self.form {
+            PsoForm::Inertia(weight) => [weight, self.c1, self.c2],
+            PsoForm::Constriction => {
+                // chi = 2 / |2 - phi - sqrt(phi^2 - 4 phi)|, eq. (4) of Eberhart and Shi (2000)
+                let phi = self.c1 + self.c2;
+                let chi = 2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs();
+                [chi, chi * self.c1, chi * self.c2]
+            }
+        }
+    }
+}
+
+/// The swarm between generations.
+#[derive(Debug, Clone)]
+pub struct State {
+    population: Population,
+    memory: BestPlaces,
+    velocities: Velocities,
+    tiled: TiledBounds,
+}
+
+impl<O: Objective + ?Sized> Solver<O> for Pso {
+    type State = State;
+
+    fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<State, Status> {
+        let population = Population::start(&self.schedule, evaluator, x0)?;
+        Ok(State {
+            memory: BestPlaces::new(self.schedule.population, x0.len()),
+            velocities: Velocities::new(&population, self.velocity_limit),
+            tiled: TiledBounds::new(evaluator.bounds(), &population),
+            population,
+        })
+    }
+
+    fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
+        let State { population, memory, velocities, tiled } = state;
+        if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
+            velocities.draw(population, evaluator.rng());
+        } else {
+            velocities.update(self.weights(), population, memory, evaluator.rng());
+            let (points, velocities) = (&mut population.members.points, &mut velocities.all);
+            match self.walls {
+                Walls::Absorbing => tiled.stop(points, velocities),
+                Walls::Random => tiled.draw_anew(points, velocities, evaluator.rng()),
+            }
+            population.members.evaluate_from(0, evaluator)?;
+        }
+        memory.update(population);
+        if self.accept == Acceptance::Improving {
+            population.members.points.copy_from_slice(&memory.members.points);
+        }
+        Ok(())
+    }
+}
+
+/// The bounds of every coordinate of every particle.
+#[derive(Debug, Clone)]
+struct TiledBounds {
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+}
+
+impl TiledBounds {
+    fn new(bounds: &Bounds, population: &Population) -> Self {
+        let tiled = |row| {
+            let mut rows = vec![0.0; population.members.points.len()];
+            tile(row, &mut rows);
+            rows
+        };
+        Self { lower: tiled(bounds.lower()), upper: tiled(bounds.upper()) }
+    }
+
+    /// x = x + v; a coordinate that would leave the box stops at its bound.
+    fn stop(&self, points: &mut [f64], velocities: &mut [f64]) {
+        let walls = self.lower.iter().zip(&self.upper);
+        for ((x, v), (lower, upper)) in points.iter_mut().zip(velocities).zip(walls) {
+            move_within(x, v, *lower, *upper);
+        }
+    }
+
+    /// x = x + v; a coordinate that would leave the box is drawn anew.
+    fn draw_anew(&self, points: &mut [f64], velocities: &[f64], rng: &mut LazyRng) {
+        let walls = self.lower.iter().zip(&self.upper);
+        for ((x, v), (lower, upper)) in points.iter_mut().zip(velocities).zip(walls) {
+            let wanted = *x + *v;
+            *x = if *lower <= wanted && wanted <= *upper { wanted } else { rng.uniform_in(*lower, *upper) };
+        }
+    }
+}
+
+/// Moves x by v. A coordinate that met its bound has no velocity left.
+#[inline]
+fn move_within(x: &mut f64, v: &mut f64, lower: f64, upper: f64) {
+    let wanted = *x + *v;
+    let raised = if wanted > lower { wanted } else { lower };
+    *x = if raised < upper { raised } else { upper };
+    *v = if *x == wanted { *v } else { 0.0 };
+}

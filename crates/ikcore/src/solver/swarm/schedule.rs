@@ -1,0 +1,43 @@
+//! The size of a population, and when it gives up.
+
+use crate::error::{Error, Result};
+
+/// The size of a population, and when it gives up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Schedule {
+    /// Members of a generation.
+    pub population: usize,
+    /// Generations after which the swarm gives up, the first included.
+    pub max_generations: usize,
+    /// It gives up earlier after so many generations in a row without a gain of a millionth of the best value.
+    pub stall_generations: usize,
+}
+
+/// The largest population: it must fit into memory.
+const LARGEST_POPULATION: usize = 1_000_000;
+
+impl Schedule {
+    /// Members of a generation; as many generations as the budget allows, but no more than 50 without a gain (the MATLAB
+    /// genetic algorithm's default).
+    pub const fn of(population: usize) -> Self {
+        Self { population, max_generations: usize::MAX, stall_generations: 50 }
+    }
+
+    /// Checks the counts; the algorithm needs `fewest` members.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] names the option and its range.
+    pub fn validate(&self, fewest: usize) -> Result<()> {
+        let Self { population, max_generations, stall_generations } = *self;
+        if !(fewest..=LARGEST_POPULATION).contains(&population) {
+            let requirement = format!("between {fewest} and {LARGEST_POPULATION}");
+            return Err(Error::out_of_range("population", &requirement, population as f64));
+        }
+        for (name, count) in [("max_generations", max_generations), ("stall_generations", stall_generations)] {
+            if count == 0 {
+                return Err(Error::out_of_range(name, "at least 1", 0.0));
+            }
+        }
+        Ok(())
+    }
+}

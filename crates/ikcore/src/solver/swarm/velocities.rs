@@ -1,0 +1,56 @@
+//! Velocities of a swarm of particles: those of PSO, and of beetles that fly as particles do.
+//!
+//! What all particles have in common is repeated for each of them, so that an update is one long loop over all coordinates,
+//! which the compiler vectorises whatever the dimension.
+
+use super::best_places::BestPlaces;
+use super::population::{Population, tile};
+use crate::rng::{LazyRng, split};
+
+/// The velocities of all particles.
+#[derive(Debug, Clone)]
+pub(super) struct Velocities {
+    /// All coordinates, particle by particle.
+    pub all: Vec<f64>,
+    /// The largest velocities, for every coordinate of every particle.
+    limits: Vec<f64>,
+    /// The swarm's best place.
+    leader: Vec<f64>,
+    draws: Vec<f64>,
+}
+
+impl Velocities {
+    /// Particles at rest; `limit` is the largest velocity as a share of the box's width a generation; infinite: none.
+    pub fn new(population: &Population, limit: f64) -> Self {
+        let none = vec![0.0; population.members.points.len()];
+        let mut limits = none.clone();
+        tile(&population.widths, &mut limits);
+        // Infinity times a width of zero would be NaN.
+        limits.iter_mut().for_each(|width| *width = if limit.is_finite() { limit * *width } else { f64::INFINITY });
+        Self { all: none.clone(), limits, leader: none.clone(), draws: none }
+    }
+
+    /// The first velocities: uniform within half the width of the box (standard PSO 2007).
+    pub fn draw(&mut self, population: &Population, rng: &mut LazyRng) {
+        for v in self.all.chunks_exact_mut(population.widths.len()) {
+            for (v, width) in v.iter_mut().zip(&population.widths) {
+                *v = 0.5 * width * (2.0 * rng.uniform() - 1.0);
+            }
+        }
+    }
+
+    /// v = w v + c1 r1 (p - x) + c2 r2 (g - x), r1 and r2 anew for each coordinate, clamped to the largest.
+    pub fn update(&mut self, [w, c1, c2]: [f64; 3], population: &Population, memory: &BestPlaces, rng: &mut LazyRng) {
+        tile(memory.members.point(memory.leader), &mut self.leader);
+        rng.fill(&mut self.draws);
+        let count = self.all.len();
+        let (x, p, g) = (&population.members.points[..count], &memory.members.points[..count], &self.leader[..count]);
+        let (v, limits, draws) = (&mut self.all[..count], &self.limits[..count], &self.draws[..count]);
+        for k in 0..count {
+            let [r1, r2] = split(draws[k]);
+            let wanted = w * v[k] + c1 * r1 * (p[k] - x[k]) + c2 * r2 * (g[k] - x[k]);
+            let raised = if wanted > -limits[k] { wanted } else { -limits[k] };
+            v[k] = if raised < limits[k] { raised } else { limits[k] };
+        }
+    }
+}

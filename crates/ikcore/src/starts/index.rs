@@ -1,0 +1,264 @@
+//! Index of random configurations by the frame that they reach.
+//!
+//! The first joint turns the whole arm about its axis and the last one only spins the flange; neither changes what the
+//! joints between them do. Both turns are taken out before stored frames are compared with a target, and set in closed
+//! form afterwards. Four dimensions instead of six remain to be covered, so that a few thousand configurations lie close
+//! to most targets. First and last joints that slide, or that drive others, keep their stored values.
+//!
+//! Entries are sorted into buckets of similar frames. A search compares the centres of the buckets and then scans the
+//! nearest buckets: it reads a tenth of what a plain scan would, which matters because other work empties the caches
+//! between calls.
+
+use std::f64::consts::TAU;
+
+use super::nearest_by_lane::{Distance, LANES, LaneRow, nearest_by_lane};
+use crate::kinematics::chain::{Chain, StageMotion};
+use crate::kinematics::kernels::Kernels;
+use crate::math::Frame;
+use crate::math::arithmetic::NoFma;
+use crate::rng;
+
+/// Configurations stored: 1.4 MB for 7 joints, 3.1 MB for 32, built in some 4 ms.
+const SIZE: usize = 8192;
+
+/// Configurations in a bucket.
+const BUCKET: usize = 64;
+
+/// Buckets scanned.
+const SCANNED: usize = 4;
+
+/// Position queries scan every n-th block.
+const STRIDE: usize = SIZE / 512;
+
+/// Weight of a difference between unit axes, relative to positions (m).
+pub(super) const AXIS_WEIGHT: f64 = 0.3;
+
+/// Features of a frame: position, weighted z axis, weighted x axis.
+const FEATURES: usize = 9;
+
+/// Random configurations of one chain, and the frames that they reach.
+///
+/// Independent of base and tool: frames are those of the last joint, seen from the first.
+#[derive(Debug)]
+pub(crate) struct StartIndex {
+    dof: usize,
+    /// The first and last joint, where their turns can be taken out.
+    pub(super) first: Option<Turn>,
+    pub(super) last: Option<Turn>,
+    configurations: Vec<f64>,
+    frames: Vec<Frame>,
+    /// Rows of the `compared` features, block after block.
+    rows: Vec<LaneRow>,
+    /// The same for the centres of the buckets.
+    centres: Vec<LaneRow>,
+    compared: Vec<usize>,
+}
+
+/// A joint that turns one stage and nothing else, by `scale` (rad) per unit of q.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turn {
+    pub joint: usize,
+    scale: f64,
+}
+
+impl StartIndex {
+    /// The index of a chain with neither base nor tool, drawn from `ranges`, one per joint.
+    pub fn new(chain: &Chain, kernels: &Kernels, ranges: &[(f64, f64)]) -> Self {
+        let motions = &chain.motions[..chain.moving];
+        let first = Turn::of_stage(motions, 0);
+        let last = if chain.moving > 1 { Turn::of_stage(motions, chain.moving - 1) } else { None };
+        let mut rng = rng::stream(0, 0);
+        let drawn: Vec<f64> =
+            (0..SIZE).flat_map(|_| ranges).map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect();
+        // The first joint turns every position to y = 0, the last one any x axis to any other.
+        let redundant = |feature: usize| (first.is_some() && feature == 1) || (last.is_some() && feature >= 6);
+        let compared = (0..FEATURES).filter(|feature| !redundant(*feature)).collect();
+        let mut index = Self {
+            dof: ranges.len(),
+            first,
+            last,
+            configurations: Vec::with_capacity(drawn.len()),
+            frames: Vec::with_capacity(SIZE),
+            rows: vec![],
+            centres: vec![],
+            compared,
+        };
+        index.fill(chain, kernels, &drawn);
+        index
+    }
+
+    /// Stores the configurations `drawn`, bucket after bucket.
+    fn fill(&mut self, chain: &Chain, kernels: &Kernels, drawn: &[f64]) {
+        let configurations: Vec<_> = drawn.chunks_exact(self.dof).collect();
+        let frames: Vec<_> = configurations.iter().map(|q| between_joints(chain, &(kernels.tip)(chain, q))).collect();
+        let features: Vec<_> = frames.iter().map(|frame| self.features(frame)).collect();
+        let mut order: Vec<u32> = (0..SIZE as u32).collect();
+        into_buckets(&mut order, &features, &self.compared);
+        for entry in &order {
+            self.configurations.extend_from_slice(configurations[*entry as usize]);
+            self.frames.push(frames[*entry as usize]);
+        }
+        let sorted: Vec<_> = order.iter().map(|entry| features[*entry as usize]).collect();
+        let centres: Vec<_> = sorted.chunks_exact(BUCKET).map(centre).collect();
+        self.rows = self.rows_of(&sorted);
+        self.centres = self.rows_of(&centres);
+    }
+
+    fn rows_of(&self, features: &[[f32; FEATURES]]) -> Vec<LaneRow> {
+        let blocks = features.chunks_exact(LANES);
+        blocks
+            .flat_map(|block| {
+                self.compared.iter().map(move |feature| std::array::from_fn(|lane| block[lane][*feature]))
+            })
+            .collect()
+    }
+
+    fn features(&self, frame: &Frame) -> [f32; FEATURES] {
+        let [x, y, _] = frame.origin;
+        let radius = (x * x + y * y).sqrt();
+        let frame = if self.first.is_some() && radius > 0.0 {
+            turned_about_base_z(frame, -y / radius, x / radius)
+        } else {
+            *frame
+        };
+        let [[zx, zy, zz], [xx, xy, xz]] = [2, 0].map(|axis: usize| frame.axes[axis].map(|v| AXIS_WEIGHT * v));
+        let [px, py, pz] = frame.origin;
+        [px, py, pz, zx, zy, zz, xx, xy, xz].map(|v| v as f32)
+    }
+
+    /// Entries with frames near `wanted`, nearest first.
+    pub(super) fn near_frame(&self, wanted: &Frame) -> [usize; LANES] {
+        let all = self.features(wanted);
+        let mut features = [0.0; FEATURES];
+        features.iter_mut().zip(&self.compared).for_each(|(value, feature)| *value = all[*feature]);
+        let width = self.compared.len();
+        let distance = ToFrame { features: &features[..width] };
+        let buckets = nearest_by_lane(&self.centres, width, 0..SIZE / BUCKET / LANES, &distance);
+        let blocks = buckets[..SCANNED].iter().flat_map(|bucket| {
+            let first = bucket * (BUCKET / LANES);
+            first..first + BUCKET / LANES
+        });
+        nearest_by_lane(&self.rows, width, blocks, &distance)
+    }
+
+    /// Entries that bring the point at `reach` (m) along the z axis of their frame near `place`, nearest first.
+    pub(super) fn near_point(&self, place: [f64; 3], reach: f64) -> [usize; LANES] {
+        let distance = ToPoint {
+            place: place.map(|v| v as f32),
+            reach: (reach / AXIS_WEIGHT) as f32,
+            azimuth_free: self.first.is_some(),
+        };
+        // Positions have fewer dimensions than frames, so that a sample of all buckets is as dense.
+        let blocks = (0..SIZE / LANES).step_by(STRIDE);
+        nearest_by_lane(&self.rows, self.compared.len(), blocks, &distance)
+    }
+
+    /// Configuration of entry `entry`, and the frame that it reaches.
+    pub(super) fn entry(&self, entry: usize) -> (&[f64], &Frame) {
+        (&self.configurations[entry * self.dof..(entry + 1) * self.dof], &self.frames[entry])
+    }
+}
+
+/// Orders `entries` into runs of [`BUCKET`] with similar features, by halving them across the widest feature.
+fn into_buckets(entries: &mut [u32], features: &[[f32; FEATURES]], compared: &[usize]) {
+    if entries.len() <= BUCKET {
+        return;
+    }
+    let spread = |feature: usize| {
+        let values = entries.iter().map(|entry| features[*entry as usize][feature]);
+        let (least, most) =
+            values.fold((f32::INFINITY, f32::NEG_INFINITY), |(least, most), v| (least.min(v), most.max(v)));
+        most - least
+    };
+    let widest = compared.iter().copied().max_by(|a, b| spread(*a).total_cmp(&spread(*b))).unwrap_or(0);
+    let middle = entries.len() / 2;
+    entries.select_nth_unstable_by(middle, |a, b| {
+        let value = |entry: &u32| features[*entry as usize][widest];
+        value(a).total_cmp(&value(b)).then(a.cmp(b))
+    });
+    let (below, above) = entries.split_at_mut(middle);
+    into_buckets(below, features, compared);
+    into_buckets(above, features, compared);
+}
+
+fn centre(bucket: &[[f32; FEATURES]]) -> [f32; FEATURES] {
+    std::array::from_fn(|feature| bucket.iter().map(|features| features[feature]).sum::<f32>() / bucket.len() as f32)
+}
+
+/// Distance to a frame with these features.
+struct ToFrame<'a> {
+    features: &'a [f32],
+}
+
+impl Distance for ToFrame<'_> {
+    #[inline(always)]
+    fn of(&self, block: &[LaneRow]) -> LaneRow {
+        let mut squared = [0.0; LANES];
+        for (row, feature) in block.iter().zip(self.features) {
+            for (squared, entry) in squared.iter_mut().zip(row) {
+                *squared += (entry - feature) * (entry - feature);
+            }
+        }
+        squared
+    }
+}
+
+/// Distance from `place` to the point at `reach` along the weighted z axis; at any azimuth if that is free.
+struct ToPoint {
+    place: [f32; 3],
+    reach: f32,
+    azimuth_free: bool,
+}
+
+impl Distance for ToPoint {
+    #[inline(always)]
+    fn of(&self, block: &[LaneRow]) -> LaneRow {
+        let [x, y, z] = self.place;
+        let mut squared = [0.0; LANES];
+        if self.azimuth_free {
+            // Stored positions have no y.
+            let (px, pz, zx, zy, zz) = (&block[0], &block[1], &block[2], &block[3], &block[4]);
+            let radius = (x * x + y * y).sqrt();
+            for (i, squared) in squared.iter_mut().enumerate() {
+                let (across_x, across_y) = (px[i] + self.reach * zx[i], self.reach * zy[i]);
+                let outward = (across_x * across_x + across_y * across_y).sqrt() - radius;
+                let upward = pz[i] + self.reach * zz[i] - z;
+                *squared = outward * outward + upward * upward;
+            }
+            return squared;
+        }
+        for (k, coordinate) in self.place.iter().enumerate() {
+            let (origin, axis) = (&block[k], &block[3 + k]);
+            for (i, squared) in squared.iter_mut().enumerate() {
+                let missed = origin[i] + self.reach * axis[i] - coordinate;
+                *squared += missed * missed;
+            }
+        }
+        squared
+    }
+}
+
+impl Turn {
+    fn of_stage(motions: &[StageMotion], stage: usize) -> Option<Self> {
+        let StageMotion { joint, turn_scale: scale, .. } = motions[stage];
+        let alone = motions.iter().filter(|motion| motion.joint == joint).count() == 1;
+        (alone && scale != 0.0).then_some(Self { joint, scale })
+    }
+
+    /// The joint's value `q` after a turn by `angle` (rad), moved by whole turns to be nearest to the middle of `range`.
+    pub fn turned(&self, q: f64, angle: f64, (lower, upper): (f64, f64)) -> f64 {
+        let (turned, period) = (q + angle / self.scale, TAU / self.scale.abs());
+        turned - period * ((turned - 0.5 * (lower + upper)) / period).round()
+    }
+}
+
+/// The frame of the last joint, seen from the first, when the tip of `chain` is at `tip`.
+pub(super) fn between_joints(chain: &Chain, tip: &Frame) -> Frame {
+    chain.stages.frame(0).inverse().then::<NoFma>(tip).then::<NoFma>(&chain.tip.inverse())
+}
+
+/// `frame` turned about the base's z axis, given sine and cosine of the angle.
+pub(super) fn turned_about_base_z(frame: &Frame, sine: f64, cosine: f64) -> Frame {
+    let turned = |v: [f64; 3]| [cosine * v[0] - sine * v[1], sine * v[0] + cosine * v[1], v[2]];
+    Frame { axes: frame.axes.map(turned), origin: turned(frame.origin) }
+}

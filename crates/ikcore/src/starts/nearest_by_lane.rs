@@ -1,0 +1,61 @@
+//! Nearest neighbours by a scan of blocks of entries, eight entries at once.
+
+use crate::math::arithmetic::by_instructions;
+
+/// Entries compared at once, and neighbours that a search returns.
+pub(super) const LANES: usize = 8;
+
+/// One number of eight entries.
+pub(super) type LaneRow = [f32; LANES];
+
+/// Distance of the eight entries of a block from a query. A trait and no closure, since only a method can be
+/// `#[inline(always)]` and so be compiled with its caller's instructions.
+pub(super) trait Distance {
+    /// The distances, or a monotonic function of them, lane by lane.
+    fn of(&self, block: &[LaneRow]) -> LaneRow;
+}
+
+/// Returns the nearest entry of each lane in `blocks`, nearest first. `rows` holds blocks of `width` rows; entry
+/// `LANES * b + i` is lane i of block b.
+///
+/// Only the first is certainly among the eight nearest; the others are each the nearest of one eighth of the entries. As
+/// starts they are as good, and the scan keeps no order.
+pub(super) fn nearest_by_lane(
+    rows: &[LaneRow],
+    width: usize,
+    blocks: impl Iterator<Item = usize>,
+    distance: &impl Distance,
+) -> [usize; LANES] {
+    let (distances, blocks) = scan(rows, width, blocks, distance);
+    let mut sorted = [0; LANES];
+    for lane in 0..LANES {
+        // Sorts by counting, without a branch; equal distances keep their order.
+        let nearer = |other: &usize| distances[*other] < distances[lane];
+        let first = (0..lane).filter(|other| nearer(other) || distances[*other] == distances[lane]).count();
+        let place = first + (lane + 1..LANES).filter(nearer).count();
+        sorted[place] = blocks[lane] as usize * LANES + lane;
+    }
+    sorted
+}
+
+by_instructions! {
+    /// For each lane the smallest distance, and the first block that has it; the same bits on all machines.
+    fn scan(
+        rows: &[LaneRow],
+        width: usize,
+        blocks: impl Iterator<Item = usize>,
+        distance: &impl Distance,
+    ) -> (LaneRow, [u32; LANES]) {
+        let (mut nearest, mut found) = ([f32::INFINITY; LANES], [0; LANES]);
+        for block in blocks {
+            let distances = distance.of(&rows[block * width..(block + 1) * width]);
+            let number = block as u32;
+            for lane in 0..LANES {
+                let nearer = distances[lane] < nearest[lane];
+                nearest[lane] = if nearer { distances[lane] } else { nearest[lane] };
+                found[lane] = if nearer { number } else { found[lane] };
+            }
+        }
+        (nearest, found)
+    }
+}

@@ -1,0 +1,76 @@
+//! The assessment of a tip that is kept in a region.
+//!
+//! The tip is led to the point of the region that is nearest to its target, a margin inside the faces, so that a search that
+//! ends within its tolerance ends inside. A coordinate that the task leaves free has its distance to the region as residual,
+//! which is zero inside.
+
+use super::assessment::Assessment;
+use super::criterion::Criterion;
+use super::region::{Outside, Region};
+use super::target::Target;
+use crate::math::vector::dot;
+use crate::math::{Frame, MAX_DOF};
+use crate::objective::Linearization;
+
+impl Criterion {
+    /// Describes the faces that keep the tip from `target`, if even the nearest point of the region is beyond the tolerance.
+    pub fn blocked_by_region(&self, target: &Target) -> Option<String> {
+        let (region, wanted) = (self.region.as_ref()?, target.position()?);
+        let axes = target.frame().map_or(Frame::IDENTITY.axes, |frame| frame.axes);
+        let nearest = Frame { axes, origin: region.nearest(&wanted, 0.0) };
+        let error = target.assess_tip_anywhere(&nearest, self);
+        (!error.score.solved).then(|| format!("its region keeps {}", region.violated_faces(&wanted)))
+    }
+}
+
+impl Target {
+    /// The assessment of `tip`, which is to be in `region`.
+    pub(super) fn assess_tip_within(&self, region: &Region, tip: &Frame, criterion: &Criterion) -> Assessment {
+        let excess = free_excess(region, &tip.origin, criterion, self);
+        let led = criterion.aim(self).assess_tip_anywhere(tip, criterion);
+        self.assess_led(region, tip, criterion, led.score.value + dot(&excess, &excess))
+    }
+
+    /// The same, with residual and Jacobian.
+    pub(super) fn linearize_tip_within(
+        &self,
+        region: &Region,
+        tip: &Frame,
+        dof: usize,
+        criterion: &Criterion,
+        out: &mut Linearization,
+    ) -> Assessment {
+        let mut linear = [[0.0; 3]; MAX_DOF];
+        for (linear, [x, y, z, ..]) in linear.iter_mut().zip(&out.columns[..dof]) {
+            *linear = [*x, *y, *z];
+        }
+        let led = criterion.aim(self).linearize_tip_anywhere(tip, dof, criterion, out);
+        let excess = free_excess(region, &tip.origin, criterion, self);
+        for k in (0..3).filter(|k| excess[*k] != 0.0) {
+            out.residual[k] = excess[k];
+            out.columns[..dof].iter_mut().zip(&linear).for_each(|(column, linear)| column[k] = linear[k]);
+        }
+        self.assess_led(region, tip, criterion, led.score.value + dot(&excess, &excess))
+    }
+
+    /// The assessment of a tip that is led at this `value`. Its errors are those to the target itself; it is solved inside the
+    /// region, as near to the target as that allows.
+    fn assess_led(&self, region: &Region, tip: &Frame, criterion: &Criterion, value: f64) -> Assessment {
+        let inside = region.contains(&tip.origin);
+        let within = self.with_position(|wanted| region.nearest(wanted, 0.0));
+        let mut assessment = self.assess_tip_anywhere(tip, criterion);
+        assessment.score.value = match criterion.outside {
+            Outside::Infinite if !inside => f64::INFINITY,
+            _ => value,
+        };
+        assessment.score.solved = inside && within.assess_tip_anywhere(tip, criterion).score.solved;
+        assessment
+    }
+}
+
+/// How far each free coordinate of the tip is outside (m).
+fn free_excess(region: &Region, tip: &[f64; 3], criterion: &Criterion, target: &Target) -> [f64; 3] {
+    let inside = region.nearest(tip, criterion.margin());
+    let free = criterion.free(target);
+    std::array::from_fn(|k| if free[k] { tip[k] - inside[k] } else { 0.0 })
+}

@@ -1,0 +1,42 @@
+//! E of Yuan et al. 2016, eq. (11): half the sum of squared differences between the entries of the target's matrix and the
+//! tip's, and the wrench on the tip that is minus its gradient.
+//!
+//! Moved by v and turned by w, the tip changes E by -(f . v + m . w). Here f = p_d - p, and, since a turn moves the axis
+//! r_c by w x r_c, m is the sum of r_c x d_c over the columns r_c of its rotation and d_c of the wanted one.
+
+use super::position;
+use crate::kinematics::Wrench;
+use crate::math::Frame;
+use crate::math::arithmetic::NoFma;
+use crate::math::so3::cross;
+use crate::task::target::Target;
+
+/// E: of a pose over its three axes and position, of other targets over the parts that they ask for.
+#[inline]
+pub fn error(target: &Target, tip: &Frame) -> f64 {
+    let away = target.position().map_or(0.0, |wanted| position::error(&wanted, &tip.origin));
+    0.5 * (axes(target, tip).map(|(r, d)| position::error(&d, &r)).sum::<f64>() + away)
+}
+
+/// The wrench (f, m), minus the derivative of E.
+#[inline]
+pub fn wrench(target: &Target, tip: &Frame) -> Wrench {
+    let [fx, fy, fz] = target.position().map_or([0.0; 3], |wanted| position::residual(&tip.origin, &wanted));
+    let mut moment = [0.0; 3];
+    for (r, d) in axes(target, tip) {
+        let share = cross(&r, &d);
+        (0..3).for_each(|k| moment[k] += share[k]);
+    }
+    [fx, fy, fz, moment[0], moment[1], moment[2]]
+}
+
+/// The axes of the tip that have a direction to take, and that direction.
+#[inline]
+fn axes(target: &Target, tip: &Frame) -> impl Iterator<Item = ([f64; 3], [f64; 3])> {
+    let (pairs, count) = match target {
+        Target::Position(_) => ([([0.0; 3], [0.0; 3]); 3], 0),
+        Target::Pose(frame) | Target::Orientation(frame) => (std::array::from_fn(|c| (tip.axes[c], frame.axes[c])), 3),
+        Target::Pointing { frame, axis } => ([(tip.turn::<NoFma>(axis), frame.turn::<NoFma>(axis)); 3], 1),
+    };
+    pairs.into_iter().take(count)
+}

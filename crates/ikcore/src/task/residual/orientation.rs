@@ -1,0 +1,34 @@
+//! The tip's orientation: r = phi = log(R R_d'), in base coordinates.
+//!
+//! A small turn w of the tip changes phi by the inverse left Jacobian of SO(3) at phi times w; with it the derivative is
+//! exact at any distance from the target, not only near it.
+
+use crate::math::Frame;
+use crate::math::box_step::ROWS;
+use crate::math::real::Real;
+use crate::math::so3::{Axes, rotation_and_jacobian, rotation_between};
+use crate::math::vec3::Vec3;
+
+/// The squared geodesic angle.
+#[inline(always)]
+pub fn error(target: &Frame, tip: &Frame) -> f64 {
+    let [x, y, z] = rotation_between(target, tip);
+    x * x + y * y + z * z
+}
+
+/// Angular rows of residual and derivative from the tip's geometric Jacobian, which stands in `columns`; the squared angle.
+#[inline(always)]
+pub fn linearize<R: Real>(
+    target: &Axes<R>,
+    tip: &Axes<R>,
+    residual: &mut [R::Stored; ROWS],
+    columns: &mut [[R::Stored; ROWS]],
+) -> R {
+    let (phi, inverse) = rotation_and_jacobian(target, tip);
+    for column in columns {
+        let [.., x, y, z] = *column;
+        column[3..].copy_from_slice(&inverse.apply(Vec3::of(&[x, y, z])).stored());
+    }
+    residual[3..].copy_from_slice(&phi.stored());
+    phi.dot(phi)
+}

@@ -1,0 +1,50 @@
+//! The tip at a point, and one of its axes in a direction: r = (p - p_d, a - d), in base coordinates; the spin about that
+//! axis is left free.
+//!
+//! a is the tip's axis and d what it is to be. Their difference is smooth wherever the axis points, which the angle between
+//! them is not; its length is 2 sin(angle / 2), and a small turn w of the tip changes it by w x a.
+
+use super::position;
+use crate::math::Frame;
+use crate::math::arithmetic::NoFma;
+use crate::math::so3::{cross, norm};
+use crate::objective::Linearization;
+use crate::task::tip_error::SquaredError;
+
+/// Squared distance and squared angle between the axes, and the sum of squares r'r.
+#[inline]
+pub fn error(target: &Frame, axis: &[f64; 3], tip: &Frame) -> (SquaredError, f64) {
+    errors(target, tip, &difference(target, axis, tip))
+}
+
+/// Residual and derivative from the tip's geometric Jacobian, which stands in `out`.
+#[inline]
+pub fn linearize(
+    target: &Frame,
+    axis: &[f64; 3],
+    tip: &Frame,
+    dof: usize,
+    out: &mut Linearization,
+) -> (SquaredError, f64) {
+    let a = tip.turn::<NoFma>(axis);
+    for column in &mut out.columns[..dof] {
+        let moved = cross(&[column[3], column[4], column[5]], &a);
+        column[3..].copy_from_slice(&moved);
+    }
+    let difference = difference(target, axis, tip);
+    out.residual[..3].copy_from_slice(&position::residual(&target.origin, &tip.origin));
+    out.residual[3..].copy_from_slice(&difference);
+    errors(target, tip, &difference)
+}
+
+/// a - d.
+#[inline(always)]
+fn difference(target: &Frame, axis: &[f64; 3], tip: &Frame) -> [f64; 3] {
+    position::residual(&target.turn::<NoFma>(axis), &tip.turn::<NoFma>(axis))
+}
+
+fn errors(target: &Frame, tip: &Frame, difference: &[f64; 3]) -> (SquaredError, f64) {
+    let (distance, chord) = (position::error(&target.origin, &tip.origin), norm(difference));
+    let angle = 2.0 * (0.5 * chord).min(1.0).asin();
+    (SquaredError { position: Some(distance), rotation: Some(angle * angle) }, distance + chord * chord)
+}

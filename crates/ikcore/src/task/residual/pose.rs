@@ -1,0 +1,26 @@
+//! The tip at a pose: r = (p - p_d, log(R R_d')), in base coordinates.
+
+use super::{orientation, position};
+use crate::math::Frame;
+use crate::math::real::Real;
+use crate::math::so3::axes_of;
+use crate::objective::Linearization;
+use crate::task::tip_error::SquaredError;
+
+/// Squared distance and squared angle.
+#[inline]
+pub fn error(target: &Frame, tip: &Frame) -> SquaredError {
+    SquaredError {
+        position: Some(position::error(&target.origin, &tip.origin)),
+        rotation: Some(orientation::error(target, tip)),
+    }
+}
+
+/// Residual and derivative from the tip's geometric Jacobian, which stands in `out`.
+#[inline]
+pub fn linearize(target: &Frame, tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
+    out.residual[..3].copy_from_slice(&position::residual(&target.origin, &tip.origin));
+    let Linearization { residual, columns } = out;
+    let rotation = orientation::linearize(&axes_of(target), &axes_of(tip), residual, &mut columns[..dof]).stored();
+    SquaredError { position: Some(position::error(&target.origin, &tip.origin)), rotation: Some(rotation) }
+}

@@ -1,0 +1,64 @@
+//! How far the tip of a robot is from its target: the entry points, with and without a region.
+
+use super::assessment::Assessment;
+use super::criterion::Criterion;
+use super::residual::position;
+use super::target::Target;
+use super::tip_error::SquaredError;
+use crate::math::Frame;
+use crate::objective::Linearization;
+use crate::robot::Robot;
+
+impl Target {
+    /// The assessment of the tip of `robot` at `q`, by `criterion`.
+    #[inline]
+    pub fn assess(&self, robot: &Robot, q: &[f64], criterion: &Criterion) -> Assessment {
+        match (self, criterion.is_componentwise()) {
+            (Self::Position(target), false) => position_alone(target, &robot.tip_position(q), criterion),
+            _ => self.assess_tip(&robot.tip(q), criterion),
+        }
+    }
+
+    /// Hands the [assessments](Self::assess) of the configurations stored one after another to `keep`, in order; several at a time
+    /// where only positions matter.
+    #[inline]
+    pub fn assess_all(&self, robot: &Robot, qs: &[f64], criterion: &Criterion, mut keep: impl FnMut(Assessment)) {
+        match (self, criterion.is_componentwise()) {
+            (Self::Position(target), false) => {
+                robot.tip_positions(qs, |tip| keep(position_alone(target, &tip, criterion)));
+            }
+            _ => qs.chunks(robot.dof()).for_each(|q| keep(self.assess(robot, q, criterion))),
+        }
+    }
+
+    /// The assessment of `tip`, by `criterion`.
+    #[inline]
+    pub fn assess_tip(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
+        match &criterion.region {
+            Some(region) => self.assess_tip_within(region, tip, criterion),
+            None => self.assess_tip_anywhere(tip, criterion),
+        }
+    }
+
+    /// Weighted residual and Jacobian at `q`, and the assessment by `criterion`.
+    #[inline]
+    pub fn linearize(&self, robot: &Robot, q: &[f64], criterion: &Criterion, out: &mut Linearization) -> Assessment {
+        let tip = robot.tip_and_jacobian(q, &mut out.columns);
+        self.linearize_tip(&tip, q.len(), criterion, out)
+    }
+
+    /// The same from a tip and its geometric Jacobian, which stands in the first `dof` columns of `out`.
+    #[inline]
+    pub fn linearize_tip(&self, tip: &Frame, dof: usize, criterion: &Criterion, out: &mut Linearization) -> Assessment {
+        match &criterion.region {
+            Some(region) => self.linearize_tip_within(region, tip, dof, criterion, out),
+            None => self.linearize_tip_anywhere(tip, dof, criterion, out),
+        }
+    }
+}
+
+#[inline(always)]
+fn position_alone(target: &[f64; 3], tip: &[f64; 3], criterion: &Criterion) -> Assessment {
+    let squared = position::error(target, tip);
+    criterion.assess_unweighted(SquaredError { position: Some(squared), rotation: None }, squared)
+}

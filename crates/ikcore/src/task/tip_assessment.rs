@@ -1,0 +1,89 @@
+//! The assessment of a tip and its linearization, whatever its region.
+
+use super::assessment::Assessment;
+use super::criterion::Criterion;
+use super::residual::{orientation, pointing, pose, position};
+use super::target::Target;
+use super::tip_error::SquaredError;
+use crate::math::Frame;
+use crate::math::box_step::ROWS;
+use crate::math::real::Real;
+use crate::math::so3::axes_of;
+use crate::objective::Linearization;
+
+impl Target {
+    /// The assessment of `tip` by `criterion`, its region ignored.
+    #[inline]
+    pub(super) fn assess_tip_anywhere(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
+        let (error, value) = self.error(tip);
+        match &criterion.components {
+            None => criterion.assess_unweighted(error, value),
+            Some(components) => criterion.assess_components(components, self, &self.residual(tip), error),
+        }
+    }
+
+    /// Weighted residual and Jacobian from the geometric Jacobian in the first `dof` columns of `out`, and the assessment by
+    /// `criterion`, its region ignored.
+    #[inline]
+    pub(super) fn linearize_tip_anywhere(
+        &self,
+        tip: &Frame,
+        dof: usize,
+        criterion: &Criterion,
+        out: &mut Linearization,
+    ) -> Assessment {
+        let (error, value) = self.linearize_unweighted(tip, dof, out);
+        let Some(components) = &criterion.components else { return criterion.assess_unweighted(error, value) };
+        let assessment = criterion.assess_components(components, self, &out.residual, error);
+        components.apply(self, dof, out);
+        assessment
+    }
+
+    /// Unweighted residual and Jacobian, in base coordinates; the errors and r'r.
+    #[inline]
+    fn linearize_unweighted(&self, tip: &Frame, dof: usize, out: &mut Linearization) -> (SquaredError, f64) {
+        match self {
+            Self::Pose(target) => summed(pose::linearize(target, tip, dof, out)),
+            Self::Position(target) => {
+                position::linearize(target, &tip.origin, dof, out);
+                self.error(tip)
+            }
+            Self::Pointing { frame, axis } => pointing::linearize(frame, axis, tip, dof, out),
+            Self::Orientation(target) => {
+                out.residual[..3].fill(0.0);
+                out.columns[..dof].iter_mut().for_each(|column| column[..3].fill(0.0));
+                let Linearization { residual, columns } = out;
+                let (target, tip) = (axes_of(target), axes_of(tip));
+                let rotation = orientation::linearize(&target, &tip, residual, &mut columns[..dof]);
+                summed(SquaredError { position: None, rotation: Some(rotation.stored()) })
+            }
+        }
+    }
+
+    /// The errors and r'r.
+    #[inline]
+    fn error(&self, tip: &Frame) -> (SquaredError, f64) {
+        match self {
+            Self::Pose(target) => summed(pose::error(target, tip)),
+            Self::Position(target) => {
+                summed(SquaredError { position: Some(position::error(target, &tip.origin)), rotation: None })
+            }
+            Self::Pointing { frame, axis } => pointing::error(frame, axis, tip),
+            Self::Orientation(target) => {
+                summed(SquaredError { position: None, rotation: Some(orientation::error(target, tip)) })
+            }
+        }
+    }
+
+    fn residual(&self, tip: &Frame) -> [f64; ROWS] {
+        let mut out = Linearization::default();
+        self.linearize_unweighted(tip, 0, &mut out);
+        out.residual
+    }
+}
+
+/// Errors whose squares are those of the residual.
+#[inline(always)]
+fn summed(error: SquaredError) -> (SquaredError, f64) {
+    (error, error.sum())
+}

@@ -1,0 +1,197 @@
+//! What a caller asks of the tip, apart from where: the kind of task, its components, the tool that it is for.
+
+use std::ops::Range;
+
+use super::components::{Components, check_tolerances, check_weights};
+use super::criterion::Criterion;
+use super::region::Region;
+use super::target::Target;
+use super::tip_error::Tolerance;
+use crate::error::{Error, Result, require_finite};
+use crate::math::Pose;
+use crate::math::box_step::ROWS;
+use crate::math::so3::norm;
+use crate::robot::Robot;
+
+/// Which part of a pose matters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TaskKind {
+    /// All of it.
+    Pose,
+    /// The position; the orientation is left free.
+    Position,
+    /// The orientation; the position is left free.
+    Orientation,
+    /// The position, and the direction of one axis of the tip; the spin about it is left free.
+    Pointing {
+        /// In the tip's own coordinates, of any length but zero.
+        axis: [f64; 3],
+    },
+}
+
+/// A task of the tip, or of a tool at the tip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Task {
+    /// Which part of a pose matters.
+    pub kind: TaskKind,
+    /// Weights and tolerances by component.
+    pub components: Option<Components>,
+    /// From the tip to what is to reach the target; None: the tip itself.
+    pub tool: Option<Pose>,
+    /// Where that is to stay; None: anywhere.
+    pub region: Option<Region>,
+}
+
+impl TaskKind {
+    /// The name as Python shows it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Pose => "Pose",
+            Self::Position => "Position",
+            Self::Orientation => "Orientation",
+            Self::Pointing { .. } => "Pointing",
+        }
+    }
+
+    /// Where the entries of its weights and tolerances stand among the six components; the angle of a pointing task stands
+    /// for three.
+    fn rows(&self) -> &'static [Range<usize>] {
+        match self {
+            Self::Pose => &[0..1, 1..2, 2..3, 3..4, 4..5, 5..6],
+            Self::Position => &[0..1, 1..2, 2..3],
+            Self::Orientation => &[3..4, 4..5, 5..6],
+            Self::Pointing { .. } => &[0..1, 1..2, 2..3, 3..6],
+        }
+    }
+
+    /// The six components from one entry for each that this kind has; `rest` for the others.
+    fn expand(&self, what: &str, entries: &[f64], rest: f64) -> Result<[f64; ROWS]> {
+        let rows = self.rows();
+        if entries.len() != rows.len() {
+            let meaning = match self {
+                Self::Pose => "x, y, z and the rotation's three",
+                Self::Position => "x, y, z",
+                Self::Orientation => "the rotation's three",
+                Self::Pointing { .. } => "x, y, z and the angle",
+            };
+            let expected = format!("{} entries ({meaning})", rows.len());
+            let what = format!("{what} of task {}", self.name());
+            return Err(Error::WrongLength { what, expected, got: entries.len() });
+        }
+        let mut all = [rest; ROWS];
+        for (rows, entry) in rows.iter().zip(entries) {
+            all[rows.clone()].fill(*entry);
+        }
+        Ok(all)
+    }
+}
+
+impl From<TaskKind> for Task {
+    fn from(kind: TaskKind) -> Self {
+        Self { kind, components: None, tool: None, region: None }
+    }
+}
+
+impl Task {
+    /// The task with weights and tolerances (m, rad), one entry for each component that its kind has: six for a pose, three
+    /// for a position or an orientation, x, y, z and the angle for pointing. None leaves weights of one, and the tolerances
+    /// of the call.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; as [`validate`](Self::validate).
+    pub fn new(kind: TaskKind, weights: Option<&[f64]>, tolerance: Option<&[f64]>, tool: Option<Pose>) -> Result<Self> {
+        weights.map_or(Ok(()), check_weights)?;
+        tolerance.map_or(Ok(()), check_tolerances)?;
+        let ones = vec![1.0; kind.rows().len()];
+        let components = match (weights, tolerance) {
+            (None, None) => None,
+            (weights, tolerance) => Some(Components {
+                weights: kind.expand("weights", weights.unwrap_or(&ones), 0.0)?,
+                tolerance: tolerance.map(|entries| kind.expand("tolerance", entries, f64::INFINITY)).transpose()?,
+            }),
+        };
+        let task = Self { kind, components, tool, region: None };
+        task.validate().map(|()| task)
+    }
+
+    /// The same task with the tip kept in `region`.
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub fn within(self, region: Region) -> Result<Self> {
+        let task = Self { region: Some(region), ..self };
+        task.validate().map(|()| task)
+    }
+
+    /// When a target of this task is reached.
+    pub(crate) fn criterion(&self, tolerance: Tolerance) -> Criterion {
+        Criterion { components: self.components, region: self.region, ..tolerance.into() }
+    }
+
+    /// The weights, one for each component that the kind has; None where they are all one by default.
+    pub fn weights(&self) -> Option<Vec<f64>> {
+        self.components.map(|components| self.contract(&components.weights))
+    }
+
+    /// The tolerances (m, rad), one for each component that the kind has.
+    pub fn tolerance(&self) -> Option<Vec<f64>> {
+        self.components.and_then(|components| components.tolerance).map(|tolerance| self.contract(&tolerance))
+    }
+
+    fn contract(&self, all: &[f64; ROWS]) -> Vec<f64> {
+        self.kind.rows().iter().map(|rows| all[rows.start]).collect()
+    }
+
+    /// Checks axis, weights, tolerances and tool.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::OutOfRange`] names the entry; [`Error::Contradiction`] for a region beside weights
+    /// that leave some, not all, of a pose's x, y and z free: its axes are the base's, theirs are the target's.
+    pub fn validate(&self) -> Result<()> {
+        if let TaskKind::Pointing { axis } = &self.kind {
+            require_finite("axis", axis, |i| format!("entry {i}"))?;
+            if norm(axis) == 0.0 {
+                return Err(Error::out_of_range("the length of axis", "positive", 0.0));
+            }
+        }
+        let Some(components) = &self.components else { return Ok(()) };
+        components.validate()?;
+        let free = components.weights[..3].iter().filter(|weight| **weight == 0.0).count();
+        if self.region.is_some()
+            && matches!(self.kind, TaskKind::Pose | TaskKind::Pointing { .. })
+            && (1..3).contains(&free)
+        {
+            return Err(Error::Contradiction {
+                problem: "region keeps x, y and z of the base, but weights free some of x, y and z of the target: \
+                          free all three or none, or take task Position, whose axes are the base's"
+                    .into(),
+            });
+        }
+        Ok(())
+    }
+
+    /// What of `wanted`, a position or a pose, this task asks for.
+    ///
+    /// # Errors
+    /// [`Error::WrongTarget`] for a position where the task needs an orientation too.
+    pub fn target(&self, wanted: &Target) -> Result<Target> {
+        match (&self.kind, wanted) {
+            (TaskKind::Position, Target::Pose(frame)) => Ok(Target::Position(frame.origin)),
+            (TaskKind::Position, Target::Position(_)) | (TaskKind::Pose, Target::Pose(_)) => Ok(*wanted),
+            (TaskKind::Orientation, Target::Pose(frame)) => Ok(Target::Orientation(*frame)),
+            (TaskKind::Pointing { axis }, Target::Pose(frame)) => {
+                let length = norm(axis);
+                Ok(Target::Pointing { frame: *frame, axis: axis.map(|entry| entry / length) })
+            }
+            _ => Err(Error::WrongTarget { task: self.kind.name().into() }),
+        }
+    }
+
+    /// `robot` with this task's tool at its tip.
+    ///
+    /// # Errors
+    /// As [`Robot::with_tool`].
+    pub fn robot(&self, robot: &Robot) -> Result<Option<Robot>> {
+        self.tool.map(|tool| robot.with_tool(robot.tool() * tool)).transpose()
+    }
+}

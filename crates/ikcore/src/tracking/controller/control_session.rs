@@ -1,0 +1,225 @@
+//! A controller at work on an arm that somebody else moves: clock, limits, and whose turn it is.
+
+use super::control_tick::{ControlTick, Verdict};
+use super::controller_choice::{Controller, RunningController};
+use crate::error::{Error, Result, require_finite, require_positive};
+use crate::limits::{Field, LimitAt, Limits, TickBox};
+use crate::math::MAX_DOF;
+use crate::math::vector::distance;
+use crate::objective::Point;
+use crate::rng::{self, LazyRng};
+use crate::solver::Status;
+use crate::task::TipError;
+use crate::tracking::record::Accepted;
+use crate::tracking::step::Step;
+
+/// A controller in progress. [`command`](Self::command) says where to send the arm, [`observe`](Self::observe) is told where
+/// its tip was there; a tick is over when the controller has no more to ask in it.
+///
+/// The first command is the start itself: it only tells where the tip is, and time stands still.
+#[derive(Debug)]
+pub struct ControlSession {
+    running: RunningController,
+    limits: Limits,
+    tolerance: f64,
+    dt: f64,
+    ticks: usize,
+    /// The configuration accepted at the tick's start: the middle of its box.
+    q: Point,
+    /// The one accepted at the start of the tick before.
+    before: Point,
+    tick_box: TickBox,
+    inside_limits: bool,
+    stage: Stage,
+    /// Error at the end of the tick before (m).
+    last_error: f64,
+    /// Measurements since the tick began.
+    measurements: usize,
+    rng: LazyRng,
+}
+
+/// Whose turn it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Stage {
+    /// Nothing was measured yet.
+    Start,
+    /// At the beginning of a tick.
+    Ready,
+    /// In a tick that goes on.
+    Within,
+    /// A command was given; its measurement is due.
+    Sent { target: [f64; 3], first: bool },
+}
+
+impl ControlSession {
+    /// A session at rest in `start` (n,) at t = 0, with ticks of `dt` (s). `tolerance` is the error band (m).
+    ///
+    /// # Errors
+    /// Any [`Error`] for wrong input: options, a start outside its limits, limits that no controller keeps.
+    pub fn new(
+        controller: &Controller,
+        start: &[f64],
+        dt: f64,
+        limits: Limits,
+        tolerance: f64,
+        seed: u64,
+    ) -> Result<Self> {
+        require_positive("dt", dt)?;
+        require_positive("position_tolerance", tolerance)?;
+        if start.is_empty() || start.len() > MAX_DOF {
+            let expected = format!("1 to {MAX_DOF} joints");
+            return Err(Error::WrongLength { what: "start".into(), expected, got: start.len() });
+        }
+        require_finite("start", start, |j| format!("joint {j}"))?;
+        controller.validate(start.len())?;
+        limits.validate(dt, 0)?;
+        let remedy = "a controller keeps position and velocity limits; leave it out";
+        limits.require_none(&[Field::Acceleration, Field::Jerk], "track_model_free", remedy)?;
+        limits.require_inside("start", 0.0, start)?;
+        Ok(Self {
+            running: controller.start(start, dt, tolerance),
+            tick_box: TickBox::around(start, &limits),
+            limits,
+            tolerance,
+            dt,
+            ticks: 0,
+            q: start.into(),
+            before: start.into(),
+            inside_limits: true,
+            stage: Stage::Start,
+            last_error: f64::INFINITY,
+            measurements: 0,
+            rng: rng::stream(seed, 0),
+        })
+    }
+
+    /// The configuration accepted last (n,).
+    pub fn q(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// The velocity of the last tick (n,) (rad/s, m/s).
+    pub fn qd(&self) -> Point {
+        self.q.iter().zip(&self.before).map(|(q, before)| (q - before) / self.dt).collect()
+    }
+
+    /// Time of the accepted configuration (s).
+    pub fn time(&self) -> f64 {
+        self.ticks as f64 * self.dt
+    }
+
+    /// The time step (s).
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// The limits in force.
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// The velocity limits of the last tick (n,) (rad/s, m/s).
+    pub fn velocity_limit(&self) -> &[f64] {
+        &self.tick_box.velocity
+    }
+
+    /// The command that the last tick stands for (n,): the one at which its position was measured.
+    pub fn measured_command(&self) -> &[f64] {
+        self.running.measured().0
+    }
+
+    /// Where to send the arm (n,), so that its tip comes to `target` (m) by the end of the tick; within the limits, and
+    /// within what the velocity limits let the configuration accepted at the tick's start reach.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] for the target, [`Error::OutOfTurn`] while a measurement is due.
+    pub fn command(&mut self, target: [f64; 3]) -> Result<&[f64]> {
+        require_finite("target", &target, |k| format!("entry {k}"))?;
+        let first = match self.stage {
+            Stage::Sent { .. } => {
+                let remedy = "the last command is not answered yet; call observe(position) first".into();
+                return Err(Error::OutOfTurn { call: "command".into(), remedy });
+            }
+            Stage::Start => true,
+            Stage::Ready => {
+                let ends = [self.time(), (self.ticks + 1) as f64 * self.dt];
+                self.inside_limits = self.limits.narrow(&self.q, ends, self.dt, LimitAt::Interval, &mut self.tick_box);
+                false
+            }
+            Stage::Within => false,
+        };
+        if !first {
+            let tick = ControlTick { target, bounds: &self.tick_box.bounds };
+            self.running.choose_command(tick, &mut self.rng);
+        }
+        self.stage = Stage::Sent { target, first };
+        Ok(self.running.sent())
+    }
+
+    /// The tip was at `position` (m) at the last command. Returns what became of the tick; None where it goes on.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] for the position, [`Error::OutOfTurn`] where no measurement is due.
+    pub fn observe(&mut self, position: [f64; 3]) -> Result<Option<Step>> {
+        let Stage::Sent { target, first } = self.stage else {
+            let remedy = "there is no command to answer; call command(target) first".into();
+            return Err(Error::OutOfTurn { call: "observe".into(), remedy });
+        };
+        require_finite("position", &position, |k| format!("entry {k}"))?;
+        self.measurements += 1;
+        if first {
+            self.running.begin(target, position);
+            return Ok(Some(self.end_tick(target)));
+        }
+        let tick = ControlTick { target, bounds: &self.tick_box.bounds };
+        if self.running.observe(tick, position) == Verdict::GoOn {
+            self.stage = Stage::Within;
+            return Ok(None);
+        }
+        self.before.copy_from_slice(&self.q);
+        self.q.copy_from_slice(self.running.accepted());
+        self.ticks += 1;
+        Ok(Some(self.end_tick(target)))
+    }
+
+    fn end_tick(&mut self, target: [f64; 3]) -> Step {
+        let position = self.running.measured().1;
+        let error = distance(&target, &position);
+        let status = match error {
+            error if error <= self.tolerance => Status::Solved,
+            error if error < self.last_error => Status::Improved,
+            _ => Status::Capped,
+        };
+        let evaluations = std::mem::take(&mut self.measurements);
+        (self.stage, self.last_error) = (Stage::Ready, error);
+        Step {
+            status,
+            error: TipError { position: error, rotation: f64::NAN },
+            position,
+            evaluations,
+            iterations: evaluations,
+            inside_limits: self.inside_limits,
+            interrupted: false,
+        }
+    }
+
+    /// What the last tick has accepted.
+    pub(in crate::tracking) fn accepted(&self) -> Accepted<'_> {
+        Accepted { q: &self.q, tick_box: &self.tick_box }
+    }
+
+    /// By how much (rad, m) the last command broke a limit at its worst, with the joint and where it was sent; None where it
+    /// broke none: the tick's box is within the limits, unless they cannot be kept.
+    pub(in crate::tracking) fn excess(&self) -> Option<(f64, usize, f64)> {
+        let TickBox { bounds, velocity, floor, ceiling, .. } = &self.tick_box;
+        let sent = self.running.sent();
+        if self.inside_limits && bounds.contains(sent) {
+            return None;
+        }
+        let excesses = sent.iter().zip(&self.q).enumerate().map(|(j, (sent, q))| {
+            let too_far = (sent - q).abs() - velocity[j] * self.dt;
+            (too_far.max(floor[j] - sent).max(sent - ceiling[j]), j, *sent)
+        });
+        excesses.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+}

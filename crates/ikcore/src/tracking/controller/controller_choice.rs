@@ -1,0 +1,103 @@
+//! The choice of controller, and the controller in use.
+
+use super::broyden_bas::BroydenBasState;
+use super::control_tick::{ControlTick, Verdict};
+use super::znnbas::Znnbas;
+use super::znnbas_state::ZnnbasState;
+use crate::error::Result;
+use crate::rng::LazyRng;
+use crate::solver::BroydenBas;
+
+/// What a caller chooses.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Controller {
+    /// Secants.
+    BroydenBas(BroydenBas),
+    /// Signs.
+    Znnbas(Znnbas),
+}
+
+impl Default for Controller {
+    fn default() -> Self {
+        Self::BroydenBas(BroydenBas::default())
+    }
+}
+
+impl Controller {
+    /// Checks the options, for an arm of `n` joints.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) or [`Error::WrongLength`](crate::Error::WrongLength) name the option.
+    pub fn validate(&self, n: usize) -> Result<()> {
+        match self {
+            Self::BroydenBas(broyden) => broyden.validate(),
+            Self::Znnbas(znnbas) => znnbas.validate(n),
+        }
+    }
+
+    pub(super) fn start(&self, start: &[f64], dt: f64, tolerance: f64) -> RunningController {
+        match self {
+            Self::BroydenBas(broyden) => {
+                RunningController::BroydenBas(BroydenBasState::new(*broyden, start, tolerance))
+            }
+            Self::Znnbas(znnbas) => RunningController::Znnbas(ZnnbasState::new(znnbas, start, dt)),
+        }
+    }
+}
+
+/// A controller at work, with what it remembers.
+#[derive(Debug)]
+pub(super) enum RunningController {
+    BroydenBas(Box<BroydenBasState>),
+    Znnbas(Box<ZnnbasState>),
+}
+
+impl RunningController {
+    /// Makes up its mind about the next command.
+    pub(super) fn choose_command(&mut self, tick: ControlTick<'_>, rng: &mut LazyRng) {
+        match self {
+            Self::BroydenBas(memory) => memory.choose_command(tick),
+            Self::Znnbas(memory) => memory.choose_command(tick, rng),
+        }
+    }
+
+    /// The last command; the start before there was one.
+    pub(super) fn sent(&self) -> &[f64] {
+        match self {
+            Self::BroydenBas(memory) => memory.sent(),
+            Self::Znnbas(memory) => memory.sent(),
+        }
+    }
+
+    /// Where the tip was at the last command (m).
+    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> Verdict {
+        match self {
+            Self::BroydenBas(memory) => memory.observe(tick, position),
+            Self::Znnbas(memory) => memory.observe(tick, position),
+        }
+    }
+
+    /// Where the tip was at the start, before the first tick (m).
+    pub(super) fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {
+        match self {
+            Self::BroydenBas(memory) => memory.begin(position),
+            Self::Znnbas(memory) => memory.begin(target, position),
+        }
+    }
+
+    /// The configuration that the next tick starts from.
+    pub(super) fn accepted(&self) -> &[f64] {
+        match self {
+            Self::BroydenBas(memory) => memory.accepted(),
+            Self::Znnbas(memory) => memory.accepted(),
+        }
+    }
+
+    /// The command that the tick stands for, and the position measured there (m).
+    pub(super) fn measured(&self) -> (&[f64], [f64; 3]) {
+        match self {
+            Self::BroydenBas(memory) => memory.measured(),
+            Self::Znnbas(memory) => memory.measured(),
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! ZNNBAS at work: Algorithm 1, tick by tick.
+
+use super::control_tick::{ControlTick, Verdict};
+use super::znnbas::{Acceptance, Antenna, Delay, Znnbas};
+use crate::math::ordered::sign;
+use crate::math::vector::squared_distance;
+use crate::objective::Point;
+use crate::rng::LazyRng;
+
+/// The longest adaptive antenna (rad).
+const LONGEST: f64 = 0.5;
+
+/// What the controller remembers from tick to tick.
+#[derive(Debug)]
+pub struct ZnnbasState {
+    /// k dt.
+    gain: f64,
+    antenna: Antenna,
+    delay: Delay,
+    accept: Acceptance,
+    /// theta, the state of the integrator.
+    theta: Point,
+    /// Where the tip was at the last theta that was measured (m).
+    standing: [f64; 3],
+    /// theta', where the arm was sent.
+    sent: Point,
+    /// What the last measurement said: where, of which command, and h.
+    position: [f64; 3],
+    answered: Point,
+    value: f64,
+    on_the_way: OnTheWay,
+    past: Past,
+}
+
+/// Commands that a late sensor has not answered yet, with their targets; the slots in turn.
+#[derive(Debug)]
+struct OnTheWay {
+    sent: Vec<f64>,
+    targets: Vec<[f64; 3]>,
+    ticks: usize,
+}
+
+/// The measurements of the last so many ticks, the slots in turn.
+#[derive(Debug)]
+struct Past {
+    sent: Vec<f64>,
+    values: Vec<f64>,
+    ticks: usize,
+}
+
+impl ZnnbasState {
+    pub fn new(options: &Znnbas, start: &[f64], dt: f64) -> Box<Self> {
+        let (n, delay) = (start.len(), options.delay_steps);
+        Box::new(Self {
+            gain: options.gain * dt,
+            antenna: options.antenna.clone(),
+            delay: options.delay,
+            accept: options.accept,
+            theta: start.into(),
+            standing: [f64::NAN; 3],
+            sent: start.into(),
+            position: [f64::NAN; 3],
+            answered: start.into(),
+            value: f64::INFINITY,
+            on_the_way: OnTheWay {
+                sent: start.repeat(options.sensor_delay),
+                targets: vec![[f64::NAN; 3]; options.sensor_delay],
+                ticks: 0,
+            },
+            past: Past { sent: vec![0.0; delay * n], values: vec![0.0; delay], ticks: 0 },
+        })
+    }
+
+    pub fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {
+        (self.position, self.standing, self.value) = (position, position, squared_distance(&target, &position));
+        // Until the first answer comes, the arm stands at the start.
+        self.on_the_way.targets.fill(target);
+    }
+
+    pub fn accepted(&self) -> &[f64] {
+        &self.theta
+    }
+
+    pub fn measured(&self) -> (&[f64], [f64; 3]) {
+        (&self.answered, self.position)
+    }
+
+    pub fn sent(&self) -> &[f64] {
+        &self.sent
+    }
+
+    pub fn choose_command(&mut self, tick: ControlTick<'_>, rng: &mut LazyRng) {
+        let Self { theta, sent, antenna, .. } = self;
+        rng.symmetric(sent); // b, line 14
+        let error = match self.accept {
+            Acceptance::Always => self.value,
+            Acceptance::Improving => squared_distance(&tick.target, &self.standing),
+        };
+        let lengths = match antenna {
+            Antenna::Constant(lengths) => &lengths[..],
+            Antenna::Adaptive { c1 } => &[(*c1 * error.sqrt()).min(LONGEST)], // (16)
+        };
+        for (j, (sent, theta)) in sent.iter_mut().zip(theta).enumerate() {
+            *sent = *theta + lengths[if lengths.len() == 1 { 0 } else { j }] * *sent; // (10)
+        }
+        tick.bounds.clip(sent); // (11)
+    }
+
+    pub fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> Verdict {
+        self.position = position;
+        self.answered.copy_from_slice(&self.sent);
+        let target = self.on_the_way.swap(&mut self.answered, tick.target);
+        self.value = squared_distance(&target, &position); // h of (12)
+        match self.accept {
+            Acceptance::Always => self.move_theta(),
+            Acceptance::Improving
+                if squared_distance(&tick.target, &position) < squared_distance(&tick.target, &self.standing) =>
+            {
+                self.theta.copy_from_slice(&self.answered);
+                self.standing = position;
+            }
+            Acceptance::Improving => {}
+        }
+        // A limit may have closed in since the command.
+        tick.bounds.clip(&mut self.theta);
+        self.past.push(&self.answered, self.value);
+        Verdict::TickOver
+    }
+
+    /// One Euler step of eq. (14).
+    fn move_theta(&mut self) {
+        let Self { theta, answered, past, .. } = self;
+        let slot = match self.delay {
+            _ if past.ticks < past.values.len() => return,
+            Delay::Sliding => past.slot(),
+            Delay::Held => 0,
+        };
+        let step = self.gain * sign(self.value - past.values[slot]);
+        let before = &past.sent[slot * theta.len()..][..theta.len()];
+        for ((theta, now), before) in theta.iter_mut().zip(answered).zip(before) {
+            *theta -= step * (*now - before);
+        }
+    }
+}
+
+impl OnTheWay {
+    /// Takes in the newest command with its target, and gives the one that is answered now.
+    fn swap(&mut self, command: &mut [f64], target: [f64; 3]) -> [f64; 3] {
+        if self.targets.is_empty() {
+            return target;
+        }
+        let slot = self.ticks % self.targets.len();
+        self.ticks += 1;
+        self.sent[slot * command.len()..][..command.len()].swap_with_slice(command);
+        std::mem::replace(&mut self.targets[slot], target)
+    }
+}
+
+impl Past {
+    /// The slot of `delay` ticks before, which is that of now too.
+    fn slot(&self) -> usize {
+        self.ticks % self.values.len()
+    }
+
+    fn push(&mut self, command: &[f64], value: f64) {
+        let slot = self.slot();
+        self.values[slot] = value;
+        self.sent[slot * command.len()..][..command.len()].copy_from_slice(command);
+        self.ticks += 1;
+    }
+}

@@ -1,0 +1,89 @@
+//! The choice of rule, and the rule in use.
+
+use super::any_solver;
+use super::mid_step::{self, MidStepState};
+use super::tick::{Tick, TickResult};
+use super::weighted_pseudo_inverse::{self, WeightedPseudoInverse};
+use crate::error::Result;
+use crate::robot::Robot;
+use crate::solver::AnySolver;
+
+/// What runs in every tick.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum TickRule {
+    /// Steps by the model: one evaluation of kinematics and Jacobian is enough for most ticks.
+    #[default]
+    MidStep,
+    /// A solver, begun anew from the accepted configuration.
+    Solver(AnySolver),
+    /// Velocities by the weighted pseudo-inverse of the Jacobian.
+    WeightedPseudoInverse(WeightedPseudoInverse),
+}
+
+/// A rule at work, with what it remembers from tick to tick.
+#[derive(Debug)]
+pub(in crate::tracking) enum RunningRule {
+    MidStep(MidStepState),
+    Solver(AnySolver),
+    WeightedPseudoInverse(WeightedPseudoInverse, weighted_pseudo_inverse::Scratch),
+}
+
+impl TickRule {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the option and its range.
+    pub fn validate(&self) -> Result<()> {
+        match self {
+            Self::MidStep => Ok(()),
+            Self::Solver(solver) => solver.validate(),
+            Self::WeightedPseudoInverse(rule) => rule.validate(),
+        }
+    }
+
+    /// Checks them for `robot` and ticks of `dt` (s).
+    pub(in crate::tracking) fn validate_for(&self, robot: &Robot, dt: f64) -> Result<()> {
+        match self {
+            Self::MidStep | Self::Solver(_) => Ok(()),
+            Self::WeightedPseudoInverse(rule) => rule.validate_for(robot, dt),
+        }
+    }
+
+    /// Whether goals beside the path are served.
+    pub(in crate::tracking) fn serves_goals(&self) -> bool {
+        !matches!(self, Self::Solver(_))
+    }
+
+    /// Whether the velocity of the target makes a difference.
+    pub fn uses_velocities(&self) -> bool {
+        matches!(self, Self::WeightedPseudoInverse(_))
+    }
+
+    pub(in crate::tracking) fn start(&self) -> RunningRule {
+        match self {
+            Self::MidStep => RunningRule::MidStep(MidStepState::default()),
+            Self::Solver(solver) => RunningRule::Solver(solver.clone()),
+            Self::WeightedPseudoInverse(rule) => {
+                RunningRule::WeightedPseudoInverse(rule.clone(), weighted_pseudo_inverse::Scratch::default())
+            }
+        }
+    }
+}
+
+impl RunningRule {
+    /// Drops what is remembered of the last tick: the arm is not where the rule left it.
+    pub fn forget(&mut self) {
+        if let Self::MidStep(memory) = self {
+            memory.forget();
+        }
+    }
+
+    /// Ends one tick that begins at `q`.
+    pub fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> TickResult {
+        match self {
+            Self::MidStep(memory) => mid_step::advance(memory, q, tick),
+            Self::Solver(solver) => any_solver::advance(solver, q, tick),
+            Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, q, tick),
+        }
+    }
+}

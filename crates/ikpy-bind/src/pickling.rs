@@ -1,0 +1,23 @@
+//! Pickling: `__reduce__` returns the static method that restores a value, and its arguments.
+
+use pyo3::PyTypeInfo;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
+
+use crate::error::raise;
+
+/// The result of `__reduce__`: the class's `_restore`, and its arguments.
+pub type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
+
+/// Makes the result of `__reduce__` for `T._restore(*arguments)`.
+pub fn restored_from<'py, T: PyTypeInfo>(
+    py: Python<'py>,
+    arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error: Into<PyErr>>,
+) -> PyResult<Reduced<'py>> {
+    Ok((py.get_type::<T>().getattr("_restore")?, arguments.into_pyobject(py).map_err(Into::into)?))
+}
+
+/// Converts the byte form of a core value to Python bytes.
+pub fn bytes(py: Python<'_>, stored: ikcore::Result<Vec<u8>>) -> PyResult<Bound<'_, PyBytes>> {
+    Ok(PyBytes::new(py, &stored.map_err(raise)?))
+}

@@ -1,0 +1,32 @@
+//! The only calls into the Python package: plots, files and the progress bar.
+
+use pyo3::prelude::*;
+
+fn call<'py>(
+    py: Python<'py>,
+    module: &str,
+    function: &str,
+    arguments: impl pyo3::call::PyCallArgs<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    py.import(module)?.getattr(function)?.call1(arguments)
+}
+
+/// Calls `beetle_ik.plot.<function>(result)`.
+pub fn plot<'py>(result: Bound<'py, PyAny>, function: &str) -> PyResult<Bound<'py, PyAny>> {
+    call(result.py(), "beetle_ik.plot", function, (result,))
+}
+
+/// Calls `beetle_ik.export.<function>(trajectory, file, ...)`.
+pub fn write<'py>(py: Python<'py>, function: &str, arguments: impl pyo3::call::PyCallArgs<'py>) -> PyResult<()> {
+    call(py, "beetle_ik.export", function, arguments).map(|_| ())
+}
+
+/// Calls `beetle_ik.export.<function>(file)`.
+pub fn read<'py>(function: &str, file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    call(file.py(), "beetle_ik.export", function, (file,))
+}
+
+/// Makes a progress bar on the terminal.
+pub fn progress_bar(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    call(py, "beetle_ik._progress", "Bar", ())
+}

@@ -1,0 +1,89 @@
+//! Modified copies of a robot: other tool, base, limits, capsules, or random errors.
+
+use ikcore::rng;
+use ikcore::robot::{Joint, LinkCapsule};
+use pyo3::prelude::*;
+
+use super::PyRobot;
+use crate::convert::{count, point, rigid, scalar_or_vector, summary};
+use crate::error::{invalid, raise};
+
+#[pymethods]
+impl PyRobot {
+    /// Returns a copy with a tool: `tool` (4, 4) is the pose of the new tip in the frame of the tip link.
+    fn with_tool(&self, tool: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.core.with_tool(rigid("tool", tool)?).map(Self::from).map_err(raise)
+    }
+
+    /// Returns a copy placed elsewhere: `base` (4, 4) is the pose of its base link.
+    fn with_base(&self, base: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.core.with_base(rigid("base", base)?).map(Self::from).map_err(raise)
+    }
+
+    /// Returns a copy with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps the present ones.
+    #[pyo3(signature = (*, lower=None, upper=None, velocity=None))]
+    pub fn with_limits(
+        &self,
+        lower: Option<&Bound<'_, PyAny>>,
+        upper: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let n = self.core.dof();
+        let read = |what: &str, value: Option<&Bound<'_, PyAny>>| value.map(|v| per_joint(what, v, n)).transpose();
+        let (lower, upper, velocity) = (read("lower", lower)?, read("upper", upper)?, read("velocity", velocity)?);
+        let change = |i: usize, joint: &mut Joint| {
+            joint.lower = lower.as_ref().map_or(joint.lower, |values| values[i]);
+            joint.upper = upper.as_ref().map_or(joint.upper, |values| values[i]);
+            joint.velocity = velocity.as_ref().map_or(joint.velocity, |values| values[i]);
+        };
+        self.core.with_limits(change).map(Self::from).map_err(raise)
+    }
+
+    /// Returns a copy with collision capsules: either one of `radius` (m) along each link, or the given ones, each (link, a,
+    /// b, radius) with its axis from a (3,) to b (3,) in the frame of the link (m). Capsules along the links end at the tip:
+    /// set a tool first. The gap that a prismatic joint opens between two links is not covered.
+    ///
+    /// Raises:
+    ///     UnknownNameError: no link of that name; the message lists them.
+    #[pyo3(signature = (capsules=None, *, radius=None))]
+    fn with_capsules(&self, capsules: Option<Vec<Bound<'_, PyAny>>>, radius: Option<f64>) -> PyResult<Self> {
+        let robot = match (capsules, radius) {
+            (Some(capsules), None) => {
+                let capsules = capsules.iter().enumerate().map(|(i, capsule)| read_capsule(i, capsule));
+                self.core.with_capsules(capsules.collect::<PyResult<_>>()?)
+            }
+            (None, Some(radius)) => self.core.with_capsules_along_links(radius),
+            _ => return Err(invalid("with_capsules: give either radius= or a list of (link, a, b, radius)".into())),
+        };
+        robot.map(Self::from).map_err(raise)
+    }
+
+    /// Returns a copy with random manufacturing errors: each constant offset between two joints changes by up to `length`
+    /// (m), and the zero of each revolute joint by up to `angle` (rad). Use it in a `KinematicPlant` to simulate an arm whose
+    /// model is wrong.
+    #[pyo3(signature = (*, length=0.0, angle=0.0, seed=0))]
+    fn with_errors(&self, length: f64, angle: f64, seed: i128) -> PyResult<Self> {
+        let mut rng = rng::stream(count("seed", seed)?, 0);
+        self.core.with_errors(length, angle, &mut rng).map(Self::from).map_err(raise)
+    }
+}
+
+/// Reads numbers for n joints: one for all, or one per joint.
+pub fn per_joint(what: &str, value: &Bound<'_, PyAny>, n: usize) -> PyResult<Vec<f64>> {
+    let (values, _) = scalar_or_vector(what, value)?;
+    match values.len() {
+        1 => Ok(vec![values[0]; n]),
+        got if got == n => Ok(values),
+        got => Err(invalid(format!("{what}: expected a number or {n} values (one per joint), got {got}"))),
+    }
+}
+
+/// (link, a, b, radius).
+fn read_capsule(i: usize, value: &Bound<'_, PyAny>) -> PyResult<LinkCapsule> {
+    type Parts<'py> = (String, Bound<'py, PyAny>, Bound<'py, PyAny>, f64);
+    let (link, a, b, radius) = value
+        .extract::<Parts<'_>>()
+        .map_err(|_| invalid(format!("capsule {i} must be (link, a, b, radius), got {}", summary(value))))?;
+    let end = |name: &str, value: &Bound<'_, PyAny>| point(&format!("{name} of capsule {i}"), value);
+    Ok(LinkCapsule { link, a: end("a", &a)?, b: end("b", &b)?, radius })
+}

@@ -1,0 +1,148 @@
+//! `solve_all` and `SolutionSet`.
+
+use ikcore::ik::{self, AllOptions};
+use ikcore::stored::{from_bytes, to_bytes};
+use numpy::{PyArrayDyn, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyIterator, PyList};
+
+use crate::convert::{count, table, vector};
+use crate::error::raise;
+use crate::ik::{PySolution, read_target};
+use crate::indexing::{Selection, iterate, select};
+use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::monitor::watched;
+use crate::outcome::outcome;
+use crate::pickling::{self, Reduced};
+use crate::robot::PyRobot;
+use crate::solve_arguments::SolveArguments;
+use crate::solver::PyStop;
+
+/// The distinct solutions for one target, a sequence of `Solution`.
+#[pyclass(name = "SolutionSet", module = "beetle_ik", frozen, sequence)]
+pub struct PySolutionSet {
+    core: ik::SolutionSet,
+    /// The configurations (k, n) (rad, m), inside the limits.
+    #[pyo3(get)]
+    q: Py<PyArrayDyn<f64>>,
+    /// The limits in force.
+    #[pyo3(get)]
+    limits: Py<PyLimits>,
+}
+
+outcome! {
+    PySolutionSet = |result|
+    /// Whether a solution was found.
+    success,
+    /// SOLVED if a solution was found; otherwise why the last search ended.
+    status: result.core.status(),
+    message: result.core.message(),
+    /// Evaluations of the forward kinematics.
+    evaluations: result.core.evaluations,
+    elapsed: result.core.elapsed,
+}
+
+#[pymethods]
+impl PySolutionSet {
+    /// The best `Solution` that misses the target, if no solution was found; otherwise None.
+    #[getter]
+    fn miss(&self, py: Python<'_>) -> Option<PySolution> {
+        self.core.miss.as_ref().map(|miss| PySolution::new(py, miss.clone(), self.limits.clone_ref(py)))
+    }
+
+    fn __len__(&self) -> usize {
+        self.core.solutions.len()
+    }
+
+    /// Returns a `Solution`, or a list of them for a slice, a mask or several indices.
+    fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let solution = |i: usize| PySolution::new(py, self.core.solutions[i].clone(), self.limits.clone_ref(py));
+        match select("a set", index, self.core.solutions.len())? {
+            Selection::One(i) => Ok(Bound::new(py, solution(i))?.into_any()),
+            Selection::Many(rows) => Ok(PyList::new(py, rows.into_iter().map(solution))?.into_any()),
+        }
+    }
+
+    /// Iterates over the solutions.
+    fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyIterator>> {
+        iterate(slf.as_any())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<SolutionSet: {}>", self.core.message())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let core = pickling::bytes(py, to_bytes("set of solutions", &self.core))?;
+        let dof = self.q.bind(py).shape()[1];
+        pickling::restored_from::<Self>(py, (core, dof, self.limits.clone_ref(py)))
+    }
+
+    /// Restores a pickled value.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, bytes: &[u8], dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
+        Self::new(py, from_bytes("set of solutions", bytes).map_err(raise)?, dof, limits)
+    }
+}
+
+impl PySolutionSet {
+    fn new(py: Python<'_>, core: ik::SolutionSet, dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
+        let rows: Vec<f64> = core.solutions.iter().flat_map(|solution| solution.q.iter().copied()).collect();
+        let q = table(py, rows, &[core.solutions.len(), dof])?.unbind();
+        Ok(Self { core, q, limits })
+    }
+}
+
+/// Searches for distinct solutions until a hundred in a row are known already, or the budget is spent.
+///
+/// Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
+/// start is given. A redundant arm has infinitely many solutions: those returned are at least `separation` apart.
+///
+/// Args:
+///     robot: the arm.
+///     target: pose (4, 4), or position (3,) (m).
+///     start: (n,); solutions are sorted by |q - start| (rad, m). None: they stay in the order in which they were found.
+///     limit: largest number of solutions to return.
+///     separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns.
+///     task: which part of the target counts, one of `tasks`; None: all of it.
+///     solver: the solver; None: Levenberg-Marquardt from many starts.
+///     position_tolerance: largest position error (m).
+///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
+///     limits: position limits; None: the robot's.
+///     stop: budgets of the whole search; None: as for `solve`.
+///     seed: seed of the random draws; the same seed gives the same bits.
+///
+/// Returns:
+///     A `SolutionSet`. If no solution is found, it is empty, and `miss` is the best configuration.
+///
+/// Raises:
+///     InvalidInputError: wrong shape, NaN, or a target that is not a rigid transform.
+///     LimitError: a start outside the limits.
+#[pyfunction]
+#[pyo3(signature = (robot, target, *, start=None, limit=16, separation=0.1, task=None, solver=None,
+                    position_tolerance=1e-6, rotation_tolerance=1e-6, limits=None, stop=None, seed=0))]
+#[allow(clippy::too_many_arguments)]
+pub fn solve_all(
+    py: Python<'_>,
+    robot: &PyRobot,
+    target: &Bound<'_, PyAny>,
+    start: Option<&Bound<'_, PyAny>>,
+    limit: i128,
+    separation: f64,
+    task: Option<&Bound<'_, PyAny>>,
+    solver: Option<&Bound<'_, PyAny>>,
+    position_tolerance: f64,
+    rotation_tolerance: f64,
+    limits: Option<&PyLimits>,
+    stop: Option<&PyStop>,
+    seed: i128,
+) -> PyResult<PySolutionSet> {
+    let target = read_target("target", target)?;
+    let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
+    let asked =
+        SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals: None, prefer: "any", stop, seed };
+    let each = asked.read(start.map(|start| vector("start", start)).transpose()?, resolved)?;
+    let options = AllOptions { each, limit: count("limit", limit)?, separation };
+    let core = watched(py, None, |watcher| ik::solve_all(&robot.core, &target, &options, watcher))?;
+    PySolutionSet::new(py, core, robot.core.dof(), in_force)
+}
