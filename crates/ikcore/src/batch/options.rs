@@ -9,7 +9,7 @@ pub enum OnInvalid {
     /// Refuse the batch; the error names the row.
     #[default]
     Raise,
-    /// Solve the others; the row is marked [`Status::Invalid`].
+    /// Solve the others; the row is marked [`Status::Invalid`](crate::solver::Status::Invalid).
     Skip,
 }
 

@@ -14,7 +14,7 @@ use crate::solver::{Monitor, Stopwatch};
 /// The monitor is asked and told from the calling thread alone.
 ///
 /// # Errors
-/// Any [`Error`] for wrong input; [`Error::InRow`] for a wrong target or start, unless those are to be skipped. A
+/// Any [`Error`](enum@crate::Error) for wrong input; [`Error::InRow`](crate::Error::InRow) for a wrong target or start, unless those are to be skipped. A
 /// target that is not reached is a status, not an error.
 pub fn solve_batch(
     robot: &Robot,

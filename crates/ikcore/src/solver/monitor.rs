@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 /// The caller's say in a long run: asked from the calling thread, every few microseconds of work.
 pub trait Monitor {
-    /// False ends the run with [`Status::Interrupted`].
+    /// False ends the run with [`Status::Interrupted`](super::Status::Interrupted).
     fn keep_going(&mut self) -> bool;
 
     /// Told of the steps of a track, or of the items of a batch, that are done, out of `total`.
