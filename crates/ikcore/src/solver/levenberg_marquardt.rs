@@ -71,7 +71,7 @@ pub(super) struct Descent {
 
 /// The decision about a trial step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum TrialVerdict {
     /// Accepted; the descent goes on from there.
     Kept,
     /// Accepted; the descent ends there, having gained next to nothing.
@@ -82,7 +82,7 @@ pub(super) enum Verdict {
     RefusedAtLast,
 }
 
-impl Verdict {
+impl TrialVerdict {
     /// Whether the trial is accepted.
     pub fn keeps(self) -> bool {
         matches!(self, Self::Kept | Self::KeptAtLast)
@@ -107,16 +107,16 @@ impl LevenbergMarquardt {
 
     /// Decides about a trial with `value`.
     #[inline]
-    pub(super) fn judge(&self, descent: &mut Descent, value: f64) -> Verdict {
+    pub(super) fn judge(&self, descent: &mut Descent, value: f64) -> TrialVerdict {
         let Descent { value: before, damping } = descent;
         if !(value < *before) {
             *damping *= self.increase;
-            return if *damping > LARGEST_DAMPING { Verdict::RefusedAtLast } else { Verdict::Refused };
+            return if *damping > LARGEST_DAMPING { TrialVerdict::RefusedAtLast } else { TrialVerdict::Refused };
         }
         let gain = 1.0 - value / *before;
         *damping = (*damping * self.decrease).max(SMALLEST_DAMPING);
         *before = value;
-        if gain < self.min_gain { Verdict::KeptAtLast } else { Verdict::Kept }
+        if gain < self.min_gain { TrialVerdict::KeptAtLast } else { TrialVerdict::Kept }
     }
 }
 
