@@ -1,7 +1,6 @@
 //! `PSO`.
 
-use ikcore::solver::Pso;
-use ikcore::solver::{PsoAcceptance, PsoForm, Walls};
+use ikcore::solver::{Pso, PsoAcceptance, PsoForm, Walls};
 use pyo3::prelude::*;
 
 use super::schedule::{limited, schedule, scheduled, show_schedule};
