@@ -59,6 +59,6 @@ pub use status::Status;
 pub use stop::Stop;
 pub use stopwatch::Stopwatch;
 pub use swarm::{
-    BeeColony, BeetleDirection, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, PsoAcceptance, PsoForm,
+    BeeColony, BeetleDirection, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, ParticleAcceptance, Pso, PsoForm,
     Qpso, Schedule, TrialUpdate, Walls,
 };

@@ -75,14 +75,14 @@ words!("walls": Walls { Absorbing => "absorbing", Random => "random" });
 
 /// Whether a particle stays where it went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PsoAcceptance {
+pub enum ParticleAcceptance {
     /// Always, as published.
     Always,
     /// Where that is its best place so far; otherwise it returns there. Quicker on smooth functions; as in mealpy's PSO.
     Improving,
 }
 
-words!("accept": PsoAcceptance { Always => "always", Improving => "improving" });
+words!("accept": ParticleAcceptance { Always => "always", Improving => "improving" });
 
 /// Particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,7 +98,7 @@ pub struct Pso {
     /// Largest velocity per generation, as a fraction of the box's width.
     pub velocity_limit: f64,
     /// Whether a particle stays where it went.
-    pub accept: PsoAcceptance,
+    pub accept: ParticleAcceptance,
     /// What happens to a coordinate that would leave the box.
     pub walls: Walls,
 }
@@ -119,7 +119,7 @@ impl Pso {
             c1: attraction,
             c2: attraction,
             velocity_limit: 0.5,
-            accept: PsoAcceptance::Always,
+            accept: ParticleAcceptance::Always,
             walls: Walls::Absorbing,
         }
     }
@@ -196,7 +196,7 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
             population.members.evaluate_from(0, evaluator)?;
         }
         memory.update(population);
-        if self.accept == PsoAcceptance::Improving {
+        if self.accept == ParticleAcceptance::Improving {
             population.members.points.copy_from_slice(&memory.members.points);
         }
         Ok(())
