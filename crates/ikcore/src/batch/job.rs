@@ -12,8 +12,8 @@ use std::time::Duration;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
+use super::batch_options::BatchOptions;
 use super::monitors::{SharedMonitor, StopFlag};
-use super::options::BatchOptions;
 use super::results::{Batch, BatchItem};
 use super::targets::Targets;
 use crate::error::{Error, Result};

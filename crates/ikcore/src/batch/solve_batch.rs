@@ -1,7 +1,7 @@
 //! Solves a batch, in the calling thread or on a pool.
 
+use super::batch_options::{BatchOptions, OnInvalid};
 use super::job::Job;
-use super::options::{BatchOptions, OnInvalid};
 use super::pool;
 use super::results::Batch;
 use super::targets::Targets;

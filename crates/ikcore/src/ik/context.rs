@@ -1,6 +1,6 @@
 //! What all targets of a call have in common, validated once.
 
-use super::options::{Prefer, SolveOptions};
+use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::objective::{Bounds, Objective, Point};

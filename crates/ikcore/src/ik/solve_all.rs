@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::attempt::Attempt;
 use super::context::SolveContext;
-use super::options::SolveOptions;
 use super::solution::Solution;
+use super::solve_options::SolveOptions;
 use super::whole_turns::bring_near;
 use crate::error::{Error, Result, require_positive};
 use crate::math::vector::distance;
