@@ -83,7 +83,7 @@ def test_the_name_tpbso_means_its_defaults() -> None:
     assert bik.TPBSO() == bik.TPBSO(elbows=(1, 1), solver=None)
     assert repr(bik.TPBSO()) == "TPBSO(elbows=(1, 1), solver=None)"
     assert bik.TPBSO(solver=bik.PSO()) != bik.TPBSO()
-    with pytest.raises(bik.InvalidInputError, match=r"^TPBSO knows no derivative: solver must be BAS, "):
+    with pytest.raises(bik.InvalidInputError, match=r"^TPBSO has no derivatives: solver must be BAS, "):
         bik.TPBSO(solver=bik.LevenbergMarquardt())  # type: ignore[arg-type]
 
 
@@ -266,6 +266,15 @@ def test_the_command_animates_a_plan_around_an_obstacle(tmp_path: Path, monkeypa
     assert "smallest clearance [m]" in result.stdout
     assert (tmp_path / "plan.gif").read_bytes().startswith(b"GIF")
     assert "--animation writes a file" in run("point-to-point", "planar5", *ends, "--animation").stderr
+
+
+def test_the_command_gives_tpbso_its_search() -> None:
+    ends = ("--start", "3,0,0", "--end", "2,2,0", "--solver", "pso")
+    result = run("point-to-point", "planar5", *ends, *QUICKLY, "--json")
+    assert json.loads(result.stdout)["evaluations"] <= 3000
+    refused = run("point-to-point", "planar5", *ends)
+    assert refused.exit_code == 2
+    assert "--solver is the search of --method tpbso; minmax has its own: leave it out" in refused.stderr
 
 
 def test_the_command_plans_along_a_path() -> None:

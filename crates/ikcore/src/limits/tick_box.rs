@@ -10,7 +10,7 @@ use crate::wording::words;
 /// Where in a tick its limit is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum LimitAt {
-    /// The smallest limit over the tick: never broken, at no instant.
+    /// The smallest limit over the tick, so that it holds at every instant.
     #[default]
     Interval,
     /// The limit at the tick's beginning, as Cheng et al. (2020) take it.
@@ -45,7 +45,7 @@ pub(crate) struct TickBox {
     lasting: bool,
 }
 
-/// What of one kind of limits has to be found anew for every tick.
+/// Which values of one kind of limit change from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Varying {
     /// Nothing: numbers.

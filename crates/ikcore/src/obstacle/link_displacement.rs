@@ -1,4 +1,4 @@
-//! How far the capsule of a link can move while the joints move by so much.
+//! Bound on the motion of a link's capsule while the joints move by a given amount.
 
 use nalgebra::Vector3;
 

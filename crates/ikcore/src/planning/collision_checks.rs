@@ -1,5 +1,4 @@
-//! What all planners among obstacles share: the robot's body, the distance that is kept, and trajectories as motions that
-//! can be certified.
+//! Shared by the planners among obstacles: the robot's shape, collision errors, and trajectories as certifiable motions.
 
 use super::planar_arm::PlanarArm;
 use super::violation::Violation;
@@ -10,7 +9,7 @@ use crate::robot::Robot;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
 use crate::wording::number;
 
-/// What is kept beyond the margin at the ends and on straight lines, so that their timed motion can be certified too (m).
+/// Distance added to the margin at ends and on straight lines (m), so that their timed motion can be certified too.
 pub(super) const RESERVE: f64 = 5e-5;
 
 /// Whether there is anything that `robot` could touch: an obstacle, or itself where its shape is known.

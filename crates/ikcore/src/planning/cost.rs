@@ -1,4 +1,4 @@
-//! What a plan minimises.
+//! The objective of a plan.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,22 +12,22 @@ use crate::wording::words;
 /// Chords that each piece of the tip's curve is measured by; on smooth pieces good to six digits.
 const CHORDS: usize = 256;
 
-/// What a plan minimises (Wang et al. 2019, eq. 8-10).
+/// Quantity that a plan minimises (Wang et al. 2019, eq. 8-10).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Cost {
-    /// How long the motion takes (s): eq. (8) and (19).
+    /// Duration of the motion (s): eq. (8) and (19).
     #[default]
     Time,
-    /// How far all joints together travel (rad, m): eq. (9) and (20).
+    /// Distance that all joints travel, summed (rad, m): eq. (9) and (20).
     JointTravel,
-    /// How far the tip travels (m): eq. (10).
+    /// Distance that the tip travels (m): eq. (10).
     TipTravel,
 }
 
 words!("objective": Cost { Time => "time", JointTravel => "joint_travel", TipTravel => "tip_travel" });
 
 impl Cost {
-    /// What it measures, in words.
+    /// Its name in messages.
     pub fn noun(self) -> &'static str {
         match self {
             Self::Time => "a duration",
@@ -36,7 +36,7 @@ impl Cost {
         }
     }
 
-    /// Its unit. (Joints that slide add their metres to the radians of the others.)
+    /// Its unit. The metres of prismatic joints are added to the radians of the others.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Time => "s",
@@ -71,7 +71,7 @@ fn chain_length(robot: &Robot) -> f64 {
     poses.windows(2).map(|ends| (ends[1].translation.vector - ends[0].translation.vector).norm()).sum()
 }
 
-/// How far all joints together travel: exact, from turning point to turning point.
+/// Returns the joint travel: exact, from turning point to turning point.
 fn joint_travel(trajectory: &Trajectory) -> f64 {
     let (knots, n) = (trajectory.knots(), trajectory.joints().len());
     let of_piece = |(i, polynomial): (usize, &Coefficients)| {
@@ -89,7 +89,7 @@ fn joint_travel(trajectory: &Trajectory) -> f64 {
     trajectory.coefficients().iter().enumerate().map(of_piece).sum()
 }
 
-/// How far the tip travels, by chords.
+/// Returns the tip travel, measured by chords.
 fn tip_travel(robot: &Robot, trajectory: &Trajectory) -> f64 {
     let n = trajectory.joints().len();
     let pieces = trajectory.knots().windows(2).zip(trajectory.coefficients().chunks(n));

@@ -142,3 +142,35 @@ fn peak(from: f64, to: f64, value: impl Fn(f64) -> f64) -> Largest {
     }
     at(0.5 * (lower + upper)).or_larger(best)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::Waypoints;
+
+    #[test]
+    fn the_largest_deviation_is_that_of_dense_samples() {
+        let robot = Robot::planar(&[1.0, 1.0]).unwrap();
+        let (from, to) = ([0.2, 1.1], [0.9, 0.3]);
+        let points = Waypoints::new(vec![robot.tip_position(&from), robot.tip_position(&to)], None).unwrap();
+        let tip_path = TipPath::through(&points).unwrap();
+        let configurations =
+            |share: f64, q: &mut [f64]| (0..2).for_each(|j| q[j] = from[j] + share * (to[j] - from[j]));
+        let deviation = TipDeviation { robot: &robot, tip_path: &tip_path, configurations };
+        let mut dense: f64 = 0.0;
+        for i in 0..=4000 {
+            let share = f64::from(i) / 4000.0;
+            let mut q = [0.0; 2];
+            configurations(share, &mut q);
+            let distance = tip_path.distance(robot.tip_position(&q), 0.0, 1.0);
+            assert!(distance <= deviation.bound(share) + 1e-12);
+            dense = dense.max(distance);
+        }
+        let LargestDeviation { distance, angle } = deviation.largest(&[0.0, 0.3, 1.0]);
+        assert!(dense > 0.01 && (distance.value - dense).abs() < 1e-3 * dense, "{} for {dense}", distance.value);
+        assert_eq!(angle.value, 0.0);
+        let found: Vec<Violation> = LargestDeviation { distance, angle }.violations(&tip_path, 0.5 * dense).collect();
+        assert_eq!(found[0].what, "distance of the tip from the path between points 0 and 1");
+        assert_eq!((found.len(), found[0].bound), (1, 0.5 * dense));
+    }
+}

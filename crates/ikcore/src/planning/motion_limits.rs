@@ -1,4 +1,4 @@
-//! Constant limits of each joint, as planners keep them.
+//! Constant limits of each joint, for planners.
 
 use std::f64::consts::PI;
 
@@ -67,7 +67,7 @@ impl MotionLimits {
         self.joints.iter().map(|(name, _)| name.clone()).collect()
     }
 
-    /// Positions of a joint that a search may use (rad, m): its limits, half a turn to either side where there are none.
+    /// Range of positions that a search may use for a joint (rad, m): its limits, or half a turn to either side without limits.
     pub(crate) fn finite_range(&self, joint: usize) -> (f64, f64) {
         sampling_range::finite(self.lower[joint], self.upper[joint], PI)
     }
@@ -105,7 +105,7 @@ impl MotionLimits {
         }
     }
 
-    /// What `trajectory` breaks, by the exact extremes of its polynomials.
+    /// Returns the limits that `trajectory` breaks, by the exact extremes of its polynomials.
     pub(crate) fn violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
         let (velocity, acceleration) = (trajectory.max_velocity(), trajectory.max_acceleration());
         let mut found = vec![];

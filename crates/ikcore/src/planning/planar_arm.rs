@@ -55,7 +55,7 @@ pub(super) const ELBOW_LINKS: usize = 2;
 
 const HOLE: &str = "inside the hole that the arm leaves about its base";
 
-/// What a robot may differ from a polygon of links (m).
+/// Largest deviation of a robot from a polygon of links (m).
 const AGREEMENT: f64 = 1e-9;
 
 impl PlanarArm {
@@ -241,7 +241,7 @@ impl PlanarArm {
     }
 }
 
-/// Where the tip of a planar arm is to be.
+/// Target of a planar arm's tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarTarget {
     /// In the plane (m).

@@ -1,4 +1,4 @@
-//! What the planners are asked: method, objective, limits and budget.
+//! Options of the planners: method, objective, limits and budget.
 
 use std::str::FromStr;
 
@@ -74,7 +74,7 @@ impl FromStr for AlongPathMethod {
 pub struct PointToPointOptions {
     /// The planner.
     pub method: PointToPointMethod,
-    /// What to minimise.
+    /// Quantity to minimise.
     pub objective: Cost,
     /// Obstacles to avoid. A robot that has capsules avoids itself too.
     pub obstacles: Vec<Obstacle>,
@@ -110,7 +110,7 @@ impl PointToPointOptions {
 pub struct AlongPathOptions {
     /// The planner.
     pub method: AlongPathMethod,
-    /// What to minimise.
+    /// Quantity to minimise.
     pub objective: Cost,
     /// Configuration to start from (n,); None: the planner's choice.
     pub start: Option<Vec<f64>>,

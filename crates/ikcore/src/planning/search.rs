@@ -1,4 +1,4 @@
-//! Any solver on the cost of a plan.
+//! Search for the decision vector of a plan, by any derivative-free solver.
 
 use std::cell::Cell;
 
@@ -8,21 +8,21 @@ use crate::planning::plan::Improvement;
 use crate::rng;
 use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Monitor, Status, Stop};
 
-/// What searches, and for how long.
+/// A solver, its budget and its seed.
 pub(super) struct Search {
     /// The algorithm.
     pub solver: AnySolver<DerivativeFree>,
-    /// Its budgets.
+    /// Its budget.
     pub stop: Stop,
-    /// Of the random draws.
+    /// Seed of the random draws.
     pub seed: u64,
 }
 
-/// What a search found.
+/// Result of a search.
 pub(super) struct Found {
     /// The best decision vector.
     pub x: Point,
-    /// How it came to it.
+    /// Improvements, in the order of evaluations.
     pub history: Vec<Improvement>,
     /// Evaluations.
     pub evaluations: usize,
@@ -30,7 +30,7 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// How a plan ends that keeps everything, or does not.
+    /// Returns the status of a plan that keeps all limits, or does not.
     pub(super) fn status(&self, keeps_everything: bool) -> Status {
         match self.status {
             Status::Interrupted => Status::Interrupted,

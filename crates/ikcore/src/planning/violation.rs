@@ -10,11 +10,11 @@ use crate::wording::number;
 /// A bound that a trajectory breaks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Violation {
-    /// What breaks it, such as "velocity of joint 'elbow'".
+    /// Quantity that breaks the bound, for example "velocity of joint 'elbow'".
     pub what: String,
-    /// How far it goes, in `unit`.
+    /// Its extreme value, in `unit`.
     pub value: f64,
-    /// How far it may go, in `unit`.
+    /// Its bound, in `unit`.
     pub bound: f64,
     /// "rad/s" and so on.
     pub unit: Cow<'static, str>,

@@ -142,7 +142,7 @@ impl Pass<'_> {
 /// launch from the one before would give; on a fine grid that is as good as nothing.
 const LAUNCH_SHARE: f64 = 0.1;
 
-/// Lines that meet to so many digits of their offsets do meet.
+/// Relative tolerance for intersecting lines.
 const ROUNDING: f64 = 1e-12;
 
 /// x at the next grid point, x + 2 u length, must be in its set.

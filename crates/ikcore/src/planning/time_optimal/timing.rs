@@ -65,7 +65,7 @@ pub(crate) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOpti
     }
 }
 
-/// How long the fastest motion from rest to rest on a grid of about so many segments takes (s): quick, for comparing many
+/// Duration (s) of the fastest motion from rest to rest on a grid of about `segments` segments: quick, for comparing many
 /// paths. Position limits are left to the caller.
 ///
 /// # Errors

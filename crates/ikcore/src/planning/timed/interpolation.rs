@@ -18,7 +18,7 @@ pub(super) struct JointWaypoints {
     pub rows: Vec<f64>,
 }
 
-/// What the joints do at the corners of a path.
+/// Behaviour of the joints at the corners of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Corners {
     /// One spline leads through them: it rounds each corner, the less the denser its knots are.
@@ -44,7 +44,7 @@ pub(super) struct Interpolation<'a> {
     pub robot: &'a Robot,
     /// The path.
     pub tip_path: &'a TipPath,
-    /// What it does at corners.
+    /// Behaviour at corners.
     pub corners: Corners,
 }
 

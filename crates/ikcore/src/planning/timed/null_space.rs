@@ -1,11 +1,11 @@
-//! What moves the joints and leaves the tip where it is.
+//! Null space of the task's Jacobian: joint motions that leave the tip in place.
 
 use nalgebra::DMatrix;
 
 /// Singular values below this share of the largest count as zero: a joint motion that leaves the tip where it is.
 const NULL: f64 = 1e-6;
 
-/// An orthonormal basis of what the Jacobian maps to zero.
+/// Returns an orthonormal basis of the Jacobian's null space.
 pub(super) fn null_space(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
     let gram = jacobian.transpose() * jacobian;
     let eigen = gram.symmetric_eigen();

@@ -1,4 +1,4 @@
-//! The configurations in which an arm passes the points of a path, and what may be chosen of them.
+//! The configurations in which an arm passes the points of a path, and the free offsets along its self-motion.
 //!
 //! A nominal motion follows the path with the least joint motion from point to point. At a few nodes along it, offsets in
 //! the null space of the task's Jacobian are free; between nodes they follow natural splines. The nominal configurations
@@ -38,12 +38,12 @@ pub(super) struct RedundantMotion<'a> {
     robot: &'a Robot,
     tip_path: &'a TipPath,
     bounds: Bounds,
-    /// What the tip reaches at the nominal motion's knots.
+    /// Targets of the tip at the nominal motion's knots.
     targets: Vec<Target>,
     nominal: JointWaypoints,
     /// Directions of the self-motion at each node: a column each.
     bases: Vec<DMatrix<f64>>,
-    /// What the offset at a node contributes at a point: point by point, node by node.
+    /// Weight of each node's offset at each point: point by point, node by node.
     weights: Vec<f64>,
     /// Whether the first configuration is given, and stays as it is.
     starts_as_given: bool,

@@ -21,7 +21,7 @@ pub(super) struct TimedCost<'a> {
     pub limits: &'a MotionLimits,
     /// The same for its timing.
     pub timing_limits: &'a TimingLimits,
-    /// What is minimised.
+    /// Quantity to minimise.
     pub objective: Cost,
     /// How far the tip may be from the path (m, rad).
     pub accuracy: f64,
@@ -39,7 +39,7 @@ const SEGMENTS_A_PIECE: usize = 2;
 /// may move it by as much.
 const MARGIN: f64 = 5e-4;
 
-/// What a violation costs, as a multiple of the scale, where it is as large as its limit.
+/// Cost of a violation as large as its limit, as a multiple of the scale.
 const BROKEN: f64 = 10.0;
 
 impl TimedCost<'_> {

@@ -9,7 +9,7 @@ use crate::planning::violation::Violation;
 use crate::robot::Robot;
 use crate::trajectory::Trajectory;
 
-/// What a motion of a robot may not touch.
+/// Obstacles and links that a motion must stay clear of.
 #[derive(Debug, Clone)]
 pub(super) struct CollisionTest<'a> {
     scene: Scene<'a>,
@@ -27,12 +27,12 @@ struct UnitDisc {
     semi_axes: [f64; 2],
 }
 
-/// What a search keeps beyond the margin, as a share of the arm's length, because the arm may come nearer between two samples.
+/// Distance that the search adds to the margin, as a share of the arm's length, because the arm may come nearer between two samples.
 /// Without it 9 to 20 of 20 plans graze an obstacle that their samples miss.
 const ALLOWANCE: f64 = 0.005;
 
 impl<'a> CollisionTest<'a> {
-    /// What `robot`, seen as `lines` where it has no other shape, may not touch of the planner's `options`.
+    /// The constraint of the planner's `options` for `robot`, or for its `lines` where it has no other shape.
     ///
     /// # Errors
     /// [`Error::NoCapsules`](crate::Error::NoCapsules), [`Error::InvalidObstacle`](crate::Error::InvalidObstacle),

@@ -30,10 +30,10 @@ pub(super) enum EndConfigurations {
     OneOf(Vec<Vec<f64>>),
 }
 
-/// Inverse kinematics from so many random starts makes the list of [`EndConfigurations::OneOf`].
+/// Random starts of the inverse kinematics that fills [`EndConfigurations::OneOf`].
 const STARTS: usize = 48;
 
-/// A target that is not reached from so many of them is taken to be out of reach: each is a search from many starts of its own.
+/// Failed starts after which a target counts as out of reach; each of them is itself a multi-start search.
 const FUTILE_STARTS: usize = 3;
 
 /// Solutions nearer to each other than this in every joint count as one (rad or m).

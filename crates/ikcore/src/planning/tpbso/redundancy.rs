@@ -156,3 +156,30 @@ fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<PlanarTarget> {
 pub(super) fn nearest_turn(angle: f64, other: f64) -> f64 {
     angle + TAU * ((other - angle) / TAU).round()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Robot;
+
+    #[test]
+    fn shares_of_a_configuration_lead_back_to_it() {
+        let robot = Robot::planar(&[1.0, 0.8, 0.6, 0.4]).unwrap();
+        let arm = PlanarArm::of(&robot).unwrap();
+        let q = [0.3, 0.7, -0.4, 0.5];
+        let tip = robot.tip_position(&q);
+        let points = Waypoints::new(vec![tip, [tip[0] - 0.1, tip[1], tip[2]]], None).unwrap();
+        let elbow = arm.elbow(&q);
+        let redundancy = Redundancy::new(arm, &points, elbow).unwrap();
+        let nodes: Vec<f64> = redundancy.shares_of(&q).unwrap().into_iter().flat_map(|share| [share; NODES]).collect();
+        let mut curvatures = vec![1.0; nodes.len()];
+        redundancy.curvatures(&nodes, &mut curvatures);
+        let mut found = [0.0; 4];
+        let free = redundancy.configuration(0, &nodes, &curvatures, &mut found).unwrap();
+        assert!(q.iter().zip(found).all(|(q, found)| (q - found).abs() < 1e-9), "{found:?}");
+        assert_eq!(free.len(), redundancy.links());
+        assert!(free.iter().all(|free| free.lowest <= free.value && free.value <= free.highest), "{free:?}");
+        let error = redundancy.shares_of(&[0.0; 4]).unwrap_err().to_string();
+        assert!(error.contains("start_q puts the tip"), "{error}");
+    }
+}

@@ -17,7 +17,7 @@ pub(super) struct RestSegment {
     duration: f64,
 }
 
-/// What a joint passes between the two segments.
+/// Position and velocity of a joint where the two segments meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ViaPoint {
     /// theta_m (rad or m).

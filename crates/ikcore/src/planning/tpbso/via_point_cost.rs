@@ -166,7 +166,7 @@ impl<'a> ViaPointCost<'a> {
         travel
     }
 
-    /// Hands the configurations at [`SAMPLES`] moments of each segment to `visit`, in order.
+    /// Calls `visit` with the configurations at [`SAMPLES`] instants of each segment, in order.
     fn samples(&self, segments: &[[RestSegment; MAX_DOF]; 2], decision: &Decision<'_>, mut visit: impl FnMut(&[f64])) {
         let n = self.robot.dof();
         let mut q = [0.0; MAX_DOF];
@@ -195,5 +195,34 @@ impl Objective for ViaPointCost<'_> {
     /// Never solved: there is no cost that a search could stop at.
     fn evaluate(&mut self, x: &[f64]) -> Score {
         Score { value: self.value(x), solved: false }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::{Field, Limits, Profile};
+
+    #[test]
+    fn the_cost_is_that_of_the_trajectory_until_it_breaks_a_limit() {
+        let robot = Robot::planar(&[1.0, 1.0]).unwrap();
+        let all = |value: f64| vec![Profile::Constant(value)];
+        let limits = Limits::of(&robot).replace(Field::Velocity, all(1.0)).unwrap();
+        let limits = limits.replace(Field::Acceleration, all(2.0)).unwrap();
+        let limits = MotionLimits::new(&robot, Some(&limits), "this test").unwrap();
+        for objective in [Cost::Time, Cost::JointTravel] {
+            let ends = [vec![0.0, 0.0], vec![0.5, -0.4]].map(EndConfigurations::Fixed);
+            let mut cost = ViaPointCost::new(&robot, &limits, ends, objective, None);
+            assert_eq!((cost.dimension(), cost.bounds().lower().len()), (6, 6));
+            let slow = [0.25, -0.2, 0.1, -0.1, 3.0, 3.0];
+            let motion = cost.trajectory(&slow).unwrap().unwrap();
+            assert_eq!(limits.violations(&motion), []);
+            let (value, exact) = (cost.evaluate(&slow).value, objective.of(&robot, &motion));
+            assert!((value - exact).abs() < 1e-9, "{objective}: {value} for {exact}");
+            let hasty = [0.25, -0.2, 0.1, -0.1, 0.2, 0.2];
+            assert!(!limits.violations(&cost.trajectory(&hasty).unwrap().unwrap()).is_empty());
+            let penalty = BROKEN_LIMIT * objective.scale(&robot, &limits);
+            assert!(cost.evaluate(&hasty).value > penalty, "{objective}");
+        }
     }
 }

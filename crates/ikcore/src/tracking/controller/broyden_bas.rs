@@ -19,13 +19,13 @@ use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
 /// A measurement that misses the prediction by more than this share of the predicted motion is sent for again.
 const SURPRISING: f64 = 1.0;
 
-/// An error of so many noise levels is hardly told from none: another step would follow the noise.
+/// An error below this many noise levels cannot be told from noise: another step would follow the noise.
 const NEAR_ENOUGH: f64 = 1.25;
 
 /// Steps in a row that came no nearer, before antennae are put out again: they shake the tool.
 const FAILED_STEPS: usize = 2;
 
-/// What the controller remembers.
+/// State of the controller between measurements.
 #[derive(Debug)]
 pub(super) struct BroydenBasState {
     options: BroydenBas,
@@ -37,7 +37,7 @@ pub(super) struct BroydenBasState {
     /// The last command, and what it was for.
     sent: Point,
     purpose: Purpose,
-    /// What the next command is to be for.
+    /// Purpose of the next command.
     next: Purpose,
     damping: f64,
     /// Steps in a row that left more than half of the error, and steps in a row that came no nearer at all.
@@ -52,7 +52,7 @@ pub(super) struct BroydenBasState {
     measurements: usize,
 }
 
-/// What a command is for.
+/// Purpose of a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
     /// To measure at the start again, which was at `first` before, and then at `second` (m).

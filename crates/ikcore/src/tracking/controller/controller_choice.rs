@@ -8,12 +8,12 @@ use crate::error::Result;
 use crate::rng::LazyRng;
 use crate::solver::BroydenBas;
 
-/// What a caller chooses.
+/// A controller and its options.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Controller {
-    /// Secants.
+    /// Carries a Jacobian estimate along the path.
     BroydenBas(BroydenBas),
-    /// Signs.
+    /// Moves by the sign of each measured change.
     Znnbas(Znnbas),
 }
 

@@ -1,8 +1,8 @@
-//! How noisy a sensor is, as far as repeated measurements tell.
+//! Noise level of a sensor, estimated from repeated measurements.
 
 use crate::math::vector::distance;
 
-/// What noise explains: distances up to this many noise levels.
+/// Distances up to this many noise levels may be noise alone.
 const EXPLAINED: f64 = 3.0;
 
 /// The root mean square distance of two measurements, over the mean one of the nearest two of three; noise is Gaussian.

@@ -29,12 +29,12 @@ pub enum Antenna {
     },
 }
 
-/// What a measurement is compared with.
+/// The measurement that a new one is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Delay {
-    /// The measurement so many ticks before: eq. (13).
+    /// The one `delay_steps` ticks before: eq. (13).
     Sliding,
-    /// One that is taken anew every so many ticks: lines 17 to 20 of Algorithm 1.
+    /// One renewed every `delay_steps` ticks: lines 17 to 20 of Algorithm 1.
     Held,
 }
 
@@ -57,13 +57,13 @@ words!("accept": UpdateRule { Always => "always", Improving => "improving" });
 pub struct Znnbas {
     /// k of eq. (14) (1/s), positive to converge. A gain times dt above 0.3 overshoots.
     pub gain: f64,
-    /// Ticks by which the sensor is late: a measurement is held against the command and the target of so many ticks before.
+    /// Delay of the sensor in ticks: a measurement belongs to the command and target of that many ticks before.
     pub sensor_delay: usize,
     /// lambda of eq. (10).
     pub antenna: Antenna,
     /// alpha of eq. (13), in ticks; gain times delay should stay below 1.
     pub delay_steps: usize,
-    /// What a measurement is compared with.
+    /// The measurement that a new one is compared with.
     pub delay: Delay,
     /// When theta moves.
     pub accept: UpdateRule,

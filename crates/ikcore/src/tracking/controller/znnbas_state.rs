@@ -10,7 +10,7 @@ use crate::rng::LazyRng;
 /// The longest adaptive antenna (rad).
 const LONGEST: f64 = 0.5;
 
-/// What the controller remembers from tick to tick.
+/// State of the controller between ticks.
 #[derive(Debug)]
 pub(super) struct ZnnbasState {
     /// k dt.
@@ -24,7 +24,7 @@ pub(super) struct ZnnbasState {
     standing: [f64; 3],
     /// theta', where the arm was sent.
     sent: Point,
-    /// What the last measurement said: where, of which command, and h.
+    /// The last measurement: position, its command, and h.
     position: [f64; 3],
     answered: Point,
     value: f64,
@@ -32,7 +32,7 @@ pub(super) struct ZnnbasState {
     past: Past,
 }
 
-/// Commands that a late sensor has not answered yet, with their targets; the slots in turn.
+/// Commands that a late sensor has not answered yet, with their targets; a ring buffer.
 #[derive(Debug)]
 struct OnTheWay {
     sent: Vec<f64>,
@@ -40,7 +40,7 @@ struct OnTheWay {
     ticks: usize,
 }
 
-/// The measurements of the last so many ticks, the slots in turn.
+/// The measurements of the last `delay_steps` ticks, a ring buffer.
 #[derive(Debug)]
 struct Past {
     sent: Vec<f64>,

@@ -22,9 +22,9 @@ const NEAR: f64 = 0.5;
 
 /// The displacement of the joints to a target that the arm is behind (n,) (rad, m).
 pub(super) struct Approach {
-    /// What the joints have to catch up with.
+    /// Displacement that the joints still have to catch up.
     catch_up: Point,
-    /// What they do beside that, to keep up with the target's own motion.
+    /// Displacement that follows the target's own motion.
     keep_up: Point,
     /// The target is far where the tick can cover less than this share of the displacement.
     far_below: f64,

@@ -23,7 +23,7 @@ use crate::task::Assessment;
 /// Steps by the model in one tick; they converge quadratically, so that more would not help.
 const MOST_STEPS: usize = 10;
 
-/// What the rule remembers from tick to tick. Boxed, so that handing a Jacobian on is handing on a pointer.
+/// State of the rule between ticks. Boxed, so that passing a Jacobian on copies a pointer.
 #[derive(Debug, Default)]
 pub(crate) struct MidStepState {
     /// At the accepted configuration, once there was a tick.

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::robot::Robot;
 use crate::solver::AnySolver;
 
-/// What runs in every tick.
+/// The rule that runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum TickRule {
     /// Steps by the model: one evaluation of kinematics and Jacobian is enough for most ticks.

@@ -105,7 +105,7 @@ impl WeightedPseudoInverse {
     }
 }
 
-/// What a tick works with; nothing is remembered from tick to tick.
+/// Scratch of a tick; nothing is kept from tick to tick.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
     linearization: Box<Linearization>,
