@@ -2042,7 +2042,7 @@ class Box(Obstacle):
 
 @final
 class Capsule(Obstacle):
-    """A capsule: all points within the radius (m) of the segment from a (3,) to b (3,)."""
+    """A capsule: all points within `radius` (m) of the segment from a (3,) to b (3,)."""
 
     def __new__(cls, a: ArrayLike, b: ArrayLike, radius: float) -> Capsule: ...
     @property
@@ -2138,13 +2138,11 @@ def plan_point_to_point(
         start_q, end_q: joint positions (n,) instead.
         limits: position, velocity and acceleration limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
-            "tpbso": polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
+            "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
         objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
         obstacles: obstacles of `bik.obstacles` that the robot must not touch. A robot with capsules must not touch itself
             either.
         margin: least distance from obstacles and between links (m); None: 1 mm.
-        elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1; None: (1, 1).
-        solver: solver of the search; None: the method's own.
         stop: budgets; None: the method's own.
         seed: seed of the random draws; the same seed gives the same bits.
         progress: True shows a progress bar; a callable is called with (done, total).
@@ -2220,13 +2218,12 @@ def plan_along_path(
         path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
         start_q: joint positions (n,) at the start; None: chosen by the planner.
         limits: position, velocity and acceleration limits; None: the robot's.
-        method: "timed": optimises redundancy and timing together; "tpbso": redundancy by a beetle swarm, uniform timing,
-            splines through every second point (Wang et al. 2019).
+        method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
+            uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
         objective: quantity to minimise, "time" or "joint_travel".
-        elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it; None: 1.
         accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
             decides how many points of the path the motion passes. None: a thousandth of the path's extent; for "tpbso" 4 %.
-        solver: solver of the search; None: the method's own.
+        solver: solver of the search of "timed"; None: differential evolution. `TPBSO` has a solver of its own.
         stop: budgets; None: the method's own.
         seed: seed of the random draws; the same seed gives the same bits.
         progress: True shows a progress bar; a callable is called with (done, total).
@@ -2242,18 +2239,29 @@ def plan_along_path(
 
 @final
 class TPBSO:
+    """Trajectory planning by beetle swarm optimisation (Wang et al. 2019), as `method=` of `plan_point_to_point` and
+    `plan_along_path`. The string "tpbso" stands for `TPBSO()`.
+
+    Args:
+        elbows: sign of the second joint's angle at start and end of a planar arm's motion, 1 or -1. At an end given by
+            start_q or end_q, those joint positions decide. Along a path both must be equal.
+        solver: solver of the search, a derivative-free one; None: the published beetle swarm.
+    """
+
     def __new__(
         cls, *, elbows: Sequence[int] = (1, 1), solver: _DerivativeFree | MultiStart | None = None
     ) -> TPBSO: ...
     @property
-    def elbows(self) -> tuple[int, int]: ...
+    def elbows(self) -> tuple[int, int]:
+        """Signs of the second joint's angle at start and end."""
     @property
-    def solver(self) -> _DerivativeFree | MultiStart | None: ...
+    def solver(self) -> _DerivativeFree | MultiStart | None:
+        """Solver of the search; None: the published beetle swarm."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Plan:
-    """A planned motion, and what became of the search for it."""
+    """A planned motion, and how its search ended."""
 
     @property
     def success(self) -> bool:
