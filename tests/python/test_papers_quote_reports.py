@@ -239,7 +239,103 @@ YUAN_QUOTES = [
     ),
 ]
 
-QUOTES = CHENG_QUOTES + YUAN_QUOTES
+# --- Khan et al. 2022 ---------------------------------------------------------------------------
+
+KHAN, KHAN_PAGE = "khan2022", "docs/papers/khan2022.md"
+
+
+def cells(*places: tuple[int, str], scale: float = 1.0) -> Callable[[Rows], list[float]]:
+    """Of rows, the numbers in columns."""
+    return lambda table: [scale * float(table[row][column]) for row, column in places]
+
+
+def khan_quote(text: str, table: str, values: Callable[[Rows], Iterable[float]], page: str = KHAN_PAGE) -> Quote:
+    return Quote(page=page, text=text, report=KHAN, table=table, values=values)
+
+
+ARRIVAL, SOONER = "below 10⁻³ [s]", "h below 10⁻² [s]"
+AT_STATE, WHERE_SENT = "h(θ), 40 to 50 s [m²]", "h(θ′), where the arm is [m²]"
+OFF, CIRCLE = "joints off, last round [rad]", "circle [mm]"
+ZNNBAS_OFF, BROYDEN_OFF = "ZNNBAS, eq. (16) [mm]", "BroydenBAS [mm]"
+NOISY_OFF = "ZNNBAS, eq. (16), k = 100 [mm]"
+
+
+def in_method(row: int) -> Callable[[Rows], list[float]]:
+    return cells((row, CIRCLE))
+
+
+def after_ten_rounds(row: int) -> Callable[[Rows], list[float]]:
+    return cells((row, OFF))
+
+
+KHAN_QUOTES = [
+    khan_quote("after 5.6 s without limits, 11.9 s", "figures_2_and_3", cells((0, ARRIVAL), (1, ARRIVAL))),
+    khan_quote("after 4.8 s and 6.4 s", "figures_2_and_3", cells((0, SOONER), (1, SOONER))),
+    khan_quote("is 8.7e-5 m", "figures_2_and_3", cells((0, f"{AT_STATE} mean"))),
+    khan_quote("3.9e-3 m", "figures_2_and_3", cells((0, f"{WHERE_SENT} mean"))),
+    khan_quote("3.0 s with ticks of 10 ms, 4.7 s with ticks of 1 ms", "figures_2_and_3",
+               lambda table: [float(table[i][c]) for i in (3, 4) for c in (ARRIVAL, "tick [ms]")]),
+    khan_quote("rises in 30 % of", "theorem_1", cells((0, "ticks in which h(θ) rises, still target [%]"))),
+    khan_quote("is 2.4e-3 m", "definition_2", cells((0, "to 50 s [m²]"))),
+    khan_quote("2.1e-3 m", "definition_2", cells((0, "to 200 s [m²]"))),
+    khan_quote("h is 7.5e-6 m", "both_antennae", cells((10, AT_STATE))),
+    khan_quote("leaves 10.0e-4 m", "both_antennae", cells((6, AT_STATE))),
+    khan_quote("the constant antenna 0.9e-4 m", "both_antennae", cells((3, AT_STATE))),
+    khan_quote("0.56 to 3.05 mm", "rounds", cells((0, "tool off, first round [mm]"), (0, "tool off, last round [mm]"))),
+    khan_quote("0.62 rad off after ten rounds", "rounds", after_ten_rounds(0)),
+    khan_quote("| 0.16 mm |", "methods", in_method(0)),
+    khan_quote("| 0.0012 mm |", "methods", in_method(1)),
+    khan_quote("| 0.0028 mm |", "methods", in_method(2)),
+    khan_quote("| 64 mm |", "methods", in_method(3)),
+    khan_quote("| 2.8 mm |", "methods", in_method(4)),
+    khan_quote("| 0.00051 rad |", "rounds", after_ten_rounds(5)),
+    khan_quote("| 0.78 rad |", "rounds", after_ten_rounds(6)),
+    khan_quote("| 0.63 rad |", "rounds", after_ten_rounds(7)),
+    khan_quote("with 1 mm on each axis it is 2.7 mm off, ZNNBAS with eq. (16) 8.9 mm", "sensor_errors",
+               lambda table: [1.0, float(table[3][BROYDEN_OFF]), 16, float(table[3][NOISY_OFF])]),
+    khan_quote("with 3 mm it is 16.8 mm off, ZNNBAS 14.0 mm", "sensor_errors",
+               lambda table: [3.0, float(table[4][BROYDEN_OFF]), float(table[4][NOISY_OFF])]),
+    khan_quote("stays within 2.5 mm", "servos", cells((3, ZNNBAS_OFF))),
+    khan_quote("0.14 mm there, 0.0003 mm at 50 ms", "servos",
+               cells((2, BROYDEN_OFF), (4, BROYDEN_OFF), (4, "tick [ms]"))),
+    khan_quote("its tool shakes by 6 cm", "figures_2_and_3",
+               lambda table: [100 * float(table[0][f"{WHERE_SENT} mean"]) ** 0.5], "README.md"),
+]  # fmt: skip
+
+
+# --- Trajectory tracking by PSO -----------------------------------------------------------------
+
+PSO, PSO_PAGE = "pso-tracking", "docs/papers/pso_tracking.md"
+IN_PATH = "in 2 s [rad] measured"
+
+
+def pso_quote(text: str, table: str, values: Callable[[Rows], Iterable[float]], page: str = PSO_PAGE) -> Quote:
+    return Quote(page=page, text=text, report=PSO, table=table, values=values)
+
+
+def milliradians(row: int) -> Callable[[Rows], list[float]]:
+    return cells((row, IN_PATH), scale=1e3)
+
+
+def found_in(*chosen: int) -> Callable[[Rows], list[float]]:
+    return lambda table: [float(n) for row in chosen for n in table[row]["found, random poses"].split(" of ")]
+
+
+PSO_QUOTES = [
+    pso_quote("0.83e-4 m at 10 ms, 0.08e-4 m at 1 ms", "pseudo_inverse", lambda table: [
+        float(table[3]["largest tip error [m] measured"]), 10, float(table[4]["largest tip error [m] measured"]), 1]),
+    pso_quote("46 of 50 pictures; a plain threshold 50 of 50", "contours", found_in(0, 1)),
+    pso_quote("46 of 50 pictures (a threshold in 50 of 50)", "contours", found_in(0, 1), "README.md"),
+    pso_quote("by hand | 32 mrad", "controllers", milliradians(0)),
+    pso_quote("on a grid | 6.70 mrad", "controllers", milliradians(1)),
+    pso_quote("fed forward | 1.51 mrad", "controllers", milliradians(2)),
+    pso_quote("bee colony | 6.71 mrad", "controllers", milliradians(3)),
+    pso_quote("GA-RBF | 2.20 mrad", "controllers", milliradians(4)),
+    pso_quote("without a servo | 0.24 mrad", "controllers", milliradians(5)),
+    pso_quote("on the same servos | 3.97 mrad", "controllers", milliradians(6)),
+]  # fmt: skip
+
+QUOTES = CHENG_QUOTES + YUAN_QUOTES + KHAN_QUOTES + PSO_QUOTES
 
 
 @pytest.mark.parametrize("quote", QUOTES, ids=lambda quote: f"{Path(quote.page).stem}: {quote.text}")

@@ -120,21 +120,21 @@ def test_rises_are_counted() -> None:
 def test_the_network_finds_the_bounded_least_norm_velocity() -> None:
     """Let to settle, it gives what a general solver gives for the same quadratic program."""
     path = circle(4.0)
-    network = dual_network.DualNetwork(feedback=0.0, time_constant=1e-7, inner_steps=60)
-    found = dual_network.track(IIWA, path, ON_CIRCLE, dt=1e-3, network=network, velocity=0.3)
-    qd = (found.q[1] - found.q[0]) / 1e-3
+    network = dual_network.DualNetwork(feedback=0.0, time_constant=1e-4, inner_steps=4000)
+    found = dual_network.track(IIWA, path, ON_CIRCLE, dt=1.0, network=network, velocity=0.216)
+    qd = found.q[1] - found.q[0]
     jacobian, wanted = IIWA.jacobian(ON_CIRCLE)[:3], path.velocity(np.zeros(1))[0]
     oracle = minimize(
         lambda v: 0.5 * v @ v,
         np.zeros(7),
         jac=lambda v: v,
-        bounds=[(-0.3, 0.3)] * 7,
+        bounds=[(-0.216, 0.216)] * 7,
         constraints={"type": "eq", "fun": lambda v: jacobian @ v - wanted, "jac": lambda _: jacobian},
         method="SLSQP",
         options={"ftol": 1e-14},
     )
     assert oracle.success
-    assert np.abs(oracle.x).max() == pytest.approx(0.3)  # a bound is met, or nothing is tested
+    assert np.abs(oracle.x).max() == pytest.approx(0.216)  # a bound is met, or nothing is tested
     np.testing.assert_allclose(qd, oracle.x, atol=1e-6)
 
 

@@ -104,6 +104,7 @@ def trials(near: int, lies: int = 0) -> object:
         (other_swarms(), NOT_TESTED),
         (picture.locates(trials(46), trials(50)), WITH_READING),
         (picture.locates(trials(30), trials(50)), CONTRADICTED),
+        (picture.locates(picture.Trials(3, 3, 0, 0.1), trials(50)), NOT_TESTED),
     ],
     ids=lambda value: value.statement[:40] if isinstance(value, Claim) else str(value),
 )

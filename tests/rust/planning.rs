@@ -6,9 +6,8 @@ use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::Frame;
 use ikcore::obstacle::Obstacle;
 use ikcore::path::{Path, Plane, Polyline, Waypoints};
-use ikcore::planning::planar_arm::PlanarArm;
 use ikcore::planning::{
-    AlongPathOptions, Cost, Elbow, Endpoint, Plan, PointToPointMethod, PointToPointOptions, TipPath, Tpbso,
+    AlongPathOptions, Cost, Elbow, Endpoint, Plan, PlanarArm, PointToPointMethod, PointToPointOptions, TipPath, Tpbso,
     plan_along_path, plan_point_to_point,
 };
 use ikcore::rng;
@@ -266,7 +265,7 @@ fn planar_arms_are_told_from_others() {
     let arm = PlanarArm::of(&robot).unwrap();
     for q in robot.random_configurations(50, &mut rng).unwrap().chunks(4) {
         let tip = robot.tip(q);
-        let place = arm.place(&Target::Pose(tip)).unwrap();
+        let place = arm.planar_target(&Target::Pose(tip)).unwrap();
         let mut orientations = arm.orientations(q).split_off(2);
         assert!((orientations[1] - place.orientation.unwrap()).sin().abs() < 1e-9);
         orientations[1] = place.orientation.unwrap();

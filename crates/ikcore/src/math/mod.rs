@@ -1,7 +1,7 @@
 //! Mathematics without robots: plain arrays where it is hot, nalgebra elsewhere.
 //!
-//! Kernels are compiled with and without FMA ([`arithmetic`]). Kernels for one number or four, one per lane of a register
-//! ([`f64x4::F64x4`]), are written over [`real::Real`].
+//! Kernels are compiled with and without FMA (`arithmetic`). Kernels for one number or four, one per lane of a register
+//! (`F64x4`), are written over `Real`.
 //!
 //! | files | what |
 //! |---|---|

@@ -14,7 +14,7 @@ pub struct Bounds {
     upper: Point,
 }
 
-/// How far samples reach on an open side.
+/// Sampling range on an open side.
 const HALF_TURN: f64 = std::f64::consts::PI;
 
 impl Bounds {
@@ -33,7 +33,7 @@ impl Bounds {
         }
     }
 
-    /// The box of these (lower, upper), which are known to be in order.
+    /// The box of these (lower, upper), not checked again.
     pub(crate) fn from_ranges(ranges: impl Iterator<Item = (f64, f64)>) -> Self {
         let mut bounds = Self { lower: Point::new(), upper: Point::new() };
         for (lower, upper) in ranges {
@@ -53,7 +53,7 @@ impl Bounds {
         &self.upper
     }
 
-    /// Writable lower and upper bounds. Whoever writes keeps lower <= upper.
+    /// Writable lower and upper bounds. Keep lower <= upper.
     pub(crate) fn parts_mut(&mut self) -> (&mut [f64], &mut [f64]) {
         (&mut self.lower, &mut self.upper)
     }

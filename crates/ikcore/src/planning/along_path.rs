@@ -1,8 +1,8 @@
 //! Planning along a given path.
 
 use super::cost::Cost;
-use super::options::{AlongPathMethod, AlongPathOptions};
 use super::plan::Plan;
+use super::planner_options::{AlongPathMethod, AlongPathOptions};
 use super::tip_path::TipPath;
 use super::{timed, tpbso};
 use crate::error::{Error, Result};

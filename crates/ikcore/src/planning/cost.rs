@@ -110,3 +110,31 @@ fn tip_travel(robot: &Robot, trajectory: &Trajectory) -> f64 {
     };
     pieces.map(of_piece).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trajectory::polynomial;
+
+    /// Joint 1 goes out by 1 rad and back, joint 2 by -0.5 rad, in 2 s.
+    fn out_and_back() -> Trajectory {
+        let pieces = vec![polynomial([0.0, 2.0, -1.0]), polynomial([0.3, -0.25])];
+        Trajectory::new(vec!["a".into(), "b".into()], vec![0.0, 2.0], pieces).unwrap()
+    }
+
+    #[test]
+    fn travel_counts_the_way_back_too() {
+        let robot = Robot::planar(&[1.0, 0.5]).unwrap();
+        let motion = out_and_back();
+        assert_eq!(Cost::Time.of(&robot, &motion), 2.0);
+        assert!((Cost::JointTravel.of(&robot, &motion) - 2.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_tip_of_one_turning_link_travels_along_its_arc() {
+        let robot = Robot::planar(&[1.0, 0.5]).unwrap();
+        let pieces = vec![polynomial([0.2, 0.7]), polynomial([0.0])];
+        let motion = Trajectory::new(vec!["a".into(), "b".into()], vec![0.0, 2.0], pieces).unwrap();
+        assert!((Cost::TipTravel.of(&robot, &motion) - 1.5 * 1.4).abs() < 1e-5);
+    }
+}

@@ -1,8 +1,8 @@
 //! Planning from one end to another.
 
 use super::endpoint::Endpoint;
-use super::options::{PointToPointMethod, PointToPointOptions};
 use super::plan::Plan;
+use super::planner_options::{PointToPointMethod, PointToPointOptions};
 use super::{minmax, tpbso};
 use crate::error::Result;
 use crate::robot::Robot;

@@ -9,7 +9,7 @@ use crate::rng;
 use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Monitor, Status, Stop};
 
 /// What searches, and for how long.
-pub struct Search {
+pub(super) struct Search {
     /// The algorithm.
     pub solver: AnySolver<DerivativeFree>,
     /// Its budgets.
@@ -19,7 +19,7 @@ pub struct Search {
 }
 
 /// What a search found.
-pub struct Found {
+pub(super) struct Found {
     /// The best decision vector.
     pub x: Point,
     /// How it came to it.
@@ -31,7 +31,7 @@ pub struct Found {
 
 impl Found {
     /// How a plan ends that keeps everything, or does not.
-    pub fn status(&self, keeps_everything: bool) -> Status {
+    pub(super) fn status(&self, keeps_everything: bool) -> Status {
         match self.status {
             Status::Interrupted => Status::Interrupted,
             _ if keeps_everything => Status::Solved,
@@ -45,7 +45,7 @@ impl Search {
     ///
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for wrong options of the solver or a budget of zero.
-    pub fn run(&self, cost: &mut dyn Objective, bounds: &Bounds, monitor: &mut dyn Monitor) -> Result<Found> {
+    pub(super) fn run(&self, cost: &mut dyn Objective, bounds: &Bounds, monitor: &mut dyn Monitor) -> Result<Found> {
         let Self { solver, stop, seed } = self;
         solver.validate()?;
         stop.validate()?;

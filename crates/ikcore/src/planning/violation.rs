@@ -31,3 +31,18 @@ impl fmt::Display for Violation {
         write!(f, "{what} is {shown} {unit}, allowed {allowed} {unit}")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(value: f64, bound: f64) -> String {
+        Violation { what: "velocity of joint 'a'".into(), value, bound, unit: "rad/s".into() }.to_string()
+    }
+
+    #[test]
+    fn a_violation_names_value_and_bound_or_what_rounding_would_hide() {
+        assert_eq!(shown(2.5, 2.0), "velocity of joint 'a' is 2.500 rad/s, allowed 2.000 rad/s");
+        assert_eq!(shown(2.00001, 2.0), "velocity of joint 'a' is 1.000e-5 rad/s beyond the 2.000 rad/s allowed");
+    }
+}

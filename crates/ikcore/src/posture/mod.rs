@@ -1,4 +1,4 @@
-//! Postures of planar arms as points on circles: the best one for a tip position, as published and by our own search.
+//! The best posture of a planar arm for a tip position, as published and by our own search.
 //!
 //! "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", section 2.5: with the tip at E, the
 //! first joint point lies on the circle about the base, the last on the circle about E, each with its link for radius. For

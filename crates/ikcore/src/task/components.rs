@@ -38,7 +38,7 @@ pub(super) fn check_weights(weights: &[f64]) -> Result<()> {
     }
 }
 
-/// Checks that tolerances are positive; infinite ones are.
+/// Checks that tolerances are positive; infinite ones are allowed.
 pub(super) fn check_tolerances(tolerances: &[f64]) -> Result<()> {
     match tolerances.iter().position(|tolerance| !(*tolerance > 0.0)) {
         Some(i) => Err(Error::out_of_range(format!("tolerance[{i}]"), "positive", tolerances[i])),

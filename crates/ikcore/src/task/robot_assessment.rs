@@ -19,8 +19,8 @@ impl Target {
         }
     }
 
-    /// Hands the [assessments](Self::assess) of the configurations stored one after another to `keep`, in order; several at a time
-    /// where only positions matter.
+    /// Calls `keep` with the [assessment](Self::assess) of each of the configurations stored one after another in `qs`, in order.
+    /// Positions are computed several at a time.
     #[inline]
     pub(crate) fn assess_all(
         &self,
@@ -53,7 +53,7 @@ impl Target {
         self.linearize_tip(&tip, q.len(), criterion, out)
     }
 
-    /// The same from a tip and its geometric Jacobian, which stands in the first `dof` columns of `out`.
+    /// The same from a tip and its geometric Jacobian, given in the first `dof` columns of `out`.
     #[inline]
     pub(crate) fn linearize_tip(
         &self,

@@ -23,10 +23,10 @@ hyper-parameter”, matters least of the three.
 An error of 10⁻⁵ comes with a tenfold gain, with either antenna. At equal gain that of eq. (16) is better where its
 c₁, which the paper does not give, is near 1.
 
-The methods that section 1 sets it against, the pseudo-inverse and the dual neural network, are run beside it: with a
-model they are a thousand times as exact, for microseconds a tick. `BroydenBAS`, which takes the same measurements as
-secants instead of signs, tracks to nanometres, and its joints repeat. On an arm with servos ZNNBAS needs long ticks,
-eq. (16) and a slow path.
+The methods that section 1 sets it against, the pseudo-inverse and the dual neural network, are run beside it. They need
+a model; the pseudo-inverse is then a thousand times as exact, for microseconds a tick. `BroydenBAS`, which takes the
+same measurements as secants instead of signs, tracks to nanometres, and its joints repeat. On an arm with servos
+ZNNBAS needs long ticks, eq. (16) and a slow path.
 """
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 import beetle_ik as bik
 
+from ..._text import counted
 from ...report import Block, Claim, Column, Figure, Part, Section, Spread, Table, number
 from ..experiment import Context
 from .panels import draw_run, draw_stars
@@ -152,7 +153,7 @@ def _claims(found: dict[Case, Runs], worst: float) -> list[Claim]:
         for h, time in found[case].arrivals.items()
     }
     star_arrivals = {
-        f"ticks of {number(1e3 * dt, 2)} ms, h below {number(h, 1)} m²": time
+        f"ticks of {1e3 * dt:g} ms, h below {number(h, 1)} m²": time
         for dt, case in _STARS.items()
         if case in found
         for h, time in found[case].arrivals.items()
@@ -309,7 +310,7 @@ def _listed(times: Mapping[str, float]) -> str:
 def _table(found: dict[Case, Runs], seeds: int) -> Table:
     return Table(
         name="figures_2_and_3",
-        title=f"Errors from 40 to 50 s, and arrival (median), over {seeds} seeds",
+        title=f"Errors from 40 to 50 s, and arrival (median), over {counted(seeds, 'seed')}",
         columns=[
             Column(name="path"),
             Column(name="constants"),

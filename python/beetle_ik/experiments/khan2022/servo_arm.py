@@ -117,7 +117,7 @@ def follows_on_servos(dt: float, error: float) -> Check:
     return Check(
         statement="ZNNBAS follows the circle on servos, given long ticks, eq. (16) and time.",
         rule=f"At the best tick the tool is within {number(1e3 * _FOLLOWED, 1)} mm of the circle (rms).",
-        measured=f"{number(1e3 * error)} mm at ticks of {number(1e3 * dt, 2)} ms",
+        measured=f"{number(1e3 * error)} mm at ticks of {1e3 * dt:g} ms",
         holds=error <= _FOLLOWED,
         section=TITLE,
     )

@@ -135,11 +135,10 @@ def converges(ends: Mapping[str, tuple[float, float]], adaptive: float, duration
     return Claim.judged(
         "As time goes to infinity the tool traces the reference: x̂(t) → x_r(t).",
         source="Definition 2, eq. (18)",
-        rule=f"With the printed constants the mean of h(θ′) over the last tenth of {number(duration)} s is below "
+        rule=f"With the printed constants the mean of h(θ′) over the last tenth of {duration:g} s is below "
         f"{number(_ZERO, 1)} m².",
         measured="; ".join(
-            f"target {name}: {number(first)} m² after {number(duration / 4)} s, {number(last)} m² after "
-            f"{number(duration)} s"
+            f"target {name}: {number(first)} m² after {duration / 4:g} s, {number(last)} m² after {duration:g} s"
             for name, (first, last) in ends.items()
         ),
         holds={f"target {name}": last < _ZERO for name, (_, last) in ends.items()},

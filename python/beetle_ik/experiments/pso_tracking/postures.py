@@ -237,7 +237,10 @@ def _table(measure: _Measure, best: PlanarPosture, runs: int) -> Table:
         [
             generation + 1,
             (printed[generation], float(scale * value)),
-            (100 * (1 - printed[generation] / printed[-1]), float(100 * (1 - scale * value / optimum))),
+            (
+                _rounded(100 * (1 - printed[generation] / printed[-1])),
+                max(0.0, float(100 * (1 - scale * value / optimum))),
+            ),
         ]
         for generation, value in enumerate(best.history)
     ]
@@ -252,6 +255,11 @@ def _table(measure: _Measure, best: PlanarPosture, runs: int) -> Table:
         rows=rows,
         caption="The printed course is measured against its own last value, ours against the optimum of a dense scan.",
     )
+
+
+def _rounded(value: float) -> float:
+    """To the digits that differences of printed values have."""
+    return float(f"{value:.2g}")
 
 
 def _gaps(seeds: range) -> Table:

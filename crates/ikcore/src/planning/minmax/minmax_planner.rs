@@ -13,7 +13,7 @@ use crate::solver::Stopwatch;
 const METHOD: &str = "method=\"minmax\"";
 
 /// Plans from `start` to `end`; see [`plan_point_to_point`](crate::planning::plan_point_to_point).
-pub fn point_to_point(
+pub(crate) fn point_to_point(
     robot: &Robot,
     start: &Endpoint,
     end: &Endpoint,

@@ -33,7 +33,7 @@ const SEGMENTS_A_PIECE: usize = 4;
 ///
 /// # Errors
 /// As [`plan_along_path`](crate::planning::plan_along_path).
-pub fn along_path(
+pub(crate) fn along_path(
     robot: &Robot,
     tip_path: &TipPath,
     options: &AlongPathOptions,

@@ -13,7 +13,7 @@ use crate::solver::Monitor;
 use crate::solver::Stopwatch;
 
 /// Plans along a path, for planar arms.
-pub fn along_path(
+pub(crate) fn along_path(
     robot: &Robot,
     tip_path: &TipPath,
     tpbso: &Tpbso,

@@ -23,7 +23,7 @@ const LONGEST: f64 = 4.0;
 
 /// The cost F of eq. (15), as a function of \[theta_m (n), its rate (n), phi_s, phi_f, t1, t2\].
 #[derive(Debug, Clone)]
-pub struct ViaPointCost<'a> {
+pub(super) struct ViaPointCost<'a> {
     robot: &'a Robot,
     limits: &'a MotionLimits,
     start: EndConfigurations,
@@ -48,7 +48,7 @@ type Ends = [[f64; MAX_DOF]; 2];
 
 impl<'a> ViaPointCost<'a> {
     /// The cost of motions of `robot` between these ends within `limits`, whose velocities are finite.
-    pub fn new(
+    pub(super) fn new(
         robot: &'a Robot,
         limits: &'a MotionLimits,
         [start, end]: [EndConfigurations; 2],
@@ -59,7 +59,7 @@ impl<'a> ViaPointCost<'a> {
     }
 
     /// The range of the decision vector.
-    pub fn bounds(&self) -> Bounds {
+    pub(super) fn bounds(&self) -> Bounds {
         let n = self.robot.dof();
         let positions = (0..n).map(|j| self.limits.finite_range(j));
         let velocities = self.limits.velocity.iter().map(|limit| (-limit, *limit));
@@ -70,7 +70,7 @@ impl<'a> ViaPointCost<'a> {
     }
 
     /// The motion of decision vector `x`; None where an end has no configuration.
-    pub fn trajectory(&self, x: &[f64]) -> Option<Result<Trajectory>> {
+    pub(super) fn trajectory(&self, x: &[f64]) -> Option<Result<Trajectory>> {
         let decision = self.take_apart(x);
         let [start, end] = self.ends(&decision).ok()?;
         let (mut first, mut second) = (vec![], vec![]);

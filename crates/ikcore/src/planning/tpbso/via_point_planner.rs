@@ -14,7 +14,7 @@ use crate::solver::Monitor;
 use crate::solver::Stopwatch;
 
 /// Plans from end to end.
-pub fn point_to_point(
+pub(crate) fn point_to_point(
     robot: &Robot,
     [start, end]: [&Endpoint; 2],
     tpbso: &Tpbso,

@@ -16,7 +16,7 @@ pub(crate) fn error(target: &Frame, tip: &Frame) -> SquaredError {
     }
 }
 
-/// Residual and derivative from the tip's geometric Jacobian, which stands in `out`.
+/// Residual and derivative from the tip's geometric Jacobian, given in `out`.
 #[inline]
 pub(crate) fn linearize(target: &Frame, tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
     out.residual[..3].copy_from_slice(&position::residual(&target.origin, &tip.origin));

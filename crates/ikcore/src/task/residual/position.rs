@@ -15,7 +15,7 @@ pub(crate) fn error(target: &[f64; 3], tip: &[f64; 3]) -> f64 {
     x * x + y * y + z * z
 }
 
-/// Residual and derivative from the tip's geometric Jacobian, which stands in `out`; the angular rows are emptied.
+/// Residual and derivative from the tip's geometric Jacobian, given in `out`; sets the angular rows to zero.
 #[inline]
 pub(crate) fn linearize(target: &[f64; 3], tip: &[f64; 3], dof: usize, out: &mut Linearization) {
     let [x, y, z] = residual(target, tip);

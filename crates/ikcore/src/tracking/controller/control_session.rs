@@ -1,6 +1,6 @@
 //! A controller at work on an arm that somebody else moves: clock, limits, and whose turn it is.
 
-use super::control_tick::{ControlTick, Verdict};
+use super::control_tick::{ControlTick, TickProgress};
 use super::controller_choice::{Controller, RunningController};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
@@ -172,7 +172,7 @@ impl ControlSession {
             return Ok(Some(self.end_tick(target)));
         }
         let tick = ControlTick { target, bounds: &self.tick_box.bounds };
-        if self.running.observe(tick, position) == Verdict::GoOn {
+        if self.running.observe(tick, position) == TickProgress::GoOn {
             self.stage = Stage::Within;
             return Ok(None);
         }

@@ -13,7 +13,7 @@ pub(super) struct ControlTick<'a> {
 
 /// What a controller says after a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum TickProgress {
     /// It has another command for this tick.
     GoOn,
     /// The tick is over.

@@ -1,7 +1,7 @@
 //! The choice of controller, and the controller in use.
 
 use super::broyden_bas::BroydenBasState;
-use super::control_tick::{ControlTick, Verdict};
+use super::control_tick::{ControlTick, TickProgress};
 use super::znnbas::Znnbas;
 use super::znnbas_state::ZnnbasState;
 use crate::error::Result;
@@ -70,7 +70,7 @@ impl RunningController {
     }
 
     /// Where the tip was at the last command (m).
-    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> Verdict {
+    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
         match self {
             Self::BroydenBas(memory) => memory.observe(tick, position),
             Self::Znnbas(memory) => memory.observe(tick, position),

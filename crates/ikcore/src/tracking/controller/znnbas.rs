@@ -9,7 +9,7 @@
 //! theta is the state of an integrator: the arm never stands there, but at theta', a random antenna away.
 //!
 //! The proof of Theorem 1 describes another algorithm, which keeps theta' where h fell and else goes back to theta and waits.
-//! It is here as [`Acceptance::Improving`]: the theorem holds for it, while the target stands still.
+//! It is here as [`UpdateRule::Improving`]: the theorem holds for it, while the target stands still.
 
 use crate::error::{Error, Result, require_positive};
 use crate::wording::words;
@@ -42,7 +42,7 @@ words!("delay": Delay { Sliding => "sliding", Held => "held" });
 
 /// When theta moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Acceptance {
+pub enum UpdateRule {
     /// In every tick: eq. (15).
     Always,
     /// To theta' where that is nearer to the target of now than theta is, else not at all: the proof of Theorem 1. Gain and
@@ -50,7 +50,7 @@ pub enum Acceptance {
     Improving,
 }
 
-words!("accept": Acceptance { Always => "always", Improving => "improving" });
+words!("accept": UpdateRule { Always => "always", Improving => "improving" });
 
 /// ZNNBAS.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +66,7 @@ pub struct Znnbas {
     /// What a measurement is compared with.
     pub delay: Delay,
     /// When theta moves.
-    pub accept: Acceptance,
+    pub accept: UpdateRule,
 }
 
 impl Default for Znnbas {
@@ -78,7 +78,7 @@ impl Default for Znnbas {
             antenna: Antenna::Adaptive { c1: 0.3 },
             delay_steps: 1,
             delay: Delay::Sliding,
-            accept: Acceptance::Always,
+            accept: UpdateRule::Always,
         }
     }
 }

@@ -36,7 +36,7 @@ pub(super) struct Approach {
 
 impl Approach {
     /// The approach from `q`. Tip and Jacobian are those at `near`, the configuration of the tick's box that is nearest to `q`.
-    pub fn new(q: &[f64], near: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Self {
+    pub(super) fn new(q: &[f64], near: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Self {
         let to = |target: &Target| -> Point {
             let end = destination(target, near, tip, columns, tick);
             end.iter().zip(q).map(|(end, q)| end - q).collect()
@@ -76,17 +76,17 @@ impl Approach {
     }
 
     /// Whether the target is so far away that joints are better moved in proportion.
-    pub fn is_far(&self) -> bool {
+    pub(super) fn is_far(&self) -> bool {
         self.within_reach < self.far_below
     }
 
     /// Whether an arm that went straight to the target could not stop there.
-    pub fn needs_braking(&self) -> bool {
+    pub(super) fn needs_braking(&self) -> bool {
         self.within_braking < 1.0
     }
 
     /// Moves `q` by one tick.
-    pub fn advance(&self, q: &mut [f64], tick: &Tick<'_>) {
+    pub(super) fn advance(&self, q: &mut [f64], tick: &Tick<'_>) {
         let share = self.within_reach.min(self.within_braking);
         for (q, (catch_up, keep_up)) in q.iter_mut().zip(self.catch_up.iter().zip(&self.keep_up)) {
             *q += keep_up + share * catch_up;

@@ -77,7 +77,7 @@ impl TickResult {
     }
 
     /// Takes over the tip at `q`.
-    pub fn set_tip(&mut self, tip: &Frame, target: &Target, criterion: &Criterion) {
+    pub(crate) fn set_tip(&mut self, tip: &Frame, target: &Target, criterion: &Criterion) {
         (self.assessment, self.position) = (target.assess_tip(tip, criterion), tip.origin);
     }
 

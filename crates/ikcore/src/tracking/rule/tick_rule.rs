@@ -72,14 +72,14 @@ impl TickRule {
 
 impl RunningRule {
     /// Drops what is remembered of the last tick: the arm is not where the rule left it.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         if let Self::MidStep(memory) = self {
             memory.forget();
         }
     }
 
     /// Ends one tick that begins at `q`.
-    pub fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> TickResult {
+    pub(crate) fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> TickResult {
         match self {
             Self::MidStep(memory) => mid_step::advance(memory, q, tick),
             Self::Solver(solver) => any_solver::advance(solver, q, tick),
