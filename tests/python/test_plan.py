@@ -83,7 +83,7 @@ def test_the_name_tpbso_means_its_defaults() -> None:
     assert bik.TPBSO() == bik.TPBSO(elbows=(1, 1), solver=None)
     assert repr(bik.TPBSO()) == "TPBSO(elbows=(1, 1), solver=None)"
     assert bik.TPBSO(solver=bik.PSO()) != bik.TPBSO()
-    with pytest.raises(bik.InvalidInputError, match=r"^TPBSO knows no derivative: solver must be BAS, "):
+    with pytest.raises(bik.InvalidInputError, match=r"^TPBSO has no derivatives: solver must be BAS, "):
         bik.TPBSO(solver=bik.LevenbergMarquardt())  # type: ignore[arg-type]
 
 
