@@ -14,7 +14,7 @@ use crate::solver::{Monitor, Stopwatch};
 /// The monitor is called from the calling thread alone.
 ///
 /// # Errors
-/// Any [`Error`](crate::Error) for wrong input; [`Error::InRow`](crate::Error::InRow) for an invalid target or start, unless
+/// Any [`Error`](enum@crate::Error) for wrong input; [`Error::InRow`](crate::Error::InRow) for an invalid target or start, unless
 /// those are skipped. A target that is not reached is a status, not an error.
 pub fn solve_batch(
     robot: &Robot,

@@ -58,6 +58,7 @@ impl Kernels {
     }
 
     /// Frames of all stages.
+    #[inline]
     pub fn reached(&self, chain: &Chain, q: &[f64]) -> StageFrames {
         let mut reached = [Frame::IDENTITY; MAX_DOF + 1];
         (self.stage_frames)(chain, q, &mut reached);

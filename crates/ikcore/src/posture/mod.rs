@@ -6,9 +6,9 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | [`linkage`] | joint points, their circles, the index of a posture |
-//! | [`circle_swarm`] | particle swarm over joint points, as published |
-//! | [`best_posture`](mod@best_posture) | the call, and our own search over the directions of the links |
+//! | `linkage` | joint points, their circles, the index of a posture |
+//! | `circle_swarm` | particle swarm over joint points, as published |
+//! | `best_posture` | the call, and our own search over the directions of the links |
 
 mod best_posture;
 mod circle_swarm;

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 /// Lets the caller watch and interrupt a long run. It is polled from the calling thread, every few microseconds of work.
 pub trait Monitor {
-    /// Returns false to end the run with [`Status::Interrupted`].
+    /// Returns false to end the run with [`Status::Interrupted`](super::Status::Interrupted).
     fn keep_going(&mut self) -> bool;
 
     /// Receives the number of finished steps of a track, items of a batch or evaluations, out of `total`.

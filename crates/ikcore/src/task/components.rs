@@ -11,7 +11,7 @@ use crate::math::box_step::ROWS;
 pub struct Components {
     /// Factors on the residuals; a component of weight zero is left free.
     pub weights: [f64; ROWS],
-    /// Largest error of each component (m, rad), instead of those of [`Tolerance`]. Of a pointing target, the fourth is
+    /// Largest error of each component (m, rad), instead of those of [`Tolerance`](super::Tolerance). Of a pointing target, the fourth is
     /// the angle between the axes.
     pub tolerance: Option<[f64; ROWS]>,
 }
