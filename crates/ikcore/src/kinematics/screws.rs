@@ -50,7 +50,6 @@ impl std::ops::Deref for Screws {
 
 impl Screws {
     /// The screws of `chain` with its stages at `reached`, mimics included.
-    #[inline]
     pub(crate) fn of(chain: &Chain, reached: &StageFrames) -> Self {
         // Padding moves nothing; so does a mimic of factor zero, but elements may follow it.
         let count = chain.motions.iter().rposition(moves).map_or(0, |last| last + 1);

@@ -36,7 +36,9 @@ impl Robot {
     /// [`Error::WrongLength`](crate::Error::WrongLength) or [`Error::NotFinite`](crate::Error::NotFinite).
     pub fn link_poses(&self, q: &[f64]) -> Result<Vec<Pose>> {
         self.check("joint angles", q)?;
-        Ok(link_frames(self.chain(), &self.kernels().reached(self.chain(), q)).into_iter().map(Pose::from).collect())
+        let mut reached = [Frame::IDENTITY; MAX_DOF + 1];
+        self.write_stage_frames(q, &mut reached);
+        Ok(link_frames(self.chain(), &reached).into_iter().map(Pose::from).collect())
     }
 
     /// [`fk`](Self::fk) without the check: `q` has one finite entry per joint.
@@ -85,6 +87,13 @@ impl Robot {
 
     /// Screws of the moving elements at `q`, which has one finite entry per joint; base to tip, mimics included.
     pub fn screws(&self, q: &[f64]) -> Screws {
-        Screws::of(self.chain(), &self.kernels().reached(self.chain(), q))
+        let mut reached = [Frame::IDENTITY; MAX_DOF + 1];
+        self.write_stage_frames(q, &mut reached);
+        Screws::of(self.chain(), &reached)
+    }
+
+    /// Writes the frames reached after 0, 1, 2, ... moving elements; the z axis of each but the first is the element's axis.
+    pub(crate) fn write_stage_frames(&self, q: &[f64], frames: &mut [Frame; MAX_DOF + 1]) {
+        (self.kernels().stage_frames)(self.chain(), q, frames);
     }
 }
