@@ -365,19 +365,19 @@ class Status(IntEnum):
     """How a solve, an item of a batch or a step of a track ended. Only `SOLVED` is success.
 
     - `SOLVED`: Within the tolerances.
-    - `IMPROVED`: A step of a track: nearer than the step before, not yet within the tolerance. Or a search ended by `value_below`.
-    - `CAPPED`: A step of a track: neither within the tolerance nor nearer than the step before; the best found is kept.
-    - `STALLED`: The solver's own rule gave up: nothing more to gain from here.
+    - `IMPROVED`: A step of a track that came nearer than the step before, not yet within the tolerance; or a search that reached `value_below`.
+    - `CAPPED`: A step of a track that is neither within the tolerance nor nearer than the step before; the best configuration found is kept.
+    - `STALLED`: The solver's own rule ended the search: no further progress from here.
     - `BUDGET_SPENT`: The evaluation or iteration budget is spent.
-    - `TIME_UP`: The time limit is over.
-    - `INTERRUPTED`: It was asked to stop before its end.
+    - `TIME_UP`: The time limit is reached.
+    - `INTERRUPTED`: Stopped on request before the end.
     - `LOST`: A track that did not stay within its tolerance.
-    - `INVALID`: An item of a batch whose target or start is wrong: nothing was solved.
-    - `OUT_OF_REACH`: Beyond doubt, no configuration reaches so far: the target is farther than the arm is long, or off its plane.
-    - `PLANT_FAILED`: A plant that raised an error, or returned what is no position: the run ended with what was recorded.
+    - `INVALID`: An item of a batch with an invalid target or start; it was not solved.
+    - `OUT_OF_REACH`: Provably out of reach: the target is farther away than the arm is long, or off its plane.
+    - `PLANT_FAILED`: The plant raised an error or returned something other than a position; the run ended with what was recorded.
     - `BELOW_THRESHOLD`: The solver's own threshold was met before the tolerances were.
-    - `OUTSIDE_LIMITS`: The search arrived outside the limits, and whole turns do not bring it inside; the best inside is kept.
-    - `HELD_IN_REGION`: The region of the task keeps the tip from the target; the tip is in it, as near as it may come.
+    - `OUTSIDE_LIMITS`: The search converged outside the limits, and whole turns do not bring it inside; the best configuration inside is kept.
+    - `HELD_IN_REGION`: The region of the task keeps the tip from the target; the tip is in the region, as near as possible.
     """
 
     SOLVED = 0
