@@ -317,7 +317,7 @@ impl Error {
     }
 }
 
-/// Err unless every entry is finite; `name(i)` says which one is not.
+/// Checks that every entry is finite; `name(i)` says which one is not.
 pub(crate) fn require_finite(what: &str, values: &[f64], name: impl Fn(usize) -> String) -> Result<()> {
     match values.iter().position(|v| !v.is_finite()) {
         None => Ok(()),
@@ -325,7 +325,7 @@ pub(crate) fn require_finite(what: &str, values: &[f64], name: impl Fn(usize) ->
     }
 }
 
-/// Err unless `value` is finite and above zero.
+/// Checks that `value` is finite and above zero.
 pub(crate) fn require_positive(what: &str, value: f64) -> Result<()> {
     if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Error::out_of_range(what, "positive and finite", value)) }
 }

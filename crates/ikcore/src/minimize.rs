@@ -19,7 +19,7 @@ pub struct MinimizeOptions {
     pub start: Option<Vec<f64>>,
     /// Budgets. A value below [`Stop::value_below`] is good enough, also at the start.
     pub stop: Stop,
-    /// Seed of the random draws: the same seed, the same bits.
+    /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 

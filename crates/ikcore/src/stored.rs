@@ -24,7 +24,7 @@ pub fn to_bytes<T: Serialize>(what: &str, value: &T) -> Result<Vec<u8>> {
 /// The value that [`to_bytes`] stored, with every bit; `what` names it in errors.
 ///
 /// # Errors
-/// [`Error::Corrupt`] for bytes of another version, damaged ones, or those of something else.
+/// [`Error::Corrupt`] for bytes of another version, of another type, or damaged.
 pub fn from_bytes<T: DeserializeOwned>(what: &str, bytes: &[u8]) -> Result<T> {
     let (version, rest) = bytes.split_first().ok_or_else(|| corrupt(what, "no bytes".into()))?;
     if *version != FORMAT {

@@ -20,7 +20,7 @@ words!("on_invalid": OnInvalid { Raise => "raise", Skip => "skip" });
 pub struct BatchOptions<'a> {
     /// How to solve each target. Its budgets apply to each target, its start to all unless `starts` is given.
     pub each: SolveOptions,
-    /// The start of each target, (m, n) row after row (rad, m).
+    /// The start of each target, (m, n) in row-major order (rad, m).
     pub starts: Option<&'a [f64]>,
     /// Number of threads; None: one per core. The result does not depend on it.
     pub threads: Option<usize>,

@@ -48,7 +48,7 @@ impl BatchItem {
 pub struct Batch {
     /// Degrees of freedom, n.
     pub dof: usize,
-    /// The best configurations found, (m, n) row after row (rad, m); NaN where nothing was solved.
+    /// The best configurations found, (m, n) in row-major order (rad, m); NaN where nothing was solved.
     pub q: Vec<f64>,
     /// The result of each target (m,).
     pub items: Vec<BatchItem>,

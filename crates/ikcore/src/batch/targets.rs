@@ -11,7 +11,7 @@ use crate::task::Target;
 pub enum Targets<'a> {
     /// Positions (m), the orientation left free.
     Positions(&'a [[f64; 3]]),
-    /// Poses, homogeneous 4x4 matrices, each stored row after row.
+    /// Poses, homogeneous 4x4 matrices, each stored in row-major order.
     Poses(&'a [[f64; 16]]),
 }
 

@@ -145,7 +145,8 @@ impl<'m, 'p> Attempt<'m, 'p> {
         }
     }
 
-    /// Gives a solved `solution` the status [`Status::HeldInRegion`] where the region keeps the tip from the target itself.
+    /// Gives a solved `solution` the status [`Status::HeldInRegion`] if the region keeps the tip from the target
+    /// itself.
     pub fn mark_held_in_region(&self, solution: Solution) -> Solution {
         match self.problem.criterion().blocked_by_region(self.problem.target()) {
             Some(obstruction) if solution.status == Status::Solved => {

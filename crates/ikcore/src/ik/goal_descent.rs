@@ -82,8 +82,8 @@ impl GoalDescent<'_, '_> {
         here
     }
 
-    /// The step down `slope` at `rate`, or at the longest shorter one that lowers the cost and solves the task; None where
-    /// there is none worth the while.
+    /// The step down `slope` at `rate`, or at the longest shorter one that lowers the cost and solves the task; `None`
+    /// if there is none worth the while.
     fn shorter_until_better(
         &mut self,
         here: &TaskPoint,

@@ -53,7 +53,7 @@ pub struct SolutionSet {
 }
 
 impl SolutionSet {
-    /// [`Status::Solved`] where there is a solution, else why the last search ended.
+    /// [`Status::Solved`] if there is a solution, else why the last search ended.
     pub fn status(&self) -> Status {
         self.miss.as_ref().map_or(Status::Solved, |miss| miss.status)
     }

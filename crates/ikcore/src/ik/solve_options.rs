@@ -24,7 +24,7 @@ words!("prefer": Prefer { Any => "any", Nearest => "nearest", Best => "best" });
 pub struct SolveOptions {
     /// The algorithm.
     pub solver: AnySolver,
-    /// Which part of the target matters; None: all of it.
+    /// Which part of the target matters. `None` means all of it.
     pub task: Option<Task>,
     /// How to use the freedom that the task leaves.
     pub goals: Vec<Goal>,
@@ -34,7 +34,7 @@ pub struct SolveOptions {
     pub start: Option<Vec<f64>>,
     /// When the target counts as reached.
     pub tolerance: Tolerance,
-    /// Position limits to keep; None keeps the robot's.
+    /// Position limits to keep. `None` keeps the robot's.
     pub limits: Option<Limits>,
     /// Budgets.
     pub stop: Stop,

@@ -9,7 +9,7 @@ use crate::math::real::{One, Real};
 
 use super::motion::Motion;
 
-/// A pivot below this share of the trace counts as near a singularity: ten of sixteen digits are left there.
+/// A pivot below this fraction of the trace counts as near a singularity: ten of sixteen digits are left there.
 const NEAR: f64 = 1e-6;
 
 /// w = sqrt(det(J J')) on the rows of `motion`.

@@ -90,7 +90,7 @@ pub fn manipulability(robot: &Robot, motion: Motion, q: &[f64]) -> Result<f64> {
     Ok(Manipulability::of(robot, motion).index(robot, q))
 }
 
-/// The same at `qs`, (m, n) row after row.
+/// The same at `qs`, (m, n) in row-major order.
 ///
 /// # Errors
 /// As [`Robot::jacobian_all`].

@@ -12,8 +12,8 @@ impl Knots {
     /// Checks the times (s); `what` names them in errors.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] for fewer than two, [`Error::NotFinite`], [`Error::OutOfRange`] where the first is not
-    /// zero, [`Error::NotIncreasing`].
+    /// [`Error::WrongLength`] for fewer than two, [`Error::NotFinite`], [`Error::OutOfRange`] if the first is not zero,
+    /// [`Error::NotIncreasing`].
     pub fn new(what: &str, times: Vec<f64>) -> Result<Self> {
         if times.len() < 2 {
             return Err(Error::WrongLength { what: what.into(), expected: "at least 2".into(), got: times.len() });

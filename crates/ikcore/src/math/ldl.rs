@@ -2,7 +2,7 @@
 
 use super::real::Real;
 
-/// Pivots below this share of the matrix's trace count as zero: no step in that direction.
+/// Pivots below this fraction of the matrix's trace count as zero: no step in that direction.
 const SINGULAR: f64 = 1e-15;
 
 /// A = L D L' of a symmetric positive semi-definite matrix.

@@ -77,7 +77,7 @@ pub fn finite(what: &str, values: [f64; 3]) -> Result<[f64; 3]> {
     Ok(values)
 }
 
-/// The 16 numbers of a pose, row after row.
+/// The 16 numbers of a pose, in row-major order.
 pub fn rows(pose: &Pose) -> [f64; 16] {
     let (r, p) = (pose.rotation.matrix(), &pose.translation);
     [
@@ -91,8 +91,8 @@ pub fn rows(pose: &Pose) -> [f64; 16] {
 /// Reads a homogeneous 4x4 matrix; `what` names it in errors.
 ///
 /// # Errors
-/// [`Error::NotFinite`] for NaN or infinity; [`Error::NotRigid`] where the last row is not (0, 0, 0, 1), or the
-/// rotation is not orthonormal to 1e-6 or is a reflection. What is within 1e-6 is orthonormalised.
+/// [`Error::NotFinite`] for NaN or infinity; [`Error::NotRigid`] if the last row is not (0, 0, 0, 1), or the rotation
+/// is not orthonormal to 1e-6 or is a reflection. What is within 1e-6 is orthonormalised.
 pub fn from_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<Pose> {
     require_finite(what, matrix.as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))?;
     let not_rigid = |problem: String| Error::NotRigid { what: what.into(), problem };

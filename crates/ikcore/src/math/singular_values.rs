@@ -8,7 +8,7 @@ use super::vector::dot;
 /// Rows whose cosine is below this count as orthogonal.
 const ORTHOGONAL: f64 = 4.0 * f64::EPSILON;
 
-/// Rows shorter than this share of the longest count as rounding.
+/// Rows shorter than this fraction of the longest count as rounding.
 const NOTHING: f64 = 1e-14;
 
 /// Largest number of sweeps. Convergence is quadratic, and six are common.

@@ -9,7 +9,7 @@ const MAX_TICKS: f64 = 1e7;
 /// tick counts as rounding.
 ///
 /// # Errors
-/// [`Error::OutOfRange`] where `dt` is not positive, or so small that there would be over 10 million ticks.
+/// [`Error::OutOfRange`] if `dt` is not positive, or so small that there would be over 10 million ticks.
 pub fn ticks(duration: f64, dt: f64) -> Result<usize> {
     require_positive("dt", dt)?;
     let count = (duration / dt - 1e-9).ceil().max(1.0);

@@ -81,7 +81,7 @@ pub(super) struct Placement {
 
 impl<'a> Scene<'a> {
     /// # Errors
-    /// [`Error::NoCapsules`] where the robot has none, or where some of its collision shapes could not be read;
+    /// [`Error::NoCapsules`] if the robot has none, or where some of its collision shapes could not be read;
     /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane.
     pub fn new(robot: &'a Robot, obstacles: &'a [Obstacle]) -> Result<Self> {
         if robot.capsules().is_empty() || !robot.unread_collision_shapes().is_empty() {
@@ -123,7 +123,7 @@ impl<'a> Scene<'a> {
         self.robot
     }
 
-    /// The pair that is nearest to each other at `q` (n,) or, overlapping, the deepest; None where nothing can touch.
+    /// The pair that is nearest to each other at `q` (n,) or, overlapping, the deepest; `None` if nothing can touch.
     ///
     /// # Errors
     /// [`Error::WrongLength`] or [`Error::NotFinite`].

@@ -104,8 +104,8 @@ impl<'a> Sweep<'a> {
         self.check_pending(motion, [middle, to], margin, left)
     }
 
-    /// The smallest distance (m) on the motion over \[`from`, `to`\], and where it occurs: a proven lower bound, at most 0.1 mm or
-    /// 1 % below the true value. None where nothing can touch.
+    /// The smallest distance (m) on the motion over \[`from`, `to`\], and where it occurs: a proven lower bound, at
+    /// most 0.1 mm or 1 % below the true value. `None` if nothing can touch.
     pub fn smallest(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2]) -> Option<TooNear> {
         let first = self.pending.first().copied()?;
         let mut best = Best { seen: f64::INFINITY, proven: f64::INFINITY, at: from, pair: first };

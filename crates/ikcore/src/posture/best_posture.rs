@@ -22,11 +22,11 @@ use crate::task::{Target, TipError};
 pub struct PostureOptions {
     /// The measure of a posture.
     pub measure: Measure,
-    /// The region of joint points; None: anywhere.
+    /// The region of joint points. `None` means anywhere.
     pub region: Option<Rectangle>,
     /// The published swarm, instead of our own search.
     pub swarm: Option<CircleSwarm>,
-    /// Seed of the random draws: the same seed, the same bits.
+    /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 
@@ -99,7 +99,7 @@ pub fn best_posture(
     Ok(posture(nearest.q.to_vec(), f64::NAN, vec![], status, nearest.evaluations))
 }
 
-/// Our own search; None where no posture was found.
+/// Our own search; `None` if no posture was found.
 fn evolve(linkage: &Linkage, seed: u64, monitor: &mut dyn Monitor) -> Option<FoundPosture> {
     let links = linkage.links();
     let mut objective = ClosedLinkage { linkage, q: vec![0.0; links], best: None, evaluations: 0 };

@@ -95,7 +95,7 @@ impl CircleSwarm {
         2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs()
     }
 
-    /// The best posture of `linkage` that the swarm finds; None where it finds none.
+    /// The best posture of `linkage` that the swarm finds; `None` if it finds none.
     pub(super) fn search(
         &self,
         linkage: &Linkage,
@@ -113,8 +113,8 @@ impl CircleSwarm {
 }
 
 impl Swarm<'_> {
-    /// Runs all generations, or as many as the monitor allows, and appends the best index after each to `history`. None where a
-    /// particle finds no posture.
+    /// Runs all generations, or as many as the monitor allows, and appends the best index after each to `history`.
+    /// `None` if a particle finds no posture.
     fn run(&mut self, history: &mut Vec<f64>) -> Option<Status> {
         let mut particles = vec![];
         for _ in 0..self.options.population {

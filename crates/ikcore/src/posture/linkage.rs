@@ -108,9 +108,9 @@ impl Linkage {
         &self.robot
     }
 
-    /// Joint points between base and tip, one fewer than links, from the headings (rad) of all links but the last two. The
-    /// last point is on the left of the line to the target for a positive `side`, else on the right; None where the last two
-    /// links cannot close the gap.
+    /// Joint points between base and tip, one fewer than links, from the headings (rad) of all links but the last two.
+    /// The last point is on the left of the line to the target for a positive `side`, else on the right; `None` if the
+    /// last two links cannot close the gap.
     pub fn close(&self, headings: &[f64], side: f64) -> Option<Vec<Point2>> {
         let mut points = Vec::with_capacity(self.links() - 1);
         let mut end = self.base;
@@ -122,8 +122,8 @@ impl Linkage {
         Some(points)
     }
 
-    /// Moves `points` onto their circles: each along the direction from the one before; the last to the nearer intersection of
-    /// the circles of the last two links. None where they do not intersect.
+    /// Moves `points` onto their circles: each along the direction from the one before; the last to the nearer
+    /// intersection of the circles of the last two links. `None` if they do not intersect.
     pub(super) fn repair(&self, points: &mut [Point2]) -> Option<()> {
         let mut end = self.base;
         let last = points.len() - 1;

@@ -50,7 +50,7 @@ impl<A> AnySolver<A> {
 }
 
 impl AnySolver {
-    /// The same solver; None where the algorithm needs more than values.
+    /// The same solver; `None` if the algorithm needs more than values.
     pub fn into_derivative_free(self) -> Option<AnySolver<DerivativeFree>> {
         match self {
             Self::Single(Algorithm::DerivativeFree(solver)) => Some(AnySolver::Single(solver)),

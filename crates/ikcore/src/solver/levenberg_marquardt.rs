@@ -124,7 +124,7 @@ impl Descent {
     /// The damping of the next step.
     ///
     /// # Errors
-    /// [`Status::Stalled`] where the value is not finite.
+    /// [`Status::Stalled`] if the value is not finite.
     #[inline]
     pub fn lambda(&self) -> Result<f64, Status> {
         if self.value.is_finite() { Ok(self.damping * self.value) } else { Err(Status::Stalled) }

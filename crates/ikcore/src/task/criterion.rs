@@ -16,9 +16,9 @@ const WIDEST_MARGIN: f64 = 1e-3;
 pub struct Criterion {
     /// Largest distance and angle.
     pub tolerance: Tolerance,
-    /// Weights and tolerances component by component; None: all components weigh the same.
+    /// Weights and tolerances component by component. `None` means all components weigh the same.
     pub components: Option<Components>,
-    /// Where the tip must stay; None: anywhere.
+    /// Where the tip must stay. `None` means anywhere.
     pub region: Option<Region>,
     /// The value of a tip outside its region.
     pub outside: Outside,

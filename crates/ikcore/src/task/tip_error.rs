@@ -37,7 +37,7 @@ impl Tolerance {
     }
 }
 
-/// Squared errors, which spare hot loops the root. None where the target does not ask for the part.
+/// Squared errors, which spare hot loops the root. `None` if the target does not ask for the part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SquaredError {
     /// Squared distance (m^2).

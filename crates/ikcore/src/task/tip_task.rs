@@ -38,7 +38,7 @@ pub struct Task {
     pub components: Option<Components>,
     /// The tool's pose in the tip's frame; the tool is to reach the target. None: the tip itself.
     pub tool: Option<Pose>,
-    /// Where it must stay; None: anywhere.
+    /// Where it must stay. `None` means anywhere.
     pub region: Option<Region>,
 }
 
@@ -128,7 +128,7 @@ impl Task {
         Criterion { components: self.components, region: self.region, ..tolerance.into() }
     }
 
-    /// The weights, one for each component that the kind has; None where they are all one by default.
+    /// The weights, one for each component that the kind has; `None` if they are all one by default.
     pub fn weights(&self) -> Option<Vec<f64>> {
         self.components.map(|components| self.contract(&components.weights))
     }

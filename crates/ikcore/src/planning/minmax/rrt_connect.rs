@@ -18,7 +18,7 @@ pub(super) enum Connection {
     Interrupted,
 }
 
-/// Length of an edge while a tree grows: the joints' displacements, each as a share of its range.
+/// Length of an edge while a tree grows: the joints' displacements, each as a fraction of its range.
 const STRIDE: f64 = 0.08;
 
 /// The search, and what it keeps to.
@@ -56,7 +56,7 @@ impl<'a> TreeSearch<'a> {
         self.sweep.examined() >= self.budget || self.refused >= self.budget
     }
 
-    /// Squared distance, each joint's displacement as a share of its range.
+    /// Squared distance, each joint's displacement as a fraction of its range.
     fn squared_distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let share = |j: usize| (a[j] - b[j]) / (self.ranges[j].1 - self.ranges[j].0).max(1e-9);
         (0..a.len()).map(|j| share(j) * share(j)).sum()
@@ -97,7 +97,8 @@ impl<'a> TreeSearch<'a> {
         Connection::NotFound
     }
 
-    /// Grows `tree` towards `goal` by up to `strides` edges; returns the last node reached, None where it cannot grow.
+    /// Grows `tree` towards `goal` by up to `strides` edges; returns the last node reached, `None` where it cannot
+    /// grow.
     fn grow(&mut self, tree: &mut Tree, goal: &[f64], strides: usize) -> Option<usize> {
         let distances = tree.nodes.iter().map(|node| self.squared_distance(node, goal)).enumerate();
         let (mut at, _) = distances.min_by(|one, other| one.1.total_cmp(&other.1))?;

@@ -14,8 +14,8 @@ use crate::solver::evaluator::Evaluator;
 pub struct BeeColony {
     /// Food sources, each with an employed bee; there are as many onlookers. Karaboga's colony size is twice that.
     pub schedule: Schedule,
-    /// Trials without success after which a source is abandoned; None: sources times dimensions (Karaboga and Basturk
-    /// 2007).
+    /// Trials without success after which a source is abandoned. `None` means sources times dimensions (Karaboga and
+    /// Basturk 2007).
     pub limit: Option<usize>,
 }
 
