@@ -1,13 +1,15 @@
-//! The one error type: every variant names the thing, its value, the bound it broke and what would be right.
+//! The error type of the crate: every variant names the argument, its value, the bound it violates and what would be
+//! valid.
 
 use thiserror::Error;
 
 /// `Result` with this crate's [`enum@Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Everything that a caller can get wrong.
+/// Mistakes of a caller.
 ///
-/// Not having converged is no error: that is a [`Status`](crate::solver::Status) beside the best answer found.
+/// A search that does not converge is not an error: it has a [`Status`](crate::solver::Status) next to the best result
+/// found.
 #[non_exhaustive]
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Error {
@@ -21,17 +23,17 @@ pub enum Error {
         /// The offending number.
         value: f64,
     },
-    /// An array does not have the length it must have.
+    /// An array has the wrong length. Wrong shapes of Python arrays are reported by `ikpy-bind/src/convert.rs`.
     #[error("{what}: expected {expected}, got {got}")]
     WrongLength {
-        /// What was passed and to whom, such as "joint angles of robot 'iiwa14'".
+        /// What was passed and for which robot, such as "joint angles of robot 'iiwa14'".
         what: String,
         /// What was expected, such as "7 joints".
         expected: String,
         /// What came.
         got: usize,
     },
-    /// A number lies outside the range that its meaning allows.
+    /// A number is outside its allowed range.
     #[error("{what} must be {requirement}, got {value}")]
     OutOfRange {
         /// The name of the argument.
@@ -41,7 +43,7 @@ pub enum Error {
         /// The offending number.
         value: f64,
     },
-    /// A word that is none of the allowed ones.
+    /// A word that is not among the allowed ones.
     #[error("{what} must be one of {known}, got '{value}'")]
     UnknownOption {
         /// The name of the argument.
@@ -73,7 +75,7 @@ pub enum Error {
         /// All links, separated by commas.
         known: String,
     },
-    /// The tip was left open, but the tree of links ends in several places.
+    /// No tip was given, but the tree of links has several leaves.
     #[error("robot '{robot}' ends in several links: say which one is the tip; leaves: {leaves}")]
     AmbiguousTip {
         /// The robot's name.
@@ -81,7 +83,7 @@ pub enum Error {
         /// The leaf links, separated by commas.
         leaves: String,
     },
-    /// A description of a robot that cannot be one.
+    /// An invalid description of a robot.
     #[error("robot '{robot}': {problem}")]
     InvalidRobot {
         /// The robot's name.
@@ -145,12 +147,12 @@ pub enum Error {
         /// Its upper bound (m).
         upper: f64,
     },
-    /// An end of a motion that the robot does not reach.
+    /// The start or end of a motion is out of reach.
     #[error("{what} cannot be reached: {problem}")]
     Unreachable {
         /// Which end, such as "start".
         what: String,
-        /// By how much it is missed, and what would be right.
+        /// The distance to it, and what would be right.
         problem: String,
     },
     /// A limit that is negative, at least for some time.
@@ -165,20 +167,20 @@ pub enum Error {
         /// The time at which it is reached (s).
         time: f64,
     },
-    /// A limit that the method cannot keep. No method ignores one.
+    /// A limit that the method does not support. No method silently ignores a limit.
     #[error("{method} cannot honour {field} limits: {remedy}")]
     UnsupportedLimit {
         /// The field of the limits, such as "acceleration".
         field: String,
-        /// What was asked to keep it.
+        /// The method.
         method: String,
         /// What to do instead.
         remedy: String,
     },
-    /// Nothing satisfies what was asked.
+    /// No motion satisfies the request.
     #[error("infeasible: {problem}")]
     Infeasible {
-        /// What stands against what.
+        /// The conflicting requirements.
         problem: String,
     },
     /// A matrix that is not a rigid transform.
@@ -189,25 +191,25 @@ pub enum Error {
         /// By how much it fails.
         problem: String,
     },
-    /// A position where a task needs a whole pose.
+    /// A position was given, but the task needs a whole pose.
     #[error("task {task} needs a target pose (4, 4), got a position (3,)")]
     WrongTarget {
         /// The kind of task.
         task: String,
     },
-    /// Options that do not go together.
+    /// Options that contradict each other.
     #[error("{problem}")]
     Contradiction {
-        /// Which, and what would be right.
+        /// Which options, and what would be right.
         problem: String,
     },
-    /// An obstacle that cannot be one, or not for this robot.
+    /// An invalid obstacle, or one that this robot does not support.
     #[error("{problem}")]
     InvalidObstacle {
         /// What is wrong and what would be right.
         problem: String,
     },
-    /// Nothing is known of the room that a robot takes up.
+    /// The robot has no capsules, so its shape is unknown.
     #[error(
         "robot '{robot}' {problem}: give it capsules with with_capsules(radius=...) along its links or \
          with_capsules([(link, a, b, radius), ...]), or load a URDF whose links have <collision> shapes of spheres, \
@@ -219,19 +221,19 @@ pub enum Error {
         /// What is missing.
         problem: String,
     },
-    /// A start or end that touches something.
+    /// A start or end in collision.
     #[error("{what}: link '{link}' is {depth} {other}")]
     InCollision {
         /// What was passed, such as "start".
         what: String,
         /// The link.
         link: String,
-        /// What it is in, such as "obstacle 0 (Box)".
+        /// The other body, such as "obstacle 0 (Box)".
         other: String,
-        /// How deep, such as "0.02 m inside".
+        /// The penetration, such as "0.02 m inside".
         depth: String,
     },
-    /// A joint that no limit slows down.
+    /// A joint with neither a velocity nor an acceleration limit.
     #[error(
         "joint '{joint}' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
          limits=Limits(velocity=...)"
@@ -258,7 +260,7 @@ pub enum Error {
         /// The time of this row (s).
         value: f64,
     },
-    /// A joint motion that no robot could make.
+    /// An invalid joint motion.
     #[error("trajectory: {problem}")]
     InvalidTrajectory {
         /// What is wrong and what would be right.
@@ -272,15 +274,15 @@ pub enum Error {
         /// What is wrong with it.
         error: Box<Error>,
     },
-    /// The operating system does not give as many threads.
+    /// The operating system cannot start this many threads.
     #[error("cannot start {threads} threads ({problem}): ask for fewer; threads=1 needs none")]
     NoThreads {
-        /// How many were asked for.
+        /// The number of threads requested.
         threads: usize,
         /// The operating system's reason.
         problem: String,
     },
-    /// A call that comes before the one it needs.
+    /// A call that must come after another one.
     #[error("{call}: {remedy}")]
     OutOfTurn {
         /// What was called.
@@ -288,16 +290,16 @@ pub enum Error {
         /// What to call first.
         remedy: String,
     },
-    /// A plant that does not answer with a position, right at the start.
+    /// A plant that fails at the start.
     #[error("the plant {problem}")]
     PlantFailed {
         /// What it did, such as "raised ValueError: no".
         problem: String,
     },
-    /// Stored bytes that are not what they should be.
+    /// Corrupt stored bytes.
     #[error("cannot restore {what}: {problem}")]
     Corrupt {
-        /// What was to be restored.
+        /// The object to be restored.
         what: String,
         /// What is wrong with it.
         problem: String,
@@ -330,7 +332,7 @@ pub(crate) fn require_positive(what: &str, value: f64) -> Result<()> {
     if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Error::out_of_range(what, "positive and finite", value)) }
 }
 
-/// ` (did you mean 'x'?)` for the candidate nearest to `name`, or nothing where none is near.
+/// ` (did you mean 'x'?)` for the candidate nearest to `name`, or empty if none is near.
 pub(crate) fn suggestion<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let wanted = name.to_lowercase();
     candidates

@@ -17,7 +17,7 @@ pub struct Solution {
     pub status: Status,
     /// Errors at `q`, by forward kinematics.
     pub error: TipError,
-    /// What keeps the tip from a target that was not reached, in words; empty where nothing is known.
+    /// Why the target was not reached, in words; empty if unknown or reached.
     pub obstruction: String,
     /// Iterations over all starts.
     pub iterations: usize,

@@ -48,10 +48,10 @@ impl Default for FourLinearizations {
     }
 }
 
-/// Objectives that are linearized faster four at a time than one by one. They are four problems of one system: for a robot,
-/// four targets of one kind.
+/// Objectives that are linearized faster four at a time than one by one. The four are problems of one system: for a
+/// robot, four targets of one kind.
 pub(crate) trait SideBySide: LeastSquares + Sized {
-    /// [`linearize`](LeastSquares::linearize) of each objective at its lane of `xs`, to the same bits.
+    /// [`linearize`](LeastSquares::linearize) of each objective at its lane of `xs`, bit-identical.
     fn linearize_four(objectives: [&Self; 4], xs: &[F64x4], out: &mut FourLinearizations) -> [Score; 4];
 }
 
@@ -64,7 +64,7 @@ impl Linearization {
     }
 }
 
-/// All that a solver can ask of the inverse kinematics problem.
+/// All evaluations of the inverse kinematics problem that a solver may use.
 pub trait Differentiable: LeastSquares + Gradient {}
 
 impl<O: LeastSquares + Gradient + ?Sized> Differentiable for O {}
