@@ -1,5 +1,4 @@
-//! Collisions of capsule-shaped links with convex obstacles and with each other: distances, and motions certified between
-//! samples too.
+//! Collisions of capsule-shaped links with convex obstacles and with each other: distances, and certified motions.
 //!
 //! | file | what |
 //! |---|---|
@@ -8,8 +7,8 @@
 //! | `ellipsoid` | the nearest point of an ellipsoid |
 //! | `convex_hull` | convex hulls from the collision crate; the only file that knows its types |
 //! | `segment_distance` | distance of a segment to a convex set or another segment, certified from below |
-//! | [`scene`] | a robot among obstacles: which pairs can touch, and how near they are at one configuration |
-//! | `link_displacement` | how far a link can move while the joints move by so much |
+//! | [`scene`] | a robot among obstacles: pairs that can touch, and their distances at one configuration |
+//! | `link_displacement` | bound on the motion of a link for given joint motions |
 //! | `triangles` | triangles for drawing |
 //! | [`sweep`] | continuous collision checking of a whole motion, and its smallest clearance |
 

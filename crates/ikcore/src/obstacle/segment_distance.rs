@@ -1,5 +1,5 @@
-//! Distance of a segment to a convex set, from below: along a segment the signed distance is a convex function of one
-//! variable, which lies above all its tangents and below all its chords.
+//! Lower bound on the distance of a segment from a convex set: along a segment the signed distance is a convex function
+//! of one variable, which lies above all its tangents and below all its chords.
 
 use nalgebra::Vector3;
 
