@@ -56,7 +56,7 @@ pub enum Error {
     /// No built-in robot has this name.
     #[error("no robot is named '{name}'{suggestion}; known robots: {known}")]
     UnknownRobot {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// ` (did you mean 'x'?)`, or empty.
         suggestion: String,
@@ -68,7 +68,7 @@ pub enum Error {
     UnknownLink {
         /// The robot's name.
         robot: String,
-        /// The link asked for.
+        /// The requested link.
         name: String,
         /// ` (did you mean 'x'?)`, or empty.
         suggestion: String,

@@ -15,7 +15,7 @@ pub enum OnInvalid {
 
 words!("on_invalid": OnInvalid { Raise => "raise", Skip => "skip" });
 
-/// Options of [`solve_batch`](super::solve_batch). The default uses all cores.
+/// Options of [`solve_batch`](super::solve_batch()). The default uses all cores.
 #[derive(Debug, Clone, Default)]
 pub struct BatchOptions<'a> {
     /// Options of each solve. Its budgets apply to each target, its start to all targets unless `starts` is given.

@@ -19,7 +19,7 @@ pub enum Prefer {
 
 words!("prefer": Prefer { Any => "any", Nearest => "nearest", Best => "best" });
 
-/// Options of [`solve`](super::solve). The default is Levenberg-Marquardt from many starts, within the robot's limits.
+/// Options of [`solve`](super::solve()). The default is Levenberg-Marquardt from many starts, within the robot's limits.
 #[derive(Debug, Clone, Default)]
 pub struct SolveOptions {
     /// The algorithm.

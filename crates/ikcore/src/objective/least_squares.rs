@@ -9,7 +9,7 @@ use crate::math::f64x4::F64x4;
 /// Residual r and Jacobian dr/dx at a point.
 #[derive(Debug, Clone)]
 pub struct Linearization {
-    /// Weighted residual, current minus wanted; rows that a task does not use are zero.
+    /// Weighted residual, actual minus target; rows that a task does not use are zero.
     pub residual: [f64; ROWS],
     /// Columns of the weighted Jacobian, one per entry of x; the first `dimension` are in use.
     pub columns: [[f64; ROWS]; MAX_DOF],
@@ -23,7 +23,7 @@ impl Default for Linearization {
 
 /// An objective that is a sum of at most six squares.
 pub trait Residual: Objective {
-    /// The weighted residual at `x`, current minus wanted, and the score; rows that a task does not use are zero.
+    /// The weighted residual at `x`, actual minus target, and the score; rows that a task does not use are zero.
     fn residual(&mut self, x: &[f64], out: &mut [f64; ROWS]) -> Score;
 }
 

@@ -70,7 +70,7 @@ impl Hull {
         (middle.into(), reach)
     }
 
-    /// The crate proposes the nearest point; the plane through the corners bounds the distance whatever its error.
+    /// The crate proposes the nearest point; the plane through the corners bounds the distance regardless of its error.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         let beyond =
             |(normal, offset): &(Vector3<f64>, f64)| Tangent { value: normal.dot(point) - offset, normal: *normal };

@@ -112,7 +112,7 @@ impl<'a> Scene<'a> {
         Ok(scene)
     }
 
-    /// The same scene for links that pass over each other, as those of an arm drawn in a plane.
+    /// The same scene, but links may cross each other, as in a planar arm.
     pub fn without_self_collision(mut self) -> Self {
         self.pairs.retain(|pair| matches!(pair, BodyPair::Obstacle { .. }));
         self
@@ -230,7 +230,7 @@ fn middle_of_range(joint: &Joint) -> f64 {
     0.5 * (lower + upper)
 }
 
-/// Whether the arm stays in the plane z = 0, whatever its joints do.
+/// Whether the arm stays in the plane z = 0 for all joint positions.
 fn moves_in_plane(robot: &Robot) -> bool {
     let q: Vec<f64> = robot.joints().iter().map(middle_of_range).collect();
     let mut columns = [[0.0; 6]; MAX_DOF];

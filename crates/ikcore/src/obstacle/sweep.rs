@@ -9,7 +9,7 @@ use super::scene::{BodyPair, Contact, Placement, Scene};
 use crate::math::MAX_DOF;
 use crate::objective::Point;
 
-/// A joint motion over an interval of its parameter (time, or a share of a straight line).
+/// A joint motion over an interval of its parameter (time, or the fraction of a straight line).
 pub trait JointMotion {
     /// Writes the configuration in the middle of \[`from`, `to`\], and by how much each joint differs from it in there
     /// at most (rad, m).

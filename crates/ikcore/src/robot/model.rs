@@ -16,19 +16,19 @@ use crate::starts::index::StartIndex;
 
 /// A robot arm: a serial chain from base to tip.
 ///
-/// Joint vectors hold the independent joints in chain order (rad, m); mimic joints follow theirs. Poses are seen from
-/// the robot's base.
+/// Joint vectors hold the independent joints in chain order (rad, m); mimic joints follow theirs. Poses are in the
+/// frame of the robot's base.
 #[derive(Debug, Clone)]
 pub struct Robot {
     description: Description,
     base: Pose,
     tool: Pose,
     bodies: Bodies,
-    /// Folded from description, base and tool.
+    /// The chain, folded from description, base and tool.
     chain: Arc<Chain>,
-    /// The compilation of the kernels that this machine runs for the chain.
+    /// The kernels compiled for the chain's size and this machine.
     kernels: Kernels,
-    /// Of the links stretched out, without slides.
+    /// The reach of the stretched links, without prismatic motion.
     reach_of_links: Reach,
     /// Built at first use; copies that differ in base and tool share it.
     start_index: Arc<OnceLock<StartIndex>>,
@@ -37,7 +37,7 @@ pub struct Robot {
 }
 
 impl PartialEq for Robot {
-    /// Compares what the rest follows from.
+    /// Compares the fields that determine all others.
     fn eq(&self, other: &Self) -> bool {
         (&self.description, &self.base, &self.tool, &self.bodies)
             == (&other.description, &other.base, &other.tool, &other.bodies)
@@ -187,8 +187,8 @@ impl Robot {
         *self.task_rank.get_or_init(|| TaskRank::of(&self.chain, &self.kernels, &self.sampling_ranges()))
     }
 
-    /// Starts for a solve to `pose`. The first call on a robot builds its index, which copies with another base or tool
-    /// share.
+    /// Starts for a solve to `pose`. The first call on a robot builds its index; copies with another base or tool share
+    /// it.
     pub fn starts_near_pose(&self, pose: &Frame) -> Starts<'_> {
         self.start_index().near_pose(&self.chain, pose)
     }

@@ -82,7 +82,7 @@ impl Target {
     }
 }
 
-/// Errors whose squares are those of the residual.
+/// The errors, and the sum of their squares.
 #[inline(always)]
 fn summed(error: SquaredError) -> (SquaredError, f64) {
     (error, error.sum())
