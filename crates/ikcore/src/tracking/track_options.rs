@@ -19,7 +19,7 @@ pub struct TrackOptions {
     pub tolerance: Tolerance,
     /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
-    /// Which time of a tick its velocity limit is evaluated at.
+    /// The time within a tick at which its velocity limit is evaluated.
     pub limit_at: LimitAt,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
