@@ -111,7 +111,7 @@ pub struct InverseLeftJacobian<R> {
 }
 
 impl<R: Real> InverseLeftJacobian<R> {
-    /// I - [phi]/2 + quadratic * [phi]^2 at the rotation vector `phi` (rad), given the cotangent of half its length.
+    /// I - \[phi\]/2 + quadratic \[phi\]^2 at the rotation vector `phi` (rad), given the cotangent of half its length.
     #[inline(always)]
     fn at(phi: Vec3<R>, half_cotangent: R) -> Self {
         let (half, one) = (R::splat(0.5), R::splat(1.0));

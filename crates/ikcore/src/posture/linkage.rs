@@ -1,4 +1,4 @@
-//! A planar arm with a fixed tip: joint points on circles. [`planar_arm`](crate::planning::planar_arm) has the same arm
+//! A planar arm with a fixed tip: joint points on circles. `planning::planar_arm` has the same arm
 //! with link orientations as unknowns, and explains why each measures the link lengths itself.
 
 use std::f64::consts::TAU;

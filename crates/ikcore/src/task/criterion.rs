@@ -34,7 +34,7 @@ impl Criterion {
     /// Checks tolerances and weights.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] names the entry.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the entry.
     pub fn validate(&self) -> Result<()> {
         self.tolerance.validate()?;
         self.components.as_ref().map_or(Ok(()), Components::validate)

@@ -6,7 +6,7 @@ use crate::limits::{LimitAt, Limits};
 use crate::robot::Robot;
 use crate::task::{Criterion, Goal, Task, Tolerance};
 
-/// Options of [`track`](super::track) and [`Session`](super::Session).
+/// Options of [`track`](super::track()) and [`Session`](super::Session).
 #[derive(Debug, Clone, Default)]
 pub struct TrackOptions {
     /// The rule that runs in every tick.
