@@ -16,9 +16,9 @@ pub enum Error {
     /// A number that must be finite is NaN or infinite.
     #[error("{what} must be finite, but {place} is {value}")]
     NotFinite {
-        /// What was passed, such as "joint angles".
+        /// The argument, such as "joint angles".
         what: String,
-        /// Which entry, such as "entry 2" or "joint 'elbow'".
+        /// The entry, such as "entry 2" or "joint 'elbow'".
         place: String,
         /// The offending number.
         value: f64,
@@ -26,11 +26,11 @@ pub enum Error {
     /// An array has the wrong length. Wrong shapes of Python arrays are reported by `ikpy-bind/src/convert.rs`.
     #[error("{what}: expected {expected}, got {got}")]
     WrongLength {
-        /// What was passed and for which robot, such as "joint angles of robot 'iiwa14'".
+        /// The argument and its robot, such as "joint angles of robot 'iiwa14'".
         what: String,
-        /// What was expected, such as "7 joints".
+        /// The expected length, such as "7 joints".
         expected: String,
-        /// What came.
+        /// The value that was given.
         got: usize,
     },
     /// A number is outside its allowed range.
@@ -48,7 +48,7 @@ pub enum Error {
     UnknownOption {
         /// The name of the argument.
         what: String,
-        /// What came.
+        /// The value that was given.
         value: String,
         /// The allowed words, quoted and separated by commas.
         known: String,
@@ -88,7 +88,7 @@ pub enum Error {
     InvalidRobot {
         /// The robot's name.
         robot: String,
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// A URDF that cannot be read.
@@ -96,7 +96,7 @@ pub enum Error {
     Urdf {
         /// Line of the text, from 1, where known.
         line: Option<u32>,
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// A file that cannot be read.
@@ -122,7 +122,7 @@ pub enum Error {
     /// A configuration outside the position limits.
     #[error("{what}: joint '{joint}' at {value} is outside its limits [{lower}, {upper}]")]
     OutsideLimits {
-        /// What was passed, such as "start".
+        /// The argument, such as "start".
         what: String,
         /// The joint's name.
         joint: String,
@@ -136,7 +136,7 @@ pub enum Error {
     /// A configuration that puts the tip outside its region.
     #[error("{what}: {coordinate} of the tip, {value} m, is outside its region ({lower}, {upper})")]
     OutsideRegion {
-        /// What was passed, such as "start".
+        /// The argument, such as "start".
         what: String,
         /// The coordinate, in the base's frame.
         coordinate: String,
@@ -150,7 +150,7 @@ pub enum Error {
     /// The start or end of a motion is out of reach.
     #[error("{what} cannot be reached: {problem}")]
     Unreachable {
-        /// Which end, such as "start".
+        /// The end, such as "start".
         what: String,
         /// The distance to it, and what would be right.
         problem: String,
@@ -174,7 +174,7 @@ pub enum Error {
         field: String,
         /// The method.
         method: String,
-        /// What to do instead.
+        /// The remedy.
         remedy: String,
     },
     /// No motion satisfies the request.
@@ -186,7 +186,7 @@ pub enum Error {
     /// A matrix that is not a rigid transform.
     #[error("{what} is not a rigid transform: {problem}")]
     NotRigid {
-        /// What was passed, such as "target".
+        /// The argument, such as "target".
         what: String,
         /// By how much it fails.
         problem: String,
@@ -206,7 +206,7 @@ pub enum Error {
     /// An invalid obstacle, or one that this robot does not support.
     #[error("{problem}")]
     InvalidObstacle {
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// The robot has no capsules, so its shape is unknown.
@@ -218,13 +218,13 @@ pub enum Error {
     NoCapsules {
         /// The robot's name.
         robot: String,
-        /// What is missing.
+        /// The remedy.
         problem: String,
     },
     /// A start or end in collision.
     #[error("{what}: link '{link}' is {depth} {other}")]
     InCollision {
-        /// What was passed, such as "start".
+        /// The argument, such as "start".
         what: String,
         /// The link.
         link: String,
@@ -245,13 +245,13 @@ pub enum Error {
     /// A path without points, or one that cannot be followed in time.
     #[error("path: {problem}")]
     InvalidPath {
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// Times that do not increase.
     #[error("{what} must increase, but row {row} has {value} after {previous}")]
     NotIncreasing {
-        /// What was passed, such as "path times".
+        /// The argument, such as "path times".
         what: String,
         /// The first row, from 0, that is not later than the one before it.
         row: usize,
@@ -263,7 +263,7 @@ pub enum Error {
     /// An invalid joint motion.
     #[error("trajectory: {problem}")]
     InvalidTrajectory {
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// A mistake in one row of a batch.
@@ -271,7 +271,7 @@ pub enum Error {
     InRow {
         /// The row, from 0.
         row: usize,
-        /// What is wrong with it.
+        /// The problem.
         error: Box<Error>,
     },
     /// The operating system cannot start this many threads.
@@ -285,15 +285,15 @@ pub enum Error {
     /// A call that must come after another one.
     #[error("{call}: {remedy}")]
     OutOfTurn {
-        /// What was called.
+        /// The call.
         call: String,
-        /// What to call first.
+        /// The call that must come first.
         remedy: String,
     },
     /// A plant that fails at the start.
     #[error("the plant {problem}")]
     PlantFailed {
-        /// What it did, such as "raised ValueError: no".
+        /// The failure, such as "raised ValueError: no".
         problem: String,
     },
     /// Corrupt stored bytes.
@@ -301,7 +301,7 @@ pub enum Error {
     Corrupt {
         /// The object to be restored.
         what: String,
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
     },
 }

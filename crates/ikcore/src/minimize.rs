@@ -46,7 +46,7 @@ pub struct Minimum {
 }
 
 impl Minimum {
-    /// What happened, and what to try.
+    /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         let Self { value, evaluations, .. } = self;
         if value.is_infinite() {

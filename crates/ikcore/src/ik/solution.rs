@@ -30,7 +30,7 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// What happened, and what to try.
+    /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         let Self { error, obstruction, status, .. } = self;
         if error.position.is_nan() && error.rotation.is_nan() {

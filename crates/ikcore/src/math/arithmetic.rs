@@ -163,10 +163,10 @@ fn from_register(register: x86::__m256d) -> F64x4 {
     unsafe { std::mem::transmute(register) }
 }
 
-/// What every machine of this architecture runs fast.
+/// The arithmetic that is fast on every machine of this architecture.
 #[cfg(target_arch = "aarch64")]
 pub(crate) type Baseline = Fma;
-/// What every machine of this architecture runs fast.
+/// The arithmetic that is fast on every machine of this architecture.
 #[cfg(not(target_arch = "aarch64"))]
 pub(crate) type Baseline = NoFma;
 

@@ -70,7 +70,7 @@ pub fn range(coefficients: &[f64], lower: f64, upper: f64) -> (f64, f64) {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-/// Where the derivative vanishes strictly inside `(lower, upper)`.
+/// Returns the points where the derivative vanishes, strictly inside `(lower, upper)`.
 fn stationary_points(coefficients: &[f64], lower: f64, upper: f64) -> Short {
     if coefficients.len() < 2 {
         return Short::new();

@@ -50,7 +50,7 @@ pub struct Posture {
 }
 
 impl Posture {
-    /// What happened, and what to try.
+    /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         match self.status {
             Status::Solved => format!("the best of {} postures, index {:.6}", self.evaluations, self.index),

@@ -13,7 +13,7 @@ use crate::math::box_step::ROWS;
 use crate::math::so3::norm;
 use crate::robot::Robot;
 
-/// Which part of a pose matters.
+/// The part of a pose that matters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TaskKind {
     /// The whole pose.
@@ -32,7 +32,7 @@ pub enum TaskKind {
 /// A task of the tip, or of a tool at the tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Task {
-    /// Which part of a pose matters.
+    /// The part of a pose that matters.
     pub kind: TaskKind,
     /// Weights and tolerances by component.
     pub components: Option<Components>,
