@@ -218,7 +218,7 @@ pub enum Error {
     NoCapsules {
         /// The robot's name.
         robot: String,
-        /// The remedy.
+        /// The problem, and the remedy.
         problem: String,
     },
     /// A start or end in collision.
