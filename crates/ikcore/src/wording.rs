@@ -1,10 +1,10 @@
-//! Numbers in messages, and the words of options.
+//! Numbers in messages, and names of options.
 
-/// Implements `name`, `Display` and `FromStr` for an option by these words; the error of `FromStr` lists them.
+/// Implements `name`, `Display` and `FromStr` for an option with these names; the error of `FromStr` lists them.
 macro_rules! words {
     ($what:literal: $option:ident { $($variant:ident => $word:literal),+ $(,)? }) => {
         impl $option {
-            /// The word of this option.
+            /// The name of this option.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $word,)+
@@ -33,11 +33,11 @@ macro_rules! words {
 
 pub(crate) use words;
 
-/// Four significant digits; an exponent only where it helps to read.
+/// Formats four significant digits, with an exponent only where it improves readability.
 pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-3..1e4).contains(&size) {
-        // As many decimals as leave four digits in all.
+        // Decimals for four significant digits.
         let decimals = if size == 0.0 { 0 } else { (3 - size.log10().floor() as i32).max(0) as usize };
         format!("{value:.decimals$}")
     } else {

@@ -14,7 +14,7 @@ use crate::solver::{Monitor, Status};
 use crate::task::Tolerance;
 use crate::wording::{number, time};
 
-/// How to track without a model.
+/// Options of [`track_model_free`].
 #[derive(Debug, Clone)]
 pub struct ModelFreeOptions {
     /// The controller.

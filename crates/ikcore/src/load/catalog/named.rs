@@ -5,11 +5,11 @@ use super::{franka, hydraulic, kinova, kuka, universal_robots};
 use crate::error::{Error, Result, suggestion};
 use crate::robot::Robot;
 
-/// Where a built-in robot comes from.
+/// Source of a built-in robot.
 enum Source {
     /// A Denavit-Hartenberg table.
     Table(&'static Arm),
-    /// Code, for what no such table describes.
+    /// Code, for robots that a table cannot describe.
     Made(fn() -> Result<Robot>),
 }
 

@@ -1,4 +1,5 @@
-//! The robot of the joints from base to tip: independent joints in order, then the elements of the chain.
+//! The robot from the URDF joints between base and tip: adds the independent joints (entries of q, hence columns of the
+//! Jacobian) in order, then the elements of the chain that they drive.
 
 use std::collections::HashMap;
 
@@ -33,7 +34,7 @@ pub(super) fn build(document: &Document, base: &str, path: &[TreeStep]) -> Resul
     Ok(robot.with_bodies(bodies))
 }
 
-/// Capsules of the links of these names.
+/// Collects the capsules of the links with these names.
 fn bodies<'a>(document: &Document, names: impl Iterator<Item = &'a str>) -> Bodies {
     let mut bodies = Bodies::default();
     for link in names.filter_map(|name| document.capsules.get(name)) {
@@ -43,8 +44,8 @@ fn bodies<'a>(document: &Document, names: impl Iterator<Item = &'a str>) -> Bodi
     bodies
 }
 
-/// Adds the independent joints in chain order, narrowed by their followers, and returns the index in q of each independent
-/// joint of the document. A master off the chain takes the place of its first follower.
+/// Adds the independent joints in chain order, with limits narrowed by their mimic joints, and returns the index in q
+/// of each independent joint of the document. A master outside the chain takes the position of its first mimic joint.
 fn add_joints(chain: &mut ChainBuilder, document: &Document, moving: &[usize]) -> Result<HashMap<usize, usize>> {
     let mut index_in_q = HashMap::new();
     for &joint in moving {
@@ -65,7 +66,7 @@ fn add_joints(chain: &mut ChainBuilder, document: &Document, moving: &[usize]) -
     Ok(index_in_q)
 }
 
-/// A joint that moves, with its own limits.
+/// A moving joint with its own limits.
 fn described(document: &Document, index: usize) -> Result<Joint> {
     let joint = &document.model.joints[index];
     let kind = kind(document, index)?;
@@ -94,7 +95,7 @@ fn kind(document: &Document, index: usize) -> Result<JointKind> {
     }
 }
 
-/// Appends one joint. Reversed, it is the inverse: the motion by -q first, then the inverse of its origin.
+/// Appends one joint. A reversed joint is the inverse: the motion by -q first, then the inverse of its origin.
 fn append(
     chain: &mut ChainBuilder,
     document: &Document,
@@ -131,7 +132,7 @@ fn axis(document: &Document, index: usize) -> Result<Vector3<f64>> {
             document.error_at(index, format!("axis of joint '{}' is zero: it must have a direction", joint.name))
         );
     }
-    // Its length may be anything; squares of tiny or huge numbers must not vanish or overflow.
+    // The axis may have any length; squares of tiny or huge numbers must not vanish or overflow.
     Ok(axis / largest)
 }
 

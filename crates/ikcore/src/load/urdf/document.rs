@@ -1,7 +1,7 @@
 //! URDF text as a typed model: checked with roxmltree, reduced to links and joints, then read by urdf-rs.
 //!
-//! urdf-rs alone stops at unknown geometry, accepts NaN, skips words that are no numbers and cannot tell a missing limit
-//! from zero. It therefore gets a text of nothing but links and joints, with every number written out.
+//! urdf-rs alone fails on unknown geometry, accepts NaN, skips words that are not numbers, and cannot distinguish a
+//! missing limit from zero. So it gets a text with links and joints only, and every number written out.
 
 use std::collections::{HashMap, HashSet};
 
@@ -66,7 +66,7 @@ fn reduced(root: Node) -> Result<String> {
     Ok(text + "</robot>")
 }
 
-/// The name of a link or joint, which no other may have.
+/// Returns the name of a link or joint, checked to be unique.
 fn new_name<'a>(node: Node<'a, '_>, tag: &str, names: &mut HashSet<&'a str>) -> Result<&'a str> {
     let name = xml::required(node, "name", &format!("<{tag}>"))?;
     if names.insert(name) { Ok(name) } else { Err(xml::error_at(node, format!("a second {tag} is named '{name}'"))) }
@@ -118,7 +118,7 @@ fn rotation(joint: Node, owner: &str) -> Result<[f64; 3]> {
     }
 }
 
-/// The element that makes a joint follow another, or nothing.
+/// Returns the `<mimic>` element of a joint, or an empty string.
 fn mimic(joint: Node, owner: &str) -> Result<String> {
     let Some(mimic) = xml::children(joint, "mimic").next() else { return Ok(String::new()) };
     let master = escaped(xml::required(mimic, "joint", &format!("<mimic> of {owner}"))?);
@@ -142,7 +142,7 @@ fn number(joint: Node, tag: &str, attribute: &str, owner: &str) -> Result<Option
     xml::number(element, attribute, &format!("{tag} {attribute} of {owner}"))
 }
 
-/// Text as it must stand between quotation marks.
+/// Escapes text for an attribute value.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -6,7 +6,7 @@ use super::document::Document;
 use crate::error::{Error, Result, suggestion};
 use crate::robot::{Drive, Joint, JointKind};
 
-/// The independent joint that drives a joint (for most the joint itself), and its drive.
+/// The independent joint that drives a joint (usually the joint itself), and its drive.
 pub(super) struct Coupling {
     pub(super) master: usize,
     pub(super) drive: Drive,
@@ -45,7 +45,8 @@ fn unknown_target(document: &Document, follower: usize, target: &str) -> Error {
     document.error_at(follower, problem)
 }
 
-/// Narrows the master so that `follower`, driven by it, keeps its own limits. The error explains an empty range.
+/// Narrows the limits of the master so that its mimic joint `follower` keeps its own limits. The error explains an
+/// empty range.
 pub(super) fn narrow(master: &mut Joint, follower: &Joint, drive: Drive) -> Result<(), String> {
     let Drive { scale, offset } = drive;
     if scale == 0.0 {

@@ -8,7 +8,7 @@ use crate::error::{Error, Result, suggestion};
 /// The joints as a tree with one root.
 pub(super) struct Tree<'a> {
     document: &'a Document,
-    /// The joint that leads to each link from its parent.
+    /// The joint between each link and its parent.
     joint_above: HashMap<&'a str, usize>,
     root: &'a str,
 }
@@ -17,7 +17,7 @@ pub(super) struct Tree<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TreeStep {
     pub(super) joint: usize,
-    /// True where the path leads from child to parent.
+    /// True if the path leads from child to parent.
     pub(super) reversed: bool,
 }
 
@@ -61,7 +61,7 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// The one link below `base` from which no joint leads on.
+    /// The only leaf link below `base`.
     pub(super) fn only_leaf_below(&self, base: &str) -> Result<&'a str> {
         let model = &self.document.model;
         let is_leaf = |link: &str| model.joints.iter().all(|joint| joint.parent.link != link);
@@ -74,7 +74,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// The joints from `base` to `tip`: up to where the two branches meet, then down.
+    /// The joints from `base` to `tip`: up to the common ancestor, then down.
     pub(super) fn path(&self, base: &'a str, tip: &'a str) -> Result<Vec<TreeStep>> {
         if base == tip {
             let problem = format!("base and tip are both '{base}': a chain needs two links");
@@ -105,7 +105,7 @@ impl<'a> Tree<'a> {
         self.joints_above(link).map(|joint| self.document.model.joints[joint].parent.link.as_str())
     }
 
-    /// Err if the way up from `start` comes back to it.
+    /// Checks that the parents of `start` do not lead back to it.
     fn refuse_cycle(&self, start: &'a str) -> Result<()> {
         let mut cycle = vec![start];
         for link in self.links_above(start).take(self.document.model.links.len()) {
@@ -120,7 +120,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// The joint that leads to each link. Err for a joint between links that do not exist, or two joints to one link.
+/// Returns the joint above each link. An error for a joint between links that do not exist, or two joints to one link.
 fn joints_above(document: &Document) -> Result<HashMap<&str, usize>> {
     let model = &document.model;
     let links: Vec<&str> = model.links.iter().map(|link| link.name.as_str()).collect();
