@@ -19,6 +19,7 @@ use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
+use crate::traversal::traversed;
 
 /// Solutions in the order of the targets, stored as columns. `b[i]` is a `Solution`; `b[10:20]` and `b[~b.success]` are
 /// batches.
@@ -58,6 +59,8 @@ pub struct PyBatchSolution {
     #[pyo3(get)]
     message: String,
 }
+
+traversed!(PyBatchSolution: limits);
 
 #[pymethods]
 impl PyBatchSolution {

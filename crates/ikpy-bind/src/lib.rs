@@ -26,6 +26,7 @@ mod solver;
 mod task;
 mod tracking;
 mod trajectory;
+mod traversal;
 
 use pyo3::prelude::*;
 

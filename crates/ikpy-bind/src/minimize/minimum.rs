@@ -14,6 +14,7 @@ use crate::monitor::followed;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::solver::{PyStop, derivative_free_solver};
+use crate::traversal::traversed;
 
 /// The best point found by `minimize`, and how the search ended.
 #[pyclass(name = "Minimum", module = "beetle_ik", frozen)]
@@ -30,6 +31,8 @@ pub struct PyMinimum {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PyMinimum: limits);
 
 outcome! {
     PyMinimum = |result|

@@ -6,10 +6,12 @@ use ikcore::stored::{from_bytes, to_bytes};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
+use pyo3::{PyTraverseError, PyVisit};
 
-use crate::convert::{Array, matrix3, point, row, table, times};
+use crate::convert::{Array, matrix3, point, row, summary, table, times};
 use crate::error::{invalid, raise};
 use crate::pickling::{self, Reduced};
+use crate::traversal::{Traversed, traversed};
 
 /// A reference path of the tip: position, and optionally orientation, for each time in [0, duration]. Times outside are
 /// clamped.
@@ -18,6 +20,8 @@ pub struct PyPath {
     pub(super) curve: Curve,
     pub(super) orientation: Orientation,
 }
+
+traversed!(PyPath: curve, orientation);
 
 /// The source of the orientation.
 pub(super) enum Orientation {
@@ -29,6 +33,24 @@ pub(super) enum Orientation {
 pub(super) enum Curve {
     Core(Path),
     Function { function: Py<PyAny>, duration: f64 },
+}
+
+impl Traversed for Curve {
+    fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        match self {
+            Self::Core(_) => Ok(()),
+            Self::Function { function, .. } => function.traverse(visit),
+        }
+    }
+}
+
+impl Traversed for Orientation {
+    fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        match self {
+            Self::OfCurve | Self::Constant(_) => Ok(()),
+            Self::Function(function) => function.traverse(visit),
+        }
+    }
 }
 
 /// Half the time over which the velocity of a user's function is differenced, as a fraction of its duration.

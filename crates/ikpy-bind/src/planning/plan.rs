@@ -15,6 +15,7 @@ use crate::pickling::{self, Reduced};
 use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::trajectory::PyTrajectory;
+use crate::traversal::traversed;
 
 /// A planned motion, and what became of the search for it.
 #[pyclass(name = "Plan", module = "beetle_ik", frozen)]
@@ -44,6 +45,8 @@ pub struct PyPlan {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PyPlan: obstacles, robot, limits);
 
 outcome! {
     PyPlan = |result|

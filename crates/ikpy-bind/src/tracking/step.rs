@@ -12,6 +12,7 @@ use crate::error::raise;
 use crate::limits::PyLimits;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
+use crate::traversal::traversed;
 
 /// The result of one step of a `Tracker` or a `ControlSession`.
 #[pyclass(name = "Step", module = "beetle_ik", frozen)]
@@ -28,6 +29,8 @@ pub struct PyStep {
     limits: Py<PyLimits>,
     elapsed: Duration,
 }
+
+traversed!(PyStep: limits);
 
 outcome! {
     PyStep = |result|

@@ -18,6 +18,7 @@ use crate::pickling::{self, Reduced};
 use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::trajectory::PyTrajectory;
+use crate::traversal::traversed;
 
 /// The record of a track, k = steps + 1 rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
 #[pyclass(name = "TrackResult", module = "beetle_ik", frozen)]
@@ -40,6 +41,8 @@ pub struct PyTrackResult {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PyTrackResult: robot, limits);
 
 record! {
     PyTrackResult = |result| result.core,

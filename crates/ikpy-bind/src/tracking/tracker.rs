@@ -15,6 +15,7 @@ use crate::error::raise;
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::robot::PyRobot;
+use crate::traversal::traversed;
 
 /// Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 ///
@@ -44,6 +45,8 @@ pub struct PyTracker {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PyTracker: robot, limits);
 
 in_progress!(PyTracker, Session);
 
