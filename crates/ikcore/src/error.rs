@@ -74,11 +74,13 @@ pub enum Error {
         known: String,
     },
     /// The tip was left open, but the tree of links ends in several places.
-    #[error("robot '{robot}' ends in several links: say which one is the tip; leaves: {leaves}")]
+    #[error("robot '{robot}' ends in {count} links: say which one is the tip; leaves, by number of joints: {leaves}")]
     AmbiguousTip {
         /// The robot's name.
         robot: String,
-        /// The leaf links, separated by commas.
+        /// The number of leaf links.
+        count: usize,
+        /// The leaf links, each with the number of its joints, most joints first.
         leaves: String,
     },
     /// A description of a robot that cannot be one.
@@ -308,7 +310,7 @@ impl Error {
     /// Shorthand for [`Error::UnknownOption`].
     pub(crate) fn unknown_option(what: &str, value: &str, known: &[&str]) -> Self {
         let known = known.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
-        Self::UnknownOption { what: what.into(), value: value.into(), known }
+        Self::UnknownOption { what: what.into(), value: shortened(value), known }
     }
 
     /// Shorthand for [`Error::OutOfRange`].
@@ -328,6 +330,17 @@ pub(crate) fn require_finite(what: &str, values: &[f64], name: impl Fn(usize) ->
 /// Err unless `value` is finite and above zero.
 pub(crate) fn require_positive(what: &str, value: f64) -> Result<()> {
     if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Error::out_of_range(what, "positive and finite", value)) }
+}
+
+/// Length up to which a message repeats a text (characters).
+const ECHO_LENGTH: usize = 200;
+
+/// A given text for a message, cut to a readable length.
+pub(crate) fn shortened(text: &str) -> String {
+    match text.char_indices().nth(ECHO_LENGTH) {
+        None => text.into(),
+        Some((end, _)) => format!("{}...", &text[..end]),
+    }
 }
 
 /// ` (did you mean 'x'?)` for the candidate nearest to `name`, or nothing where none is near.
