@@ -425,6 +425,10 @@ fn collision_shapes_become_capsules_that_hold_them() {
     assert!(
         message.starts_with("robot 'arm' has collision shapes that cannot be read (a mesh of link 'hand', a sphere")
     );
+    assert!(message.ends_with(
+        ": robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
+         robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
+    ));
     let given = robot.with_capsules(vec![cylinder.clone()]).unwrap();
     assert!(
         ikcore::obstacle::Scene::new(&given, &[]).is_ok(),

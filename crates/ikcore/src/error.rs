@@ -210,16 +210,14 @@ pub enum Error {
         problem: String,
     },
     /// Nothing is known of the room that a robot takes up.
-    #[error(
-        "robot '{robot}' {problem}: give it capsules with with_capsules(radius=...) along its links or \
-         with_capsules([(link, a, b, radius), ...]), or load a URDF whose links have <collision> shapes of spheres, \
-         cylinders, capsules and boxes"
-    )]
+    #[error("robot '{robot}' {problem}: {remedy}")]
     NoCapsules {
         /// The robot's name.
         robot: String,
         /// What is missing.
         problem: String,
+        /// How to give it capsules.
+        remedy: String,
     },
     /// A start or end that touches something.
     #[error("{what}: link '{link}' is {depth} {other}")]

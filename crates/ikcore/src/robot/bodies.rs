@@ -7,6 +7,7 @@ use crate::kinematics::chain::{LinkFrame, StageMotion};
 use crate::math::arithmetic::NoFma;
 use crate::math::vector::distance;
 use crate::math::{Frame, MAX_DOF};
+use crate::wording::listed;
 
 /// Shorter segments count as points (m).
 const SHORTEST: f64 = 1e-9;
@@ -34,7 +35,7 @@ impl Robot {
                     robot: self.name().into(),
                     name: capsule.link.clone(),
                     suggestion: suggestion(&capsule.link, self.link_names()),
-                    known: self.link_names().collect::<Vec<_>>().join(", "),
+                    known: listed(self.link_names()),
                 });
             }
             let ends = [capsule.a, capsule.b];
