@@ -1994,10 +1994,10 @@ class Step:
         """Distance of the tip from the target (m)."""
     @property
     def rotation_error(self) -> float:
-        """Geodesic angle to the target's orientation (rad); NaN where none was asked for."""
+        """Geodesic angle to the target's orientation (rad); NaN if the task leaves the orientation free."""
     @property
     def inside_limits(self) -> bool:
-        """False where a joint cannot be brought within its position limits in this step."""
+        """False if a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this step."""
 
 # --- obstacles ----------------------------------------------------------------------------------
 

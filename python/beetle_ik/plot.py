@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core, _plan_figure
-from ._shapes import draw_capsules, draw_in_space
-from ._style import BLUE, FORBIDDEN, GREEN, VERMILION, line, style
+from ._arguments import require
+from ._shapes import draw_capsules, draw_in_space, joints_to_tip
+from ._style import BLUE, FORBIDDEN, GREEN, ORANGE, VERMILION, line, style
 from ._text import counted
 
 if TYPE_CHECKING:
@@ -33,14 +34,15 @@ _TRAJECTORY_SAMPLES = 2001
 
 
 def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = None) -> Figure:
-    """Draws the robot as a stick figure at configuration `q` (n,), with its capsules and `obstacles`."""
-    _require("robot", robot, _core.Robot)
+    """Draws the robot as a stick figure at configuration `q` (n,), with its tool, its capsules and `obstacles`."""
+    require("robot", robot, _core.Robot)
     obstacles = () if obstacles is None else obstacles
-    _require("obstacles", obstacles, Iterable)
+    require("obstacles", obstacles, Iterable)
     obstacles = list(obstacles)
     for i, obstacle in enumerate(obstacles):
-        _require(f"obstacles[{i}]", obstacle, _core.Obstacle)
-    origins = robot.link_poses(q)[:, :3, 3]
+        require(f"obstacles[{i}]", obstacle, _core.Obstacle)
+    corners = joints_to_tip(robot, q)
+    flange = len(robot.link_names) - 1
     with style():
         figure = _new_figure(6.0, 6.0)
         axes = figure.add_subplot(projection="3d")
@@ -55,7 +57,7 @@ def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = 
 
 def track(result: TrackResult) -> Figure:
     """Draws a tracked path: tip and target in space, errors, joint positions, evaluations, velocities with limits."""
-    _require("result", result, _core.TrackResult)
+    require("result", result, _core.TrackResult)
     panels = [_draw_position_error, _draw_joint_positions, _draw_evaluations]
     if np.isfinite(result.rotation_error).any():
         panels.insert(1, _draw_rotation_error)
@@ -80,7 +82,7 @@ def track(result: TrackResult) -> Figure:
 
 def model_free(result: ModelFreeResult) -> Figure:
     """Draws a path tracked without a model: tip and target in space, error, joint positions, measurements."""
-    _require("result", result, _core.ModelFreeResult)
+    require("result", result, _core.ModelFreeResult)
     names = [f"joint {j + 1}" for j in range(result.q.shape[1])]
     with style():
         figure = _new_figure(13.0, 3 * _ROW_HEIGHT + 0.3)
@@ -103,7 +105,7 @@ def model_free(result: ModelFreeResult) -> Figure:
 
 def plan(plan: Plan) -> Figure:
     """Draws a planned motion: the arm along its path, the search history, and the joints over time."""
-    _require("plan", plan, _core.Plan)
+    require("plan", plan, _core.Plan)
     with style():
         figure = _new_figure(13.0, 3 * _ROW_HEIGHT + 0.4)
         _plan_figure.draw(figure, plan)
@@ -112,7 +114,7 @@ def plan(plan: Plan) -> Figure:
 
 def animation(result: Plan | TrackResult) -> FuncAnimation:
     """Animates the arm in real time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
-    _require("result", result, _core.Plan, _core.TrackResult)
+    require("result", result, _core.Plan, _core.TrackResult)
     with style():
         figure = _new_figure(5.0, 5.0)
         return _plan_figure.animate(figure, result).animation(figure)
@@ -120,7 +122,7 @@ def animation(result: Plan | TrackResult) -> FuncAnimation:
 
 def trajectory(trajectory: Trajectory) -> Figure:
     """Draws position, velocity and, unless the segments are straight, acceleration of each joint over time."""
-    _require("trajectory", trajectory, _core.Trajectory)
+    require("trajectory", trajectory, _core.Trajectory)
     curved = trajectory.coefficients.shape[2] > 2
     labels = ["position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]"][: 3 if curved else 2]
     time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
@@ -141,8 +143,8 @@ def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
 
     In a time-optimal motion some joint is at 1 at any time. `limits` are constant, as `time_optimal` takes them.
     """
-    _require("trajectory", trajectory, _core.Trajectory)
-    _require("limits", limits, _core.Limits)
+    require("trajectory", trajectory, _core.Trajectory)
+    require("limits", limits, _core.Limits)
     time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
     _, velocity, acceleration = trajectory.at(time)
     shares = {
@@ -166,12 +168,6 @@ def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
         columns = _legend_columns(trajectory.joint_names)
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper", ncols=columns)
     return figure
-
-
-def _require(name: str, value: object, *kinds: type) -> None:
-    if not isinstance(value, kinds):
-        wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
-        raise _core.InvalidInputError(f"{name} must be {wanted}, got {value!r:.60}")
 
 
 def _slopes(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:

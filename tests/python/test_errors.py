@@ -51,6 +51,23 @@ def test_the_classes_of_errors() -> None:
         (lambda: solve("up"), Invalid, "target must be an array of numbers, got 'up'"),
         (lambda: solve("1.0"), Invalid, "target must be an array of numbers, got '1.0'"),
         (
+            lambda: solve(np.ma.masked_greater([0.3, 0.3, 1.0], 0.5)),
+            Invalid,
+            "target has masked entries: replace them first, such as by .filled(value)",
+        ),
+        (lambda: solve(prefer="\ud800"), Invalid, "text must be valid Unicode, got '\\ud800'"),
+        (
+            lambda: bik.Trajectory([0, 1], np.zeros((1, 1, 2)), joint_names=["\ud800"]),
+            Invalid,
+            "text must be valid Unicode, got ['\\ud800']",
+        ),
+        (lambda: bik.Robot.from_urdf("<robot/>", tip="\udfff"), Invalid, "text must be valid Unicode, got '\\udfff'"),
+        (
+            lambda: solve(prefer="n" * 10**6),
+            Invalid,
+            f"prefer must be one of 'any', 'nearest', 'best', got '{'n' * 200}...'",
+        ),
+        (
             lambda: solve(np.ones(3) * 1j),
             Invalid,
             "target must be an array of numbers, got array([0.+1.j, 0.+1.j, 0.+1.j])",
@@ -367,3 +384,16 @@ def test_a_csv_with_a_missing_column_is_told(tmp_path: Path) -> None:
     file.write_text("seconds,q:a\n0,1\n")
     message = f"{file}, line 1: column 'time' is missing; columns found: seconds, q:a"
     assert_told(lambda: bik.Trajectory.from_csv(file), Invalid, message)
+
+
+def test_a_masked_array_without_masked_entries_is_an_array() -> None:
+    target = np.array([0.3, 0.3, 1.0])
+    np.testing.assert_array_equal(solve(np.ma.masked_array(target)).q, solve(target).q)
+
+
+def test_unaligned_arrays_are_copied() -> None:
+    packed = np.zeros(1, dtype=[("flag", "u1"), ("target", "f8", 3)])
+    packed["target"] = (0.3, 0.3, 1.0)
+    target = packed["target"][0]
+    assert not target.flags.aligned
+    np.testing.assert_array_equal(solve(target).q, solve([0.3, 0.3, 1.0]).q)

@@ -134,7 +134,7 @@ pub fn solve(
     position_tolerance: f64,
     rotation_tolerance: f64,
     goals: Option<&Bound<'_, PyAny>>,
-    prefer: &str,
+    #[pyo3(from_py_with = crate::convert::text)] prefer: &str,
     limits: Option<&PyLimits>,
     stop: Option<&PyStop>,
     seed: i128,

@@ -146,7 +146,7 @@ pub fn planar_posture(
     py: Python<'_>,
     robot: &PyRobot,
     target: &Bound<'_, PyAny>,
-    measure: &str,
+    #[pyo3(from_py_with = crate::convert::text)] measure: &str,
     region: Option<&Bound<'_, PyAny>>,
     swarm: Option<&PyCircleSwarm>,
     seed: i128,

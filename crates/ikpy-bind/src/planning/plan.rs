@@ -1,7 +1,7 @@
 //! `Plan`.
 
 use ikcore::planning::Plan;
-use ikcore::stored::{from_bytes, to_bytes};
+use ikcore::stored::to_bytes;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -119,7 +119,7 @@ impl PyPlan {
     ) -> PyResult<Self> {
         let reference =
             reference.map(|rows| Ok::<_, PyErr>(array("reference", rows)?.as_slice()?.to_vec())).transpose()?;
-        Self::new(from_bytes("plan", bytes).map_err(raise)?, reference, robot, limits, obstacles)
+        Self::new(Plan::from_bytes(bytes).map_err(raise)?, reference, robot, limits, obstacles)
     }
 }
 

@@ -28,7 +28,7 @@ impl PyBas {
     #[new]
     #[pyo3(signature = (*, variant="star", c1=None, c2=None, explorations=None, max_passes=200))]
     fn new(
-        variant: &str,
+        #[pyo3(from_py_with = crate::convert::text)] variant: &str,
         c1: Option<f64>,
         c2: Option<f64>,
         explorations: Option<i128>,

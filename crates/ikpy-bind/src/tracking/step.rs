@@ -58,7 +58,7 @@ impl PyStep {
         self.core.error.rotation
     }
 
-    /// False if a joint cannot return to its position limits within this step.
+    /// False if a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this step.
     #[getter]
     fn inside_limits(&self) -> bool {
         self.core.inside_limits

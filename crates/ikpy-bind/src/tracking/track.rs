@@ -177,7 +177,7 @@ pub fn track(
     position_tolerance: f64,
     rotation_tolerance: f64,
     seed: i128,
-    limit_at: &str,
+    #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTrackResult> {
     let arm = robot.get().core.clone();

@@ -67,7 +67,7 @@ impl PyTracker {
         position_tolerance: f64,
         rotation_tolerance: f64,
         seed: i128,
-        limit_at: &str,
+        #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
     ) -> PyResult<Self> {
         let (py, arm) = (robot.py(), &robot.get().core);
         limits.map_or(Ok(()), |limits| limits.require_no_functions("Tracker", "track"))?;
