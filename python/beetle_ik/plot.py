@@ -29,6 +29,8 @@ __all__ = ["animation", "model_free", "plan", "robot", "saturation", "track", "t
 _ROW_HEIGHT = 2.4  # inches per panel over time
 _VELOCITY_PANELS_A_ROW = 7
 _VELOCITY_ROW_HEIGHT = 2.0
+_HEADROOM = 1.15  # height of a panel over what it shows
+_FAR_LIMIT = 3.0  # a limit beyond this multiple of the velocities is written instead of drawn
 _LEGEND_ROWS = 10
 _TRAJECTORY_SAMPLES = 2001
 
@@ -46,10 +48,12 @@ def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = 
     with style():
         figure = _new_figure(6.0, 6.0)
         axes = figure.add_subplot(projection="3d")
-        axes.plot(*origins.T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
-        axes.plot(*origins[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
+        axes.plot(*corners[: flange + 1].T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
+        if len(corners) > flange + 1:
+            axes.plot(*corners[flange:].T, color=ORANGE, linewidth=3, label="tool")
+        axes.plot(*corners[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
         draw_capsules(axes, robot, q)
-        draw_in_space(axes, origins, obstacles)
+        draw_in_space(axes, corners, obstacles)
         axes.set_title(f"{robot.name}, {counted(robot.dof, 'joint')}")
         axes.legend(loc="upper left")
     return figure
@@ -215,11 +219,13 @@ def _draw_evaluations(axes: Axes, result: TrackResult) -> None:
 
 
 def _draw_velocities(figure: Any, result: TrackResult, rows: int) -> None:
-    """Draws one small panel per joint; velocities beyond the limit are shaded."""
+    """Draws one small panel per joint, scaled to the velocities; a limit far beyond them is written, not drawn."""
     names = result.robot.joint_names
     panels = figure.subplots(rows, min(len(names), _VELOCITY_PANELS_A_ROW), sharex=True, sharey=True, squeeze=False)
     time, velocity, limit = result.time[1:], result.qd[1:], result.velocity_limit[1:]
-    top = 1.15 * _highest(limit if np.isfinite(limit).any() else velocity)
+    fastest = _highest(velocity)
+    highest = _highest(limit) if np.isfinite(limit).any() else fastest
+    top = _HEADROOM * (highest if highest <= _FAR_LIMIT * fastest else fastest)
     for j, axes in enumerate(panels.flat):
         if j >= len(names):
             axes.set_visible(False)
@@ -229,6 +235,9 @@ def _draw_velocities(figure: Any, result: TrackResult, rows: int) -> None:
         axes.fill_between(time, -bound, -2.0 * top, color=FORBIDDEN, linewidth=0)
         axes.plot(time, velocity[:, j], color=line(j)["color"])
         axes.set_title(names[j])
+        lowest = float(limit[:, j].min())
+        if top < lowest < np.inf:
+            axes.text(0.97, 0.97, f"limit {lowest:.3g}", transform=axes.transAxes, ha="right", va="top")
         axes.set_ylim(-top, top)
     unit = "rad/s" if _all_turn(result.robot) else "rad/s, m/s"
     figure.supylabel(f"velocity [{unit}]")
