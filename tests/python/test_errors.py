@@ -317,6 +317,17 @@ def test_wrong_paths_are_named(call: Callable[[], object], error: type[Exception
             "matrix is not a rigid transform: R'R differs from the identity by 3.000e0",
         ),
         (
+            lambda: bik.pose([0, 0, 0], [0, 0, 0, 1]),
+            Invalid,
+            "pose takes an orientation by keyword only, since orders differ: xyzw= or wxyz= for a quaternion, rpy=, "
+            "rotvec= or matrix=",
+        ),
+        (
+            lambda: bik.pose([0, 0, 0], quat=[0, 0, 0, 1]),
+            Invalid,
+            "pose has no argument 'quat'; orientations are xyzw= or wxyz= for a quaternion, rpy=, rotvec= or matrix=",
+        ),
+        (
             lambda: bik.Trajectory([0, 1], np.zeros((1, 2))),
             Invalid,
             "coefficients: expected shape (k - 1, n, degree + 1), degree at most 6, got (1, 2)",
@@ -369,7 +380,6 @@ def test_a_wrong_type_is_told_with_its_argument(call: Callable[[], object], mess
         lambda: bik.Stop(5),
         lambda: bik.track(IIWA, CIRCLE, START, 0.1),
         lambda: bik.solve(IIWA, [0.3, 0.3, 1.0], START),
-        lambda: bik.pose([0, 0, 0], [0, 0, 0, 1]),
     ],
 )
 def test_options_are_named(call: Callable[[], object]) -> None:
