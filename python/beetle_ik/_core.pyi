@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import disjoint_base
 
 __version__: str
+_instructions: str
 
 _Array: TypeAlias = NDArray[np.float64]
 _Transform: TypeAlias = _Homogeneous | _AsMatrix
@@ -49,49 +50,50 @@ class BeetleIkError(Exception):
     """Any error of this library."""
 
 class InvalidInputError(BeetleIkError, ValueError):
-    """An argument with a wrong value, shape or unit; the message says what would be right."""
+    """An argument with a wrong value, shape or unit; the message says what is expected."""
 
 class UnknownNameError(BeetleIkError, LookupError):
-    """No robot, link or option of that name; the message lists them."""
+    """Unknown name of a robot, link or option; the message lists the known ones."""
 
 class UrdfError(InvalidInputError):
-    """A robot description that cannot be read; the message names line and joint."""
+    """A robot description that cannot be read; the message names the line and the joint."""
 
 class LimitError(InvalidInputError):
-    """Limits that contradict themselves or exclude the start."""
+    """Limits that contradict each other or exclude the start."""
 
 class UnsupportedLimit(LimitError):
-    """A limit that the method cannot honour. No method ignores one."""
+    """A limit that the method cannot keep. No method ignores one."""
 
 class InfeasibleError(InvalidInputError):
-    """A question without an answer: what it asks for contradicts itself; the message says what stands against what."""
+    """Requirements that contradict each other; the message names the two."""
 
 # --- robots -------------------------------------------------------------------------------------
 
 @final
 class Robot:
-    """A robot arm: the chain of joints from a base link to a tip link. Immutable; make one with `from_urdf`, `from_dh`,
-    `planar` or `named`.
+    """A robot arm: the chain of joints from a base link to a tip link. Immutable; made by `from_urdf`, `from_dh`, `planar` or
+    `named`.
 
-    Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow theirs. Poses are 4x4
-    matrices in the frame of the robot's base.
+    Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow them. Poses are 4x4 matrices in
+    the frame of the robot's base.
     """
 
     def __new__(cls, *_arguments: Never, **_options: Never) -> Robot: ...
     @staticmethod
     def from_urdf(path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None) -> Robot:
-        """A robot from a URDF, read from a file or from a string of XML.
+        """Makes a robot from a URDF file or a string of XML.
 
         Args:
-            path_or_xml: file, or text that contains "<".
-            base: link in whose frame everything is expressed; None takes the root. It need not be an ancestor of `tip`.
-            tip: link that is to be moved; None takes the only leaf.
+            path_or_xml: a file, or text that contains "<".
+            base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
+            tip: link at the end of the chain; None: the only leaf.
 
-        Revolute, continuous, prismatic, fixed and mimic joints are understood; collision shapes of spheres, cylinders,
-        capsules and boxes become `capsules` that hold them; visuals, meshes and unknown tags are passed over. A missing velocity limit is infinite, a zero one locks the joint; `safety_controller` is ignored.
+        Joints may be revolute, continuous, prismatic, fixed or mimic. Collision spheres, cylinders, capsules and boxes become
+        `capsules` that enclose them; visuals, meshes and unknown tags are ignored, and so is `safety_controller`. A missing
+        velocity limit means infinite; zero locks the joint.
 
         Raises:
-            UrdfError: not XML, no joint, a cycle, two roots, a zero axis, several leaves and no `tip`.
+            UrdfError: not XML, no joint, a cycle, two roots, a zero axis, or several leaves and no `tip`.
             UnknownNameError: no link of that name; the message lists them.
         """
     @staticmethod
@@ -110,15 +112,15 @@ class Robot:
         tool: _Pose | None = None,
         name: str | None = None,
     ) -> Robot:
-        """A robot from Denavit-Hartenberg parameters, one row per joint.
+        """Makes a robot from Denavit-Hartenberg parameters, one row per joint.
 
         Args:
             a, alpha, d: link length (m), twist (rad), offset (m), each (n,).
-            theta: constant offset of a revolute joint, fixed angle of a prismatic one (rad), (n,); None: zeros.
-            kinds: "revolute", "continuous" or "prismatic" per joint; None: all revolute.
-            convention: "modified" (Craig: a and alpha of the link before) or "standard".
+            theta: constant offset of a revolute joint, or fixed angle of a prismatic joint (rad), (n,); None: zeros.
+            kinds: "revolute", "continuous" or "prismatic" for each joint; None: all revolute.
+            convention: "modified" (Craig: a and alpha of the previous link) or "standard".
             lower, upper, velocity: limits (rad, m; rad/s, m/s), a number or (n,); None: no limit.
-            base, tool: poses (4, 4) before the first and behind the last frame.
+            base, tool: poses (4, 4) before the first frame and after the last one.
             name: the robot's name.
         """
     @staticmethod
@@ -129,7 +131,7 @@ class Robot:
         upper: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
     ) -> Robot:
-        """A planar arm of revolute joints in the x-y plane, its base at the origin.
+        """Makes a planar arm of revolute joints in the x-y plane, with its base at the origin.
 
         Args:
             lengths: link lengths (m), (n,).
@@ -137,14 +139,14 @@ class Robot:
         """
     @staticmethod
     def named(name: str) -> Robot:
-        """A built-in robot; `Robot.names()` lists them.
+        """Returns a built-in robot; `Robot.names()` lists them.
 
         Raises:
             UnknownNameError: lists the names and suggests the nearest.
         """
     @staticmethod
     def names() -> list[str]:
-        """The names of the built-in robots."""
+        """Returns the names of the built-in robots."""
     @property
     def name(self) -> str:
         """The robot's name."""
@@ -156,49 +158,49 @@ class Robot:
         """Names of the independent joints, in the order of q."""
     @property
     def joint_kinds(self) -> list[str]:
-        """ "revolute", "continuous" or "prismatic" per independent joint."""
+        """Kinds of the independent joints: "revolute", "continuous" or "prismatic"."""
     @property
     def link_names(self) -> list[str]:
         """Names of the links along the chain, base first, tip last."""
     @property
     def lower(self) -> _Array:
-        """Lower position limits (n,) (rad, m); -inf where there is none."""
+        """Lower position limits (n,) (rad, m); -inf for none."""
     @property
     def upper(self) -> _Array:
-        """Upper position limits (n,) (rad, m); inf where there is none."""
+        """Upper position limits (n,) (rad, m); inf for none."""
     @property
     def velocity_limit(self) -> _Array:
-        """Velocity limits (n,) (rad/s, m/s); inf where unknown, 0 for a locked joint."""
+        """Velocity limits (n,) (rad/s, m/s); inf if unknown, 0 for a locked joint."""
     @property
     def limits(self) -> Limits:
         """All limits of the robot."""
     def with_tool(self, tool: _Pose) -> Robot:
-        """The same robot with a tool: `tool` (4, 4) is the pose of the new tip in the frame of the tip link."""
+        """Returns a copy with a tool: `tool` (4, 4) is the pose of the new tip in the frame of the tip link."""
     def with_base(self, base: _Pose) -> Robot:
-        """The same robot standing elsewhere: `base` (4, 4) is the pose of its base link."""
+        """Returns a copy placed elsewhere: `base` (4, 4) is the pose of its base link."""
     def with_limits(
         self, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None, velocity: ArrayLike | None = None
     ) -> Robot:
-        """The same robot with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps what it has."""
+        """Returns a copy with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps the present ones."""
     @property
     def capsules(self) -> list[tuple[str, _Array, _Array, float]]:
-        """The room that the links take up: (link, a, b, radius) each, all points within `radius` (m) of the segment from a
-        (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to a URDF's collision shapes.
+        """Collision capsules of the links, each (link, a, b, radius): all points within `radius` (m) of the segment from a (3,)
+        to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a URDF.
         """
     def with_capsules(
         self, capsules: list[tuple[str, ArrayLike, ArrayLike, float]] | None = None, *, radius: float | None = None
     ) -> Robot:
-        """The same robot, its links taking up capsules: of this `radius` (m) along every link, or these alone, each (link,
-        a, b, radius) with its axis from a (3,) to b (3,) in the frame of the link (m). Along the links they end at the
-        tip: set a tool first. The way that a sliding joint opens between two links is part of neither.
+        """Returns a copy with collision capsules: either one of `radius` (m) along each link, or the given ones, each (link, a,
+        b, radius) with its axis from a (3,) to b (3,) in the frame of the link (m). Capsules along the links end at the tip:
+        set a tool first. The gap that a prismatic joint opens between two links is not covered.
 
         Raises:
             UnknownNameError: no link of that name; the message lists them.
         """
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot:
-        """The same robot with errors of manufacture, drawn at random: every constant offset between two joints is longer or
-        shorter by up to `length` (m), every turning joint's zero is off by up to `angle` (rad). As a `KinematicPlant` it
-        is an arm whose model is wrong.
+        """Returns a copy with random manufacturing errors: each constant offset between two joints changes by up to `length`
+        (m), and the zero of each revolute joint by up to `angle` (rad). Use it in a `KinematicPlant` to simulate an arm whose
+        model is wrong.
         """
     # For interop. Elements: ("fixed", pose), ("moving", joint, turns, axis, scale, offset) or ("link", name).
     def _chain(self) -> tuple[_Array, list[tuple[Any, ...]], _Array]:  # base, elements, tool
@@ -214,41 +216,39 @@ class Robot:
         joint, turns, axis (3,), scale, offset) or ("link", name).
         """
     def fk(self, q: ArrayLike) -> _Array:
-        """Forward kinematics: the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n)."""
+        """Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics."""
     def clip(self, q: ArrayLike) -> _Array:
-        """The nearest configuration inside the position limits: each joint brought to the limit that it is beyond. (n,) for q (n,),
-        (m, n) for q (m, n).
-        """
+        """Clips q to the position limits: (n,) for q (n,), (m, n) for q (m, n)."""
     def link_poses(self, q: ArrayLike) -> _Array:
-        """Poses of all links at q (n,), in the order of `link_names`: (links, 4, 4)."""
+        """Returns the poses of all links at q (n,), in the order of `link_names`: (links, 4, 4)."""
     def jacobian(self, q: ArrayLike) -> _Array:
-        """Geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m), then
-        angular rows, in the axes of the base.
+        """Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m),
+        then angular rows, along the axes of the base.
         """
     def random_configurations(self, m: int, seed: int = 0) -> _Array:
-        """m configurations drawn uniformly between the limits, (m, n). Without limits: one turn, or 2 m, around zero."""
+        """Draws m configurations uniformly within the limits, (m, n). Joints without limits: one turn, or 2 m, around zero."""
     def manipulability(self, q: ArrayLike, *, motion: _Motion = "pose") -> Any:
-        """Yoshikawa's manipulability at q (n,) or (m, n): sqrt(det(J J')), the product of the singular values of the
-        Jacobian, one per direction in which the tip can move at all.
+        """Returns Yoshikawa's manipulability index, a number for q (n,), (m,) for q (m, n): sqrt(det(J J')), the product of the
+        singular values of the Jacobian, over the directions in which the tip can move at all.
 
         Args:
-            motion: what counts, "pose", "position" or "rotation".
+            motion: motion of the tip that counts, "pose", "position" or "rotation".
         """
     def manipulability_gradient(self, q: ArrayLike, *, motion: _Motion = "pose") -> _Array:
-        """Gradient (n,) of the manipulability at q (n,), exact; `motion` as there."""
+        """Returns the exact gradient (n,) of `manipulability` at q (n,)."""
     def link_manipulability(self, q: ArrayLike, *, motion: _Motion = "position") -> _Array:
-        """Manipulability of the tip of every moving link, moved by the joints before it, times the volume of the unit ball
-        (pi in the plane): (links,), the last one the tip's. Their sum is a measure of the whole arm.
+        """Returns the manipulability of the tip of each moving link, moved by the joints before it, times the volume of the unit
+        ball (pi in the plane): (links,), the tip's last. The sum measures the manipulability of the whole arm.
 
-        Links with fewer joints before them than there are directions have zero. `motion` as in `manipulability`.
+        A link with fewer joints before it than directions has zero. `motion` as in `manipulability`.
         """
     def velocity_ellipsoid(self, q: ArrayLike, *, motion: _Motion = "position") -> VelocityEllipsoid:
-        """The ellipsoid of tip velocities at q (n,) for unit joint speeds; `motion` as in `manipulability`."""
+        """Returns the velocity ellipsoid of the tip at q (n,) for unit joint speeds; `motion` as in `manipulability`."""
 
 @final
 class VelocityEllipsoid:
-    """The tip velocities that unit joint speeds give, |q'| = 1: an ellipsoid with one semi-axis per direction in which the
-    tip can move, the longest first.
+    """The ellipsoid of tip velocities for unit joint speeds, |q'| = 1. It has one semi-axis for each direction in which the
+    tip can move, longest first.
     """
 
     @property
@@ -256,16 +256,16 @@ class VelocityEllipsoid:
         """Lengths of the semi-axes (directions,) (m/s, rad/s): the singular values of the Jacobian."""
     @property
     def axes(self) -> _Array:
-        """Unit vectors along them (directions, 6): linear, then angular part, in the base's axes."""
+        """Unit vectors along the semi-axes (directions, 6): linear, then angular part, along the axes of the base."""
     @property
     def index(self) -> float:
-        """Yoshikawa's index: the product of the lengths."""
+        """Yoshikawa's manipulability index: the product of the lengths."""
     @property
     def condition(self) -> float:
-        """The longest over the shortest; inf where a direction is lost."""
+        """Ratio of the longest to the shortest length; inf if a direction is lost."""
     @property
     def isotropy(self) -> float:
-        """Geometric over arithmetic mean of the squared lengths (Kim and Khosla 1991): 1 for a sphere, 0 where a direction
+        """Ratio of geometric to arithmetic mean of the squared lengths (Kim and Khosla 1991): 1 for a sphere, 0 if a direction
         is lost.
         """
 
@@ -278,29 +278,29 @@ def pose(
     rotvec: ArrayLike | None = None,
     matrix: _Pose | None = None,
 ) -> _Array:
-    """A pose (4, 4) from a position (3,) (m) and one description of the orientation, whose keyword names its order.
+    """Makes a pose (4, 4) from a position (3,) (m) and an orientation. The keyword names the form of the orientation.
 
     Args:
-        position: (3,).
-        xyzw, wxyz: quaternion (4,), of any length but zero.
+        position: (3,) (m).
+        xyzw, wxyz: quaternion (4,), of any nonzero length.
         rpy: fixed-axis roll, pitch, yaw (rad): Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
         rotvec: rotation vector (rad).
         matrix: rotation matrix (3, 3).
 
-    Without a description of the orientation the axes are those of the base.
+    Without an orientation the axes are those of the base.
     """
 
 # --- limits -------------------------------------------------------------------------------------
 
 @final
 class Sinusoid:
-    """A limit that oscillates: mean + amplitude sin(angular_frequency t + phase), eq. (7) of Cheng et al. (2020) with its
-    sign mended.
+    """A sinusoidal limit: mean + amplitude sin(angular_frequency t + phase), eq. (7) of Cheng et al. (2020) with its sign
+    corrected.
 
     Args:
         mean, amplitude: in the unit of the limit; a number for all joints, or (n,).
-        angular_frequency: rad/s; a number or (n,).
-        phase: rad at t = 0; a number or (n,).
+        angular_frequency: angular frequency (rad/s); a number or (n,).
+        phase: phase at t = 0 (rad); a number or (n,).
     """
 
     def __new__(
@@ -322,17 +322,16 @@ class Sinusoid:
 
 @final
 class Limits:
-    """Limits on joint motion. A field that is given replaces the robot's, a field left None is the robot's, np.inf
-    switches one off.
+    """Limits on joint motion. A given field replaces the robot's limit, None keeps the robot's limit, and np.inf removes it.
 
     Args:
-        lower, upper: positions (rad, m).
-        velocity: rad/s or m/s.
-        acceleration, jerk: rad/s^2 or m/s^2, rad/s^3 or m/s^3.
+        lower, upper: position limits (rad, m).
+        velocity: velocity limits (rad/s, m/s).
+        acceleration, jerk: acceleration limits (rad/s^2, m/s^2) and jerk limits (rad/s^3, m/s^3).
 
     Each is a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
-    are sampled at the ends and in the middle of every tick. A method that cannot honour a field raises
-    `UnsupportedLimit`; none ignores one.
+    are sampled at the ends and in the middle of each tick. A method that cannot keep a field raises `UnsupportedLimit`;
+    none ignores one.
     """
 
     def __new__(
@@ -364,7 +363,7 @@ class Limits:
 # --- solvers ------------------------------------------------------------------------------------
 
 class Status(IntEnum):
-    """How a solve, one item of a batch or one step of a track ended. `SOLVED` alone is success.
+    """How a solve, an item of a batch or a step of a track ended. Only `SOLVED` is success.
 
     - `SOLVED`: Within the tolerances.
     - `IMPROVED`: A step of a track: nearer than the step before, not yet within the tolerance. Or a search ended by `value_below`.
@@ -399,18 +398,18 @@ class Status(IntEnum):
 
 @final
 class APPS:
-    """Autonomous path planning solution (Yuan et al. 2016): descent down the gradient of the error by steps that are cut off
-    joint by joint. No Jacobian and no inverse.
+    """Autonomous path planning solution (Yuan et al. 2016): gradient descent with a step limit for each joint. Needs no
+    Jacobian and no inverse.
 
-    The error is E of eq. (11): half the sum of squared differences between the entries of the target's matrix and the
-    tip's (of the positions, for a position). The search may leave the limits; whole turns bring revolute joints back,
-    eq. (12). Where they cannot, the status is `OUTSIDE_LIMITS` and the best configuration inside is returned.
+    The error is E of eq. (11): half the sum of squared differences between the matrices of target and tip (between the
+    positions, for a position). The search may leave the limits; whole turns bring revolute joints back, eq. (12). If they
+    cannot, the status is `OUTSIDE_LIMITS`, and the best configuration inside the limits is returned.
 
     Args:
         learning_rate: eta of eq. (13); "auto": from the curvature along the last step (Barzilai and Borwein 1988).
-        step_limit: largest change of a joint in an iteration, eq. (20) (rad or m).
-        error_threshold: E_0; the search ends after the first update from an E of at most this much, whether the
-            tolerances of the call are met or not. None: it ends when they are met.
+        step_limit: largest change of a joint per iteration, eq. (20) (rad or m).
+        error_threshold: E_0; the search ends after the first update from an E of at most this value, even if the
+            tolerances of the call are not met. None: it ends when they are met.
     """
 
     def __new__(
@@ -422,15 +421,15 @@ class APPS:
     ) -> APPS: ...
     @staticmethod
     def paper() -> APPS:
-        """The paper's parameters, in the scale of its eq. (11): rate 0.2, step limit one degree, threshold 5e-10. Its budget
-        is `Stop(max_iterations=1000)`.
+        """Returns the paper's parameters, in the scale of its eq. (11): rate 0.2, step limit one degree, threshold 5e-10. The
+        paper's budget is `Stop(max_iterations=1000)`.
         """
     @property
     def learning_rate(self) -> float | Literal["auto"]:
         """eta of eq. (13), or "auto"."""
     @property
     def step_limit(self) -> float:
-        """Largest change of a joint in an iteration (rad or m)."""
+        """Largest change of a joint per iteration (rad or m)."""
     @property
     def error_threshold(self) -> float | None:
         """E_0, or None."""
@@ -479,7 +478,7 @@ class BAS:
         """Explorations per pass."""
     @property
     def max_passes(self) -> int:
-        """Passes after which it gives up."""
+        """Largest number of passes."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -510,10 +509,10 @@ class BroydenBAS:
         """Length of the controller's antennae (rad, m)."""
     @property
     def max_evaluations_per_step(self) -> int:
-        """Measurements after which a step ends."""
+        """Measurements per step."""
     @property
     def sensor_delay(self) -> int:
-        """Measurements by which the sensor is late."""
+        """Delay of the sensor, in measurements."""
     def session(
         self,
         start: ArrayLike,
@@ -523,37 +522,36 @@ class BroydenBAS:
         position_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession:
-        """The controller at work in your own loop, from `start` (n,) and t = 0: see `ControlSession`."""
+        """Starts a `ControlSession` at `start` (n,) and t = 0, for your own loop."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class JacobianTranspose:
-    """Jacobian transpose: the steepest descent on the squared error, on the box of the limits. No inverse, so that singular
-    configurations do no harm; many small steps instead.
+    """Jacobian transpose method: steepest descent on the squared error, inside the limits. It inverts nothing, so that singular
+    configurations do no harm, but takes many small steps.
 
     Args:
-        step_size: how far a step goes along the transposed Jacobian times the error; "auto": where the linearised error
-            is smallest (Buss 2004).
+        step_size: factor of the step J^T e; "auto": the factor that minimises the linearised error (Buss 2004).
     """
 
     def __new__(cls, *, step_size: float | Literal["auto"] = "auto") -> JacobianTranspose: ...
     @property
     def step_size(self) -> float | Literal["auto"]:
-        """How far a step goes, or "auto"."""
+        """Factor of the step J^T e, or "auto"."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class BeeColony:
-    """Artificial bee colony (Karaboga 2005): uses values alone.
+    """Artificial bee colony (Karaboga 2005): needs only values.
 
     Defaults: `BeeColony(population=20, limit=None, max_generations=None, stall_generations=50)`.
 
     Args:
-        population: food sources; there are as many employed bees, and as many onlookers.
-        limit: trials in vain after which a source is abandoned; None: sources times dimensions.
-        max_generations: after so many it gives up; None: as many as the budget allows.
-        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
-            never.
+        population: number of food sources, of employed bees and of onlookers.
+        limit: unsuccessful trials after which a source is abandoned; None: sources times dimensions.
+        max_generations: largest number of generations; None: as many as the budget allows.
+        stall_generations: the search ends after this many generations in a row improve the best value by less than
+            a millionth; None: never.
     """
 
     def __new__(
@@ -566,16 +564,16 @@ class BeeColony:
     ) -> BeeColony: ...
     @property
     def population(self) -> int:
-        """Members of a generation."""
+        """Size of a generation."""
     @property
     def limit(self) -> int | None:
-        """Trials in vain after which a source is abandoned; None: sources times dimensions."""
+        """Unsuccessful trials after which a source is abandoned; None: sources times dimensions."""
     @property
     def max_generations(self) -> int | None:
-        """Generations after which it gives up; None: as many as the budget allows."""
+        """Largest number of generations; None: as many as the budget allows."""
     @property
     def stall_generations(self) -> int | None:
-        """Generations without gain after which it gives up; None: never."""
+        """Generations without improvement after which the search ends; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -621,7 +619,7 @@ class BeetleSwarm:
     ) -> BeetleSwarm: ...
     @property
     def population(self) -> int:
-        """Members of a generation."""
+        """Size of a generation."""
     @property
     def inertia(self) -> float:
         """Weight of the old velocity."""
@@ -651,28 +649,28 @@ class BeetleSwarm:
         """ "printed" or "downhill"."""
     @property
     def max_generations(self) -> int | None:
-        """Generations after which it gives up; None: as many as the budget allows."""
+        """Largest number of generations; None: as many as the budget allows."""
     @property
     def stall_generations(self) -> int | None:
-        """Generations without gain after which it gives up; None: never."""
+        """Generations without improvement after which the search ends; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class DifferentialEvolution:
-    """Differential evolution, DE/rand/1/bin (Storn and Price 1997): uses values alone.
+    """Differential evolution, DE/rand/1/bin (Storn and Price 1997): needs only values.
 
     Defaults: `DifferentialEvolution(population=50, weight=0.5, crossover_rate=0.9,
     update='generation', max_generations=None, stall_generations=50)`.
 
     Args:
-        population: vectors.
+        population: number of vectors.
         weight: F, weight of the difference of two vectors.
         crossover_rate: CR, probability that a coordinate comes from the mutant.
-        update: "generation", better trials take their vectors' places after all of them, evaluated together (as
-            published); "immediate", at once: fewer evaluations, but one by one.
-        max_generations: after so many it gives up; None: as many as the budget allows.
-        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
-            never.
+        update: "generation": better trials replace their vectors after the whole generation, which is evaluated together
+            (as published); "immediate": at once, which needs fewer evaluations, but one by one.
+        max_generations: largest number of generations; None: as many as the budget allows.
+        stall_generations: the search ends after this many generations in a row improve the best value by less than
+            a millionth; None: never.
     """
 
     def __new__(
@@ -687,7 +685,7 @@ class DifferentialEvolution:
     ) -> DifferentialEvolution: ...
     @property
     def population(self) -> int:
-        """Members of a generation."""
+        """Size of a generation."""
     @property
     def weight(self) -> float:
         """Weight of the difference of two vectors."""
@@ -699,28 +697,28 @@ class DifferentialEvolution:
         """ "generation" or "immediate"."""
     @property
     def max_generations(self) -> int | None:
-        """Generations after which it gives up; None: as many as the budget allows."""
+        """Largest number of generations; None: as many as the budget allows."""
     @property
     def stall_generations(self) -> int | None:
-        """Generations without gain after which it gives up; None: never."""
+        """Generations without improvement after which the search ends; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Firefly:
-    """Firefly algorithm (Yang 2009): uses values alone. Fireflies have turns to attract all that are less bright.
+    """Firefly algorithm (Yang 2009): needs only values. In turn, each firefly attracts all less bright ones.
 
     Defaults: `Firefly(population=25, attractiveness=1.0, absorption=1.0, randomness=0.2, randomness_decay=0.97,
     max_generations=None, stall_generations=50)`.
 
     Args:
-        population: fireflies.
-        attractiveness: beta_0, at no distance.
-        absorption: gamma, with distances in widths of the box.
-        randomness: alpha, size of the random part, as a share of the box's width.
-        randomness_decay: what alpha is multiplied by with every turn.
-        max_generations: after so many it gives up; None: as many as the budget allows.
-        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
-            never.
+        population: number of fireflies.
+        attractiveness: beta_0, attractiveness at distance zero.
+        absorption: gamma, absorption of light, with distances in widths of the box.
+        randomness: alpha, size of the random step, as a fraction of the box's width.
+        randomness_decay: factor that multiplies alpha every turn.
+        max_generations: largest number of generations; None: as many as the budget allows.
+        stall_generations: the search ends after this many generations in a row improve the best value by less than
+            a millionth; None: never.
     """
 
     def __new__(
@@ -736,46 +734,46 @@ class Firefly:
     ) -> Firefly: ...
     @property
     def population(self) -> int:
-        """Members of a generation."""
+        """Size of a generation."""
     @property
     def attractiveness(self) -> float:
-        """Attractiveness at no distance."""
+        """Attractiveness at distance zero."""
     @property
     def absorption(self) -> float:
         """Absorption of light."""
     @property
     def randomness(self) -> float:
-        """Size of the random part at first, as a share of the box's width."""
+        """Initial size of the random step, as a fraction of the box's width."""
     @property
     def randomness_decay(self) -> float:
-        """What it is multiplied by with every turn."""
+        """Factor that multiplies the randomness every turn."""
     @property
     def max_generations(self) -> int | None:
-        """Generations after which it gives up; None: as many as the budget allows."""
+        """Largest number of generations; None: as many as the budget allows."""
     @property
     def stall_generations(self) -> int | None:
-        """Generations without gain after which it gives up; None: never."""
+        """Generations without improvement after which the search ends; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Genetic:
     """Genetic algorithm with the operators of MATLAB's `ga`: elite, tournaments, scattered crossover, Gaussian mutation.
-    Uses values alone.
+    Needs only values.
 
     Defaults: `Genetic(population=50, elite_share=0.05, crossover_share=0.8, tournament=2,
     mutation_rate=1.0, mutation_scale=0.1, mutation_decay=0.97, max_generations=None, stall_generations=50)`.
 
     Args:
-        population: members of a generation.
-        elite_share: share that survives unchanged, rounded up.
-        crossover_share: share of the others that is born by crossover; the rest by mutation.
-        tournament: members of a tournament, the best of which becomes a parent.
-        mutation_rate: probability that a coordinate of a mutant moves, one in any case; 1 moves all, as MATLAB does.
-        mutation_scale: standard deviation of mutations at first, as a share of the box's width.
-        mutation_decay: what it is multiplied by in a generation.
-        max_generations: after so many it gives up; None: as many as the budget allows.
-        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
-            never.
+        population: size of a generation.
+        elite_share: fraction that survives unchanged, rounded up.
+        crossover_share: fraction of the others produced by crossover; the rest is produced by mutation.
+        tournament: size of a tournament; its best member becomes a parent.
+        mutation_rate: probability that a coordinate of a mutant changes; at least one does. 1 changes all, as in MATLAB.
+        mutation_scale: initial standard deviation of mutations, as a fraction of the box's width.
+        mutation_decay: factor that multiplies the standard deviation every generation.
+        max_generations: largest number of generations; None: as many as the budget allows.
+        stall_generations: the search ends after this many generations in a row improve the best value by less than
+            a millionth; None: never.
     """
 
     def __new__(
@@ -793,54 +791,55 @@ class Genetic:
     ) -> Genetic: ...
     @property
     def population(self) -> int:
-        """Members of a generation."""
+        """Size of a generation."""
     @property
     def elite_share(self) -> float:
-        """Share that survives unchanged."""
+        """Fraction that survives unchanged."""
     @property
     def crossover_share(self) -> float:
-        """Share of the others that is born by crossover."""
+        """Fraction of the others produced by crossover."""
     @property
     def tournament(self) -> int:
-        """Members of a tournament."""
+        """Size of a tournament."""
     @property
     def mutation_rate(self) -> float:
-        """Probability that a coordinate of a mutant moves."""
+        """Probability that a coordinate of a mutant changes."""
     @property
     def mutation_scale(self) -> float:
-        """Standard deviation of mutations at first, as a share of the box's width."""
+        """Initial standard deviation of mutations, as a fraction of the box's width."""
     @property
     def mutation_decay(self) -> float:
-        """What it is multiplied by in a generation."""
+        """Factor that multiplies the standard deviation every generation."""
     @property
     def max_generations(self) -> int | None:
-        """Generations after which it gives up; None: as many as the budget allows."""
+        """Largest number of generations; None: as many as the budget allows."""
     @property
     def stall_generations(self) -> int | None:
-        """Generations without gain after which it gives up; None: never."""
+        """Generations without improvement after which the search ends; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class PSO:
-    """Particle swarm optimisation: uses values alone.
+    """Particle swarm optimisation: needs only values.
 
     Defaults: `PSO(population=40, form='constriction', c1=2.05, c2=2.05, velocity_limit=0.5, accept='always',
     walls='absorbing', max_generations=None, stall_generations=50)`.
 
     Args:
-        population: particles.
-        form: "constriction", the whole velocity shrinks by a factor that follows from c1 + c2 > 4 (Clerc and Kennedy
-            2002); "inertia", the old velocity has a weight (Shi and Eberhart 1998).
-        inertia: that weight; None: 0.729. Only with form "inertia".
-        c1: attraction to the particle's own best place; None: 2.05 with constriction, 1.49445 with inertia.
-        c2: attraction to the swarm's best place; None: as c1's.
-        velocity_limit: largest velocity, as a share of the box's width a generation; `inf`: none.
-        accept: "always", a particle stays where it went (as published); "improving", it returns to its best place if that
-            is better.
-        walls: "absorbing", a coordinate that would leave the box stops at the wall, and has no velocity left; "random", it
-            is drawn anew in the box, and keeps its velocity (compared by Helwig, Branke and Mostaghim 2013).
-        max_generations: after so many it gives up; None: as many as the budget allows.
-        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None: never.
+        population: number of particles.
+        form: "constriction": a factor that follows from c1 + c2 > 4 scales the whole velocity (Clerc and Kennedy 2002);
+            "inertia": a weight scales the old velocity (Shi and Eberhart 1998).
+        inertia: weight of the old velocity, only with form "inertia"; None: 0.729.
+        c1: attraction to the particle's own best point; None: 2.05 with constriction, 1.49445 with inertia.
+        c2: attraction to the swarm's best point; None: the same default as c1.
+        velocity_limit: largest velocity per generation, as a fraction of the box's width; `inf`: no limit.
+        accept: "always": a particle keeps its new position (as published); "improving": it returns to its best position if
+            that is better.
+        walls: "absorbing": a coordinate that would leave the box stops at the wall with zero velocity; "random": it is drawn
+            again inside the box and keeps its velocity (compared by Helwig, Branke and Mostaghim 2013).
+        max_generations: largest number of generations; None: as many as the budget allows.
+        stall_generations: the search ends after this many generations in a row improve the best value by less than a
+            millionth; None: never.
     """
 
     def __new__(
@@ -859,7 +858,7 @@ class PSO:
     ) -> PSO: ...
     @property
     def population(self) -> int:
-        """Members of a generation."""
+        """Size of a generation."""
     @property
     def form(self) -> str:
         """ "constriction" or "inertia"."""
@@ -868,13 +867,13 @@ class PSO:
         """Weight of the old velocity; None with constriction."""
     @property
     def c1(self) -> float:
-        """Attraction to the particle's own best place."""
+        """Attraction to the particle's own best point."""
     @property
     def c2(self) -> float:
-        """Attraction to the swarm's best place."""
+        """Attraction to the swarm's best point."""
     @property
     def velocity_limit(self) -> float:
-        """Largest velocity, as a share of the box's width a generation."""
+        """Largest velocity per generation, as a fraction of the box's width."""
     @property
     def accept(self) -> str:
         """ "always" or "improving"."""
@@ -883,24 +882,24 @@ class PSO:
         """ "absorbing" or "random"."""
     @property
     def max_generations(self) -> int | None:
-        """Generations after which it gives up; None: as many as the budget allows."""
+        """Largest number of generations; None: as many as the budget allows."""
     @property
     def stall_generations(self) -> int | None:
-        """Generations without gain after which it gives up; None: never."""
+        """Generations without improvement after which the search ends; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class QPSO:
-    """Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): uses values alone.
+    """Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): needs only values.
 
     Defaults: `QPSO(population=40, expansion=0.75, max_generations=None, stall_generations=50)`.
 
     Args:
-        population: particles.
+        population: number of particles.
         expansion: contraction-expansion coefficient alpha; 0.75 is the fixed value of Sun et al. (2012).
-        max_generations: after so many it gives up; None: as many as the budget allows.
-        stall_generations: it gives up when so many in a row gain less than a millionth of the best value; None:
-            never.
+        max_generations: largest number of generations; None: as many as the budget allows.
+        stall_generations: the search ends after this many generations in a row improve the best value by less than
+            a millionth; None: never.
     """
 
     def __new__(
@@ -913,33 +912,33 @@ class QPSO:
     ) -> QPSO: ...
     @property
     def population(self) -> int:
-        """Members of a generation."""
+        """Size of a generation."""
     @property
     def expansion(self) -> float:
         """Contraction-expansion coefficient."""
     @property
     def max_generations(self) -> int | None:
-        """Generations after which it gives up; None: as many as the budget allows."""
+        """Largest number of generations; None: as many as the budget allows."""
     @property
     def stall_generations(self) -> int | None:
-        """Generations without gain after which it gives up; None: never."""
+        """Generations without improvement after which the search ends; None: never."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class LevenbergMarquardt:
-    """Levenberg-Marquardt on the box of the limits, by the analytic Jacobian: joints at a bound are held and the step is
-    solved again for the others.
+    """Levenberg-Marquardt with the analytic Jacobian, inside the limits: joints at a bound are held, and the step is solved
+    again for the others.
 
     Defaults: `LevenbergMarquardt(initial_damping=0.05)`.
 
     Args:
-        initial_damping: damping over squared error at the start; larger is more careful far from the target.
+        initial_damping: initial ratio of damping to squared error; larger values take smaller steps far from the target.
     """
 
     def __new__(cls, *, initial_damping: float = ...) -> LevenbergMarquardt: ...
     @property
     def initial_damping(self) -> float:
-        """Damping over squared error at the start."""
+        """Initial ratio of damping to squared error."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -962,42 +961,42 @@ class MultiStart:
 
 @final
 class NewtonRaphson:
-    """Newton-Raphson by the pseudo-inverse of the Jacobian, on the box of the limits. Very quick from a start that is near
-    enough; from others it may jump about until its budget is spent.
+    """Newton-Raphson with the pseudo-inverse of the Jacobian, inside the limits. It converges fast from a start near a
+    solution; from others it may jump around until its budget is spent.
 
     Defaults: `NewtonRaphson(step_fraction=1.0)`.
 
     Args:
-        step_fraction: share of the full step that is taken, above 0 and at most 1.
+        step_fraction: fraction of the full step to take, above 0 and at most 1.
     """
 
     def __new__(cls, *, step_fraction: float = ...) -> NewtonRaphson: ...
     @property
     def step_fraction(self) -> float:
-        """Share of the full step that is taken."""
+        """Fraction of the full step to take."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class WeightedPseudoInverse:
-    """Resolved motion rate, a tick rule for `track` and `Tracker`: joint velocities from the velocity of the target by the
-    weighted pseudo-inverse of the Jacobian, inside the limits,
+    """Resolved motion rate control, a tick rule for `track` and `Tracker`: joint velocities follow from the velocity of the
+    target by the weighted pseudo-inverse of the Jacobian, inside the limits,
 
     q' = Jw+ (x' + gain (x - f(q))) + (I - Jw+ J) q0',  Jw+ = W^-1 J' (J W^-1 J')^-1,
 
-    with q0' down the gradient of the goals and towards `posture`. Joints at a limit leave their share to the others.
+    where q0' is the negative gradient of the goals plus a velocity towards `posture`. The other joints compensate for
+    joints at a limit.
 
     Defaults: `WeightedPseudoInverse(gain=None, integrator='euler', weights=None, posture=None, posture_gain=20.0,
     damping=0.0)`.
 
     Args:
-        gain: share of the error that is taken back per second (1/s); below 2 / dt. None: half of it in every tick.
-        integrator: "euler", the velocity at the beginning of a tick, or "rk4", four evaluations a tick and far smaller
-            errors.
-        weights: W (n,), the cost of each joint's squared velocity. None: 1 / (vU - vL)^2 from the velocity limits.
-        posture: a `Trajectory` for the joints to follow, as far as the target leaves them free.
-        posture_gain: share of the distance from it that is taken back per second (1/s).
-        damping: over the squared size of the weighted Jacobian; 0 is the pseudo-inverse itself, which near a singular
-            posture asks for all the speed that there is.
+        gain: feedback gain of the tip error (1/s), below 2 / dt. None: corrects half of the error in each tick.
+        integrator: "euler": the velocity at the start of a tick; "rk4": four evaluations per tick and far smaller errors.
+        weights: W (n,), weights of the squared joint velocities. None: 1 / (vU - vL)^2 from the velocity limits.
+        posture: a `Trajectory` that the joints follow in the null space.
+        posture_gain: feedback gain of the distance from `posture` (1/s).
+        damping: damping relative to the squared norm of the weighted Jacobian. 0 gives the pseudo-inverse itself, which
+            demands unbounded speed near singularities.
     """
 
     def __new__(
@@ -1012,22 +1011,22 @@ class WeightedPseudoInverse:
     ) -> WeightedPseudoInverse: ...
     @property
     def gain(self) -> float | None:
-        """Share of the error that is taken back per second (1/s); None: half of it in every tick."""
+        """Feedback gain of the tip error (1/s); None: half of the error in each tick."""
     @property
     def integrator(self) -> str:
         """ "euler" or "rk4"."""
     @property
     def weights(self) -> _Array | None:
-        """The cost of each joint's squared velocity (n,); None: from the velocity limits."""
+        """Weights of the squared joint velocities (n,); None: from the velocity limits."""
     @property
     def posture(self) -> Trajectory | None:
-        """What the joints follow, as far as the target leaves them free."""
+        """The trajectory that the joints follow in the null space."""
     @property
     def posture_gain(self) -> float:
-        """Share of the distance from it that is taken back per second (1/s)."""
+        """Feedback gain of the distance from `posture` (1/s)."""
     @property
     def damping(self) -> float:
-        """Damping over the squared size of the weighted Jacobian."""
+        """Damping relative to the squared norm of the weighted Jacobian."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -1053,16 +1052,16 @@ class Stop:
     ) -> Stop: ...
     @property
     def max_evaluations(self) -> int | None:
-        """See the class."""
+        """Largest number of evaluations, including the start."""
     @property
     def max_iterations(self) -> int | None:
-        """See the class."""
+        """Largest number of iterations."""
     @property
     def max_time(self) -> float | None:
-        """See the class (s)."""
+        """Largest time (s)."""
     @property
     def value_below(self) -> float | None:
-        """See the class."""
+        """Value below which the search ends."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- tasks and goals ----------------------------------------------------------------------------
@@ -1079,16 +1078,16 @@ class Task:
 
     @property
     def weights(self) -> _Array | None:
-        """Factors on the components; None: all one. A component of weight zero is left free."""
+        """Weights of the components; None: all 1. A component of weight 0 is free."""
     @property
     def tolerance(self) -> _Array | None:
-        """Largest error of each component (m, rad); None: the tolerances of the call."""
+        """Largest error of each component (m, rad); None: the tolerances of the call apply."""
     @property
     def tool(self) -> _Array | None:
-        """From the tip to what is to reach the target (4, 4); None: the tip itself."""
+        """Pose of the tool in the frame of the tip (4, 4); None: the tip itself."""
     @property
     def region(self) -> _Array | None:
-        """The corners of the box that the tip is kept in (2, 3) (m); None: anywhere."""
+        """Lower and upper corner of the box that the tip stays in (2, 3) (m); None: no box."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -1096,12 +1095,12 @@ class Pose(Task):
     """The whole pose.
 
     Args:
-        weights: (6,), factors on x, y, z and on the three components of the rotation vector, along the axes of the target;
-            zero leaves a component free.
+        weights: (6,), for x, y, z and the three components of the rotation vector, along the axes of the target; 0
+            leaves a component free.
         tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
-        tool: (4, 4), from the tip to what is to reach the target.
-        region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
-            infinite where it is open. See `Task`.
+        tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
+        region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
+            infinite on open sides. See `Task`.
     """
 
     def __new__(
@@ -1115,14 +1114,14 @@ class Pose(Task):
 
 @final
 class Position(Task):
-    """The position alone; the orientation is left free. Takes the position of a target that is a pose.
+    """The position only; the orientation is free. A target given as a pose counts by its position.
 
     Args:
-        weights: (3,), factors on x, y and z of the base; zero leaves a component free.
+        weights: (3,), for x, y and z of the base; 0 leaves a component free.
         tolerance: (3,) (m), largest error of each component, instead of the tolerance of the call.
-        tool: (4, 4), from the tip to what is to reach the target.
-        region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
-            infinite where it is open. See `Task`.
+        tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
+        region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
+            infinite on open sides. See `Task`.
     """
 
     def __new__(
@@ -1136,14 +1135,14 @@ class Position(Task):
 
 @final
 class Orientation(Task):
-    """The orientation alone; the position is left free.
+    """The orientation only; the position is free.
 
     Args:
-        weights: (3,), factors on the components of the rotation vector along the axes of the target; zero leaves one free.
+        weights: (3,), for the components of the rotation vector along the axes of the target; 0 leaves one free.
         tolerance: (3,) (rad), largest error of each component, instead of the tolerance of the call.
-        tool: (4, 4), from the tip to what is to reach the target.
-        region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
-            infinite where it is open. See `Task`.
+        tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
+        region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
+            infinite on open sides. See `Task`.
     """
 
     def __new__(
@@ -1157,16 +1156,16 @@ class Orientation(Task):
 
 @final
 class Pointing(Task):
-    """The position, and the direction of one axis of the tip; the spin about it is left free. `rotation_error` is the angle
-    between that axis and the same one of the target.
+    """The position, and the direction of one axis of the tip; rotation about that axis is free. `rotation_error` is the angle
+    between the axis and its target direction.
 
     Args:
-        axis: (3,), in the tip's coordinates, of any length but zero.
-        weights: (4,), factors on x, y and z along the axes of the target, and on the angle; zero leaves a component free.
+        axis: (3,), in the frame of the tip, of any nonzero length; None: (0, 0, 1).
+        weights: (4,), for x, y and z along the axes of the target, and for the angle; 0 leaves a component free.
         tolerance: (4,) (m, m, m, rad), largest error of each component, instead of the tolerances of the call.
-        tool: (4, 4), from the tip to what is to reach the target.
-        region: (2, 3) (m), lower and upper corner of a box in the frame of the base that the tip (or its tool) is kept in;
-            infinite where it is open. See `Task`.
+        tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
+        region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
+            infinite on open sides. See `Task`.
     """
 
     def __new__(
@@ -1180,62 +1179,62 @@ class Pointing(Task):
     ) -> Pointing: ...
     @property
     def axis(self) -> _Array:
-        """In the tip's coordinates (3,)."""
+        """The axis in the frame of the tip (3,)."""
 
 @disjoint_base
 class Goal:
-    """What the joints should do where the task leaves them free: one of `Posture`, `Centring`, `Manipulability` and
+    """A secondary objective, optimised in the null space of the task: `Posture`, `Centring`, `Manipulability` or
     `LinkManipulability`.
     """
 
     @property
     def weight(self) -> float:
-        """Share among several goals."""
+        """Weight relative to other goals."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Posture(Goal):
-    """Near a posture: lowers |q - posture|^2.
+    """Stays close to a posture: minimises |q - posture|^2.
 
     Args:
         posture: (n,) (rad, m).
-        weight: share among several goals.
+        weight: weight relative to other goals.
     """
 
     def __new__(cls, posture: ArrayLike, *, weight: float = 1.0) -> Posture: ...
     @property
     def posture(self) -> _Array:
-        """(n,) (rad, m)."""
+        """The posture (n,) (rad, m)."""
 
 @final
 class Centring(Goal):
-    """Away from the limits: lowers the sum of ((q - middle) / range)^2 over the joints that have limits.
+    """Stays away from the joint limits: minimises the sum of ((q - middle) / range)^2 over the joints that have limits.
 
     Args:
-        weight: share among several goals.
+        weight: weight relative to other goals.
     """
 
     def __new__(cls, *, weight: float = 1.0) -> Centring: ...
 
 @final
 class Manipulability(Goal):
-    """Far from singularities: lowers -ln w, with w Yoshikawa's index.
+    """Stays away from singularities: minimises -ln w, where w is Yoshikawa's index.
 
     Args:
-        motion: of the tip, as in `Robot.manipulability`: "pose", "position" or "rotation".
-        weight: share among several goals.
+        motion: motion of the tip that counts, "pose", "position" or "rotation", as in `Robot.manipulability`.
+        weight: weight relative to other goals.
     """
 
     def __new__(cls, *, motion: _Motion = "pose", weight: float = 1.0) -> Manipulability: ...
 
 @final
 class LinkManipulability(Goal):
-    """The whole arm far from singularities: lowers -ln of the sum of `Robot.link_manipulability`, so that no link comes near
-    a straight line with the one before it.
+    """Keeps the whole arm away from singularities: minimises -ln of the sum of `Robot.link_manipulability`, so that no two
+    successive links become collinear.
 
     Args:
-        motion: of the links' tips, as in `Robot.manipulability`: "pose", "position" or "rotation".
-        weight: share among several goals.
+        motion: motion of the link tips that counts, "pose", "position" or "rotation", as in `Robot.manipulability`.
+        weight: weight relative to other goals.
     """
 
     def __new__(cls, *, motion: _Motion = "position", weight: float = 1.0) -> LinkManipulability: ...
@@ -1289,7 +1288,7 @@ def solve(
 
 @final
 class Solution:
-    """The best configuration found, and what became of the search."""
+    """The best configuration found, and how the search ended."""
 
     @property
     def success(self) -> bool:
@@ -1299,7 +1298,7 @@ class Solution:
         """Why the search ended, a `Status`."""
     @property
     def message(self) -> str:
-        """What happened, and what to try."""
+        """A sentence that says what happened and what to try."""
     @property
     def evaluations(self) -> int:
         """Evaluations of the forward kinematics."""
@@ -1317,13 +1316,13 @@ class Solution:
         """Distance of the tip from the target (m), by forward kinematics of `q`."""
     @property
     def rotation_error(self) -> float:
-        """Geodesic angle to the target's orientation (rad); NaN where none was asked for."""
+        """Geodesic angle to the target's orientation (rad); NaN if the task leaves the orientation free."""
     @property
     def iterations(self) -> int:
         """Iterations over all starts."""
     @property
     def restarts(self) -> int:
-        """Starts beyond the first."""
+        """Restarts after the first start."""
 
 def solve_all(
     robot: Robot,
@@ -1340,10 +1339,10 @@ def solve_all(
     stop: Stop | None = None,
     seed: int = 0,
 ) -> SolutionSet:
-    """Looks for distinct solutions until a hundred in a row were known already, or the budget is spent.
+    """Searches for distinct solutions until a hundred in a row are known already, or the budget is spent.
 
-    Each is returned at the whole turns nearest to the start, without one nearest to the middle of the limits. A redundant arm
-    has endlessly many solutions: those returned lie at least `separation` apart.
+    Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
+    start is given. A redundant arm has infinitely many solutions: those returned are at least `separation` apart.
 
     Args:
         robot: the arm.
@@ -1369,17 +1368,17 @@ def solve_all(
 
 @final
 class SolutionSet:
-    """Distinct solutions of one target: a sequence of `Solution`."""
+    """The distinct solutions for one target, a sequence of `Solution`."""
 
     @property
     def success(self) -> bool:
-        """Whether there is a solution."""
+        """Whether a solution was found."""
     @property
     def status(self) -> Status:
-        """SOLVED where there is a solution; else why the last search ended."""
+        """SOLVED if a solution was found; otherwise why the last search ended."""
     @property
     def message(self) -> str:
-        """What happened, and what to try."""
+        """A sentence that says what happened and what to try."""
     @property
     def evaluations(self) -> int:
         """Evaluations of the forward kinematics."""
@@ -1394,7 +1393,7 @@ class SolutionSet:
         """The configurations (k, n) (rad, m), inside the limits."""
     @property
     def miss(self) -> Solution | None:
-        """The best miss, a `Solution`, where there is no solution; else None."""
+        """The best `Solution` that misses the target, if no solution was found; otherwise None."""
     def __len__(self) -> int: ...
     @overload
     def __getitem__(self, index: int | np.integer, /) -> Solution: ...
@@ -1422,8 +1421,8 @@ def solve_batch(
 ) -> BatchSolution:
     """Solves many targets at once, on all cores.
 
-    The result is the same, to the bit, for any number of threads; an item does not depend on the items behind it, and
-    item 0 is what `solve` finds.
+    The result is bit-identical for any number of threads. An item does not depend on the items after it, and item 0 equals
+    the result of `solve`.
 
     Args:
         robot: the arm.
@@ -1452,13 +1451,13 @@ def solve_batch(
 
 @final
 class BatchSolution:
-    """Solutions in the order of the targets, as columns; `b[i]` is one of them as a `Solution`, `b[10:20]` and
-    `b[~b.success]` are batches of some of them.
+    """Solutions in the order of the targets, stored as columns. `b[i]` is a `Solution`; `b[10:20]` and `b[~b.success]` are
+    batches.
     """
 
     @property
     def q(self) -> _Array:
-        """The best configurations found (m, n) (rad, m), inside the limits; NaN where `status` is INVALID."""
+        """The best configurations found (m, n) (rad, m), inside the limits; NaN in rows whose `status` is INVALID."""
     @property
     def success(self) -> NDArray[np.bool_]:
         """Whether each target was reached within the tolerances (m,)."""
@@ -1470,22 +1469,22 @@ class BatchSolution:
         """How many were solved, and what to try for the others."""
     @property
     def position_error(self) -> _Array:
-        """Distances of the tip from its targets (m,) (m), by forward kinematics of `q`."""
+        """Distances of the tip from the targets (m,) (m), by forward kinematics of `q`."""
     @property
     def rotation_error(self) -> _Array:
-        """Geodesic angles to the targets' orientations (m,) (rad); NaN where none was asked for."""
+        """Geodesic angles to the targets' orientations (m,) (rad); NaN if the task leaves the orientation free."""
     @property
     def iterations(self) -> NDArray[np.int64]:
         """Iterations over all starts (m,)."""
     @property
     def restarts(self) -> NDArray[np.int64]:
-        """Starts beyond the first (m,)."""
+        """Restarts after the first start (m,)."""
     @property
     def evaluations(self) -> NDArray[np.int64]:
         """Evaluations of the forward kinematics (m,)."""
     @property
     def elapsed(self) -> float:
-        """Time taken in all (s)."""
+        """Total time (s)."""
     @property
     def limits(self) -> Limits:
         """The limits in force."""
@@ -1537,7 +1536,7 @@ def minimize(
 
 @final
 class Minimum:
-    """The best point found by `minimize`, and what became of the search."""
+    """The best point found by `minimize`, and how the search ended."""
 
     @property
     def success(self) -> bool:
@@ -1556,36 +1555,38 @@ class Minimum:
         """Time taken (s)."""
     @property
     def limits(self) -> Limits:
-        """The box, as `lower` and `upper`."""
+        """The box, given by `lower` and `upper`."""
     @property
     def x(self) -> _Array:
         """The point (n,), inside the box."""
     @property
     def value(self) -> float:
-        """The function's value at `x`; inf where it was finite nowhere."""
+        """The function's value at `x`; inf if no value was finite."""
     @property
     def history(self) -> _Array:
-        """(k, 2): evaluations made, and the best value then. A row for the start, for every improvement and for the end."""
+        """Progress of the search (k, 2): number of evaluations, best value so far. One row for the start, one for each
+        improvement and one for the end.
+        """
     @property
     def iterations(self) -> int:
         """Iterations over all starts: generations of swarms, passes of BAS."""
     @property
     def restarts(self) -> int:
-        """Starts beyond the first."""
+        """Restarts after the first start."""
 
 # --- postures -----------------------------------------------------------------------------------
 
 @final
 class CircleSwarm:
-    """The particle swarm of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization": over joint
-    points on circles, with a constriction factor (eq. 17, 18).
+    """The particle swarm of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization": particles
+    are joint positions on circles; with a constriction factor (eq. 17, 18).
 
     Args:
-        population: particles.
-        generations: the first draw included.
-        c1, c2: attraction to the particle's own best place and to the swarm's; together above 4.
-        velocity_limit: largest velocity of a coordinate (m a generation); not published.
-        signed: random factors from [-1, 1], as printed, instead of [0, 1].
+        population: number of particles.
+        generations: number of generations, the initial one included.
+        c1, c2: attraction to the particle's own best point and to the swarm's; their sum must be above 4.
+        velocity_limit: largest velocity of a coordinate (m per generation); the paper does not give one.
+        signed: draw random factors from [-1, 1], as printed, instead of [0, 1].
     """
 
     def __new__(
@@ -1600,22 +1601,22 @@ class CircleSwarm:
     ) -> CircleSwarm: ...
     @property
     def population(self) -> int:
-        """Particles."""
+        """Number of particles."""
     @property
     def generations(self) -> int:
-        """Generations, the first draw included."""
+        """Number of generations, the initial one included."""
     @property
     def c1(self) -> float:
-        """Attraction to the particle's own best place."""
+        """Attraction to the particle's own best point."""
     @property
     def c2(self) -> float:
-        """Attraction to the swarm's best place."""
+        """Attraction to the swarm's best point."""
     @property
     def velocity_limit(self) -> float:
-        """Largest velocity of a coordinate (m a generation)."""
+        """Largest velocity of a coordinate (m per generation)."""
     @property
     def signed(self) -> bool:
-        """Whether random factors come from [-1, 1]."""
+        """Whether random factors are drawn from [-1, 1]."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 def planar_posture(
@@ -1627,23 +1628,23 @@ def planar_posture(
     swarm: CircleSwarm | None = None,
     seed: int = 0,
 ) -> PlanarPosture:
-    """The posture of a planar arm with the best manipulability for a tip position, of all that there are.
+    """Finds the posture of a planar arm with the best manipulability for a tip position: the global optimum.
 
-    For any arm, and for poses: `solve(robot, target, goals=goals.Manipulability(...), prefer="best")`.
+    For other arms, and for poses, use `solve(robot, target, goals=goals.Manipulability(...), prefer="best")`.
 
     Args:
-        robot: an arm of 3 or more joints that turn about z in one plane, such as `Robot.planar([...])`.
+        robot: an arm of 3 or more revolute joints about z in one plane, such as `Robot.planar([...])`.
         target: position of the tip (3,) (m).
-        measure: "tip", Yoshikawa's index of the tip, or "overall", the sum of those of all links.
-        region: ((x, y), (x, y)), least and largest coordinates of the joint points (m); None: anywhere.
-        swarm: a `CircleSwarm` to search as published; None: differential evolution over the directions of the links.
-        seed: of the random draws: the same seed, the same bits.
+        measure: "tip": Yoshikawa's index of the tip; "overall": the sum of the indices of all links.
+        region: (2, 2) (m), lower and upper corner (x, y) of a rectangle for the joint positions; None: no restriction.
+        swarm: a `CircleSwarm`, the published search; None: differential evolution over the link directions.
+        seed: seed of the random draws; the same seed gives the same bits.
 
     Returns:
         A `PlanarPosture`. A target out of reach is a status, not an error.
 
     Raises:
-        InvalidInputError: an arm that is not planar or has fewer than 3 links, wrong shape, NaN.
+        InvalidInputError: an arm that is not planar or has fewer than 3 links; wrong shape; NaN.
     """
 
 @final
@@ -1658,10 +1659,10 @@ class PlanarPosture:
         """Why the search ended, a `Status`."""
     @property
     def message(self) -> str:
-        """What happened, and what to try."""
+        """A sentence that says what happened and what to try."""
     @property
     def evaluations(self) -> int:
-        """Postures whose index was computed."""
+        """Number of postures evaluated."""
     @property
     def elapsed(self) -> float:
         """Time taken (s)."""
@@ -1670,15 +1671,15 @@ class PlanarPosture:
         """The limits in force: the robot's."""
     @property
     def q(self) -> _Array:
-        """The configuration (n,) (rad); as near as the tip gets where there is no posture."""
+        """The configuration (n,) (rad). If no posture was found, the one that brings the tip nearest to the target."""
     @property
     def index(self) -> float:
-        """Its index: `Robot.manipulability(q, motion="position")`, or for measure "overall" the sum of
-        `Robot.link_manipulability(q)`; NaN where there is no posture.
+        """Manipulability of the posture: `Robot.manipulability(q, motion="position")`, or for measure "overall" the sum of
+        `Robot.link_manipulability(q)`. NaN if no posture was found.
         """
     @property
     def history(self) -> _Array:
-        """The best index after each generation of a `CircleSwarm` (generations,); empty for the library's own search."""
+        """The best index after each generation of a `CircleSwarm` (generations,); empty for the default search."""
     @property
     def position_error(self) -> float:
         """Distance of the tip from the target (m)."""
@@ -1687,29 +1688,29 @@ class PlanarPosture:
 
 @final
 class Path:
-    """A reference for the tip: a position for every time in [0, duration], and an orientation where one was given. Times
-    outside are clamped.
+    """A reference path of the tip: position, and optionally orientation, for each time in [0, duration]. Times outside are
+    clamped.
     """
 
     @property
     def duration(self) -> float:
-        """How long the path lasts (s)."""
+        """Duration (s)."""
     def position(self, t: ArrayLike) -> _Array:
-        """Position (m): (3,) for a number t (s), (k, 3) for t (k,)."""
+        """Returns the position (m): (3,) for a number t (s), (k, 3) for t (k,)."""
     def velocity(self, t: ArrayLike) -> _Array:
-        """Velocity (m/s): (3,) for a number t (s), (k, 3) for t (k,). Of a Python function, by central differences."""
+        """Returns the velocity (m/s): (3,) for a number t (s), (k, 3) for t (k,). For Python functions by central differences."""
     def pose(self, t: ArrayLike) -> _Array:
-        """Pose: (4, 4) for a number t (s), (k, 4, 4) for t (k,). The path must have an orientation."""
+        """Returns the pose: (4, 4) for a number t (s), (k, 4, 4) for t (k,). The path must have an orientation."""
     def sample(self, dt: float) -> tuple[_Array, _Array]:
-        """Times (k,) (s) from 0 in steps of dt, and the positions (k, 3) (m) there: what a tracker follows."""
+        """Returns the times (k,) (s) from 0 in steps of `dt`, and the positions (k, 3) (m): the samples that a tracker follows."""
     def with_orientation(self, orientation: _Pose | Callable[[float], _Pose]) -> Path:
-        """The same path with an orientation: a rotation matrix (3, 3), or a callable of t (s) that returns one."""
+        """Returns a copy with an orientation: a rotation matrix (3, 3), or a callable of t (s) that returns one."""
 
 def circle(
     center: ArrayLike, diameter: float, duration: float, *, a: ArrayLike = (1, 0, 0), b: ArrayLike = (0, 1, 0)
 ) -> Path:
-    """A circle about `center` (3,) (m) of this diameter (m), once around in `duration` (s), from the side of `a` towards
-    `b`: eq. (14) of Cheng et al. (2020). `a` and `b` (3,) are orthonormal.
+    """A circle around `center` (3,) (m), traversed once in `duration` (s), from the direction `a` towards `b`: eq. (14) of
+    Cheng et al. (2020). `a` and `b` (3,) are orthonormal vectors in its plane.
     """
 
 def letter_m(
@@ -1721,8 +1722,8 @@ def letter_m(
     a: ArrayLike = (0, 1, 0),
     b: ArrayLike = (0, 0, 1),
 ) -> Path:
-    """The letter M about `center` (3,), `width` along `a` and `height` along `b` (m), its four segments equally long in
-    time (Khan et al. 2022).
+    """The letter M around `center` (3,), `width` along `a` and `height` along `b` (m). Its four segments take equal times
+    (Khan et al. 2022).
     """
 
 def hypotrochoid(
@@ -1735,15 +1736,15 @@ def hypotrochoid(
     a: ArrayLike = (0, 1, 0),
     b: ArrayLike = (0, 0, 1),
 ) -> Path:
-    """A hypotrochoid about `center` (3,): the path of a point at `distance` from the centre of a circle that rolls inside
-    another (m). Eq. (20) of Khan et al. (2022) as it was meant; the ratio of the radii is one of small whole numbers.
+    """A hypotrochoid around `center` (3,): the path of a point at `distance` (m) from the centre of a circle that rolls inside
+    another. Eq. (20) of Khan et al. (2022), corrected. The ratio of the radii must be a ratio of small integers.
     """
 
 def pentagram(
     center: ArrayLike, duration: float, *, radius: float, a: ArrayLike = (1, 0, 0), b: ArrayLike = (0, 1, 0)
 ) -> Path:
-    """A five-pointed star about `center` (3,), its points `radius` (m) away, drawn in five segments at constant speed from
-    the point on the side of `b`.
+    """A five-pointed star around `center` (3,), with its points at `radius` (m): five segments at constant speed, starting at
+    the point in direction `b`.
     """
 
 def rose(
@@ -1755,19 +1756,19 @@ def rose(
     a: ArrayLike = (1, 0, 0),
     b: ArrayLike = (0, 1, 0),
 ) -> Path:
-    """A rose about `center` (3,): at angle u the distance is radius cos(k u) (m). Odd k gives k petals, even k 2 k."""
+    """A rose around `center` (3,): at angle u its radius is radius cos(k u) (m). Odd k gives k petals, even k gives 2 k."""
 
 def polyline(points: ArrayLike, duration: float) -> Path:
-    """Straight segments through `points` (k, 3) (m) at constant speed, `duration` (s) in all."""
+    """Straight segments through `points` (k, 3) (m) at constant speed, in `duration` (s)."""
 
 def from_samples(time: ArrayLike, positions_or_poses: _Pose) -> Path:
-    """The path through samples: `time` (k,) (s) from 0, and positions (k, 3) (m) or poses (k, 4, 4). Straight in between,
-    rotations along the shortest turn.
+    """A path through samples: `time` (k,) (s) from 0, and positions (k, 3) (m) or poses (k, 4, 4). Positions are interpolated
+    linearly, rotations along the shortest rotation.
     """
 
 def from_function(function: Callable[[float], ArrayLike], duration: float) -> Path:
-    """The path that `function(t)` describes: t (s) in [0, duration] to a position (3,) (m). It is called before a tracker
-    runs, at the times of its ticks.
+    """A path given by `function(t)`, which returns a position (3,) (m) for t (s) in [0, duration]. Trackers sample it at the
+    times of their ticks before they run.
     """
 
 # --- tracking -----------------------------------------------------------------------------------
@@ -1788,11 +1789,11 @@ def track(
     limit_at: Literal["interval", "start"] = "interval",
     progress: _Progress = None,
 ) -> TrackResult:
-    """Follows `path` with the tip of `robot`, tick by tick, inside the limits.
+    """Follows a path with the tip of the robot, tick by tick, inside the limits.
 
-    In every tick the joints may move within the position limits and within what the velocity limits let the last
-    accepted configuration reach, so that neither can be broken (Cheng et al. 2020, Algorithm 1). Acceleration limits narrow
-    that further, with room left to brake before position limits; the arm starts at rest.
+    In each tick the joints stay in a box: the position limits, and the range that the velocity limits allow from the last
+    accepted configuration. So neither limit can be violated (Cheng et al. 2020, Algorithm 1). Acceleration limits reduce the
+    box further, so that joints can still brake before their position limits; the arm starts at rest.
 
     Args:
         robot: the arm.
@@ -1824,20 +1825,20 @@ def track(
 
 @final
 class TrackResult:
-    """The record of a track: k = steps + 1 rows; row 0 is the start at t = 0, row i the tick that ends at t_i = i dt."""
+    """The record of a track, k = steps + 1 rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt."""
 
     @property
     def success(self) -> bool:
-        """Whether the tip came into the error band and stayed there."""
+        """Whether the tip reached the error band and stayed there."""
     @property
     def status(self) -> Status:
-        """SOLVED as `success`; LOST if the tip left its band again; else how the last step ended."""
+        """SOLVED on `success`; LOST if the tip left its band again; otherwise the status of the last step."""
     @property
     def message(self) -> str:
-        """What happened, and what to try."""
+        """A sentence that says what happened and what to try."""
     @property
     def evaluations(self) -> int:
-        """Evaluations of the forward kinematics in all."""
+        """Total number of evaluations of the forward kinematics."""
     @property
     def elapsed(self) -> float:
         """Time taken (s)."""
@@ -1855,29 +1856,29 @@ class TrackResult:
         """Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt, zero in row 0."""
     @property
     def velocity_limit(self) -> _Array:
-        """The limit that each velocity was held against (k, n); NaN in row 0, inf where there is none."""
+        """Velocity limits in force in each tick (k, n); NaN in row 0, inf for none."""
     @property
     def position(self) -> _Array:
         """Positions of the tip (k, 3) (m)."""
     @property
     def reference(self) -> _Array:
-        """Wanted positions (k, 3) (m)."""
+        """Reference positions (k, 3) (m)."""
     @property
     def position_error(self) -> _Array:
-        """Distances between the two (k,) (m)."""
+        """Distances between tip and reference (k,) (m)."""
     @property
     def rotation_error(self) -> _Array:
-        """Angles to the wanted orientations (k,) (rad); NaN where none was asked for."""
+        """Angles to the reference orientations (k,) (rad); NaN if the task leaves the orientation free."""
     @property
     def position_tolerance(self) -> float:
-        """The error band (m), as asked."""
+        """The error band (m)."""
     @property
     def rotation_tolerance(self) -> float:
-        """The error band of orientations (rad), as asked."""
+        """The error band of orientations (rad)."""
     @property
     def step_status(self) -> NDArray[np.uint8]:
-        """How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED
-        neither.
+        """Status of each step (k,), values of `Status`: SOLVED inside the band, IMPROVED nearer than in the previous step,
+        otherwise CAPPED.
         """
     @property
     def step_evaluations(self) -> NDArray[np.int64]:
@@ -1887,28 +1888,30 @@ class TrackResult:
         """Iterations in each step (k,): passes of BAS, steps of Levenberg-Marquardt."""
     @property
     def max_violation(self) -> float:
-        """Largest excess of a displacement over its limit times dt, or of a position over its limit (rad, m); 0 within
+        """Largest excess of a displacement over velocity limit times dt, or of a position over its limit (rad, m); 0 within
         rounding.
         """
     @property
     def limit_margin(self) -> float:
-        """Smallest distance of a speed from its limit (rad/s, m/s); inf without limits."""
+        """Smallest margin between a joint speed and its limit (rad/s, m/s); inf without limits."""
     @property
     def robot(self) -> Robot:
-        """The robot that was tracked."""
+        """The robot."""
     @property
     def trajectory(self) -> Trajectory:
-        """The joint motion, straight between the ticks: its velocities are exactly `qd`."""
+        """The joint trajectory, linear between the ticks: its velocities are exactly `qd`."""
     def plot(self) -> Figure:
-        """A matplotlib figure: the tip's path, the error, joint angles, velocities with their limits, evaluations."""
+        """Draws the path of the tip, the errors, joint positions, velocities with their limits, and evaluations; returns a
+        matplotlib figure.
+        """
     def __len__(self) -> int: ...
 
 @final
 class Tracker:
-    """One control loop, one call a tick: the same as `track`, for targets that come one at a time.
+    """Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 
-    A target may jump farther than a tick reaches: the model-based rule then moves all joints in proportion, the first of them at
-    its velocity limit, and brakes in time where accelerations are limited.
+    A target may jump farther than one tick can reach. The model-based rule then moves all joints in proportion, with one at
+    its velocity limit, and brakes in time under acceleration limits.
 
     Args:
         robot: the arm.
@@ -1944,41 +1947,41 @@ class Tracker:
         """Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
 
         Args:
-            target: where the tip is to be at the end of the tick.
-            velocity: (3,) (m/s), that of the target then, for `WeightedPseudoInverse`; None: the way from where it was.
-                Other rules need none.
+            target: target of the tip at the end of the tick.
+            velocity: (3,) (m/s), velocity of the target at the end of the tick, which only `WeightedPseudoInverse` uses;
+                None: from the difference to the previous target.
         """
     def reset(self, q: ArrayLike) -> None:
-        """Back to rest in q (n,), at t = 0."""
+        """Resets to rest at q (n,) and t = 0."""
     @property
     def q(self) -> _Array:
-        """The configuration accepted last (n,) (rad, m)."""
+        """The last accepted configuration (n,) (rad, m)."""
     @property
     def time(self) -> float:
-        """Time of that configuration (s)."""
+        """Time of the last accepted configuration (s)."""
     @property
     def dt(self) -> float:
         """Time step (s)."""
     @property
     def robot(self) -> Robot:
-        """The robot that is moved."""
+        """The robot."""
     @property
     def limits(self) -> Limits:
         """The limits in force."""
 
 @final
 class Step:
-    """What became of one step of a `Tracker` or a `ControlSession`."""
+    """The result of one step of a `Tracker` or a `ControlSession`."""
 
     @property
     def success(self) -> bool:
         """Whether the tip is within the tolerances."""
     @property
     def status(self) -> Status:
-        """SOLVED within the tolerances, IMPROVED nearer than the step before, CAPPED neither."""
+        """SOLVED within the tolerances, IMPROVED nearer than in the previous step, otherwise CAPPED."""
     @property
     def message(self) -> str:
-        """What happened, and what to try."""
+        """A sentence that says what happened and what to try."""
     @property
     def evaluations(self) -> int:
         """Evaluations of the forward kinematics."""
@@ -1993,7 +1996,7 @@ class Step:
         """The configuration to command (n,) (rad, m)."""
     @property
     def qd(self) -> _Array:
-        """The velocity that leads there (n,) (rad/s, m/s)."""
+        """The joint velocity over the step (n,) (rad/s, m/s)."""
     @property
     def position_error(self) -> float:
         """Distance of the tip from the target (m)."""
@@ -2008,18 +2011,16 @@ class Step:
 
 @disjoint_base
 class Obstacle:
-    """A convex body that stands still in the frame of the robot's base: what all obstacles have in common."""
+    """The base class of obstacles: a convex body, fixed in the frame of the robot's base."""
 
     @property
     def triangles(self) -> _Array:
-        """Corners (t, 3, 3) (m) of triangles that show its surface, for drawing; those of round shapes touch it with their
-        corners.
-        """
+        """Triangles of the surface (t, 3, 3) (m), for drawing. The corners of triangles lie on the surface."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Sphere(Obstacle):
-    """A ball: centre (3,) and radius (m)."""
+    """A sphere: centre (3,) and radius (m)."""
 
     def __new__(cls, center: ArrayLike, radius: float) -> Sphere: ...
     @property
@@ -2031,7 +2032,7 @@ class Sphere(Obstacle):
 
 @final
 class Box(Obstacle):
-    """A box: centre (3,), edges (3,) along its own axes (m), and how those are turned (3, 3)."""
+    """A box: centre (3,), edge lengths (3,) along its own axes (m), and the rotation (3, 3) of these axes."""
 
     def __new__(cls, center: ArrayLike, size: ArrayLike, rotation: _Pose | None = None) -> Box: ...
     @property
@@ -2039,14 +2040,14 @@ class Box(Obstacle):
         """Centre (3,) (m)."""
     @property
     def size(self) -> _Array:
-        """Edges (3,) (m)."""
+        """Edge lengths (3,) (m)."""
     @property
     def rotation(self) -> _Array:
         """Its axes as columns (3, 3)."""
 
 @final
 class Capsule(Obstacle):
-    """All points within `radius` (m) of the segment from a (3,) to b (3,)."""
+    """A capsule: all points within `radius` (m) of the segment from a (3,) to b (3,)."""
 
     def __new__(cls, a: ArrayLike, b: ArrayLike, radius: float) -> Capsule: ...
     @property
@@ -2061,7 +2062,7 @@ class Capsule(Obstacle):
 
 @final
 class Ellipsoid(Obstacle):
-    """An ellipsoid: centre (3,), semi-axes (3,) (m), and how they are turned (3, 3)."""
+    """An ellipsoid: centre (3,), lengths of the semi-axes (3,) (m), and their rotation (3, 3)."""
 
     def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, rotation: _Pose | None = None) -> Ellipsoid: ...
     @property
@@ -2069,14 +2070,16 @@ class Ellipsoid(Obstacle):
         """Centre (3,) (m)."""
     @property
     def semi_axes(self) -> _Array:
-        """Semi-axes (3,) (m)."""
+        """Lengths of the semi-axes (3,) (m)."""
     @property
     def rotation(self) -> _Array:
         """Its axes as columns (3, 3)."""
 
 @final
 class Ellipse(Obstacle):
-    """An ellipse in the plane z = 0, for planar arms: centre (2,), semi-axes (2,) (m), angle of the first one (rad)."""
+    """An ellipse in the plane z = 0, for planar arms: centre (2,), lengths of the semi-axes (2,) (m), angle of the first
+    one (rad).
+    """
 
     def __new__(cls, center: ArrayLike, semi_axes: ArrayLike, angle: float = 0.0) -> Ellipse: ...
     @property
@@ -2084,14 +2087,14 @@ class Ellipse(Obstacle):
         """Centre (2,) (m)."""
     @property
     def semi_axes(self) -> _Array:
-        """Semi-axes (2,) (m)."""
+        """Lengths of the semi-axes (2,) (m)."""
     @property
     def angle(self) -> float:
         """Angle of the first semi-axis (rad)."""
 
 @final
 class ConvexMesh(Obstacle):
-    """The smallest convex body that holds points (k, 3) (m), at least four that do not lie in a plane."""
+    """The convex hull of points (k, 3) (m): at least four, not all in one plane."""
 
     def __new__(cls, points: ArrayLike) -> ConvexMesh: ...
     @property
@@ -2099,19 +2102,19 @@ class ConvexMesh(Obstacle):
         """The points as given (k, 3) (m)."""
 
 def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any:
-    """Distance between `robot` and what it is nearest to, at q (n,) or (m, n): a number or (m,) (m). Negative by the depth
-    of the deepest overlap; inf where nothing can touch.
+    """Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
+    for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
 
     Args:
         robot: an arm with capsules.
-        q: joint angles.
-        obstacles: in the frame of the robot's base. Links that no joint moves are not held against them.
+        q: joint positions (n,) or (m, n) (rad, m).
+        obstacles: obstacles in the frame of the robot's base. Links that no joint moves are not compared with them.
 
-    Of the links' own capsules those are compared that have another one between them and do not touch with all joints in
-    the middle of their ranges.
+    Two links of the robot are compared if at least one link lies between them and their capsules do not overlap with all
+    joints in the middle of their ranges.
 
     Raises:
-        InvalidInputError: a robot without capsules, an obstacle of another kind.
+        InvalidInputError: a robot without capsules, or an obstacle that is not of `bik.obstacles`.
     """
 
 # --- planning -----------------------------------------------------------------------------------
@@ -2134,7 +2137,7 @@ def plan_point_to_point(
     seed: int = 0,
     progress: _Progress = None,
 ) -> Plan:
-    """Plans a motion from one end to another, at rest at both.
+    """Plans a motion between two ends, from rest to rest.
 
     Args:
         robot: the arm.
@@ -2174,32 +2177,33 @@ def time_optimal(
     end_speed: float = 0.0,
     joint_names: list[str] | None = None,
 ) -> Trajectory:
-    """The fastest motion through waypoints on a given path: its shape is kept, its timing is found.
+    """Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
 
-    By reachability analysis (Pham and Pham 2018), with acceleration limits imposed on whole segments instead of grid
-    points alone: velocity and acceleration limits hold at every instant, on any grid. Jerk limits, where there are any, are
-    kept by smoothing the fastest motion in time: all limits hold, but it is no longer the fastest of all.
+    The method is reachability analysis (Pham and Pham 2018), with acceleration limits imposed on whole segments instead of
+    only at grid points: velocity and acceleration limits hold at every instant, on any grid. Jerk limits are kept by
+    smoothing the motion in time: all limits hold, but the result is then slower than the optimum.
 
     Args:
-        waypoints_q: (k, n), joint positions to pass (rad, m).
-        limits: constant ones: `acceleration` for all joints; `velocity`, `jerk`, `lower`, `upper` as wanted.
-        knots: (k,), the path parameter of each waypoint, increasing; None: uniform in [0, 1].
-        spline: how the path's ends are shaped: "natural" without curvature, "not-a-knot" as their neighbours, "clamped"
-            without slope; "polyline": straight lines, see `blend`.
-        blend: of a polyline: its corners are rounded from so far before to so far after them (distance in joint space, at
+        waypoints_q: (k, n), joint positions of the waypoints (rad, m).
+        limits: constant limits: `acceleration` for all joints; optionally `velocity`, `jerk`, `lower`, `upper`.
+        knots: (k,), increasing path parameters of the waypoints; None: uniform in [0, 1].
+        spline: cubic spline with zero curvature at its ends ("natural"), with the cubic of the neighbouring segment
+            ("not-a-knot") or with zero slope ("clamped"); or straight lines ("polyline"), see `blend`.
+        blend: for a polyline: corners are rounded from this distance before to this distance after them (in joint space, at
             most half a line); None or 0: the joints stop at each corner.
-        gridpoints: where the acceleration along the path may change; None refines until it makes no difference.
-        start_speed, end_speed: Euclidean length of the joint velocity at the ends (rad/s, m/s).
-        joint_names: n names; None: "q1", "q2", ...
+        gridpoints: number of points at which the acceleration along the path may change; None: refined until the duration
+            no longer improves.
+        start_speed, end_speed: Euclidean norm of the joint velocity at the ends (rad/s, m/s).
+        joint_names: n names; None: "q1", "q2" and so on.
 
     Returns:
-        A `Trajectory`, exactly on the path: a polynomial of degree 6 between grid points. With jerk limits quintic pieces
-        that meet the path at their ends.
+        A `Trajectory` exactly on the path: polynomials of degree 6 between grid points. With jerk limits it consists of
+        quintic segments that meet the path at their ends.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, fewer than two waypoints, a waypoint that repeats the one before it.
-        InfeasibleError: the path leaves the position limits, a joint must move that may not, too high speeds at the ends.
-        UnsupportedLimit: limits that vary in time, no acceleration limit, jerk limits on a polyline.
+        InvalidInputError: wrong shape, NaN, fewer than two waypoints, or a waypoint equal to the one before it.
+        InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
+        UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline.
     """
 
 def plan_along_path(
@@ -2217,7 +2221,7 @@ def plan_along_path(
     seed: int = 0,
     progress: _Progress = None,
 ) -> Plan:
-    """Plans a motion whose tip follows a path, in order.
+    """Plans a motion that moves the tip along a path.
 
     Args:
         robot: the arm.
@@ -2250,13 +2254,13 @@ class Plan:
 
     @property
     def success(self) -> bool:
-        """Whether the trajectory keeps everything that was asked."""
+        """Whether the trajectory meets all requirements."""
     @property
     def status(self) -> Status:
-        """SOLVED as `success`; else why the search ended."""
+        """SOLVED on `success`; otherwise why the search ended."""
     @property
     def message(self) -> str:
-        """What happened, and what to try."""
+        """A sentence that says what happened and what to try."""
     @property
     def evaluations(self) -> int:
         """Evaluations of the cost."""
@@ -2268,60 +2272,62 @@ class Plan:
         """The limits in force."""
     @property
     def trajectory(self) -> Trajectory:
-        """The motion: the best that keeps everything, else the least violating one."""
+        """The motion: the best one that meets all requirements, otherwise the one that violates them least."""
     @property
     def objective(self) -> str:
-        """What was minimised: "time", "joint_travel" or "tip_travel"."""
+        """The quantity that was minimised: "time", "joint_travel" or "tip_travel"."""
     @property
     def cost(self) -> float:
-        """Its value on the trajectory (s, rad or m)."""
+        """Value of the objective on the trajectory (s, rad or m)."""
     @property
     def history(self) -> _Array:
-        """How the search came to its best: rows (evaluations, lowest cost from then on), (h, 2); with penalties as long as
-        the plan breaks something.
+        """Progress of the search (h, 2): number of evaluations, lowest cost from then on. The cost includes penalties while the
+        plan has violations.
         """
     @property
     def clearance(self) -> float:
-        """Smallest distance between robot and obstacles on the trajectory (m); NaN without obstacles."""
+        """Smallest distance between robot and obstacles along the trajectory (m); NaN without obstacles."""
     @property
     def violations(self) -> list[Violation]:
-        """What the trajectory breaks, a list of `Violation`; empty for a plan that succeeded."""
+        """The bounds that the trajectory exceeds, a list of `Violation`; empty on success."""
     @property
     def accuracy(self) -> float:
-        """Largest distance of the tip from the path (m), at its points and between them; NaN for a plan from end to end."""
+        """Largest distance of the tip from the path (m), at its points and between them; NaN for a point-to-point plan."""
     @property
     def redundancy(self) -> _Array:
-        """The absolute orientations that a planar arm was free to choose along the path (points, links, 3): value, lowest
-        and highest possible (rad), from the tip's link down; without such a choice (0, 0, 3).
+        """Absolute orientations of the redundant links of a planar arm along the path (points, links, 3): value, lowest and
+        highest possible (rad), from the tip's link down; (0, 0, 3) without redundancy.
         """
     @property
     def reference(self) -> _Array | None:
-        """Positions (k, 3) (m) that the tip was to follow, straight in between; None for a plan from end to end."""
+        """Reference positions of the tip (k, 3) (m), joined by straight lines; None for a point-to-point plan."""
     @property
     def robot(self) -> Robot:
-        """The robot that was planned for."""
+        """The robot."""
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:
-        """What the robot was not to touch, as given."""
+        """The obstacles, as given."""
     def plot(self) -> Figure:
-        """A matplotlib figure: the arm along its way, the cost against evaluations, the joints' motion with their limits."""
+        """Draws the arm along its path, the cost over evaluations, and the joint motions with their limits; returns a matplotlib
+        figure.
+        """
 
 @final
 class Violation:
-    """A bound that a planned trajectory breaks; `str` says it in words."""
+    """A bound that a planned trajectory exceeds; `str` describes it in words."""
 
     @property
     def what(self) -> str:
-        """What breaks it, such as "velocity of joint 'elbow'"."""
+        """The quantity that exceeds it, such as "velocity of joint 'elbow'"."""
     @property
     def value(self) -> float:
-        """How far the trajectory goes, in `unit`."""
+        """Largest value on the trajectory, in `unit`."""
     @property
     def bound(self) -> float:
-        """How far it may go, in `unit`."""
+        """The bound, in `unit`."""
     @property
     def unit(self) -> str:
-        """ "rad/s" and so on."""
+        """The unit, such as "rad/s"."""
 
 # --- tracking without a model -------------------------------------------------------------------
 
@@ -2364,24 +2370,24 @@ def track_model_free(
 
 @final
 class ModelFreeResult:
-    """The record of a track without a model: k rows, row 0 the start at t = 0, row i the tick that ends at t_i = i dt; fewer than
-    the path has where the plant failed.
+    """The record of a track without a model, k rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt. If the
+    plant fails, the record ends there.
     """
 
     @property
     def success(self) -> bool:
-        """Whether the tip came into the error band and stayed there."""
+        """Whether the tip reached the error band and stayed there."""
     @property
     def status(self) -> Status:
-        """SOLVED as `success`; LOST if the tip left its band again; PLANT_FAILED where the plant ended the run; else how the last
-        step ended.
+        """SOLVED on `success`; LOST if the tip left its band again; PLANT_FAILED if the plant failed; otherwise the status of the
+        last step.
         """
     @property
     def message(self) -> str:
-        """What happened, and what to try."""
+        """A sentence that says what happened and what to try."""
     @property
     def evaluations(self) -> int:
-        """Measurements of the plant in all."""
+        """Total number of measurements."""
     @property
     def elapsed(self) -> float:
         """Time taken (s)."""
@@ -2393,7 +2399,7 @@ class ModelFreeResult:
         """Times (k,) (s)."""
     @property
     def q(self) -> _Array:
-        """Configurations that the controller accepted (k, n) (rad, m)."""
+        """Configurations accepted by the controller (k, n) (rad, m)."""
     @property
     def qd(self) -> _Array:
         """Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt, zero in row 0."""
@@ -2404,20 +2410,20 @@ class ModelFreeResult:
         """
     @property
     def position(self) -> _Array:
-        """Positions of the tip as measured (k, 3) (m)."""
+        """Measured positions of the tip (k, 3) (m)."""
     @property
     def reference(self) -> _Array:
-        """Wanted positions (k, 3) (m)."""
+        """Reference positions (k, 3) (m)."""
     @property
     def position_error(self) -> _Array:
-        """Distances between the two (k,) (m)."""
+        """Distances between tip and reference (k,) (m)."""
     @property
     def position_tolerance(self) -> float:
-        """The error band (m), as asked."""
+        """The error band (m)."""
     @property
     def step_status(self) -> NDArray[np.uint8]:
-        """How each step ended (k,), values of `Status`: SOLVED in the band, IMPROVED nearer than the step before, CAPPED
-        neither.
+        """Status of each step (k,), values of `Status`: SOLVED inside the band, IMPROVED nearer than in the previous step,
+        otherwise CAPPED.
         """
     @property
     def step_evaluations(self) -> NDArray[np.int64]:
@@ -2430,9 +2436,9 @@ class ModelFreeResult:
         """Root mean square of the measured error over the second half of the rows (m)."""
     @property
     def exception(self) -> BaseException | None:
-        """What the plant raised, if it did."""
+        """The exception that the plant raised, or None."""
     def plot(self) -> Figure:
-        """A matplotlib figure: the tip's path, the error, joint angles, measurements."""
+        """Draws the path of the tip, the error, the joint positions and the measurements; returns a matplotlib figure."""
     def __len__(self) -> int: ...
 
 @final
@@ -2490,7 +2496,7 @@ class ZNNBAS:
         """ "always" or "improving"."""
     @property
     def sensor_delay(self) -> int:
-        """Ticks by which the sensor is late."""
+        """Delay of the sensor, in ticks."""
     def session(
         self,
         start: ArrayLike,
@@ -2500,12 +2506,12 @@ class ZNNBAS:
         position_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession:
-        """The controller at work in your own loop, from `start` (n,) and t = 0: see `ControlSession`."""
+        """Starts a `ControlSession` at `start` (n,) and t = 0, for your own loop."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class ControlSession:
-    """A controller in your own loop, with your own hardware.
+    """A model-free controller for your own loop and hardware.
 
         session = bik.BroydenBAS(max_evaluations_per_step=1).session(q0, dt=0.01, limits=limits)
         while session.time < path.duration:
@@ -2518,19 +2524,19 @@ class ControlSession:
     """
 
     def command(self, target: ArrayLike) -> _Array:
-        """Where to send the arm (n,) (rad, m), so that its tip comes to `target` (3,) (m) by the end of the tick. Within the
-        limits, and within what the velocity limits let the configuration accepted last reach.
+        """Returns the next command (n,) (rad, m), which moves the tip towards `target` (3,) (m) for the end of the tick. It is
+        inside the limits, and the velocity limits allow it from the last accepted configuration.
         """
     def observe(self, position: ArrayLike) -> Step | None:
-        """The tip was at `position` (3,) (m) at the last command. Returns what became of the tick, a `Step`; None while it
-        goes on.
+        """Takes the `position` (3,) (m) of the tip measured at the last command. Returns a `Step` if the tick has ended, else
+        None.
         """
     @property
     def q(self) -> _Array:
-        """The configuration accepted last (n,) (rad, m)."""
+        """The last accepted configuration (n,) (rad, m)."""
     @property
     def time(self) -> float:
-        """Time of that configuration (s)."""
+        """Time of the last accepted configuration (s)."""
     @property
     def dt(self) -> float:
         """Time step (s)."""
@@ -2540,19 +2546,19 @@ class ControlSession:
 
 @final
 class KinematicPlant:
-    """A robot that goes at once where it is sent, with a sensor at its tip; it runs without Python in the loop. Give it
-    another robot than the one you have in mind, such as `robot.with_errors(...)`, and it is an arm with a wrong model.
+    """A simulated arm that executes commands exactly, with a sensor at its tip; it runs without Python in the loop. To simulate
+    an arm whose model is wrong, pass a modified robot, such as `robot.with_errors(...)`.
 
     Args:
-        robot: what moves.
+        robot: the arm as built.
         noise: standard deviation of the sensor on each axis (m).
-        seed: of the noise. Every run of `track_model_free` begins the noise anew.
+        seed: seed of the noise. Each run of `track_model_free` restarts the noise.
     """
 
     def __new__(cls, robot: Robot, *, noise: float = 0.0, seed: int = 0) -> KinematicPlant: ...
     @property
     def robot(self) -> Robot:
-        """What moves."""
+        """The arm as built."""
     @property
     def noise(self) -> float:
         """Standard deviation of the sensor on each axis (m)."""
@@ -2560,19 +2566,19 @@ class KinematicPlant:
     def seed(self) -> int:
         """Seed of the noise."""
     def move(self, q: ArrayLike) -> _Array:
-        """Sends the arm to q (n,) (rad, m), and returns the measured position of its tip (3,) (m)."""
+        """Moves the arm to q (n,) (rad, m), and returns the measured position of its tip (3,) (m)."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- trajectories -------------------------------------------------------------------------------
 
 @final
 class Trajectory:
-    """Joint motion in time, a polynomial between knots: q_j(t) = sum over p of coefficients[i, j, p] (t - time[i])^p.
+    """A joint trajectory of polynomial segments between knots: q_j(t) = sum over p of coefficients[i, j, p] (t - time[i])^p.
 
     Args:
-        time: the knots (k,) (s), from 0.
-        coefficients: (k - 1, n, degree + 1), degree at most 6, in ascending powers.
-        joint_names: n names; None: "q1", "q2", ...
+        time: the knots (k,) (s), starting at 0.
+        coefficients: (k - 1, n, degree + 1), in ascending powers; the degree is at most 6.
+        joint_names: n names; None: "q1", "q2" and so on.
     """
 
     def __new__(
@@ -2587,56 +2593,56 @@ class Trajectory:
         qdd: ArrayLike | None = None,
         joint_names: list[str] | None = None,
     ) -> Trajectory:
-        """The motion through samples q (k, n) at `time` (k,) (s): straight in between; cubic where velocities qd (k, n)
-        are given too, quintic where accelerations qdd (k, n) are.
+        """Makes a trajectory through samples q (k, n) at `time` (k,) (s). Segments are linear; cubic if velocities qd (k, n)
+        are given, quintic if accelerations qdd (k, n) are given too.
         """
     @property
     def time(self) -> _Array:
         """The knots (k,) (s)."""
     @property
     def coefficients(self) -> _Array:
-        """(k - 1, n, degree + 1), in ascending powers of the time since the knot."""
+        """Coefficients (k - 1, n, degree + 1), in ascending powers of the time since the knot."""
     @property
     def q(self) -> _Array:
         """Positions at the knots (k, n) (rad, m)."""
     @property
     def qd(self) -> _Array:
-        """Velocities at the knots (k, n) (rad/s, m/s), of the piece that begins there."""
+        """Velocities at the knots (k, n) (rad/s, m/s), of the segment that begins there."""
     @property
     def qdd(self) -> _Array:
-        """Accelerations at the knots (k, n) (rad/s^2, m/s^2), of the piece that begins there."""
+        """Accelerations at the knots (k, n) (rad/s^2, m/s^2), of the segment that begins there."""
     @property
     def duration(self) -> float:
-        """How long the motion lasts (s)."""
+        """Duration (s)."""
     @property
     def joint_names(self) -> list[str]:
         """Names of the joints, in the order of q."""
     def max_velocity(self) -> _Array:
-        """The largest speed of each joint (n,) (rad/s, m/s), exact over all times."""
+        """Returns the largest speed of each joint (n,) (rad/s, m/s), exact over all times."""
     def max_acceleration(self) -> _Array:
-        """The largest acceleration of each joint (n,) (rad/s^2, m/s^2), exact inside the pieces; jumps of the velocity at
-        knots are not in it.
+        """Returns the largest acceleration of each joint (n,) (rad/s^2, m/s^2), exact within the segments. Jumps of the
+        velocity at knots are not included.
         """
     def max_jerk(self) -> _Array:
-        """The largest jerk of each joint (n,) (rad/s^3, m/s^3), exact inside the pieces; jumps of the acceleration at knots
-        are not in it.
+        """Returns the largest jerk of each joint (n,) (rad/s^3, m/s^3), exact within the segments. Jumps of the acceleration
+        at knots are not included.
         """
     def at(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]:
-        """(q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside are clamped."""
+        """Returns (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside the trajectory are clamped."""
     def sample(self, dt: float) -> tuple[_Array, _Array, _Array, _Array]:
-        """(time, q, qd, qdd) every dt seconds and at the end: (k,) and (k, n) each."""
+        """Returns (time, q, qd, qdd) every `dt` (s) and at the end: (k,), and (k, n) each."""
     def then(self, motion: Trajectory, *, pause: float = 0.0) -> Trajectory:
-        """This motion, a rest of `pause` (s), and then `motion`, of the same joints, which begins where this one ends."""
+        """Returns this trajectory followed by a rest of `pause` (s) and by `motion`, which must begin where this one ends."""
     def to_csv(self, file: str | os.PathLike[str], *, dt: float | None = None) -> None:
-        """Writes samples as CSV, whole or not at all: every `dt` (s) and at the end; None: at the knots."""
+        """Writes samples as CSV: every `dt` (s) and at the end; None: at the knots. The file appears complete or not at all."""
     def to_npz(self, file: str | os.PathLike[str]) -> None:
-        """Writes knots and coefficients as npz, whole or not at all."""
+        """Writes knots and coefficients as npz. The file appears complete or not at all."""
     @staticmethod
     def from_csv(file: str | os.PathLike[str]) -> Trajectory:
-        """Reads what `to_csv` wrote, or any CSV with a column `time` and one column per joint."""
+        """Reads a file that `to_csv` wrote, or any CSV with a column `time` and one column per joint."""
     @staticmethod
     def from_npz(file: str | os.PathLike[str]) -> Trajectory:
-        """Reads what `to_npz` wrote."""
+        """Reads a file that `to_npz` wrote."""
     def plot(self) -> Figure:
-        """A matplotlib figure of positions, velocities and accelerations."""
+        """Draws positions, velocities and accelerations; returns a matplotlib figure."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...

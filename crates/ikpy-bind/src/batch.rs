@@ -16,6 +16,7 @@ use crate::indexing::{Selection, iterate, select};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::pickling::{self, Reduced};
+use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
@@ -93,6 +94,10 @@ impl PyBatchSolution {
     /// Iterates over the solutions.
     fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyIterator>> {
         iterate(slf.as_any())
+    }
+
+    fn _repr_html_<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        python_calls::html(slf.into_any(), "result")
     }
 
     fn __repr__(&self) -> String {
@@ -213,6 +218,7 @@ pub fn solve_batch(
         on_invalid: on_invalid.parse::<OnInvalid>().map_err(raise)?,
     };
     let batch = watched(py, progress, |watcher| batch::solve_batch(arm, targets, &options, watcher))?;
+    python_calls::log(py, format!("solve_batch: {}", batch.message()))?;
     PyBatchSolution::new(py, batch, in_force)
 }
 

@@ -13,6 +13,7 @@ use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::path::PyPath;
+use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
 
@@ -79,6 +80,7 @@ pub fn plan_along_path(
         AlongPathMethod::Timed => tip_path.positions().as_flattened().to_vec(),
         AlongPathMethod::Tpbso => (0..tip_path.points().len()).flat_map(|i| tip_path.points().position(i)).collect(),
     };
+    python_calls::log(py, format!("plan_along_path: {}", plan.message()))?;
     PyPlan::new(plan, Some(positions), robot, in_force, PyTuple::empty(py).unbind())
 }
 

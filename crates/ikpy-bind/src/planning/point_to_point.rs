@@ -12,6 +12,7 @@ use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::Obstacles;
+use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
 
@@ -81,6 +82,7 @@ pub fn plan_point_to_point(
         seed: count("seed", seed)?,
     };
     let plan = watched(py, progress, |watcher| planning::plan_point_to_point(&arm, &start, &end, &options, watcher))?;
+    python_calls::log(py, format!("plan_point_to_point: {}", plan.message()))?;
     PyPlan::new(plan, None, robot, in_force, given)
 }
 

@@ -164,7 +164,8 @@ pub fn track_model_free(
         seed: count("seed", seed)?,
     };
     let (core, exception) = attended(py, progress, |watcher| run(plant, &reference, &start, &options, watcher))?;
-    PyModelFreeResult::new(py, core, in_force, exception)
+    python_calls::log(py, format!("track_model_free: {}", core.message()))?;
+    PyModelFreeResult::new(py, core, in_force, exception.map(|error| error.into_value(py)))
 }
 
 /// Returns the record, and the exception of a Python plant. Releases the interpreter unless the plant needs it.

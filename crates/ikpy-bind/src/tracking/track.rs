@@ -191,5 +191,6 @@ pub fn track(
     let options = asked.read(resolved)?;
     let record =
         watched(py, progress, |watcher| tracking::track(&arm, &reference, start.as_deref(), &options, watcher))?;
+    python_calls::log(py, format!("track: {}", record.message()))?;
     PyTrackResult::new(py, record, robot.clone().unbind(), in_force)
 }

@@ -49,4 +49,5 @@ EXPERIMENT = Experiment(
         "Beetle Antennae Search Algorithm”, *IEEE Access* 8, 2020"
     ),
     run=run,
+    extras=("sim",),
 )

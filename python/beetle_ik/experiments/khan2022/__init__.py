@@ -38,4 +38,5 @@ EXPERIMENT = Experiment(
         "Search”, *EAI Transactions on AI and Robotics*, 2022"
     ),
     run=run,
+    extras=("sim",),
 )
