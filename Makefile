@@ -1,16 +1,16 @@
-# Each target sets up what it needs, the virtual environment included. What has not changed is not built again.
+# Each target sets up what it needs, including the virtual environment. Only what has changed is rebuilt.
 
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench coverage docs
+.PHONY: help demo test lint bench coverage docs papers
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "%-10s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-# The limit is the BAS paper's. It is above the real arm's in four joints: the command says so.
+# The limit is that of the BAS paper. It exceeds the limits of the real arm in four joints; the command says so.
 demo: $(VENV)/with-plot  ## a KUKA iiwa 14 follows the BAS paper's circle; results in demo/
 	$(BIN)/beetle-ik track iiwa14 --curve circle --center 0.3,0.3,1.0 --diameter 0.2 --duration 30 --dt 0.2 \
 	    --start 0.6449,0.2037,0.1969,-0.7714,0.2028,0.7179,0.1 --velocity-sinusoid 2,0.004,1 --solver bas --out demo
@@ -37,7 +37,7 @@ bench: $(VENV)/wheel  ## criterion benchmarks of the core, then the comparison w
 	.venv-bench/bin/pip install --quiet --disable-pip-version-check --requirement benches/requirements.txt dist/*.whl
 	.venv-bench/bin/python benches/compare.py --out target/compare
 
-# `cargo install cargo-tarpaulin --locked` brings what counts the lines of Rust.
+# `cargo install cargo-tarpaulin --locked` installs the coverage tool for Rust.
 coverage: $(VENV)/with-test  ## lines that the tests reach, of Rust and of Python
 	cargo tarpaulin --locked -p ikcore --engine llvm --skip-clean --target-dir target/coverage --timeout 3600 \
 	    --exclude-files 'tests/*' 'benches/*' 'examples/*'
@@ -47,6 +47,11 @@ coverage: $(VENV)/with-test  ## lines that the tests reach, of Rust and of Pytho
 docs: $(VENV)/with-docs  ## the site in docs/build/html, the Rust pages in target/doc
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs docs/build/html
+
+papers: $(VENV)/with-test  ## the papers run again, reports in target/papers/; the tables that README and site quote
+	$(BIN)/beetle-ik reproduce all --out target/papers
+	cd docs/papers/tables && for table in */*.csv; do \
+	    cp ../../../target/papers/$${table%/*}/tables/$${table#*/} $$table || exit 1; done
 
 SOURCES := Cargo.toml Cargo.lock pyproject.toml README.md \
     $(shell find crates python -type f -not -name '*.pyc' -not -name '*.so' -not -name '*.pyd')
@@ -59,7 +64,7 @@ $(VENV)/python:
 	$(PYTHON) -m venv $(VENV)
 	@touch $@
 
-# The wheel as it is released, installed without what it depends on: the extras below bring that.
+# The wheel as released, installed without its dependencies: the extras below install them.
 $(VENV)/wheel: $(SOURCES) | $(BIN)/maturin
 	rm -rf dist
 	$(BIN)/maturin build --release --interpreter $(BIN)/python --out dist
@@ -70,7 +75,7 @@ $(VENV)/with-%: $(VENV)/wheel
 	$(BIN)/pip install --quiet --disable-pip-version-check "$$(echo dist/*.whl)[$*]"
 	@touch $@
 
-# Pinocchio, against which kinematics is tested, is no condition: the tests that ask it skip where it has no wheel.
+# Pinocchio, the reference for kinematics, is optional: its tests are skipped if there is no wheel.
 $(VENV)/with-test: $(VENV)/wheel
 	$(BIN)/pip install --quiet --disable-pip-version-check "$$(echo dist/*.whl)[test]"
 	$(BIN)/pip install --quiet --disable-pip-version-check --only-binary :all: "$$(echo dist/*.whl)[oracles]" \

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use criterion::{Criterion, criterion_group, criterion_main};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::path::{Path, Plane, Polyline, Waypoints};
-use ikcore::planning::{AlongPathMethod, AlongPathOptions, TipPath, plan_along_path};
+use ikcore::planning::{AlongPathMethod, AlongPathOptions, TipPath, Tpbso, plan_along_path};
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
 
@@ -35,7 +35,7 @@ fn plans(criterion: &mut Criterion) {
         .expect("limits");
     let mut group = criterion.benchmark_group("along_path");
     for (name, tip_path, accuracy) in [("pentagram", pentagram(), 0.04), ("trefoil", trefoil(), 0.02)] {
-        for (method, published) in [(AlongPathMethod::Timed, "timed"), (AlongPathMethod::Tpbso, "tpbso")] {
+        for (method, published) in [(AlongPathMethod::Timed, "timed"), (Tpbso::default().into(), "tpbso")] {
             let limits = Some(limits.clone());
             let options = AlongPathOptions { method, limits, accuracy: Some(accuracy), ..Default::default() };
             group.bench_function(format!("{name}/{published}"), |bencher| {

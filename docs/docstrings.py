@@ -1,4 +1,4 @@
-"""Docstrings are written to be read in a terminal: here they become reStructuredText."""
+"""Converts docstrings, which are written for a terminal, to reStructuredText."""
 
 import re
 from typing import Any
@@ -10,7 +10,7 @@ _SECTION = re.compile(r"^(Args|Returns|Raises|Yields):$")
 
 
 def escaped(line: str) -> str:
-    """The line, with what reStructuredText would take for markup escaped, except in backquotes."""
+    """Escapes what reStructuredText would read as markup, except in backquotes."""
     parts = _CODE.split(line)
     parts[::2] = [_SPECIAL.sub(lambda found: "\\" + found[0], part) for part in parts[::2]]
     for i in range(2, len(parts), 2):
@@ -20,7 +20,7 @@ def escaped(line: str) -> str:
 
 
 def converted(lines: list[str]) -> list[str]:
-    """The lines of a docstring, with indented examples marked as code."""
+    """Converts the lines of a docstring; marks indented examples as code."""
     result: list[str] = []
     code = section = False
     for i, line in enumerate(lines):
@@ -34,12 +34,12 @@ def converted(lines: list[str]) -> list[str]:
 
 
 def convert(_app: Any, _what: str, _name: str, _subject: Any, _options: Any, lines: list[str]) -> None:
-    """Listens to autodoc."""
+    """Handles the autodoc event."""
     lines[:] = converted(lines)
 
 
 def setup(app: Any) -> dict[str, bool]:
-    """A Sphinx extension; it runs before napoleon."""
+    """Registers the Sphinx extension; it runs before napoleon."""
     app.setup_extension("sphinx.ext.autodoc")
     app.connect("autodoc-process-docstring", convert, priority=100)
     return {"parallel_read_safe": True}

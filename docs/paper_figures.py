@@ -1,4 +1,4 @@
-"""Draws the figures of the papers' pages when the site is built: quick passes of `beetle-ik reproduce`."""
+"""Draws the figures of the papers' pages when the site is built, by quick passes of `beetle-ik reproduce`."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ if TYPE_CHECKING:
 FOLDER = Path(__file__).parent / "papers" / "figures"
 FIGURES = {
     "cheng2020": ("figure_2", "search_box", "equation_5"),
-    "khan2022": ("figure_2_limits", "theorem_1_still"),
-    "pso-tracking": ("figure_6", "figure_9"),
+    "khan2022": ("figure_2_limits", "antennae", "theorem_1_still", "repetition"),
+    "pso-tracking": ("figure_6", "over_length", "figure_9"),
     "wang2019": ("figure_10", "figure_13"),
     "yuan2016": ("figure_6", "reach"),
 }
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Called by Sphinx."""
+    """Registers the Sphinx extension."""
     app.connect("builder-inited", lambda _app: draw_all())
     return {"parallel_read_safe": True}
 
 
 def draw_all() -> None:
-    """Draw what is missing, or older than the package."""
+    """Draws figures that are missing or older than the package."""
     package = Path(beetle_ik.__file__).parent
     changed = max(file.stat().st_mtime for file in package.rglob("*") if file.suffix in (".py", ".so", ".pyd"))
     FOLDER.mkdir(exist_ok=True)

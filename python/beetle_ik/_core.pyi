@@ -184,7 +184,7 @@ class Robot:
         """Returns a copy with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps the present ones."""
     @property
     def capsules(self) -> list[tuple[str, _Array, _Array, float]]:
-        """Collision capsules of the links, each (link, a, b, radius): all points within `radius` (m) of the segment from a (3,)
+        """Collision capsules of the links, each (link, a, b, radius): all points within the radius (m) of the segment from a (3,)
         to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a URDF.
         """
     def with_capsules(
@@ -366,19 +366,19 @@ class Status(IntEnum):
     """How a solve, an item of a batch or a step of a track ended. Only `SOLVED` is success.
 
     - `SOLVED`: Within the tolerances.
-    - `IMPROVED`: A step of a track: nearer than the step before, not yet within the tolerance. Or a search ended by `value_below`.
-    - `CAPPED`: A step of a track: neither within the tolerance nor nearer than the step before; the best found is kept.
-    - `STALLED`: The solver's own rule gave up: nothing more to gain from here.
+    - `IMPROVED`: A step of a track that came nearer than the step before, not yet within the tolerance; or a search that reached `value_below`.
+    - `CAPPED`: A step of a track that is neither within the tolerance nor nearer than the step before; the best configuration found is kept.
+    - `STALLED`: The solver's own rule ended the search: no further progress from here.
     - `BUDGET_SPENT`: The evaluation or iteration budget is spent.
-    - `TIME_UP`: The time limit is over.
-    - `INTERRUPTED`: It was asked to stop before its end.
+    - `TIME_UP`: The time limit is reached.
+    - `INTERRUPTED`: Stopped on request before the end.
     - `LOST`: A track that did not stay within its tolerance.
-    - `INVALID`: An item of a batch whose target or start is wrong: nothing was solved.
-    - `OUT_OF_REACH`: Beyond doubt, no configuration reaches so far: the target is farther than the arm is long, or off its plane.
-    - `PLANT_FAILED`: A plant that raised an error, or returned what is no position: the run ended with what was recorded.
+    - `INVALID`: An item of a batch with an invalid target or start; it was not solved.
+    - `OUT_OF_REACH`: Provably out of reach: the target is farther away than the arm is long, or off its plane.
+    - `PLANT_FAILED`: The plant raised an error or returned something other than a position; the run ended with what was recorded.
     - `BELOW_THRESHOLD`: The solver's own threshold was met before the tolerances were.
-    - `OUTSIDE_LIMITS`: The search arrived outside the limits, and whole turns do not bring it inside; the best inside is kept.
-    - `HELD_IN_REGION`: The region of the task keeps the tip from the target; the tip is in it, as near as it may come.
+    - `OUTSIDE_LIMITS`: The search converged outside the limits, and whole turns do not bring it inside; the best configuration inside is kept.
+    - `HELD_IN_REGION`: The region of the task keeps the tip from the target; the tip is in the region, as near as possible.
     """
 
     SOLVED = 0
@@ -2127,12 +2127,10 @@ def plan_point_to_point(
     start_q: ArrayLike | None = None,
     end_q: ArrayLike | None = None,
     limits: Limits | None = None,
-    method: Literal["minmax", "tpbso"] = "minmax",
+    method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
-    elbows: Sequence[int] | None = None,
-    solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
     seed: int = 0,
     progress: _Progress = None,
@@ -2145,13 +2143,11 @@ def plan_point_to_point(
         start_q, end_q: joint positions (n,) instead.
         limits: position, velocity and acceleration limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
-            "tpbso": polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
+            "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
         objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
         obstacles: obstacles of `bik.obstacles` that the robot must not touch. A robot with capsules must not touch itself
             either.
         margin: least distance from obstacles and between links (m); None: 1 mm.
-        elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1; None: (1, 1).
-        solver: solver of the search; None: the method's own.
         stop: budgets; None: the method's own.
         seed: seed of the random draws; the same seed gives the same bits.
         progress: True shows a progress bar; a callable is called with (done, total).
@@ -2212,9 +2208,8 @@ def plan_along_path(
     *,
     start_q: ArrayLike | None = None,
     limits: Limits | None = None,
-    method: Literal["timed", "tpbso"] = "timed",
+    method: Literal["timed", "tpbso"] | TPBSO = "timed",
     objective: Literal["time", "joint_travel"] = "time",
-    elbow: int | None = None,
     accuracy: float | None = None,
     solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
@@ -2228,13 +2223,12 @@ def plan_along_path(
         path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
         start_q: joint positions (n,) at the start; None: chosen by the planner.
         limits: position, velocity and acceleration limits; None: the robot's.
-        method: "timed": optimises redundancy and timing together; "tpbso": redundancy by a beetle swarm, uniform timing,
-            splines through every second point (Wang et al. 2019).
+        method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
+            uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
         objective: quantity to minimise, "time" or "joint_travel".
-        elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it; None: 1.
         accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
             decides how many points of the path the motion passes. None: a thousandth of the path's extent; for "tpbso" 4 %.
-        solver: solver of the search; None: the method's own.
+        solver: solver of the search of "timed"; None: differential evolution. `TPBSO` has a solver of its own.
         stop: budgets; None: the method's own.
         seed: seed of the random draws; the same seed gives the same bits.
         progress: True shows a progress bar; a callable is called with (done, total).
@@ -2249,8 +2243,30 @@ def plan_along_path(
     """
 
 @final
+class TPBSO:
+    """Trajectory planning by beetle swarm optimisation (Wang et al. 2019), as `method=` of `plan_point_to_point` and
+    `plan_along_path`. The string "tpbso" stands for `TPBSO()`.
+
+    Args:
+        elbows: sign of the second joint's angle at start and end of a planar arm's motion, 1 or -1. At an end given by
+            start_q or end_q, those joint positions decide. Along a path both must be equal.
+        solver: solver of the search, a derivative-free one; None: the published beetle swarm.
+    """
+
+    def __new__(
+        cls, *, elbows: Sequence[int] = (1, 1), solver: _DerivativeFree | MultiStart | None = None
+    ) -> TPBSO: ...
+    @property
+    def elbows(self) -> tuple[int, int]:
+        """Signs of the second joint's angle at start and end."""
+    @property
+    def solver(self) -> _DerivativeFree | MultiStart | None:
+        """Solver of the search; None: the published beetle swarm."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class Plan:
-    """A planned motion, and what became of the search for it."""
+    """A planned motion, and how its search ended."""
 
     @property
     def success(self) -> bool:

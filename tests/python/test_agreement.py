@@ -93,8 +93,6 @@ def test_clearance_takes_one_configuration_or_rows_of_them(angles: int) -> None:
 
 
 def test_options_that_would_be_ignored_are_refused() -> None:
-    with pytest.raises(bik.InvalidInputError, match=r'^method="minmax" has a search of its own: leave solver out'):
-        bik.plan_point_to_point(IIWA, start_q=START, end_q=START + 0.1, limits=LIMITS, solver=bik.PSO())
     with pytest.raises(bik.InvalidInputError, match=r"^margin must be zero or more and finite, got NaN$"):
         bik.plan_point_to_point(IIWA, start_q=START, end_q=START + 0.1, limits=LIMITS, margin=np.nan)
 

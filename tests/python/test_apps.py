@@ -130,7 +130,7 @@ def test_a_solution_outside_the_limits_is_told() -> None:
     goal = bik.Robot.planar([1.0, 1.0]).fk([0.1, 1.0])[:3, 3]
     solution = bik.solve(robot, goal, start=[0.2, 0.4], solver=bik.APPS())
     assert (solution.success, solution.status) == (False, bik.Status.OUTSIDE_LIMITS)
-    assert solution.message.startswith("reached outside the limits only, inside them 0.")
+    assert solution.message.startswith("reached only outside the limits; inside them 0.")
     assert np.abs(solution.q).max() <= 0.5
 
 

@@ -174,9 +174,9 @@ def test_wrong_rows_are_skipped_on_demand(threads: int) -> None:
     assert np.isnan(batch.q[1:]).all()
     assert np.isnan(batch.position_error[1:]).all()
     np.testing.assert_array_equal(batch.q[0], bik.solve_batch(PANDA, TARGETS[:1], starts=HIGH[:1]).q[0])
-    assert batch.message == '1 of 4 solved; 3 INVALID: on_invalid="raise" says what is wrong'
+    assert batch.message == '1 of 4 solved; 3 INVALID: use on_invalid="raise" to see what is wrong'
     assert batch[1].status is bik.Status.INVALID
-    assert batch[1].message == 'not solved: on_invalid="raise" says what is wrong'
+    assert batch[1].message == 'not solved: use on_invalid="raise" to see what is wrong'
 
 
 MISTAKES: list[Case] = [

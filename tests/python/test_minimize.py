@@ -121,12 +121,12 @@ def test_the_message_says_how_the_search_ended() -> None:
     spent = minimize()
     assert not spent.success
     assert spent.message == (
-        f"best value {spent.value:.6e} after 200 evaluations, all that the budget allows: raise it in stop=Stop(...)"
+        f"best value {spent.value:.6e} after 200 evaluations, when the budget was spent: raise it in stop=Stop(...)"
     ).replace("e-0", "e-")
     assert repr(spent) == f"<Minimum BUDGET_SPENT: {spent.message}>"
     stalled = minimize(lambda _: 1.0, solver=bik.PSO(population=10, stall_generations=2))
     assert stalled.status == bik.Status.STALLED
-    assert stalled.message.endswith("and no further gain: try another start or seed, or MultiStart")
+    assert stalled.message.endswith("no further progress: try another start or seed, or MultiStart")
 
 
 def test_values_that_are_not_finite_are_the_worst() -> None:
@@ -241,7 +241,7 @@ MISTAKES: list[Case] = [
     (
         lambda: minimize(solver=bik.LevenbergMarquardt()),
         Invalid,
-        f"minimize knows no derivative: solver must be {NAMES}, got LevenbergMarquardt(initial_damping=0.05)",
+        f"minimize has no derivatives: solver must be {NAMES}, got LevenbergMarquardt(initial_damping=0.05)",
     ),
     (
         lambda: bik.PSO(form="swarm"),  # type: ignore[arg-type]

@@ -61,6 +61,8 @@ OBSTACLES = [
 METHODS = [
     bik.CircleSwarm(),
     bik.CircleSwarm(population=7, generations=20, c1=2.5, c2=2.0, velocity_limit=0.1, signed=True),
+    bik.TPBSO(),
+    bik.TPBSO(elbows=(-1, 1), solver=bik.MultiStart(bik.PSO(), max_starts=3)),
     bik.WeightedPseudoInverse(),
     bik.WeightedPseudoInverse(gain=5.0, integrator="rk4", weights=[1.0, 2.0], posture_gain=10.0, damping=0.01),
     bik.ZNNBAS(),

@@ -59,7 +59,7 @@ def test_history_falls_to_the_cost() -> None:
 
 
 def test_elbows_are_bent_as_asked() -> None:
-    q = between(elbows=(-1, 1)).trajectory.q
+    q = between(method=bik.TPBSO(elbows=(-1, 1))).trajectory.q
     assert q[0, 1] < 0.0 < q[-1, 1]
 
 
@@ -71,10 +71,30 @@ def test_given_end_configurations_are_kept() -> None:
 
 @pytest.mark.parametrize("solver", [bik.PSO(), bik.Genetic(), bik.DifferentialEvolution(), bik.BAS()])
 def test_other_searches_serve(solver: Any) -> None:
-    plan = between(solver=solver)
+    plan = between(method=bik.TPBSO(solver=solver))
     assert plan.evaluations <= 3000
     ends = plan.trajectory.at([0.0, plan.trajectory.duration])[0]
     np.testing.assert_allclose(ARM.fk(ends)[:, :3, 3], [START, END], atol=1e-9)
+
+
+def test_the_name_tpbso_means_its_defaults() -> None:
+    np.testing.assert_array_equal(between(method=bik.TPBSO()).trajectory.q, between().trajectory.q)
+    np.testing.assert_array_equal(along(CORNER, method=bik.TPBSO()).trajectory.q, along(CORNER).trajectory.q)
+    assert bik.TPBSO() == bik.TPBSO(elbows=(1, 1), solver=None)
+    assert repr(bik.TPBSO()) == "TPBSO(elbows=(1, 1), solver=None)"
+    assert bik.TPBSO(solver=bik.PSO()) != bik.TPBSO()
+    with pytest.raises(bik.InvalidInputError, match=r"^TPBSO has no derivatives: solver must be BAS, "):
+        bik.TPBSO(solver=bik.LevenbergMarquardt())  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("keyword", ["elbow", "elbows", "solver"])
+def test_options_of_tpbso_are_no_keywords_of_the_call(keyword: str) -> None:
+    with pytest.raises(TypeError, match=f"unexpected keyword argument '{keyword}'"):
+        between(**{keyword: 1})
+
+
+def test_a_path_is_followed_with_the_elbow_asked_for() -> None:
+    assert (along(CORNER, method=bik.TPBSO(elbows=(-1, -1)), accuracy=0.2).trajectory.q[:, 1] < 0.0).all()
 
 
 def test_a_path_is_followed_within_the_accuracy() -> None:
@@ -146,12 +166,13 @@ MISTAKES: list[tuple[Callable[[], Any], str]] = [
         lambda: between(limits=bik.Limits(velocity=bik.Sinusoid(mean=2, amplitude=1, angular_frequency=1))),
         'method="tpbso" cannot honour time-varying velocity limits: give numbers',
     ),
+    (lambda: between(method=3), 'method must be a name, such as "tpbso", or a TPBSO, got 3'),
     (lambda: between(method="fast"), "method must be one of 'minmax', 'tpbso', got 'fast'"),
     (
         lambda: between(objective="energy"),
         "objective must be one of 'time', 'joint_travel', 'tip_travel', got 'energy'",
     ),
-    (lambda: between(elbows=(0, 1)), "elbows[0] must be 1 or -1, the sign of the second joint's angle, got 0"),
+    (lambda: bik.TPBSO(elbows=(0, 1)), "elbows[0] must be 1 or -1, the sign of the second joint's angle, got 0"),
     (
         lambda: between(obstacles=[bik.obstacles.Ellipse((0.8, 0.8), (0.0, 0.2))]),
         "semi-axes of the ellipse along x must be positive and finite, got 0",
@@ -174,6 +195,14 @@ MISTAKES: list[tuple[Callable[[], Any], str]] = [
     (
         lambda: along([[1, 1], [1, 2]]),
         "path: expected a Path, points (k, 3) or poses (k, 4, 4), got shape (2, 2)",
+    ),
+    (
+        lambda: along(CORNER, method=bik.TPBSO(elbows=(1, -1))),
+        "elbows is (1, -1), but along a path the arm keeps one elbow: give one sign twice",
+    ),
+    (
+        lambda: along(CORNER, solver=bik.PSO()),
+        'solver is the search of method="timed": give method=TPBSO(solver=...) its own',
     ),
     (lambda: along(CORNER, accuracy=0), "accuracy must be positive and finite, got 0"),
     (
@@ -239,6 +268,15 @@ def test_the_command_animates_a_plan_around_an_obstacle(tmp_path: Path, monkeypa
     assert "--animation writes a file" in run("point-to-point", "planar5", *ends, "--animation").stderr
 
 
+def test_the_command_gives_tpbso_its_search() -> None:
+    ends = ("--start", "3,0,0", "--end", "2,2,0", "--solver", "pso")
+    result = run("point-to-point", "planar5", *ends, *QUICKLY, "--json")
+    assert json.loads(result.stdout)["evaluations"] <= 3000
+    refused = run("point-to-point", "planar5", *ends)
+    assert refused.exit_code == 2
+    assert "--solver is the search of --method tpbso; minmax has its own: leave it out" in refused.stderr
+
+
 def test_the_command_plans_along_a_path() -> None:
     result = run("along-path", "planar5", "--curve", "circle", *QUICKLY, "--json")
     summary = json.loads(result.stdout)
@@ -257,7 +295,7 @@ def test_the_command_plans_along_a_path() -> None:
             ["point-to-point", "planar5", "--start", "3,0,0", "--start-q", "0,0,0,0,0", "--end", "2,2,0"],
             "both --start and --start-q were given: give one of them",
         ),
-        (["along-path", "planar5"], "give one of --path FILE and --curve with one of circle"),
+        (["along-path", "planar5"], "give either --path FILE or --curve with one of circle"),
     ],
 )
 def test_the_command_names_mistakes(arguments: list[str], message: str) -> None:

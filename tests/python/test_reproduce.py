@@ -118,3 +118,10 @@ def test_tables_of_cheng2020_stand_beside_the_printed_ones(short_reports: Callab
 def test_figures_of_cheng2020_are_all_there(short_reports: Callable[[str], Path]) -> None:
     figures = {file.stem for file in (short_reports("cheng2020") / "figures").iterdir()}
     assert {f"figure_{i}" for i in range(2, 9)} | {"figure_2_without_limit", "search_box", "accuracy"} <= figures
+
+
+@pytest.mark.parametrize("table", ["learning_rates", "iterations_of_all"])
+def test_the_kept_tables_are_those_of_this_version(table: str, short_reports: Callable[[str], Path]) -> None:
+    """Tables of yuan2016 that a quick pass and a full run have alike; `make papers` writes all of them anew."""
+    kept = Path(__file__).parents[2] / "docs" / "papers" / "tables" / "yuan2016" / f"{table}.csv"
+    assert read(kept) == read(short_reports("yuan2016") / "tables" / f"{table}.csv")

@@ -169,7 +169,7 @@ def test_no_solution_comes_with_the_best_miss() -> None:
     assert (len(found), found.success, found.q.shape) == (0, False, (0, 6))
     assert found.status == bik.Status.OUT_OF_REACH
     assert found.miss is not None
-    assert found.message.startswith("none found; the best miss: as near as it gets, ")
+    assert found.message.startswith("no solution; best miss: as near as possible, ")
     assert "(out of reach by at least " in found.message
 
 
@@ -276,11 +276,11 @@ def solve(**options: object) -> bik.Solution:
         ),
         (lambda: solve(goals=3), Invalid, "goals must be one or several of beetle_ik.goals, got 3"),
         (lambda: solve(prefer="near"), Invalid, "prefer must be one of 'any', 'nearest', 'best', got 'near'"),
-        (lambda: solve(prefer="nearest"), Invalid, 'prefer="nearest" needs a start: nearest to what?'),
+        (lambda: solve(prefer="nearest"), Invalid, 'prefer="nearest" needs a start to measure distances from'),
         (
             lambda: solve(prefer="nearest", start=Q, goals=goals.Centring()),
             Invalid,
-            'prefer="nearest" is a goal itself: leave goals out',
+            'prefer="nearest" takes no goals: the distance to the start is its goal',
         ),
         (
             lambda: bik.Tracker(IIWA, Q, dt=0.1, solver=bik.BAS(), goals=goals.Centring()),

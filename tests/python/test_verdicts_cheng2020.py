@@ -1,12 +1,14 @@
 """Verdicts on Cheng et al. 2020: each rule with data that must flip it."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from beetle_ik.experiments.cheng2020 import tuned, tuning
 from beetle_ik.experiments.cheng2020.accuracy import Point, pseudo_inverse_claim
-from beetle_ik.experiments.cheng2020.boxes import BANDS, SCALED, TRUST, WHOLE
+from beetle_ik.experiments.cheng2020.boxes import BANDS, SCALED, TRUST, WHOLE, ErrorBox
 from beetle_ik.experiments.cheng2020.hardware import circle_claim
 from beetle_ik.experiments.cheng2020.methods import BEETLE, METHODS, RIVALS, Draws
 from beetle_ik.experiments.cheng2020.motion import error_claim, limit_claim, tracking_claim
@@ -21,7 +23,7 @@ from beetle_ik.experiments.cheng2020.search_box import Costs, Spent, lead_claims
 from beetle_ik.experiments.cheng2020.settings import FIVE_LINK, PARAMETERS
 from beetle_ik.experiments.cheng2020.tip_box import region_claim
 from beetle_ik.experiments.cheng2020.trends import Measured, explorations_claim, length_claim
-from beetle_ik.experiments.cheng2020.tuned import all_tuned
+from beetle_ik.experiments.cheng2020.tuned import BUDGETED, all_tuned
 from beetle_ik.experiments.cheng2020.tuning import PATIENCE, TRIED, settings
 from beetle_ik.report import Printed, Spread, Verdict
 
@@ -171,3 +173,17 @@ def test_drawn_options_stay_in_their_ranges() -> None:
     draws = Draws(0)
     assert all(0.3 <= draws.log(0.3, 5.0) <= 5.0 for _ in range(200))
     assert {draws.count(1, 3) for _ in range(200)} == {1, 2, 3}
+
+
+def test_tuning_writes_what_the_report_reads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A short tuning of BAS and GA, for the trust box and for a box as long as the error."""
+    few = {"TRIED": 2, "FINALISTS": 1, "SEEDS": range(1001, 1002), "BOXES": (TRUST, SCALED), "BANDS": BANDS[:1]}
+    for name, value in (few | {"METHODS": METHODS[:2], "FILE": tmp_path / "tuned.json"}).items():
+        monkeypatch.setattr(tuning, name, value)
+    tuning.main()
+    monkeypatch.setattr(tuned, "FILE", tmp_path / "tuned.json")
+    written = all_tuned.__wrapped__()
+    assert {key[2] for key in written} == {"BAS", "GA"}
+    assert {key[0] for key in written} == {TRUST.name, SCALED.name, BUDGETED}
+    assert isinstance(written[SCALED.name, BANDS[0], "GA"].setting, ErrorBox)
+    assert all(one.evaluations > 0.0 for one in written.values())

@@ -5,10 +5,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::so3::{norm, rotation_between};
 use ikcore::path::{Circle, Path, Plane, Polyline, Waypoints};
-use ikcore::planning::{AlongPathOptions, Elbow, Plan, TipPath, plan_along_path};
+use ikcore::planning::{AlongPathOptions, Elbow, Plan, TipPath, Tpbso, plan_along_path};
 use ikcore::rng;
 use ikcore::robot::Robot;
-use ikcore::solver::{Status, Stop, Unattended};
+use ikcore::solver::{AnySolver, Pso, Status, Stop, Unattended};
 use ikcore::task::Target;
 use nalgebra::Matrix3;
 
@@ -143,11 +143,27 @@ fn what_cannot_be_kept_is_told() {
     let tip_path = TipPath::through(&points).unwrap();
     let error = plan_along_path(&robot, &tip_path, &options, &mut Unattended).unwrap_err().to_string();
     assert!(error.starts_with("the path between points 0 and 1 cannot be reached: the nearest"), "{error}");
-    let bent = AlongPathOptions { elbow: Some(Elbow::Negative), ..options };
-    let error = plan_along_path(&robot, &tip_path, &bent, &mut Unattended).unwrap_err().to_string();
+}
+
+#[test]
+fn along_a_path_tpbso_has_one_elbow_and_a_search_of_its_own() {
+    let robot = Robot::planar(&[0.5, 0.5]).unwrap();
+    let points = Waypoints::new(vec![[0.4, 0.4, 0.0], [0.5, 0.4, 0.0]], None).unwrap();
+    let tip_path = TipPath::through(&points).unwrap();
+    let refused = |options: AlongPathOptions| {
+        let limits = Limits::of(&robot).replace(Field::Velocity, vec![Profile::Constant(1.0)]).unwrap();
+        let options = AlongPathOptions { limits: Some(limits), ..options };
+        plan_along_path(&robot, &tip_path, &options, &mut Unattended).unwrap_err().to_string()
+    };
+    let bent = Tpbso { elbows: [Elbow::Positive, Elbow::Negative], ..Tpbso::default() };
     assert_eq!(
-        error,
-        "method=\"timed\" chooses how the arm bends: give start_q instead of elbow, or use method=\"tpbso\""
+        refused(AlongPathOptions { method: bent.into(), ..Default::default() }),
+        "elbows is (1, -1), but along a path the arm keeps one elbow: give one sign twice"
+    );
+    let solver = Some(AnySolver::Single(Pso::default().into()));
+    assert_eq!(
+        refused(AlongPathOptions { method: Tpbso::default().into(), solver, ..Default::default() }),
+        "solver is the search of method=\"timed\": give method=TPBSO(solver=...) its own"
     );
 }
 

@@ -217,7 +217,7 @@ fn a_solution_outside_the_limits_is_not_returned() {
     assert_eq!(solution.status, Status::OutsideLimits);
     assert!(solution.q.iter().all(|angle| angle.abs() <= 0.5), "{:?}", solution.q);
     let message = solution.message();
-    assert!(message.starts_with("reached outside the limits only, inside them "), "{message}");
+    assert!(message.starts_with("reached only outside the limits; inside them "), "{message}");
     assert!(
         message.ends_with(
             " m away: try another start or seed, MultiStart, or a solver that searches inside the limits, such as \

@@ -277,8 +277,8 @@ fn wrong_rows_are_skipped_on_demand_and_nothing_else_is_lost() {
                 assert_eq!(found, expected[i]);
             }
         }
-        assert_eq!(batch.message(), "3 of 6 solved; 3 INVALID: on_invalid=\"raise\" says what is wrong");
-        let says = "not solved: on_invalid=\"raise\" says what is wrong";
+        assert_eq!(batch.message(), "3 of 6 solved; 3 INVALID: use on_invalid=\"raise\" to see what is wrong");
+        let says = "not solved: use on_invalid=\"raise\" to see what is wrong";
         assert_eq!(batch.solution(3).unwrap().message(), says);
     }
 }

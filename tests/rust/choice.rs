@@ -165,7 +165,7 @@ fn limit_keeps_the_nearest_and_a_miss_is_returned() {
     let far = Target::from(&pose::translation(3.0, 0.0, 0.5));
     let found = solve_all(&robot, &far, &options, &mut Unattended).unwrap();
     assert!(found.solutions.is_empty() && found.miss.is_some());
-    assert!(found.message().starts_with("none found; the best miss: as near as it gets, "), "{}", found.message());
+    assert!(found.message().starts_with("no solution; best miss: as near as possible, "), "{}", found.message());
     let zero = AllOptions { limit: 0, ..options.clone() };
     assert_eq!(message(solve_all(&robot, &far, &zero, &mut Unattended)), "limit must be at least 1, got 0");
     let negative = AllOptions { separation: -1.0, ..options };
@@ -216,7 +216,7 @@ fn a_target_out_of_reach_is_approached_and_told() {
     assert!((solution.error.position - 0.21).abs() < 0.01 * 0.21, "{}", solution.message());
     let end = ": move or turn the target into reach, or move the base";
     let message = solution.message();
-    assert!(message.starts_with("as near as it gets, 0.21") && message.ends_with(end), "{message}");
+    assert!(message.starts_with("as near as possible, 0.21") && message.ends_with(end), "{message}");
     assert!(message.contains(" m away (out of reach by at least 0.2100 m"), "{message}");
     assert!(solution.evaluations < 2000, "{}", solution.evaluations);
 }
@@ -322,9 +322,12 @@ fn options_that_do_not_go_together_are_told() {
     let target = pose_at(&robot, &[0.1; 7]);
     let says = |options: SolveOptions| message(solve(&robot, &target, &options, &mut Unattended));
     let nearest = SolveOptions { prefer: Prefer::Nearest, ..SolveOptions::default() };
-    assert_eq!(says(nearest), "prefer=\"nearest\" needs a start: nearest to what?");
+    assert_eq!(says(nearest), "prefer=\"nearest\" needs a start to measure distances from");
     let goals = vec![Goal::Centring { weight: 1.0 }];
-    assert_eq!(says(SolveOptions { goals, ..near(&[0.0; 7]) }), "prefer=\"nearest\" is a goal itself: leave goals out");
+    assert_eq!(
+        says(SolveOptions { goals, ..near(&[0.0; 7]) }),
+        "prefer=\"nearest\" takes no goals: the distance to the start is its goal"
+    );
     let goals = vec![Goal::Centring { weight: 0.0 }];
     assert_eq!(
         says(SolveOptions { goals, ..SolveOptions::default() }),

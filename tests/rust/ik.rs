@@ -96,7 +96,7 @@ fn a_target_out_of_reach_is_approached_and_said_to_be() {
     assert!((shortfall..1.01 * shortfall).contains(&distance), "{:?}", solution.error);
     let advice = "move or turn the target into reach, or move the base";
     let why = format!("out of reach by at least {shortfall:.4} m");
-    assert_eq!(solution.message(), format!("as near as it gets, {distance:.4} m away ({why}): {advice}"));
+    assert_eq!(solution.message(), format!("as near as possible, {distance:.4} m away ({why}): {advice}"));
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn a_target_off_the_plane_of_a_planar_arm_is_said_to_be() {
         let solution = solved(robot, &Target::Position(target), &SolveOptions::default());
         let why = "out of reach by at least 0.2500 m, 0.2500 m off the plane that the tip moves in";
         let advice = "move or turn the target into reach, or move the base";
-        assert_eq!(solution.message(), format!("as near as it gets, 0.2500 m away ({why}): {advice}"));
+        assert_eq!(solution.message(), format!("as near as possible, 0.2500 m away ({why}): {advice}"));
         assert!(solution.evaluations < 1000, "{}", solution.evaluations);
     }
     let solution = solved(&planar, &Target::Position([0.0, 6.0, 0.75]), &SolveOptions::default());
@@ -156,7 +156,7 @@ fn an_orientation_off_parallel_axes_is_out_of_reach() {
 fn joints_without_room_are_said_to_be() {
     let stiff = robot("planar5").with_limits(|_, joint| (joint.lower, joint.upper) = (0.5, 0.5)).unwrap();
     let solution = solved(&stiff, &Target::Position([2.0, 1.0, 0.0]), &SolveOptions::default());
-    let why = "(joint 'joint_1' held by limits that leave it no room, joint 'joint_2' held by";
+    let why = "(joint 'joint_1' locked by equal limits, joint 'joint_2' locked by";
     assert!(solution.message().contains(why), "{}", solution.message());
 }
 

@@ -68,23 +68,6 @@ const LAYERS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Files that may still stand in circles.
-const KNOWN_CIRCLES: &[&str] = &[
-    "ik/attempt.rs",
-    "ik/context.rs",
-    "ik/nearest.rs",
-    "ik/solve.rs",
-    "task/criterion.rs",
-    "task/region.rs",
-    "task/target.rs",
-];
-
-/// Types that may still have the name of another.
-const KNOWN_TYPES_NAMED_TWICE: &[&str] = &["Acceptance", "Place", "Segment", "Step", "Verdict"];
-
-/// Names that three files or more may still have.
-const KNOWN_FILE_NAMES: &[&str] = &[];
-
 /// Progress of a solver, declared by each beside itself.
 const STATE: &str = "State";
 
@@ -100,8 +83,7 @@ fn every_file_keeps_to_its_layer() {
 
 #[test]
 fn files_import_one_another_in_no_circle() {
-    let mut circles = core().circles();
-    circles.retain(|circle| !circle.iter().all(|file| KNOWN_CIRCLES.contains(&file.as_str())));
+    let circles = core().circles();
     let lines: Vec<String> = circles.iter().map(|circle| circle.join(" <-> ")).collect();
     assert!(circles.is_empty(), "files import one another in circles:\n{}\n", lines.join("\n"));
 }
@@ -115,7 +97,7 @@ fn no_two_types_share_a_name() {
             places.entry(name).or_default().insert(&file.path);
         }
     }
-    places.retain(|name, files| files.len() > 1 && *name != STATE && !KNOWN_TYPES_NAMED_TWICE.contains(name));
+    places.retain(|name, files| files.len() > 1 && *name != STATE);
     assert!(places.is_empty(), "types with one name: {places:#?}");
 }
 
@@ -127,7 +109,7 @@ fn no_three_files_share_a_name() {
         let name = file.path.file_name().expect("a name").to_string_lossy();
         places.entry(name.into_owned()).or_default().push(&file.path);
     }
-    places.retain(|name, files| files.len() > 2 && name != "mod.rs" && !KNOWN_FILE_NAMES.contains(&name.as_str()));
+    places.retain(|name, files| files.len() > 2 && name != "mod.rs");
     assert!(places.is_empty(), "files with one name: {places:#?}");
 }
 

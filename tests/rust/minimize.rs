@@ -40,7 +40,7 @@ fn the_bottom_is_found_and_its_history_falls_to_it() {
     assert!(found.value < 1e-12 && found.x.iter().all(|x| (x - 0.3).abs() < 1e-6));
     assert!(found.history.is_sorted_by(|[before, worse], [after, better]| before < after && worse >= better));
     assert_eq!(*found.history.last().unwrap(), [found.evaluations as f64, found.value]);
-    assert!(found.message().ends_with(" evaluations, below the value asked for"));
+    assert!(found.message().ends_with(" evaluations, below the requested value"));
     let again = least(&[-1.0; 2], &[1.0; 2], None, below(1e-12)).unwrap();
     assert_eq!((bits(&again.x), again.evaluations), (bits(&found.x), found.evaluations));
 }
@@ -56,7 +56,7 @@ fn without_a_value_asked_for_the_budget_ends_the_search() {
     let stop = Stop { max_evaluations: 500, ..Stop::default() };
     let found = least(&[-1.0; 2], &[1.0; 2], None, stop).unwrap();
     assert_eq!((found.status, found.evaluations), (Status::BudgetSpent, 500));
-    assert!(found.message().ends_with("all that the budget allows: raise it in stop=Stop(...)"));
+    assert!(found.message().ends_with("when the budget was spent: raise it in stop=Stop(...)"));
 }
 
 #[test]

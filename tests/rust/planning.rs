@@ -6,9 +6,8 @@ use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::Frame;
 use ikcore::obstacle::Obstacle;
 use ikcore::path::{Path, Plane, Polyline, Waypoints};
-use ikcore::planning::planar_arm::PlanarArm;
 use ikcore::planning::{
-    AlongPathMethod, AlongPathOptions, Cost, Elbow, Endpoint, Plan, PointToPointMethod, PointToPointOptions, TipPath,
+    AlongPathOptions, Cost, Elbow, Endpoint, Plan, PlanarArm, PointToPointMethod, PointToPointOptions, TipPath, Tpbso,
     plan_along_path, plan_point_to_point,
 };
 use ikcore::rng;
@@ -35,17 +34,25 @@ fn at(x: f64, y: f64) -> Endpoint {
     Endpoint::Target(Target::Position([x, y, 0.0]))
 }
 
-/// The paper's motion, from (1, 0) to (0.5, 1.5).
+/// The paper's motion, from (1, 0) to (0.5, 1.5), by the paper's method unless `options` name another search.
 fn plan(k: usize, options: PointToPointOptions) -> Plan {
     let (robot, limits) = arm(k, 2.0 * PI);
-    let options = PointToPointOptions { method: PointToPointMethod::Tpbso, limits: Some(limits), ..options };
+    let method = match options.method {
+        PointToPointMethod::MinMax => Tpbso::default().into(),
+        given @ PointToPointMethod::Tpbso(_) => given,
+    };
+    let options = PointToPointOptions { method, limits: Some(limits), ..options };
     plan_point_to_point(&robot, &at(1.0, 0.0), &at(0.5, 1.5), &options, &mut Unattended).expect("valid input")
 }
 
-fn evolution() -> Option<AnySolver<DerivativeFree>> {
+fn by_evolution() -> PointToPointMethod {
     let standard = DifferentialEvolution::default();
     let schedule = Schedule { population: 40, stall_generations: usize::MAX, ..standard.schedule };
-    Some(AnySolver::Single(DifferentialEvolution { schedule, update: TrialUpdate::Immediate, ..standard }.into()))
+    searched_by(DifferentialEvolution { schedule, update: TrialUpdate::Immediate, ..standard }.into())
+}
+
+fn searched_by(solver: DerivativeFree) -> PointToPointMethod {
+    Tpbso { solver: Some(AnySolver::Single(solver)), ..Tpbso::default() }.into()
 }
 
 /// The mean cost over seeds, all plans sound.
@@ -85,7 +92,7 @@ fn two_links_leave_nothing_to_choose() {
 #[test]
 fn differential_evolution_is_as_quick_as_measured_before() {
     for (k, bound) in (2..).zip([1.27, 1.02, 0.96, 0.95]) {
-        let mean = mean(5, |seed| plan(k, PointToPointOptions { seed, solver: evolution(), ..Default::default() }));
+        let mean = mean(5, |seed| plan(k, PointToPointOptions { seed, method: by_evolution(), ..Default::default() }));
         assert!(mean <= bound, "{k} links: {mean} s");
     }
 }
@@ -117,7 +124,7 @@ fn any_solver_serves() {
     for solver in DerivativeFree::all() {
         let name = format!("{solver:?}");
         let stop = Some(Stop { max_evaluations: 4000, ..Stop::default() });
-        let options = PointToPointOptions { solver: Some(AnySolver::Single(solver)), stop, ..Default::default() };
+        let options = PointToPointOptions { method: searched_by(solver), stop, ..Default::default() };
         let plan = plan(3, options);
         assert!(plan.evaluations <= 4000, "{name}");
         assert_eq!(plan.violations.is_empty(), plan.status == Status::Solved, "{name}");
@@ -132,7 +139,8 @@ fn obstacle_is_passed_at_its_margin() {
         let obstacles = vec![Obstacle::ellipse([0.8, 0.8], [0.3, 0.2], 0.0).unwrap()];
         let objective = Cost::TipTravel;
         let margin = Some(0.005);
-        plan(4, PointToPointOptions { objective, obstacles, margin, seed, solver: evolution(), ..Default::default() })
+        let method = by_evolution();
+        plan(4, PointToPointOptions { objective, obstacles, margin, seed, method, ..Default::default() })
     };
     let mean = mean(3, |seed| {
         let plan = plan(seed);
@@ -167,12 +175,7 @@ fn robots_in_space_reach_both_poses() {
         let qs = robot.random_configurations(2, &mut rng::stream(5, 0)).unwrap();
         let poses: Vec<Frame> = qs.chunks(robot.dof()).map(|q| robot.tip(q)).collect();
         let ends = poses.iter().map(|pose| Endpoint::Target(Target::Pose(*pose))).collect::<Vec<_>>();
-        let options = PointToPointOptions {
-            method: PointToPointMethod::Tpbso,
-            limits,
-            solver: evolution(),
-            ..Default::default()
-        };
+        let options = PointToPointOptions { method: by_evolution(), limits, ..Default::default() };
         let plan = plan_point_to_point(&robot, &ends[0], &ends[1], &options, &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{name}: {}", plan.message());
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; robot.dof()]);
@@ -201,7 +204,7 @@ fn follow(path: &TipPath, options: AlongPathOptions) -> Plan {
     let robot = Robot::planar(&[1.0, 1.0, 1.0]).expect("valid input");
     let limits = Some(limits(&robot, 4.0 * PI));
     let stop = Some(Stop { max_evaluations: 50 * 301, ..Stop::default() });
-    let options = AlongPathOptions { method: AlongPathMethod::Tpbso, limits, stop, ..options };
+    let options = AlongPathOptions { method: Tpbso::default().into(), limits, stop, ..options };
     plan_along_path(&robot, path, &options, &mut Unattended).expect("valid input")
 }
 
@@ -262,7 +265,7 @@ fn planar_arms_are_told_from_others() {
     let arm = PlanarArm::of(&robot).unwrap();
     for q in robot.random_configurations(50, &mut rng).unwrap().chunks(4) {
         let tip = robot.tip(q);
-        let place = arm.place(&Target::Pose(tip)).unwrap();
+        let place = arm.planar_target(&Target::Pose(tip)).unwrap();
         let mut orientations = arm.orientations(q).split_off(2);
         assert!((orientations[1] - place.orientation.unwrap()).sin().abs() < 1e-9);
         orientations[1] = place.orientation.unwrap();

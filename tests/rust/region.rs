@@ -130,7 +130,7 @@ fn a_miss_says_that_the_tip_is_outside() {
     let options = SolveOptions { task: Some(kept(TaskKind::Orientation, nowhere)), ..SolveOptions::default() };
     let solution = solve(&iiwa, &pose_at(&iiwa, &Q), &options, &mut Unattended).unwrap();
     assert!(!matches!(solution.status, Status::Solved | Status::HeldInRegion));
-    assert!(solution.message().contains("(the tip is outside its region, which asks for x above 2"));
+    assert!(solution.message().contains("(the tip is outside its region, which requires x above 2"));
 }
 
 /// A circle whose upper third is above `CEILING`.

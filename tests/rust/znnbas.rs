@@ -8,7 +8,7 @@ use ikcore::path::{Path, Plane, Polyline, Reference};
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
 use ikcore::tracking::{
-    Acceptance, Antenna, Controller, KinematicPlant, ModelFreeOptions, ModelFreeRecord, Znnbas, track_model_free,
+    Antenna, Controller, KinematicPlant, ModelFreeOptions, ModelFreeRecord, UpdateRule, Znnbas, track_model_free,
 };
 
 const SEEDS: u64 = 20;
@@ -121,6 +121,6 @@ fn theorem_1_holds_for_the_algorithm_of_its_proof_alone() {
         let run = Run::new(&Znnbas { accept, ..Znnbas::published() }, &point, None, 1);
         (1..=5000).filter(|i| run.h(*i) > run.h(i - 1)).count()
     };
-    assert_eq!(rises(Acceptance::Improving), 0);
-    assert!(rises(Acceptance::Always) > 100, "{}", rises(Acceptance::Always));
+    assert_eq!(rises(UpdateRule::Improving), 0);
+    assert!(rises(UpdateRule::Always) > 100, "{}", rises(UpdateRule::Always));
 }

@@ -1,4 +1,4 @@
-//! The least value of any function in a box, by a solver that needs values alone.
+//! Minimises any function in a box with a derivative-free solver.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -15,15 +15,15 @@ use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Mon
 pub struct MinimizeOptions {
     /// The algorithm.
     pub solver: AnySolver<DerivativeFree>,
-    /// Where to begin (n,); None draws the start from the box.
+    /// The point to begin from (n,); None draws it from the box.
     pub start: Option<Vec<f64>>,
-    /// Budgets. [`Stop::value_below`] says what is good enough: a start that is has nothing left to do.
+    /// Budgets. A value below [`Stop::value_below`] is good enough, also at the start.
     pub stop: Stop,
     /// Seed of the random draws: the same seed, the same bits.
     pub seed: u64,
 }
 
-/// The best point found, and what became of the search.
+/// The best point found, and how the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Minimum {
     /// The point (n,), inside the box.
@@ -32,8 +32,8 @@ pub struct Minimum {
     pub value: f64,
     /// (evaluations made, best value then): the start, every improvement, and the end.
     pub history: Vec<[f64; 2]>,
-    /// [`Status::Solved`] below the value asked for. Without one nothing is known to be good enough, so that a search ends
-    /// by its own rule ([`Status::Stalled`]) or with its budget.
+    /// [`Status::Solved`] below the requested value. Without one, a search ends by its own rule ([`Status::Stalled`]) or with
+    /// its budget.
     pub status: Status,
     /// Iterations over all starts.
     pub iterations: usize,
@@ -54,9 +54,9 @@ impl Minimum {
         }
         let found = format!("best value {value:.6e} after {evaluations} evaluations");
         match self.status {
-            Status::Solved => format!("{found}, below the value asked for"),
-            Status::Stalled => format!("{found}, and no further gain: try another start or seed, or MultiStart"),
-            Status::BudgetSpent => format!("{found}, all that the budget allows: raise it in stop=Stop(...)"),
+            Status::Solved => format!("{found}, below the requested value"),
+            Status::Stalled => format!("{found}, no further progress: try another start or seed, or MultiStart"),
+            Status::BudgetSpent => format!("{found}, when the budget was spent: raise it in stop=Stop(...)"),
             Status::TimeUp => format!("{found}, when the time was up: raise max_time"),
             _ => format!("{found}, when it was stopped: run again to finish"),
         }
@@ -109,7 +109,7 @@ pub fn minimize(
     })
 }
 
-/// A box with walls on all sides: a search without derivatives has to know how far it may go.
+/// Checks that the box is finite on all sides, which a derivative-free search needs.
 fn closed_box(dimension: usize, lower: &[f64], upper: &[f64]) -> Result<Bounds> {
     if lower.len() != dimension || dimension == 0 {
         let expected = if dimension == 0 { "at least 1 entry".into() } else { format!("{dimension} entries") };
@@ -119,7 +119,7 @@ fn closed_box(dimension: usize, lower: &[f64], upper: &[f64]) -> Result<Bounds> 
     require_finite("lower", lower, entry)?;
     require_finite("upper", upper, entry)?;
     let bounds = Bounds::new(lower, upper)?;
-    // From -1e308 to 1e308 there is no width to calculate with.
+    // The width from -1e308 to 1e308 overflows.
     let widths: Vec<f64> = lower.iter().zip(upper).map(|(lower, upper)| upper - lower).collect();
     require_finite("upper - lower", &widths, entry)?;
     Ok(bounds)
@@ -141,7 +141,7 @@ fn require_inside<'a>(bounds: &Bounds, start: &'a [f64]) -> Result<&'a [f64]> {
     }
 }
 
-/// Writes down every improvement, and knows which value is enough.
+/// Records every improvement, and knows which value is good enough.
 struct Recorded<'a> {
     objective: &'a mut dyn Objective,
     enough: Option<f64>,
@@ -159,7 +159,7 @@ impl Recorded<'_> {
         }
     }
 
-    /// With a last row for the end, unless the last evaluation was an improvement.
+    /// The history with a last row for the end, unless the last evaluation was an improvement.
     fn finish(mut self, evaluations: usize) -> Vec<[f64; 2]> {
         if let Some([at, best]) = self.history.last().copied()
             && at < evaluations as f64

@@ -38,17 +38,17 @@ impl Watcher {
 
 /// Runs a long call that holds the interpreter, with checks for Ctrl-C and reports to `progress`. Their exceptions take
 /// precedence over the result of the call.
-pub fn attended<T>(
+pub fn watched_with_interpreter<T>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     call: impl FnOnce(&mut Watcher) -> PyResult<T>,
 ) -> PyResult<T> {
-    let (found, failure) = followed(py, progress, call)?;
+    let (found, failure) = watched_keeping_result(py, progress, call)?;
     failure.map_or(found, Err)
 }
 
 /// Runs such a call; returns its result and the exception of Ctrl-C or `progress`, if any.
-pub fn followed<T>(
+pub fn watched_keeping_result<T>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     call: impl FnOnce(&mut Watcher) -> T,
@@ -66,7 +66,7 @@ pub fn watched<T: Send>(
     progress: Option<&Bound<'_, PyAny>>,
     call: impl FnOnce(&mut Watcher) -> ikcore::Result<T> + Send,
 ) -> PyResult<T> {
-    attended(py, progress, |watcher| py.detach(|| call(watcher)).map_err(raise))
+    watched_with_interpreter(py, progress, |watcher| py.detach(|| call(watcher)).map_err(raise))
 }
 
 /// Whether the interval has passed; if so, restarts it.

@@ -1,5 +1,6 @@
 """`beetle-ik reproduce`: repeats a paper's experiments."""
 
+from collections import Counter
 from contextlib import closing
 from pathlib import Path
 from typing import Annotated
@@ -40,15 +41,18 @@ def reproduce(
 
 
 def _show(done: list[tuple[Report, Provenance]], page: Path) -> None:
-    rows = [(made.name, *_counts(report), f"{made.elapsed:.1f}") for report, made in done]
-    print_table("Claims by verdict", ("experiment", *Verdict, "checks passed", "time [s]"), rows)
+    rows = [(made.name, _verdicts(report), _checks(report), f"{made.elapsed:.1f}") for report, made in done]
+    print_table("Claims by verdict", ("experiment", "claims of the paper", "checks", "time [s]"), rows)
     for report, made in done:
         for check in report.failed:
             typer.echo(f"{made.name}: check failed: {check.statement} Rule: {check.rule} Measured: {check.measured}")
     typer.echo(f"{counted(len(done), 'report')}: {page}")
 
 
-def _counts(report: Report) -> list[str]:
-    verdicts = [claim.verdict for claim in report.claims]
-    passed = f"{len(report.checks) - len(report.failed)} of {len(report.checks)}"
-    return [*(str(verdicts.count(verdict)) for verdict in Verdict), passed]
+def _verdicts(report: Report) -> str:
+    counts = Counter(claim.verdict for claim in report.claims)
+    return "\n".join(f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict])
+
+
+def _checks(report: Report) -> str:
+    return f"{len(report.checks) - len(report.failed)} of {len(report.checks)} passed"

@@ -22,7 +22,7 @@ def to_dataframe(trajectory: Trajectory, *, dt: float | None = None) -> "pd.Data
     Raises:
         BeetleIkError: pandas is not installed.
     """
-    pandas = library("pandas", "pandas", "a table")
     time, q, qd, qdd = samples(trajectory, dt)
+    pandas = library("pandas", "pandas", "a table")
     columns = [f"{derivative}:{joint}" for derivative in ("q", "qd", "qdd") for joint in trajectory.joint_names]
     return pandas.DataFrame(np.hstack((q, qd, qdd)), index=pandas.Index(time, name="time"), columns=columns)

@@ -19,7 +19,8 @@ from .drawing import draw_arm_in_space, draw_error, draw_velocities, draw_veloci
 from .folder import report_folder
 from .needs import check_installed
 from .numbers import number
-from .write import Provenance, described, write_index, write_report
+from .provenance import Provenance
+from .write import described, write_index, write_report
 
 __all__ = [
     "BLACK",

@@ -72,20 +72,24 @@ def draw_velocities(
 
 
 def draw_velocities_by_joint(strips: Sequence[Axes], result: TrackResult) -> None:
-    """The velocity of each joint (rad/s) in axes of its own, the same for all; shaded is what lies beyond its limit."""
+    """The velocity of each joint (rad/s) in axes of its own, the same for all; shaded is what lies beyond its limit.
+
+    The second half of the motion sets the scale: an approach from afar may leave the axes.
+    """
     time, bound = result.time[1:], result.velocity_limit[1:]
-    peak = float(np.abs(result.qd[1:]).max())
-    near = bool(np.isfinite(bound).all()) and peak >= _NEAR * float(bound.max())
-    top = 1.15 * float(bound.max()) if near else 1.3 * peak
+    settled, limit = float(np.abs(result.qd[len(result.qd) // 2 :]).max()), float(bound.max())
+    near = settled >= _NEAR * limit
+    top = 1.15 * limit if near else 1.5 * settled
     for j, axes in enumerate(strips):
         axes.plot(time, result.qd[1:, j], linewidth=0.8, **line(j))
         if near:
             axes.fill_between(time, bound[:, j], top, color=FORBIDDEN, linewidth=0)
             axes.fill_between(time, -bound[:, j], -top, color=FORBIDDEN, linewidth=0)
         axes.set(xlim=(0.0, time[-1]), ylim=(-top, top))
-        axes.text(
-            0.02, 0.93, f"joint {j + 1}", transform=axes.transAxes, va="top", fontsize="small", color=line(j)["color"]
-        )
+        named: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "fontsize": "small"}
+        axes.text(0.02, 0.93, f"joint {j + 1}", color=line(j)["color"], **named)
+        if j == 0 and not near and np.isfinite(limit):
+            axes.text(0.98, 0.93, f"limit ±{number(limit, 2)} rad/s", ha="right", **named)
 
 
 def draw_arm_in_space(axes: Any, robot: Robot, q: NDArray[np.float64], *, alpha: float = 1.0) -> None:

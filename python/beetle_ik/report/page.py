@@ -13,7 +13,7 @@ from .tables import shown_rows
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from .write import Provenance
+    from .provenance import Provenance
 
 _INCHES = 96  # pixels of a page
 

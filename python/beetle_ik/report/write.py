@@ -5,7 +5,7 @@ import csv
 import io
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -14,29 +14,12 @@ from .content import Figure, Report
 from .folder import MANIFEST, files_in
 from .page import index_page, report_page
 from .picture import gif, png
+from .provenance import Provenance
 from .tables import to_csv
 
 _DPI = 150
 _DPI_SHORT = 75
 _DPI_MOVING = 80
-
-
-@dataclass(frozen=True, kw_only=True)
-class Provenance:
-    """What was run to make a report, and where."""
-
-    name: str
-    title: str
-    paper: str
-    command: str
-    short: bool
-    seed: int
-    made: str
-    """Date and time."""
-    elapsed: float
-    """Seconds."""
-    machine: str
-    """Versions and processor."""
 
 
 def write_report(folder: Path, report: Report, provenance: Provenance) -> None:

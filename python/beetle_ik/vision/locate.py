@@ -1,8 +1,9 @@
 """Joint angles of a planar arm from an image.
 
 The contour of the arm is found by a threshold or by an active contour. The joint angles are fitted to it: each point of
-the contour should be half a link width from the nearest link. The contour energy of "Trajectory tracking of redundant
-manipulator based on PSO algorithm optimization", eq. (19) to (21), differs from that of scikit-image.
+the contour should be half a link width from the nearest link. The active contour of scikit-image minimises the energy
+of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", eq. (19) to (21), with the
+squares that eq. (20) lacks: alpha is its l1, beta its l2, and the edge strength its E_con.
 """
 
 from __future__ import annotations

@@ -12,8 +12,8 @@ use std::time::Duration;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
+use super::batch_options::BatchOptions;
 use super::monitors::{SharedMonitor, StopFlag};
-use super::options::BatchOptions;
 use super::results::{Batch, BatchItem};
 use super::targets::Targets;
 use crate::error::{Error, Result};
@@ -31,17 +31,17 @@ pub(super) struct Job<'a> {
     dof: usize,
 }
 
-/// Rows checked between two looks at the monitor: some 100 microseconds.
+/// Rows checked between two polls of the monitor: some 100 microseconds.
 const CHECKED_AT_ONCE: usize = 1024;
 
-/// The fewest and the most targets that a thread takes at once to solve them four side by side: few, and lanes stand empty at the end;
-/// many, and threads do.
+/// The fewest and the most targets in a group that a thread solves four side by side. With fewer, lanes idle at the end of a
+/// group; with more, threads idle at the end of the batch.
 const GROUP: (usize, usize) = (8, 256);
 
-/// Groups for each thread, where there are targets enough: what makes threads end together.
+/// Groups per thread, where there are enough targets, so that threads end together.
 const GROUPS_A_THREAD: usize = 4;
 
-/// Time between two looks at the monitor while threads work.
+/// Time between two polls of the monitor while threads work.
 const INTERVAL: Duration = Duration::from_millis(20);
 
 impl<'a> Job<'a> {
@@ -60,7 +60,7 @@ impl<'a> Job<'a> {
         Ok(Self { context, targets, starts: options.starts, common_start, dof })
     }
 
-    /// Target `i` and where it begins, both checked.
+    /// Target `i` and its start, both checked.
     fn read(&self, i: usize) -> Result<(Target, Option<&'a [f64]>)> {
         let target = self.context.read(&self.targets.read(i)?)?;
         let Some(starts) = self.starts else { return Ok((target, self.common_start)) };
@@ -68,7 +68,7 @@ impl<'a> Job<'a> {
         self.context.check_start(start).map(|()| (target, Some(start)))
     }
 
-    /// Finds a wrong row before any work is spent on the others.
+    /// Checks all rows before any is solved.
     pub fn check_rows(&self, monitor: &mut dyn Monitor) -> Result<()> {
         for row in 0..self.targets.len() {
             if row.is_multiple_of(CHECKED_AT_ONCE) && !monitor.keep_going() {
@@ -79,14 +79,14 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// How many targets a thread takes at once.
+    /// Number of targets in a group.
     fn group(&self, threads: usize) -> usize {
         let (fewest, most) = GROUP;
         let together = self.context.side_by_side_descent().is_some();
         if together { (self.targets.len() / (GROUPS_A_THREAD * threads)).clamp(fewest, most) } else { 1 }
     }
 
-    /// Solves the targets from number `first` on, as many as there are `items`; `done` is told of each.
+    /// Solves the targets from number `first` on, as many as there are `items`, and calls `done` after each.
     fn solve_rows<M: Monitor + Clone>(
         &self,
         first: usize,
@@ -146,7 +146,7 @@ impl<'a> Job<'a> {
                 });
             });
         };
-        // Nothing is ever sent: that the threads are done shows in the sender's end.
+        // Nothing is ever sent: the sender is dropped when the threads are done.
         let (working, finished) = mpsc::channel::<()>();
         pool.in_place_scope(|scope| {
             scope.spawn(move |_| {

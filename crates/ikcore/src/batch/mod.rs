@@ -3,15 +3,15 @@
 //! `solve_batch` is the call. A `job` reads rows, groups them and solves each group; `pool` holds the threads, `monitors` lets
 //! them be stopped. What comes out is in `results`.
 
+mod batch_options;
 mod job;
 mod monitors;
-mod options;
 mod pool;
 mod results;
 mod solve_batch;
 mod targets;
 
-pub use options::{BatchOptions, OnInvalid};
+pub use batch_options::{BatchOptions, OnInvalid};
 pub use results::{Batch, BatchItem};
 pub use solve_batch::solve_batch;
 pub use targets::Targets;

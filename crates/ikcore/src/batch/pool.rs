@@ -1,4 +1,4 @@
-//! The threads of a batch, which are the library's own: rayon's global pool does not survive a fork.
+//! The library's own pool of threads: rayon's global pool does not survive a fork.
 
 use std::sync::{Arc, Mutex};
 
@@ -6,14 +6,14 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::{Error, Result};
 
-/// Far more than any machine has use for, and few enough to be started.
+/// Largest number of threads: more than any machine has use for.
 const MAX_THREADS: usize = 1024;
 
-/// How many threads to use.
+/// Number of threads to use.
 ///
 /// # Errors
 /// [`Error::OutOfRange`].
-pub fn thread_count(wanted: Option<usize>) -> Result<usize> {
+pub(super) fn thread_count(wanted: Option<usize>) -> Result<usize> {
     match wanted {
         None => Ok(std::thread::available_parallelism().map_or(1, |count| count.get().min(MAX_THREADS))),
         Some(count) if (1..=MAX_THREADS).contains(&count) => Ok(count),
@@ -25,11 +25,11 @@ pub fn thread_count(wanted: Option<usize>) -> Result<usize> {
 /// and would wait for ever.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// A pool of so many threads, kept for the next call.
+/// A pool of `threads` threads, kept for the next call.
 ///
 /// # Errors
 /// [`Error::NoThreads`].
-pub fn pool(threads: usize) -> Result<Arc<ThreadPool>> {
+pub(super) fn pool(threads: usize) -> Result<Arc<ThreadPool>> {
     // Without waiting: when this process was forked, another thread of the parent may have held the lock.
     let Ok(mut kept) = POOL.try_lock() else { return new_pool(threads) };
     let process = std::process::id();

@@ -1,4 +1,4 @@
-//! What became of a batch.
+//! The results of a batch.
 
 use std::time::Duration;
 
@@ -9,14 +9,14 @@ use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::TipError;
 
-/// What became of one target; its configuration is a row of [`Batch::q`].
+/// The result of one target; its configuration is a row of [`Batch::q`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BatchItem {
     /// Why the search ended.
     pub status: Status,
     /// Errors by forward kinematics; NaN where nothing was solved.
     pub error: TipError,
-    /// What is in the way of a target that was not reached, in words; empty where nothing is known.
+    /// What keeps the tip from a target that was not reached, in words; empty where nothing is known.
     pub obstruction: String,
     /// Iterations over all starts.
     pub iterations: usize,
@@ -24,12 +24,12 @@ pub struct BatchItem {
     pub restarts: usize,
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
-    /// Time taken by this target; its share of the time that it was solved side by side with others.
+    /// Time taken by this target; time side by side with others is shared equally.
     pub elapsed: Duration,
 }
 
 impl BatchItem {
-    /// An item that nothing was done about.
+    /// An item that was not solved.
     pub(super) fn untouched(status: Status) -> Self {
         let error = TipError { position: f64::NAN, rotation: f64::NAN };
         let obstruction = String::new();
@@ -50,9 +50,9 @@ pub struct Batch {
     pub dof: usize,
     /// The best configurations found, (m, n) row after row (rad, m); NaN where nothing was solved.
     pub q: Vec<f64>,
-    /// What became of each target (m,).
+    /// The result of each target (m,).
     pub items: Vec<BatchItem>,
-    /// Time taken in all.
+    /// Total time.
     pub elapsed: Duration,
 }
 
@@ -67,7 +67,7 @@ impl Batch {
         self.items.get(i).map(|item| item.solution(&self.q[i * self.dof..(i + 1) * self.dof]))
     }
 
-    /// Some of the items, in this order; the time is the sum of theirs.
+    /// The items in `rows`, in this order; the time is the sum of theirs.
     ///
     /// # Panics
     /// If a row is past the end.
@@ -78,7 +78,7 @@ impl Batch {
         Self { dof: self.dof, q, items, elapsed }
     }
 
-    /// How many were solved, and what to try for the others.
+    /// The number solved, and what to try for the others.
     pub fn message(&self) -> String {
         let count = |status| self.items.iter().filter(|item| item.status == status).count();
         let (solved, total) = (count(Status::Solved), self.items.len());

@@ -1,7 +1,7 @@
 //! Solves a batch, in the calling thread or on a pool.
 
+use super::batch_options::{BatchOptions, OnInvalid};
 use super::job::Job;
-use super::options::{BatchOptions, OnInvalid};
 use super::pool;
 use super::results::Batch;
 use super::targets::Targets;
@@ -11,11 +11,11 @@ use crate::solver::{Monitor, Stopwatch};
 
 /// Solves every target of `targets`; item i is what [`solve`](crate::ik::solve) would find from stream i of the seed.
 ///
-/// The monitor is asked and told from the calling thread alone.
+/// The monitor is called from the calling thread alone.
 ///
 /// # Errors
-/// Any [`Error`] for wrong input; [`Error::InRow`] for a wrong target or start, unless those are to be skipped. A
-/// target that is not reached is a status, not an error.
+/// Any [`Error`](enum@crate::Error) for wrong input; [`Error::InRow`](crate::Error::InRow) for an invalid target or start, unless
+/// those are skipped. A target that is not reached is a status, not an error.
 pub fn solve_batch(
     robot: &Robot,
     targets: Targets<'_>,

@@ -1,4 +1,4 @@
-//! What a batch is to reach.
+//! The targets of a batch.
 
 use nalgebra::Matrix4;
 
@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::math::pose;
 use crate::task::Target;
 
-/// The targets of a batch as arrays hold them: m rows, of which none has been checked yet.
+/// The targets of a batch as arrays of m rows, not yet checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Targets<'a> {
     /// Positions (m), the orientation left free.
@@ -16,7 +16,7 @@ pub enum Targets<'a> {
 }
 
 impl Targets<'_> {
-    /// How many there are.
+    /// Number of targets.
     pub fn len(&self) -> usize {
         match self {
             Self::Positions(rows) => rows.len(),
@@ -24,12 +24,12 @@ impl Targets<'_> {
         }
     }
 
-    /// Whether there is none.
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Target `i`; a pose is known to be rigid.
+    /// Target `i`; a pose is checked to be rigid.
     pub(super) fn read(&self, i: usize) -> Result<Target> {
         match self {
             Self::Positions(rows) => Ok(Target::Position(rows[i])),

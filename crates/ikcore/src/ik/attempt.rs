@@ -33,7 +33,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         Self { context, problem, rng, monitor, budget: Budget::new(context.options().stop) }
     }
 
-    /// The caller's start, or the best that is known of.
+    /// The caller's start, or the indexed configuration nearest to the target.
     pub fn first_start(&mut self, start: Option<&[f64]>) -> Point {
         self.context.first_start(self.problem, start, self.rng)
     }

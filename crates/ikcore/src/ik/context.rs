@@ -1,6 +1,6 @@
 //! What all targets of a call have in common, validated once.
 
-use super::options::{Prefer, SolveOptions};
+use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::objective::{Bounds, Objective, Point};
@@ -25,7 +25,7 @@ pub(crate) struct Query<'a> {
 #[derive(Debug)]
 pub(crate) struct SolveContext<'a> {
     robot: &'a Robot,
-    /// The robot with the tool of the task, where it has one; boxed, since what is prepared is moved about.
+    /// The robot with the tool of the task, if there is one; boxed to keep the context small.
     with_tool: Option<Box<Robot>>,
     options: &'a SolveOptions,
     criterion: Criterion,
@@ -34,7 +34,7 @@ pub(crate) struct SolveContext<'a> {
 }
 
 impl<'a> SolveContext<'a> {
-    /// Checks what all targets have in common, but for [`SolveOptions::start`]: that is an argument of each.
+    /// Checks robot and options, except [`SolveOptions::start`], which each query carries.
     ///
     /// # Errors
     /// Any [`Error`] for wrong options.
@@ -47,11 +47,11 @@ impl<'a> SolveContext<'a> {
         options.goals.iter().try_for_each(|goal| goal.validate(robot))?;
         if options.prefer == Prefer::Nearest && !options.goals.is_empty() {
             return Err(Error::Contradiction {
-                problem: "prefer=\"nearest\" is a goal itself: leave goals out".into(),
+                problem: "prefer=\"nearest\" takes no goals: the distance to the start is its goal".into(),
             });
         }
         if options.prefer == Prefer::Best && options.goals.is_empty() {
-            return Err(Error::Contradiction { problem: "prefer=\"best\" needs goals: best for what?".into() });
+            return Err(Error::Contradiction { problem: "prefer=\"best\" needs goals to compare solutions by".into() });
         }
         let bounds = position_box(robot, options.limits.as_ref())?;
         let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?.map(Box::new);
@@ -87,7 +87,7 @@ impl<'a> SolveContext<'a> {
         Problem::new(self.robot(), target, self.criterion).disregarding_turns()
     }
 
-    /// What of `wanted` the task asks for, checked.
+    /// Returns the part of `wanted` that the task asks for, checked.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::WrongTarget`].
@@ -105,20 +105,20 @@ impl<'a> SolveContext<'a> {
         self.robot().require_within("start", q, self.bounds.lower(), self.bounds.upper())
     }
 
-    /// Checks that there is a start where the nearest solution is asked for.
+    /// Checks that the nearest solution is asked for with a start.
     ///
     /// # Errors
     /// [`Error::Contradiction`].
     pub(crate) fn require_reference(&self, start: Option<&[f64]>) -> Result<()> {
         match (self.options.prefer, start) {
-            (Prefer::Nearest, None) => {
-                Err(Error::Contradiction { problem: "prefer=\"nearest\" needs a start: nearest to what?".into() })
-            }
+            (Prefer::Nearest, None) => Err(Error::Contradiction {
+                problem: "prefer=\"nearest\" needs a start to measure distances from".into(),
+            }),
             _ => Ok(()),
         }
     }
 
-    /// The caller's start, or the best that is known of.
+    /// The caller's start, or the indexed configuration nearest to the target.
     pub(super) fn first_start(&self, problem: &mut Problem<'_>, start: Option<&[f64]>, rng: &mut LazyRng) -> Point {
         if let Some(start) = start {
             return Point::from_slice(start);

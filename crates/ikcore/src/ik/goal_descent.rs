@@ -1,7 +1,7 @@
-//! Along the self-motion of a solution: the joints move, the tip stays.
+//! Descent on the goals along the self-motion of a solution: the joints move, the tip stays.
 //!
-//! Projected gradient descent: of the gradient of the goals, what the linearised task and the box leave is followed; a step
-//! is brought back to the task by Gauss-Newton; its length follows Barzilai and Borwein (1988), which on the one-dimensional
+//! Projected gradient descent. The gradient of the goals is projected onto the linearised task and the box; Gauss-Newton
+//! brings a step back to the task; the step length follows Barzilai and Borwein (1988), which on the one-dimensional
 //! self-motion of a 7-joint arm is the secant method.
 
 use crate::math::box_step::{BoxStep, least_damping};
@@ -24,7 +24,7 @@ const MOST_CORRECTIONS: usize = 5;
 /// Factor on a step that was too long.
 const SHORTEN: f64 = 0.3;
 
-/// A problem, the goals beside it, and what has been spent on them.
+/// A descent on goals: problem, goals, and evaluations spent.
 pub(super) struct GoalDescent<'a, 'p> {
     pub robot: &'a Robot,
     pub problem: &'a mut Problem<'p>,
@@ -43,7 +43,7 @@ struct TaskPoint {
 }
 
 impl GoalDescent<'_, '_> {
-    /// Moves `q`, which solves the task or nearly so, to where the goals are best near it; false where there is no solution near.
+    /// Moves `q`, at or near a solution, to the nearest optimum of the goals; false where there is no solution near.
     pub fn descend(&mut self, q: &mut Point) -> bool {
         let begin = self.place(q.clone());
         let was_solved = self.problem.assess(q).score.solved;

@@ -1,6 +1,6 @@
 //! Inverse kinematics: one target with one solution, or with all of them.
 //!
-//! Read `solve` first. A [`SolveContext`] is validated once for all targets of a call; an `Attempt` holds everything that
+//! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds everything that
 //! one target needs: problem, random numbers, monitor, `budget`. `nearest` and `best` choose among several solutions,
 //! `goal_descent` moves one along its self-motion, `solve_all` collects them, `side_by_side` solves four at once for batches.
 //! Why a target was missed is a matter of [`problem`](crate::problem).
@@ -11,19 +11,19 @@ mod budget;
 mod context;
 mod goal_descent;
 mod nearest;
-mod options;
 mod shared_time;
 mod side_by_side;
 mod solution;
 mod solve;
 mod solve_all;
+mod solve_options;
 mod whole_turns;
 
 pub(crate) use context::{Query, SolveContext};
-pub use options::{Prefer, SolveOptions};
 pub(crate) use side_by_side::solve_queries;
 pub use solution::Solution;
 pub use solve::solve;
 pub(crate) use solve::solve_query;
 pub use solve_all::{AllOptions, SolutionSet, solve_all};
+pub use solve_options::{Prefer, SolveOptions};
 pub(crate) use whole_turns::bring_near;

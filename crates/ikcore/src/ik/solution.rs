@@ -1,4 +1,4 @@
-//! What became of one target.
+//! The result of one target.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::TipError;
 
-/// The best configuration found, and what became of the search.
+/// The best configuration found, and how the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Solution {
     /// The configuration (n,) (rad, m), inside the limits.
@@ -17,7 +17,7 @@ pub struct Solution {
     pub status: Status,
     /// Errors at `q`, by forward kinematics.
     pub error: TipError,
-    /// What is in the way of a target that was not reached, in words; empty where nothing is known.
+    /// What keeps the tip from a target that was not reached, in words; empty where nothing is known.
     pub obstruction: String,
     /// Iterations over all starts.
     pub iterations: usize,
@@ -38,14 +38,14 @@ impl Solution {
         }
         let ended = match status {
             Status::Solved => return format!("solved to {error}"),
-            Status::Improved => return format!("below the value asked for, {error} away"),
-            Status::OutOfReach => "as near as it gets,",
+            Status::Improved => return format!("below the requested value, {error} away"),
+            Status::OutOfReach => "as near as possible,",
             Status::BelowThreshold => "error_threshold met,",
             Status::HeldInRegion => "as near as its region allows,",
-            Status::OutsideLimits => "reached outside the limits only, inside them",
+            Status::OutsideLimits => "reached only outside the limits; inside them",
             Status::Stalled => "no further progress,",
             Status::BudgetSpent => "budget spent,",
-            Status::TimeUp => "time limit over,",
+            Status::TimeUp => "time limit reached,",
             _ => "stopped,",
         };
         let why = if obstruction.is_empty() { String::new() } else { format!(" ({obstruction})") };

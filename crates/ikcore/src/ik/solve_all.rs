@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::attempt::Attempt;
 use super::context::SolveContext;
-use super::options::SolveOptions;
 use super::solution::Solution;
+use super::solve_options::SolveOptions;
 use super::whole_turns::bring_near;
 use crate::error::{Error, Result, require_positive};
 use crate::math::vector::distance;
@@ -17,17 +17,17 @@ use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
 
-/// Solutions in a row that were known already, before the search is over.
+/// Known solutions in a row after which the search ends.
 const PATIENCE: usize = 100;
 
 /// How to look for all solutions.
 #[derive(Debug, Clone)]
 pub struct AllOptions {
-    /// How to solve. Its budgets are those of the whole search.
+    /// How to solve. Its budgets apply to the whole search.
     pub each: SolveOptions,
-    /// Solutions to return at most.
+    /// Largest number of solutions to return.
     pub limit: usize,
-    /// Solutions count as one where no joint differs by as much (rad, m), whole turns aside.
+    /// Solutions count as the same where every joint differs by less (rad, m), whole turns aside.
     pub separation: f64,
 }
 
@@ -37,7 +37,7 @@ impl Default for AllOptions {
     }
 }
 
-/// Distinct solutions, and what became of the search.
+/// Distinct solutions, and how the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SolutionSet {
     /// The solutions, nearest to the start first; without a start in the order in which they were found.
@@ -58,10 +58,10 @@ impl SolutionSet {
         self.miss.as_ref().map_or(Status::Solved, |miss| miss.status)
     }
 
-    /// How many there are, or why there are none.
+    /// The number of solutions, or why there are none.
     pub fn message(&self) -> String {
         match (self.solutions.len(), &self.miss) {
-            (0, Some(miss)) => format!("none found; the best miss: {}", miss.message()),
+            (0, Some(miss)) => format!("no solution; best miss: {}", miss.message()),
             (1, _) => "1 solution".into(),
             (count, _) => format!("{count} distinct solutions"),
         }
@@ -70,8 +70,8 @@ impl SolutionSet {
 
 /// Looks for distinct solutions until a hundred in a row were known already, or the budget is spent.
 ///
-/// Each is returned at the whole turns nearest to the start, without one nearest to the middle of the limits. A redundant arm
-/// has endlessly many solutions: those returned lie at least the separation apart.
+/// Each is returned at the whole turns nearest to the start or, without one, to the middle of the limits. A redundant arm has
+/// infinitely many solutions: those returned are at least the separation apart.
 ///
 /// # Errors
 /// Any [`enum@Error`] for wrong input.

@@ -7,9 +7,9 @@ use super::jacobian::{self, Columns};
 use super::link_frames::{self, StageFrames};
 use super::tip;
 use super::torques::{self, Wrench};
+use crate::math::Frame;
 use crate::math::arithmetic::by_instructions;
 use crate::math::f64x4::F64x4;
-use crate::math::{Frame, MAX_DOF};
 
 /// The kernels compiled for one padded number of stages and one instruction set.
 #[derive(Debug, Clone, Copy)]
@@ -55,13 +55,6 @@ impl Kernels {
         if qs.len() == n {
             visit((self.tip_position)(chain, qs));
         }
-    }
-
-    /// Frames of all stages.
-    pub fn reached(&self, chain: &Chain, q: &[f64]) -> StageFrames {
-        let mut reached = [Frame::IDENTITY; MAX_DOF + 1];
-        (self.stage_frames)(chain, q, &mut reached);
-        reached
     }
 }
 
@@ -116,7 +109,7 @@ mod tests {
     use super::super::chain::{ChainFolder, SIZES, StageMotion};
     use super::*;
     use crate::math::arithmetic::Baseline;
-    use crate::math::{Pose, pose};
+    use crate::math::{MAX_DOF, Pose, pose};
     use nalgebra::Vector3;
 
     /// An arm of so many joints, every third of them sliding, on axes of no special direction.

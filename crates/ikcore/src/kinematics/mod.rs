@@ -1,6 +1,6 @@
 //! Kinematics of a serial chain as plain data: no names, limits or files, and no `Robot`.
 //!
-//! Read [`chain`] for the data and [`forward_pass`] for the walk along it; then one algorithm a file. [`kernels`] compiles
+//! Read `chain` for the data and `forward_pass` for the walk along it; then one algorithm a file. `kernels` compiles
 //! them for each number of stages and for the processor's instructions.
 //!
 //! | file | what |

@@ -4,7 +4,7 @@ use super::chain::Chain;
 use super::jacobian::Columns;
 use super::kernels::Kernels;
 use crate::math::MAX_DOF;
-use crate::math::singular::SingularValues;
+use crate::math::singular_values::SingularValues;
 use crate::rng;
 
 /// Rank of the Jacobian at configurations that are not singular.

@@ -15,7 +15,7 @@ impl Limits {
     /// Narrows `tick`, the box of the positions and velocities at `q`, to what the acceleration limits allow an arm that
     /// moves at `qd` (rad/s, m/s) in the tick of `dt` from `from` to `to` (s). Returns whether that leaves every joint
     /// something; one that is left nothing brakes as hard as it may, past its other limits.
-    pub fn brake(&self, q: &[f64], qd: &[f64], [from, to]: [f64; 2], dt: f64, tick: &mut TickBox) -> bool {
+    pub(crate) fn brake(&self, q: &[f64], qd: &[f64], [from, to]: [f64; 2], dt: f64, tick: &mut TickBox) -> bool {
         let Some(accelerations) = &self.acceleration else { return true };
         let (lower, upper) = tick.bounds.parts_mut();
         let mut feasible = true;
@@ -39,14 +39,14 @@ impl Limits {
 
     /// The longest step (rad, m) of joint `j` over the tick from `from` to `to` (s) after which it can still stop within
     /// `distance` of where it is.
-    pub fn longest_step_before(&self, j: usize, distance: f64, [from, to]: [f64; 2]) -> f64 {
+    pub(crate) fn longest_step_before(&self, j: usize, distance: f64, [from, to]: [f64; 2]) -> f64 {
         let acceleration = self.acceleration_over(j, from, to);
         let dt = to - from;
         if acceleration == f64::INFINITY { distance } else { longest_step(distance, PLANNED * acceleration * dt * dt) }
     }
 
     /// The acceleration limit of joint `j` over the tick from `from` to `to` (s); infinite where there is none.
-    pub fn acceleration_over(&self, j: usize, from: f64, to: f64) -> f64 {
+    pub(crate) fn acceleration_over(&self, j: usize, from: f64, to: f64) -> f64 {
         self.acceleration.as_ref().map_or(f64::INFINITY, |profiles| profiles[j].smallest(from, to).1)
     }
 }
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn short_ticks_come_near_the_braking_distance_of_continuous_time() {
+    fn short_ticks_approach_the_continuous_braking_distance() {
         let (distance, acceleration, dt) = (0.4, 3.0, 1e-5);
         let speed = longest_step(distance, acceleration * dt * dt) / dt;
         assert!((speed - (2.0_f64 * acceleration * distance).sqrt()).abs() < 1e-4);

@@ -117,7 +117,7 @@ impl Limits {
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`].
-    pub fn require_none(&self, fields: &[Field], method: &str, remedy: &str) -> Result<()> {
+    pub(crate) fn require_none(&self, fields: &[Field], method: &str, remedy: &str) -> Result<()> {
         match fields.iter().find(|field| self.is_finite(**field)) {
             None => Ok(()),
             Some(field) => {
@@ -131,7 +131,7 @@ impl Limits {
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`].
-    pub fn constants(&self, field: Field, method: &str, remedy: &str) -> Result<Vec<f64>> {
+    pub(crate) fn constants(&self, field: Field, method: &str, remedy: &str) -> Result<Vec<f64>> {
         let constant = |profile: &Profile| match profile {
             Profile::Constant(value) => Ok(*value),
             _ => Err(Error::UnsupportedLimit {
@@ -151,7 +151,7 @@ impl Limits {
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`] where they vary in time; [`Error::EmptyRange`].
-    pub fn position_box(&self) -> Result<Bounds> {
+    pub(crate) fn position_box(&self) -> Result<Bounds> {
         self.validate(0.0, 0)?;
         let constants = |field: Field| self.constants(field, "solve", "one configuration has no time; give numbers");
         Bounds::new(&constants(Field::Lower)?, &constants(Field::Upper)?)
@@ -166,7 +166,7 @@ impl Limits {
     ///
     /// # Errors
     /// [`Error::WrongLength`] for another number of joints.
-    pub fn require_for(&self, robot: &Robot) -> Result<()> {
+    pub(crate) fn require_for(&self, robot: &Robot) -> Result<()> {
         if self.joints.len() == robot.dof() {
             return Ok(());
         }

@@ -17,4 +17,5 @@ mod tick_box;
 pub use field::Field;
 pub use joint_limits::Limits;
 pub use profile::{Profile, Sinusoid};
-pub use tick_box::{LimitAt, TickBox};
+pub use tick_box::LimitAt;
+pub(crate) use tick_box::TickBox;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require_finite, require_positive};
-use crate::math::ordered::larger;
+use crate::math::comparison::larger;
 
 /// mean + amplitude sin(angular_frequency t + phase): eq. (7) of Cheng et al. (2020), its sign mended.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -3,14 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Field, Limits, Profile};
-use crate::math::ordered::{larger, smaller};
+use crate::math::comparison::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::wording::words;
 
 /// Where in a tick its limit is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum LimitAt {
-    /// The smallest limit over the tick: never broken, at no instant.
+    /// The smallest limit over the tick, so that it holds at every instant.
     #[default]
     Interval,
     /// The limit at the tick's beginning, as Cheng et al. (2020) take it.
@@ -31,7 +31,7 @@ impl LimitAt {
 
 /// Where one tick may end, and the limits that it came from.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TickBox {
+pub(crate) struct TickBox {
     /// The box of the joints (rad, m).
     pub bounds: Bounds,
     /// The velocity limit of each joint for this tick (rad/s, m/s).
@@ -45,7 +45,7 @@ pub struct TickBox {
     lasting: bool,
 }
 
-/// What of one kind of limits has to be found anew for every tick.
+/// Which values of one kind of limit change from tick to tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Varying {
     /// Nothing: numbers.
@@ -78,7 +78,7 @@ impl Varying {
 
 impl TickBox {
     /// The box of an arm that begins to move at `q`, to be narrowed for every tick by the same limits.
-    pub fn around(q: &[f64], limits: &Limits) -> Self {
+    pub(crate) fn around(q: &[f64], limits: &Limits) -> Self {
         let Limits { lower, upper, velocity, acceleration, .. } = limits;
         let fields = [velocity, lower, upper];
         let [velocity, floor, ceiling] = fields.map(|field| field.iter().map(|limit| limit.at(0.0)).collect::<Point>());
@@ -92,13 +92,8 @@ impl TickBox {
 }
 
 impl Limits {
-    /// The velocity limit of joint `j` that holds for the tick from `from` to `to` (s).
-    pub fn velocity_over(&self, j: usize, from: f64, to: f64, at: LimitAt) -> f64 {
-        at.of(&self.velocity[j], from, to)
-    }
-
     /// Writes the velocity limits that hold for each of `ticks`, (from, to) (s), a row (n,) for each.
-    pub fn write_velocities(&self, ticks: impl Iterator<Item = [f64; 2]>, at: LimitAt, rows: &mut [f64]) {
+    pub(crate) fn write_velocities(&self, ticks: impl Iterator<Item = [f64; 2]>, at: LimitAt, rows: &mut [f64]) {
         // Once: to compare limits of many samples takes long.
         let varying = match Varying::of(&self.velocity) {
             Varying::Together => Varying::Together,
@@ -111,14 +106,14 @@ impl Limits {
     }
 
     /// The position range of joint `j` that holds at every instant from `from` to `to` (s).
-    pub fn position_range(&self, j: usize, from: f64, to: f64) -> [f64; 2] {
+    pub(crate) fn position_range(&self, j: usize, from: f64, to: f64) -> [f64; 2] {
         [self.lower[j].largest(from, to).1, self.upper[j].smallest(from, to).1]
     }
 
     /// Narrows `tick` to the positions that joints at `q` may have at the end of the tick from `from` to `to` (s), which lasts
     /// `dt`: `to - from` is rounded, the more so the later, and the reach must not depend on that. Returns whether every joint
     /// can be within its position limits then; one that cannot is sent towards them as fast as it may go.
-    pub fn narrow(&self, q: &[f64], [from, to]: [f64; 2], dt: f64, at: LimitAt, tick: &mut TickBox) -> bool {
+    pub(crate) fn narrow(&self, q: &[f64], [from, to]: [f64; 2], dt: f64, at: LimitAt, tick: &mut TickBox) -> bool {
         if tick.lasting {
             return true;
         }
@@ -204,9 +199,8 @@ mod tests {
     #[test]
     fn the_smallest_limit_of_the_tick_counts() {
         let fading = Profile::Sampled { step: 0.5, values: vec![0.4, 0.1, 0.3] };
-        let limits = Limits::of(&slider(-9.0, 9.0, 1.0)).replace(Field::Velocity, vec![fading]).unwrap();
-        assert_eq!(limits.velocity_over(0, 0.0, 1.0, LimitAt::Interval), 0.1);
-        assert_eq!(limits.velocity_over(0, 0.0, 1.0, LimitAt::Start), 0.4);
+        assert_eq!(LimitAt::Interval.of(&fading, 0.0, 1.0), 0.1);
+        assert_eq!(LimitAt::Start.of(&fading, 0.0, 1.0), 0.4);
     }
 
     #[test]
@@ -238,7 +232,7 @@ mod tests {
                 let mut written = [0.0; 3];
                 limits.write_velocities([[from, to]].into_iter(), LimitAt::Interval, &mut written);
                 for j in 0..3 {
-                    let expected = limits.velocity_over(j, from, to, LimitAt::Interval);
+                    let expected = LimitAt::Interval.of(&limits.velocity[j], from, to);
                     assert_eq!([tick.velocity[j], written[j]], [expected; 2], "joint {j} at {from} s");
                     assert_eq!([tick.floor[j], tick.ceiling[j]], limits.position_range(j, from, to));
                 }

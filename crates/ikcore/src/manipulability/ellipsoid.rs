@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::singular::SingularValues;
+use crate::math::singular_values::SingularValues;
 
 /// The tip velocities that unit joint speeds give, |q'| = 1: semi-axes, the longest first, one per direction of motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -8,7 +8,7 @@ use super::gram;
 use super::index::Manipulability;
 use crate::kinematics::{Columns, Screw};
 use crate::math::MAX_DOF;
-use crate::math::singular::SingularValues;
+use crate::math::singular_values::SingularValues;
 use crate::math::so3::cross;
 use crate::robot::Robot;
 

@@ -6,7 +6,7 @@ use super::motion::Motion;
 use crate::error::Result;
 use crate::kinematics::{Columns, TaskRank};
 use crate::math::MAX_DOF;
-use crate::math::singular::SingularValues;
+use crate::math::singular_values::SingularValues;
 use crate::robot::Robot;
 
 /// The measure of a robot's postures: the motion that counts, and the rank of its Jacobian.

@@ -1,9 +1,9 @@
 //! The bounded step: damped least squares on six rows; joints that hit a bound are fixed, and the step is solved again.
 
 use super::arithmetic::{Arithmetic, by_instructions};
+use super::comparison::{larger, smaller};
 use super::gram::gram;
-use super::ldl::Ldl;
-use super::ordered::{larger, smaller};
+use super::ldl;
 use super::real::{One, Real};
 use super::vector::squared_size;
 
@@ -87,7 +87,7 @@ impl BoxStep<'_> {
             let mut right = [One::of(0.0); R];
             right.iter_mut().zip(remaining).for_each(|(entry, rest)| *entry = One::of(rest));
             let free = (0..n).filter(|j| fixed & (1 << j) == 0).map(|j| columns[j]);
-            let z = Ldl::of(gram::<A, R>(free, lambda)).solve(right);
+            let z = ldl::solve(gram::<A, R>(free, lambda), right);
             let fixed_before = fixed;
             for j in (0..n).filter(|j| fixed_before & (1 << j) == 0) {
                 let wanted = x[j] - dot(&columns[j], &z).stored();

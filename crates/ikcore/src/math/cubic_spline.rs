@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_knot_at_the_second_and_last_but_one_polynomials_come_back() {
+    fn not_a_knot_splines_reproduce_cubic_polynomials() {
         let cubic = |u: f64| 0.3 + u * (-2.0 + u * (1.5 - 4.0 * u));
         let parabola = |u: f64| 0.3 + u * (-2.0 + 1.5 * u);
         let line = |u: f64| 0.3 - 2.0 * u;

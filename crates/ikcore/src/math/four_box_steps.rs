@@ -4,7 +4,7 @@ use super::MAX_DOF;
 use super::arithmetic::{Arithmetic, by_instructions};
 use super::box_step::{POSITION_ROWS, ROUNDS, ROWS, dot};
 use super::f64x4::F64x4;
-use super::ldl::Ldl;
+use super::ldl;
 use super::real::{Four, Real};
 
 /// Four steps in one box.
@@ -51,7 +51,7 @@ impl FourBoxSteps<'_> {
         // One where a joint is free, zero where it sits at a bound.
         let mut free = [Four::<A>::splat(1.0); MAX_DOF];
         for _ in 0..ROUNDS {
-            let z = Ldl::of(self.gram::<A, R>(&free)).solve(remaining);
+            let z = ldl::solve(self.gram::<A, R>(&free), remaining);
             let mut some_joint_hit_a_bound = false;
             for j in 0..self.x.len() {
                 let (zero, x) = (Four::splat(0.0), Four::<A>::of(self.x[j]));

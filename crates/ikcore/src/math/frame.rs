@@ -7,7 +7,7 @@ use super::f64x4::F64x4;
 use super::{Pose, pose};
 
 /// A rigid transform: the columns of its rotation (its axes, seen from the base) and its origin (m). Over
-/// [`F64x4`], four of them, lane by lane.
+/// `F64x4`, four of them, lane by lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame<T = f64> {
     /// x, y and z axis.

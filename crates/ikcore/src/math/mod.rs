@@ -1,37 +1,37 @@
 //! Mathematics without robots: plain arrays where it is hot, nalgebra elsewhere.
 //!
-//! Kernels are compiled with and without FMA ([`arithmetic`]). Kernels for one number or four, one per lane of a register
-//! ([`f64x4::F64x4`]), are written over [`real::Real`].
+//! Kernels are compiled with and without FMA (`arithmetic`). Kernels for one number or four, one per lane of a register
+//! (`F64x4`), are written over `Real`.
 //!
 //! | files | what |
 //! |---|---|
 //! | `pose`, `frame` | rigid transforms: checked ones of callers, plain ones of kernels |
 //! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
 //! | `arithmetic`, `f64x4`, `real` | instructions and lanes |
-//! | `sincos`, `arctangent`, `logarithm`, `ordered` | functions without branches |
-//! | `gram`, `ldl`, `box_step`, `four_box_steps`, `secant`, `singular` | small linear systems, and the bounded step |
-//! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `interval` | functions of one variable |
+//! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
+//! | `gram`, `ldl`, `box_step`, `four_box_steps`, `secant`, `singular_values` | small linear systems, and the bounded step |
+//! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `sampling_range` | functions of one variable |
 
 pub(crate) mod arctangent;
 pub(crate) mod arithmetic;
 pub mod box_step;
+pub(crate) mod comparison;
 pub(crate) mod cubic_spline;
 pub(crate) mod f64x4;
 pub(crate) mod four_box_steps;
 mod frame;
 pub(crate) mod gram;
 pub(crate) mod hermite;
-pub(crate) mod interval;
 mod knots;
 pub(crate) mod ldl;
 pub(crate) mod logarithm;
-pub(crate) mod ordered;
 pub mod polynomial;
 pub mod pose;
 pub(crate) mod real;
+pub(crate) mod sampling_range;
 pub(crate) mod secant;
 pub(crate) mod sincos;
-pub(crate) mod singular;
+pub(crate) mod singular_values;
 pub mod so3;
 pub mod ticks;
 pub(crate) mod vec3;

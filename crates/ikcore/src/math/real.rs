@@ -6,8 +6,8 @@ use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::arithmetic::Arithmetic;
+use super::comparison::{larger, smaller};
 use super::f64x4::F64x4;
-use super::ordered::{larger, smaller};
 
 /// A real number, or one per lane.
 pub trait Real:

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_update_explains_the_step_and_leaves_other_directions_alone() {
+    fn an_update_explains_the_step_and_no_other_direction() {
         let mut secant = Secant::default();
         secant.set_column(0, 0.1, &[0.1, 0.2, 0.0, 0.0, 0.0, 0.0]);
         secant.set_column(1, -0.5, &[0.5, 0.0, -1.0, 0.0, 0.0, 0.0]);

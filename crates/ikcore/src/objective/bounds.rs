@@ -1,8 +1,8 @@
 //! The box that a search is confined to.
 
 use crate::error::{Error, Result};
-use crate::math::interval;
-use crate::math::ordered::{larger, smaller};
+use crate::math::comparison::{larger, smaller};
+use crate::math::sampling_range;
 use crate::rng::LazyRng;
 
 use super::point::Point;
@@ -14,7 +14,7 @@ pub struct Bounds {
     upper: Point,
 }
 
-/// How far samples reach on an open side.
+/// Sampling range on an open side.
 const HALF_TURN: f64 = std::f64::consts::PI;
 
 impl Bounds {
@@ -33,7 +33,7 @@ impl Bounds {
         }
     }
 
-    /// The box of these (lower, upper), which are known to be in order.
+    /// The box of these (lower, upper), not checked again.
     pub(crate) fn from_ranges(ranges: impl Iterator<Item = (f64, f64)>) -> Self {
         let mut bounds = Self { lower: Point::new(), upper: Point::new() };
         for (lower, upper) in ranges {
@@ -53,7 +53,7 @@ impl Bounds {
         &self.upper
     }
 
-    /// Writable lower and upper bounds. Whoever writes keeps lower <= upper.
+    /// Writable lower and upper bounds. Keep lower <= upper.
     pub(crate) fn parts_mut(&mut self) -> (&mut [f64], &mut [f64]) {
         (&mut self.lower, &mut self.upper)
     }
@@ -94,7 +94,7 @@ impl Bounds {
 
     /// The ranges to draw from; an open side reaches one turn from the other bound, or half a turn from zero.
     pub fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.lower.iter().zip(&self.upper).map(|(lower, upper)| interval::finite(*lower, *upper, HALF_TURN))
+        self.lower.iter().zip(&self.upper).map(|(lower, upper)| sampling_range::finite(*lower, *upper, HALF_TURN))
     }
 
     /// A uniform draw from the [`ranges`](Self::ranges).

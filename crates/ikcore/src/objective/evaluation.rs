@@ -3,7 +3,7 @@
 use super::bounds::Bounds;
 use crate::rng::LazyRng;
 
-/// The value of an objective at a point, and whether that is good enough.
+/// The value of an objective at a point, and whether it is good enough.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Score {
     /// The weighted sum of squares r'r.
@@ -12,12 +12,12 @@ pub struct Score {
     pub solved: bool,
 }
 
-/// How an objective is best evaluated.
+/// How to evaluate an objective efficiently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CallPattern {
-    /// Points to evaluate together, where a solver has that many.
+    /// Points to evaluate together, where a solver has as many.
     pub batch_size: usize,
-    /// Evaluations after which the monitor and the clock are asked again.
+    /// Evaluations between two polls of monitor and clock.
     pub poll_interval: usize,
 }
 
@@ -28,7 +28,7 @@ impl Default for CallPattern {
     }
 }
 
-/// Something to minimise. It owns its scratch and is cloned per thread.
+/// A function to minimise. It owns its scratch and is cloned per thread.
 pub trait Objective {
     /// Number of entries of a point.
     fn dimension(&self) -> usize;
@@ -43,12 +43,12 @@ pub trait Objective {
         }
     }
 
-    /// How it is best evaluated; asked once a run.
+    /// How to evaluate it efficiently; read once per run.
     fn call_pattern(&self) -> CallPattern {
         CallPattern::default()
     }
 
-    /// The start of attempt number `attempt` (from 1; attempt 0 is the caller's start). By default uniform in the box.
+    /// Writes the start of attempt number `attempt` (from 1; attempt 0 is the caller's start). By default uniform in the box.
     fn propose_start(&mut self, attempt: usize, bounds: &Bounds, rng: &mut LazyRng, x: &mut [f64]) {
         let _ = attempt;
         bounds.sample(rng, x);

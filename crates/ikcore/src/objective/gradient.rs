@@ -6,7 +6,7 @@ use super::evaluation::{Objective, Score};
 ///
 /// E need not be half of the score's value: it shares its zeros. That of a pose is eq. (11) of Yuan et al. 2016.
 pub trait Gradient: Objective {
-    /// E and the score at `x` in one pass; dE/dx into `gradient`, which has one entry per entry of x.
+    /// Returns E and the score at `x`, and writes dE/dx into `gradient`, which has one entry per entry of x.
     fn differentiate(&mut self, x: &[f64], gradient: &mut [f64]) -> SmoothScore;
 }
 
@@ -15,6 +15,6 @@ pub trait Gradient: Objective {
 pub struct SmoothScore {
     /// The smooth error E.
     pub error: f64,
-    /// The score, which may measure the error otherwise.
+    /// The score, whose value may measure the error differently.
     pub score: Score,
 }

@@ -27,15 +27,15 @@ pub trait Residual: Objective {
     fn residual(&mut self, x: &[f64], out: &mut [f64; ROWS]) -> Score;
 }
 
-/// One that knows its derivative too.
+/// A residual with its Jacobian.
 pub trait LeastSquares: Residual {
     /// Residual and Jacobian at `x` in one pass, and the score.
     fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score;
 }
 
-/// Four linearizations side by side: each number for all four in one register.
+/// Four linearizations side by side, one in each lane.
 #[derive(Debug, Clone)]
-pub struct FourLinearizations {
+pub(crate) struct FourLinearizations {
     /// As [`Linearization::residual`].
     pub residual: [F64x4; ROWS],
     /// As [`Linearization::columns`].
@@ -48,15 +48,15 @@ impl Default for FourLinearizations {
     }
 }
 
-/// Objectives that are linearized faster four at a time than one after another. They differ in what is asked of one and the same
-/// system: for a robot, in the targets, which are of one kind.
-pub trait SideBySide: LeastSquares + Sized {
+/// Objectives that are linearized faster four at a time than one by one. They are four problems of one system: for a robot,
+/// four targets of one kind.
+pub(crate) trait SideBySide: LeastSquares + Sized {
     /// [`linearize`](LeastSquares::linearize) of each objective at its lane of `xs`, to the same bits.
     fn linearize_four(objectives: [&Self; 4], xs: &[F64x4], out: &mut FourLinearizations) -> [Score; 4];
 }
 
 impl Linearization {
-    /// J'r into `gradient`, which has one entry per entry of x: the gradient of r'r / 2.
+    /// Writes J'r, the gradient of r'r / 2, into `gradient`, which has one entry per entry of x.
     pub fn gradient(&self, gradient: &mut [f64]) {
         for (slope, column) in gradient.iter_mut().zip(&self.columns) {
             *slope = column.iter().zip(&self.residual).map(|(c, r)| c * r).sum();
@@ -64,7 +64,7 @@ impl Linearization {
     }
 }
 
-/// All that an algorithm can ask of inverse kinematics.
+/// All that a solver can ask of the inverse kinematics problem.
 pub trait Differentiable: LeastSquares + Gradient {}
 
 impl<O: LeastSquares + Gradient + ?Sized> Differentiable for O {}

@@ -1,8 +1,8 @@
-//! How far the capsule of a link can move while the joints move by so much.
+//! Bound on the motion of a link's capsule while the joints move by a given amount.
 
 use nalgebra::Vector3;
 
-use super::segment_distance::Segment;
+use super::segment_distance::LineSegment;
 use crate::math::{Frame, MAX_DOF};
 use crate::robot::Robot;
 
@@ -18,7 +18,7 @@ pub(super) type Frames = [Frame; MAX_DOF + 1];
 pub(super) fn displacement(
     robot: &Robot,
     frames: &Frames,
-    segment: &Segment,
+    segment: &LineSegment,
     stages: std::ops::Range<usize>,
     reach: &[f64],
 ) -> f64 {
@@ -35,4 +35,39 @@ pub(super) fn displacement(
 
 fn distance_to_axis(frame: &Frame, point: &Vector3<f64>) -> f64 {
     (point - Vector3::from(frame.origin)).cross(&Vector3::from(frame.axes[2])).norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+
+    #[test]
+    fn no_point_of_a_link_moves_farther_than_the_bound() {
+        let robot = Robot::named("panda").unwrap();
+        let mut rng = rng::stream(1, 0);
+        let (mut frames, mut moved) = ([Frame::IDENTITY; MAX_DOF + 1], [Frame::IDENTITY; MAX_DOF + 1]);
+        let mut tightest = f64::INFINITY;
+        for _ in 0..200 {
+            let q = robot.random_configurations(1, &mut rng).unwrap();
+            let reach: Vec<f64> = (0..q.len()).map(|_| rng.uniform_in(0.0, 0.3)).collect();
+            let other: Vec<f64> = q.iter().zip(&reach).map(|(q, reach)| q + rng.uniform_in(-*reach, *reach)).collect();
+            robot.write_stage_frames(&q, &mut frames);
+            robot.write_stage_frames(&other, &mut moved);
+            let last = q.len();
+            let ends = [[0.0, 0.0, 0.0], [0.1, -0.05, 0.2]];
+            let at = |frame: &Frame, p: &[f64; 3]| {
+                Vector3::from(frame.origin) + (0..3).map(|k| p[k] * Vector3::from(frame.axes[k])).sum::<Vector3<f64>>()
+            };
+            let segment = ends.map(|end| at(&frames[last], &end));
+            let bound = displacement(&robot, &frames, &segment, 0..last, &reach);
+            for end in &ends {
+                let way = (at(&moved[last], end) - at(&frames[last], end)).norm();
+                assert!(way <= bound, "moved {way} m, bound {bound} m");
+                tightest = tightest.min(bound / way.max(1e-12));
+            }
+            assert_eq!(displacement(&robot, &frames, &segment, 0..last, &vec![0.0; last]), 0.0);
+        }
+        assert!(tightest < 2.5, "{tightest}"); // a bound that any value keeps would prove nothing
+    }
 }

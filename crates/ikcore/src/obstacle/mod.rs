@@ -17,14 +17,14 @@
 mod convex_hull;
 mod ellipsoid;
 mod link_displacement;
-pub mod scene;
+mod scene;
 mod segment_distance;
-pub mod shape;
+mod shape;
 mod signed_distance;
-pub mod sweep;
+mod sweep;
 mod tangent;
 mod triangles;
 
 pub use scene::{Body, Contact, Scene};
 pub use shape::{Obstacle, Shape};
-pub use sweep::{Edge, JointMotion, Sweep};
+pub use sweep::{Edge, JointMotion, Sweep, TooNear};

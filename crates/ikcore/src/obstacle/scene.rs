@@ -5,7 +5,7 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::link_displacement::{Frames, displacement};
-use super::segment_distance::{Segment, distance_between, distance_to_obstacle};
+use super::segment_distance::{LineSegment, distance_between, distance_to_obstacle};
 use super::shape::Obstacle;
 use crate::error::{Error, Result};
 use crate::math::arithmetic::NoFma;
@@ -77,7 +77,7 @@ pub struct Scene<'a> {
 #[derive(Debug, Clone)]
 pub(super) struct Placement {
     pub frames: Frames,
-    pub segments: Vec<Segment>,
+    pub segments: Vec<LineSegment>,
 }
 
 impl<'a> Scene<'a> {

@@ -7,7 +7,7 @@ use super::shape::Obstacle;
 use super::tangent::nearest_on_segment;
 
 /// A segment between two points (m).
-pub(super) type Segment = [Vector3<f64>; 2];
+pub(super) type LineSegment = [Vector3<f64>; 2];
 
 /// How far below the true distance an answer may lie (m).
 const ACCURACY: f64 = 1e-9;
@@ -24,7 +24,7 @@ struct Touch {
 
 /// Signed distance of the segment to the obstacle: negative by the depth of its deepest point. Never more than the
 /// truth, and at most [`ACCURACY`] less unless it is at least `enough`.
-pub(super) fn distance_to_obstacle(segment: &Segment, obstacle: &Obstacle, enough: f64) -> f64 {
+pub(super) fn distance_to_obstacle(segment: &LineSegment, obstacle: &Obstacle, enough: f64) -> f64 {
     let [a, b] = segment;
     let center = Vector3::from(obstacle.bounding_center);
     let from_sphere = (nearest_on_segment(a, b, &center) - center).norm() - obstacle.bounding_radius;
@@ -67,7 +67,7 @@ pub(super) fn distance_to_obstacle(segment: &Segment, obstacle: &Obstacle, enoug
 }
 
 /// Distance between two segments, exact.
-pub(super) fn distance_between(one: &Segment, other: &Segment) -> f64 {
+pub(super) fn distance_between(one: &LineSegment, other: &LineSegment) -> f64 {
     let ([p, p_end], [q, q_end]) = (one, other);
     let (u, v, w) = (p_end - p, q_end - q, p - q);
     let (uu, uv, vv, uw, vw) = (u.dot(&u), u.dot(&v), v.dot(&v), u.dot(&w), v.dot(&w));
@@ -88,4 +88,69 @@ pub(super) fn distance_between(one: &Segment, other: &Segment) -> f64 {
         (nearest_on_segment(p, p_end, q_end) - q_end).norm(),
     ];
     ends.into_iter().fold(crossing, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::{self, LazyRng};
+
+    fn segment(rng: &mut LazyRng) -> LineSegment {
+        [(); 2].map(|()| Vector3::from_fn(|_, _| rng.uniform_in(-1.0, 1.0)))
+    }
+
+    /// The smallest distance between points at `steps` + 1 places of each segment.
+    fn sampled([a, b]: &LineSegment, [c, d]: &LineSegment, steps: usize) -> f64 {
+        let places = || (0..=steps).map(|i| i as f64 / steps as f64);
+        let distance = |(s, t): (f64, f64)| (a + s * (b - a) - c - t * (d - c)).norm();
+        places().flat_map(|s| places().map(move |t| (s, t))).map(distance).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn segments_are_as_far_apart_as_their_nearest_samples() {
+        let mut rng = rng::stream(1, 0);
+        for case in 0..300 {
+            let (one, mut other) = (segment(&mut rng), segment(&mut rng));
+            match case % 3 {
+                0 => other[1] = other[0] + 0.7 * (one[1] - one[0]), // parallel
+                1 => other[1] = other[0],                           // a point
+                _ => {}
+            }
+            let (found, nearest) = (distance_between(&one, &other), sampled(&one, &other, 60));
+            assert!(found <= nearest + 1e-12 && nearest - found < 0.05, "case {case}: {found}, sampled {nearest}");
+            assert!((distance_between(&other, &one) - found).abs() < 1e-12, "case {case}");
+        }
+    }
+
+    #[test]
+    fn crossing_and_parallel_segments_have_known_distances() {
+        let line = |a: [f64; 3], b: [f64; 3]| [Vector3::from(a), Vector3::from(b)];
+        let along_x = line([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+        let cases = [
+            (line([0.0, -1.0, 0.3], [0.0, 1.0, 0.3]), 0.3), // they pass over each other
+            (line([0.5, 0.2, 0.0], [3.0, 0.2, 0.0]), 0.2),  // parallel, they overlap
+            (line([4.0, 4.0, 0.0], [9.0, 4.0, 0.0]), 5.0),  // parallel, end to end
+            (line([-1.0, 0.0, 0.0], [0.0, 2.0, 0.0]), 0.0), // a common end
+        ];
+        for (other, expected) in cases {
+            assert!((distance_between(&along_x, &other) - expected).abs() < 1e-12, "{expected}");
+        }
+    }
+
+    #[test]
+    fn a_segment_is_as_far_from_an_obstacle_as_its_nearest_point() {
+        let mut rng = rng::stream(2, 0);
+        let turn = Some(*nalgebra::Rotation3::new(Vector3::new(0.4, -0.7, 0.2)).matrix());
+        let egg = Obstacle::ellipsoid([0.1, -0.2, 0.3], [0.2, 0.5, 0.7], turn).unwrap();
+        for _ in 0..100 {
+            let [a, b] = segment(&mut rng);
+            let found = distance_to_obstacle(&[a, b], &egg, f64::INFINITY);
+            let at = |i: usize| egg.tangent(&(a + i as f64 / 2000.0 * (b - a))).value;
+            let nearest = (0..=2000).map(at).fold(f64::INFINITY, f64::min);
+            assert!(found <= nearest + 1e-9 && nearest - found < 2e-3, "{found}, sampled {nearest}");
+            // A caller to whom 0.1 m is enough may get less than the distance, but never less than 0.1 m for more.
+            let enough = distance_to_obstacle(&[a, b], &egg, 0.1);
+            assert!(enough <= found + 1e-9 && (enough >= 0.1) == (found >= 0.1), "{enough} for {found}");
+        }
+    }
 }

@@ -57,3 +57,84 @@ fn of_box(point: &Vector3<f64>, half: &Vector3<f64>) -> Tangent {
     normal[face] = sign[face];
     Tangent { value: beyond[face], normal }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::{self, LazyRng};
+
+    fn point(rng: &mut LazyRng, reach: f64) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| rng.uniform_in(-reach, reach))
+    }
+
+    fn shapes() -> Vec<Obstacle> {
+        let turn = Some(*Rotation3::new(Vector3::new(0.4, -0.7, 0.2)).matrix());
+        let shapes = [
+            Obstacle::sphere([0.1, -0.2, 0.3], 0.4),
+            Obstacle::capsule([0.1, 0.2, -0.3], [-0.4, 0.1, 0.5], 0.2),
+            Obstacle::cuboid([0.1, -0.2, 0.3], [0.3, 0.6, 0.9], turn),
+            Obstacle::ellipsoid([0.1, -0.2, 0.3], [0.2, 0.5, 0.7], turn),
+            #[cfg(feature = "convex-mesh")]
+            Obstacle::convex_mesh(&[[0.0; 3], [0.9, 0.1, 0.0], [0.1, 0.8, 0.2], [-0.1, 0.2, 0.7], [0.5, 0.5, 0.6]]),
+        ];
+        shapes.into_iter().map(|shape| shape.unwrap()).collect()
+    }
+
+    #[test]
+    fn the_normal_is_the_gradient_of_the_distance() {
+        let mut rng = rng::stream(1, 0);
+        for obstacle in shapes() {
+            for _ in 0..200 {
+                let at = point(&mut rng, 1.5);
+                let Tangent { value, normal } = obstacle.tangent(&at);
+                assert!((normal.norm() - 1.0).abs() < 1e-9, "{}", obstacle.name());
+                // Inside, the distance has edges where another face is nearest.
+                if value < 0.05 {
+                    continue;
+                }
+                let h = 1e-5;
+                for k in 0..3 {
+                    let step = Vector3::from_fn(|i, _| if i == k { h } else { 0.0 });
+                    let slope =
+                        (obstacle.tangent(&(at + step)).value - obstacle.tangent(&(at - step)).value) / (2.0 * h);
+                    assert!((slope - normal[k]).abs() < 1e-3, "{}: {slope} for {}", obstacle.name(), normal[k]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_tangent_bounds_the_distance_of_every_other_point() {
+        let mut rng = rng::stream(2, 0);
+        for obstacle in shapes() {
+            for _ in 0..500 {
+                let (here, there) = (point(&mut rng, 1.2), point(&mut rng, 1.2));
+                let tangent = obstacle.tangent(&here);
+                let bound = tangent.value + tangent.normal.dot(&(there - here));
+                let distance = obstacle.tangent(&there).value;
+                assert!(distance >= bound - 1e-9, "{}: {distance} below {bound}", obstacle.name());
+            }
+        }
+    }
+
+    #[test]
+    fn the_bounding_sphere_holds_the_shape() {
+        let mut rng = rng::stream(3, 0);
+        for obstacle in shapes() {
+            let center = Vector3::from(obstacle.bounding_center);
+            for at in (0..2000).map(|_| point(&mut rng, 1.5)).filter(|at| obstacle.tangent(at).value <= 0.0) {
+                assert!((at - center).norm() <= obstacle.bounding_radius, "{}", obstacle.name());
+            }
+        }
+    }
+
+    #[test]
+    fn centers_have_a_depth_and_a_normal_too() {
+        let ball = Obstacle::sphere([0.0; 3], 0.5).unwrap().tangent(&Vector3::zeros());
+        assert_eq!((ball.value, ball.normal.norm()), (-0.5, 1.0));
+        let cuboid = Obstacle::cuboid([0.0; 3], [2.0, 4.0, 6.0], None).unwrap().tangent(&Vector3::zeros());
+        assert_eq!((cuboid.value, cuboid.normal.x.abs()), (-1.0, 1.0));
+        let ellipsoid = Obstacle::ellipsoid([0.0; 3], [0.2, 0.3, 0.4], None).unwrap().tangent(&Vector3::zeros());
+        assert!((ellipsoid.value + 0.2).abs() < 1e-9 && (ellipsoid.normal.x.abs() - 1.0).abs() < 1e-6);
+    }
+}

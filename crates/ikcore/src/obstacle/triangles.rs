@@ -8,7 +8,7 @@ use super::shape::{Obstacle, Shape};
 use crate::math::Pose;
 
 /// A triangle's corners (m).
-pub type Triangle = [[f64; 3]; 3];
+pub(super) type Triangle = [[f64; 3]; 3];
 
 /// Steps around a round shape, and half as many from pole to pole.
 const STEPS: usize = 24;

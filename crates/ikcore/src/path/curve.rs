@@ -1,4 +1,4 @@
-//! What every curve can say.
+//! The interface of all curves.
 
 use std::any::Any;
 use std::fmt::Debug;

@@ -1,4 +1,5 @@
-//! What a tip follows: curves in space and time, one a file, a [`Path`] of any of them, and its samples at the ticks.
+//! Reference paths for the tip: curves in space and time (one per file), a [`Path`] along any of them, its samples at the
+//! ticks ([`Reference`]), and places without times ([`Waypoints`]). No joints, no limits: those are `trajectory` and `limits`.
 //!
 //! | curve | from |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! What a tracker follows, tick by tick.
+//! Samples of a path at the ticks of a tracker.
 
 use nalgebra::Matrix3;
 

@@ -1,5 +1,4 @@
-//! What all planners among obstacles share: the robot's body, the distance that is kept, and trajectories as motions that
-//! can be certified.
+//! Shared by the planners among obstacles: the robot's shape, collision errors, and trajectories as certifiable motions.
 
 use super::planar_arm::PlanarArm;
 use super::violation::Violation;
@@ -10,7 +9,7 @@ use crate::robot::Robot;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
 use crate::wording::number;
 
-/// What is kept beyond the margin at the ends and on straight lines, so that their timed motion can be certified too (m).
+/// Distance added to the margin at ends and on straight lines (m), so that their timed motion can be certified too.
 pub(super) const RESERVE: f64 = 5e-5;
 
 /// Whether there is anything that `robot` could touch: an obstacle, or itself where its shape is known.
@@ -103,4 +102,43 @@ fn shifted(coefficients: &Coefficients, by: f64) -> Coefficients {
         }
     }
     c
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+    use crate::trajectory::polynomial;
+
+    #[test]
+    fn no_joint_leaves_the_range_around_the_middle_of_an_interval() {
+        let mut rng = rng::stream(1, 0);
+        let mut draw = || polynomial([(); 5].map(|()| rng.uniform_in(-1.0, 1.0)));
+        let (first, second) = (draw(), draw());
+        let meeting = evaluate(&first, 0.8)[0];
+        let second = Coefficients::from(std::array::from_fn(|k| if k == 0 { meeting } else { second[k] }));
+        let motion = Trajectory::new(vec!["a".into()], vec![0.0, 0.8, 2.0], vec![first, second]).unwrap();
+        for (from, to) in [(0.0, 2.0), (0.1, 0.5), (0.7, 0.9), (1.2, 1.3), (0.8, 0.8)] {
+            let (mut middle, mut reach) = ([0.0], [0.0]);
+            TimedMotion(&motion).around(from, to, &mut middle, &mut reach);
+            let mut largest: f64 = 0.0;
+            for i in 0..=500 {
+                let (mut q, mut qd, mut qdd) = ([0.0], [0.0], [0.0]);
+                motion.at(from + (to - from) * f64::from(i) / 500.0, &mut q, &mut qd, &mut qdd).unwrap();
+                largest = largest.max((q[0] - middle[0]).abs());
+            }
+            assert!(largest <= reach[0] + 1e-12, "[{from}, {to}]: {largest} beyond {}", reach[0]);
+            assert!(to - from > 0.5 || reach[0] <= 1.5 * largest + 1e-12, "[{from}, {to}]: {} is loose", reach[0]);
+        }
+    }
+
+    #[test]
+    fn an_arm_without_obstacles_collides_only_with_a_known_shape() {
+        let bare = Robot::planar(&[1.0, 1.0]).unwrap();
+        let ball = [Obstacle::sphere([3.0, 0.0, 0.0], 0.1).unwrap()];
+        assert!(!can_collide(&bare, &[]) && can_collide(&bare, &ball));
+        assert!(can_collide(&bare.with_capsules_along_links(0.1).unwrap(), &[]));
+        assert!(as_lines(&bare).unwrap().is_some());
+        assert!(as_lines(&Robot::named("panda").unwrap()).unwrap().is_none());
+    }
 }

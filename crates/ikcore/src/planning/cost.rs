@@ -1,4 +1,4 @@
-//! What a plan minimises.
+//! The objective of a plan.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,22 +12,22 @@ use crate::wording::words;
 /// Chords that each piece of the tip's curve is measured by; on smooth pieces good to six digits.
 const CHORDS: usize = 256;
 
-/// What a plan minimises (Wang et al. 2019, eq. 8-10).
+/// Quantity that a plan minimises (Wang et al. 2019, eq. 8-10).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Cost {
-    /// How long the motion takes (s): eq. (8) and (19).
+    /// Duration of the motion (s): eq. (8) and (19).
     #[default]
     Time,
-    /// How far all joints together travel (rad, m): eq. (9) and (20).
+    /// Distance that all joints travel, summed (rad, m): eq. (9) and (20).
     JointTravel,
-    /// How far the tip travels (m): eq. (10).
+    /// Distance that the tip travels (m): eq. (10).
     TipTravel,
 }
 
 words!("objective": Cost { Time => "time", JointTravel => "joint_travel", TipTravel => "tip_travel" });
 
 impl Cost {
-    /// What it measures, in words.
+    /// Its name in messages.
     pub fn noun(self) -> &'static str {
         match self {
             Self::Time => "a duration",
@@ -36,7 +36,7 @@ impl Cost {
         }
     }
 
-    /// Its unit. (Joints that slide add their metres to the radians of the others.)
+    /// Its unit. The metres of prismatic joints are added to the radians of the others.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Time => "s",
@@ -71,7 +71,7 @@ fn chain_length(robot: &Robot) -> f64 {
     poses.windows(2).map(|ends| (ends[1].translation.vector - ends[0].translation.vector).norm()).sum()
 }
 
-/// How far all joints together travel: exact, from turning point to turning point.
+/// Returns the joint travel: exact, from turning point to turning point.
 fn joint_travel(trajectory: &Trajectory) -> f64 {
     let (knots, n) = (trajectory.knots(), trajectory.joints().len());
     let of_piece = |(i, polynomial): (usize, &Coefficients)| {
@@ -89,7 +89,7 @@ fn joint_travel(trajectory: &Trajectory) -> f64 {
     trajectory.coefficients().iter().enumerate().map(of_piece).sum()
 }
 
-/// How far the tip travels, by chords.
+/// Returns the tip travel, measured by chords.
 fn tip_travel(robot: &Robot, trajectory: &Trajectory) -> f64 {
     let n = trajectory.joints().len();
     let pieces = trajectory.knots().windows(2).zip(trajectory.coefficients().chunks(n));
@@ -109,4 +109,32 @@ fn tip_travel(robot: &Robot, trajectory: &Trajectory) -> f64 {
         travel
     };
     pieces.map(of_piece).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trajectory::polynomial;
+
+    /// Joint 1 goes out by 1 rad and back, joint 2 by -0.5 rad, in 2 s.
+    fn out_and_back() -> Trajectory {
+        let pieces = vec![polynomial([0.0, 2.0, -1.0]), polynomial([0.3, -0.25])];
+        Trajectory::new(vec!["a".into(), "b".into()], vec![0.0, 2.0], pieces).unwrap()
+    }
+
+    #[test]
+    fn travel_counts_the_way_back_too() {
+        let robot = Robot::planar(&[1.0, 0.5]).unwrap();
+        let motion = out_and_back();
+        assert_eq!(Cost::Time.of(&robot, &motion), 2.0);
+        assert!((Cost::JointTravel.of(&robot, &motion) - 2.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_tip_of_one_turning_link_travels_along_its_arc() {
+        let robot = Robot::planar(&[1.0, 0.5]).unwrap();
+        let pieces = vec![polynomial([0.2, 0.7]), polynomial([0.0])];
+        let motion = Trajectory::new(vec!["a".into(), "b".into()], vec![0.0, 2.0], pieces).unwrap();
+        assert!((Cost::TipTravel.of(&robot, &motion) - 1.5 * 1.4).abs() < 1e-5);
+    }
 }

@@ -14,11 +14,11 @@ const SAMPLES: usize = 10;
 const STEPS: usize = 8;
 
 /// Joint positions as a function of the path parameter.
-pub trait Configurations: Fn(f64, &mut [f64]) {}
+pub(super) trait Configurations: Fn(f64, &mut [f64]) {}
 impl<F: Fn(f64, &mut [f64])> Configurations for F {}
 
 /// The distance between the tip of a robot that moves through these configurations and its path.
-pub struct TipDeviation<'a, C> {
+pub(super) struct TipDeviation<'a, C> {
     /// The robot.
     pub robot: &'a Robot,
     /// Where its tip should be.
@@ -29,7 +29,7 @@ pub struct TipDeviation<'a, C> {
 
 /// The largest value of a quantity, and the path parameter at which it occurs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Largest {
+pub(super) struct Largest {
     /// The value.
     pub value: f64,
     /// The path parameter.
@@ -44,7 +44,7 @@ impl Largest {
 
 /// The largest deviations of the tip from its path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LargestDeviation {
+pub(super) struct LargestDeviation {
     /// Distance from the path (m).
     pub distance: Largest,
     /// Angle between the tip's orientation and that of the path (rad); 0 where the path has none.
@@ -53,7 +53,7 @@ pub struct LargestDeviation {
 
 impl LargestDeviation {
     /// The violations where the tip is to stay within `accuracy` (m, rad).
-    pub fn violations(&self, tip_path: &TipPath, accuracy: f64) -> impl Iterator<Item = Violation> {
+    pub(super) fn violations(&self, tip_path: &TipPath, accuracy: f64) -> impl Iterator<Item = Violation> {
         let of = |quantity: &str, largest: Largest, unit: &'static str| {
             let what = format!("{quantity} of the tip from {}", tip_path.place(largest.share));
             let broken = largest.value > accuracy;
@@ -65,20 +65,20 @@ impl LargestDeviation {
 
 impl<C: Configurations> TipDeviation<'_, C> {
     /// The largest deviations between the first and the last of `knots`.
-    pub fn largest(&self, knots: &[f64]) -> LargestDeviation {
+    pub(super) fn largest(&self, knots: &[f64]) -> LargestDeviation {
         let distance = |share: f64, from: f64, to: f64| self.distance(share, from, to);
         let angle = |share: f64, _: f64, _: f64| self.angle(share);
         LargestDeviation { distance: largest_over(knots, distance), angle: largest_over(knots, angle) }
     }
 
     /// The larger of distance (m) and angle (rad) at a path parameter.
-    pub fn at(&self, share: f64) -> f64 {
+    pub(super) fn at(&self, share: f64) -> f64 {
         self.distance(share, share, share).max(self.angle(share))
     }
 
     /// An upper bound of [`at`](Self::at) that is quicker to compute: the distance (m) from the path at this very parameter, or
     /// the angle (rad) if that is larger.
-    pub fn bound(&self, share: f64) -> f64 {
+    pub(super) fn bound(&self, share: f64) -> f64 {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
         (self.configurations)(share, q);
@@ -92,7 +92,7 @@ impl<C: Configurations> TipDeviation<'_, C> {
     }
 
     /// The larger of distance (m) and angle (rad) at `samples` places between two path parameters.
-    pub fn between(&self, from: f64, to: f64, samples: usize) -> f64 {
+    pub(super) fn between(&self, from: f64, to: f64, samples: usize) -> f64 {
         let at = |i: usize| from + (to - from) * i as f64 / (samples + 1) as f64;
         let off = |share: f64| self.distance(share, from, to).max(self.angle(share));
         (1..=samples).map(|i| off(at(i))).fold(0.0, f64::max)
@@ -141,4 +141,36 @@ fn peak(from: f64, to: f64, value: impl Fn(f64) -> f64) -> Largest {
         }
     }
     at(0.5 * (lower + upper)).or_larger(best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::Waypoints;
+
+    #[test]
+    fn the_largest_deviation_is_that_of_dense_samples() {
+        let robot = Robot::planar(&[1.0, 1.0]).unwrap();
+        let (from, to) = ([0.2, 1.1], [0.9, 0.3]);
+        let points = Waypoints::new(vec![robot.tip_position(&from), robot.tip_position(&to)], None).unwrap();
+        let tip_path = TipPath::through(&points).unwrap();
+        let configurations =
+            |share: f64, q: &mut [f64]| (0..2).for_each(|j| q[j] = from[j] + share * (to[j] - from[j]));
+        let deviation = TipDeviation { robot: &robot, tip_path: &tip_path, configurations };
+        let mut dense: f64 = 0.0;
+        for i in 0..=4000 {
+            let share = f64::from(i) / 4000.0;
+            let mut q = [0.0; 2];
+            configurations(share, &mut q);
+            let distance = tip_path.distance(robot.tip_position(&q), 0.0, 1.0);
+            assert!(distance <= deviation.bound(share) + 1e-12);
+            dense = dense.max(distance);
+        }
+        let LargestDeviation { distance, angle } = deviation.largest(&[0.0, 0.3, 1.0]);
+        assert!(dense > 0.01 && (distance.value - dense).abs() < 1e-3 * dense, "{} for {dense}", distance.value);
+        assert_eq!(angle.value, 0.0);
+        let found: Vec<Violation> = LargestDeviation { distance, angle }.violations(&tip_path, 0.5 * dense).collect();
+        assert_eq!(found[0].what, "distance of the tip from the path between points 0 and 1");
+        assert_eq!((found.len(), found[0].bound), (1, 0.5 * dense));
+    }
 }

@@ -1,17 +1,17 @@
-//! Constant limits of each joint, as planners keep them.
+//! Constant limits of each joint, for planners.
 
 use std::f64::consts::PI;
 
 use super::violation::Violation;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
-use crate::math::interval;
+use crate::math::sampling_range;
 use crate::robot::{JointKind, Robot};
 use crate::trajectory::Trajectory;
 
 /// Constant limits of each joint (n,); infinite where there is none.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MotionLimits {
+pub(crate) struct MotionLimits {
     /// Lower position limits (rad, m).
     pub lower: Vec<f64>,
     /// Upper position limits (rad, m).
@@ -32,7 +32,7 @@ impl MotionLimits {
     /// # Errors
     /// [`Error::UnsupportedLimit`] for jerk limits and such that vary in time, [`Error::OutOfRange`] for a velocity or
     /// acceleration limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`], [`Error::WrongLength`].
-    pub fn new(robot: &Robot, limits: Option<&Limits>, method: &str) -> Result<Self> {
+    pub(crate) fn new(robot: &Robot, limits: Option<&Limits>, method: &str) -> Result<Self> {
         let limits = limits.cloned().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
         limits.require_none(&[Field::Jerk], method, "retime the plan with a jerk limit afterwards")?;
@@ -53,27 +53,27 @@ impl MotionLimits {
     }
 
     /// Number of joints.
-    pub fn dof(&self) -> usize {
+    pub(crate) fn dof(&self) -> usize {
         self.joints.len()
     }
 
     /// Name of a joint.
-    pub fn joint_name(&self, joint: usize) -> &str {
+    pub(crate) fn joint_name(&self, joint: usize) -> &str {
         &self.joints[joint].0
     }
 
     /// Names of all joints.
-    pub fn joint_names(&self) -> Vec<String> {
+    pub(crate) fn joint_names(&self) -> Vec<String> {
         self.joints.iter().map(|(name, _)| name.clone()).collect()
     }
 
-    /// Positions of a joint that a search may use (rad, m): its limits, half a turn to either side where there are none.
-    pub fn finite_range(&self, joint: usize) -> (f64, f64) {
-        interval::finite(self.lower[joint], self.upper[joint], PI)
+    /// Range of positions that a search may use for a joint (rad, m): its limits, or half a turn to either side without limits.
+    pub(crate) fn finite_range(&self, joint: usize) -> (f64, f64) {
+        sampling_range::finite(self.lower[joint], self.upper[joint], PI)
     }
 
     /// Time (s) that the slowest joint takes through its range, at full speed or from rest to rest at full acceleration.
-    pub fn whole_range_time(&self) -> f64 {
+    pub(crate) fn whole_range_time(&self) -> f64 {
         let time = |j: usize| {
             let (lower, upper) = self.finite_range(j);
             let range = upper - lower;
@@ -86,7 +86,7 @@ impl MotionLimits {
     ///
     /// # Errors
     /// None in practice: the limits were checked.
-    pub fn applied_to(&self, robot: &Robot) -> Result<Robot> {
+    pub(crate) fn applied_to(&self, robot: &Robot) -> Result<Robot> {
         robot.with_limits(|j, joint| (joint.lower, joint.upper) = (self.lower[j], self.upper[j]))
     }
 
@@ -94,7 +94,7 @@ impl MotionLimits {
     ///
     /// # Errors
     /// [`Error::OutOfRange`].
-    pub fn require_velocities(&self, method: &str) -> Result<()> {
+    pub(crate) fn require_velocities(&self, method: &str) -> Result<()> {
         match self.velocity.iter().position(|limit| limit.is_infinite()) {
             None => Ok(()),
             Some(j) => {
@@ -105,8 +105,8 @@ impl MotionLimits {
         }
     }
 
-    /// What `trajectory` breaks, by the exact extremes of its polynomials.
-    pub fn violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
+    /// Returns the limits that `trajectory` breaks, by the exact extremes of its polynomials.
+    pub(crate) fn violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
         let (velocity, acceleration) = (trajectory.max_velocity(), trajectory.max_acceleration());
         let mut found = vec![];
         for (j, (lowest, highest)) in trajectory.position_range().into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What a planner hands back.
+//! The result of a planner.
 
 use std::time::Duration;
 
@@ -13,26 +13,28 @@ use crate::stored::from_bytes;
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
-/// A planned motion, and what became of the search for it.
+/// A planned motion and the outcome of the search for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// The motion: the best that keeps everything, else the least violating one.
+    /// The best motion that keeps all limits, or the least violating one.
     pub trajectory: Trajectory,
-    /// What was minimised.
+    /// Quantity that was minimised.
     pub objective: Cost,
-    /// Its value on the trajectory (s, rad or m).
+    /// Value of the objective on the trajectory (s, rad or m).
     pub cost: f64,
-    /// How the search came to its best, evaluation by evaluation.
+    /// Improvements of the search, in the order of evaluations.
     pub history: Vec<Improvement>,
     /// Smallest distance (m) between robot and obstacles on the trajectory; None where there are no obstacles.
     pub clearance: Option<f64>,
     /// Largest distance (m) of the tip from the path that it was to follow, at its points and between them; None from end
     /// to end.
     pub accuracy: Option<f64>,
+    /// Positions that the tip was to follow (m), straight in between; None from end to end.
+    pub reference: Option<Vec<[f64; 3]>>,
     /// The orientations that a planar arm was free to choose, at every point of the path, from the tip's link down; empty
     /// where there is no such choice.
     pub redundancy: Vec<Orientations>,
-    /// What the trajectory breaks; nothing for a plan that succeeded.
+    /// Bounds that the trajectory breaks; empty for a plan that succeeded.
     pub violations: Vec<Violation>,
     /// [`Status::Solved`] for a trajectory that breaks nothing; else why the search ended.
     pub status: Status,
@@ -51,7 +53,7 @@ pub struct Improvement {
     pub cost: f64,
 }
 
-/// So many violations are written out in a message.
+/// Violations written out in a message.
 const NAMED_IN_MESSAGE: usize = 3;
 
 impl Plan {
@@ -68,7 +70,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// What happened, and what to try.
+    /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
         match self.status {

@@ -41,7 +41,8 @@ pub enum Elbow {
 }
 
 impl Elbow {
-    fn sign(self) -> f64 {
+    /// The sign of the second joint's angle: 1 or -1.
+    pub fn sign(self) -> f64 {
         match self {
             Self::Positive => 1.0,
             Self::Negative => -1.0,
@@ -50,11 +51,11 @@ impl Elbow {
 }
 
 /// Links further along than these two are the redundancy.
-pub const ELBOW_LINKS: usize = 2;
+pub(super) const ELBOW_LINKS: usize = 2;
 
 const HOLE: &str = "inside the hole that the arm leaves about its base";
 
-/// What a robot may differ from a polygon of links (m).
+/// Largest deviation of a robot from a polygon of links (m).
 const AGREEMENT: f64 = 1e-9;
 
 impl PlanarArm {
@@ -120,7 +121,7 @@ impl PlanarArm {
 
     /// Where the tip is to be in the plane, and its orientation (rad) if that is given; None for a target beside the plane, or
     /// one that is neither a position nor a pose.
-    pub fn place(&self, target: &Target) -> Option<Place> {
+    pub fn planar_target(&self, target: &Target) -> Option<PlanarTarget> {
         let position = target.position()?;
         let orientation = match target {
             Target::Position(_) => None,
@@ -132,11 +133,11 @@ impl PlanarArm {
             Target::Orientation(_) | Target::Pointing { .. } => return None,
         };
         let in_plane = (position[2] - self.height).abs() < AGREEMENT;
-        in_plane.then_some(Place { position: [position[0], position[1]], orientation })
+        in_plane.then_some(PlanarTarget { position: [position[0], position[1]], orientation })
     }
 
     /// Why a place cannot be reached, in words; None where it can.
-    pub fn problem(&self, place: &Place) -> Option<String> {
+    pub fn problem(&self, place: &PlanarTarget) -> Option<String> {
         let (free, held) = match &place.orientation {
             None => (self.dof(), [].as_slice()),
             Some(orientation) => (self.dof() - 1, std::slice::from_ref(orientation)),
@@ -240,9 +241,9 @@ impl PlanarArm {
     }
 }
 
-/// Where the tip of a planar arm is to be.
+/// Target of a planar arm's tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub struct PlanarTarget {
     /// In the plane (m).
     pub position: [f64; 2],
     /// Absolute orientation of the last link (rad), where it is given.
@@ -264,7 +265,7 @@ pub struct Orientation {
 pub type Orientations = SmallVec<[Orientation; 4]>;
 
 /// The angle (rad) in (-pi, pi] that differs by whole turns.
-pub fn wrapped(angle: f64) -> f64 {
+pub(super) fn wrapped(angle: f64) -> f64 {
     let wrapped = angle - TAU * (angle / TAU).round();
     if wrapped <= -PI { wrapped + TAU } else { wrapped }
 }

@@ -1,4 +1,4 @@
-//! Any solver on the cost of a plan.
+//! Search for the decision vector of a plan, by any derivative-free solver.
 
 use std::cell::Cell;
 
@@ -8,21 +8,21 @@ use crate::planning::plan::Improvement;
 use crate::rng;
 use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Monitor, Status, Stop};
 
-/// What searches, and for how long.
-pub struct Search {
+/// A solver, its budget and its seed.
+pub(super) struct Search {
     /// The algorithm.
     pub solver: AnySolver<DerivativeFree>,
-    /// Its budgets.
+    /// Its budget.
     pub stop: Stop,
-    /// Of the random draws.
+    /// Seed of the random draws.
     pub seed: u64,
 }
 
-/// What a search found.
-pub struct Found {
+/// Result of a search.
+pub(super) struct Found {
     /// The best decision vector.
     pub x: Point,
-    /// How it came to it.
+    /// Improvements, in the order of evaluations.
     pub history: Vec<Improvement>,
     /// Evaluations.
     pub evaluations: usize,
@@ -30,8 +30,8 @@ pub struct Found {
 }
 
 impl Found {
-    /// How a plan ends that keeps everything, or does not.
-    pub fn status(&self, keeps_everything: bool) -> Status {
+    /// Returns the status of a plan that keeps all limits, or does not.
+    pub(super) fn status(&self, keeps_everything: bool) -> Status {
         match self.status {
             Status::Interrupted => Status::Interrupted,
             _ if keeps_everything => Status::Solved,
@@ -45,7 +45,7 @@ impl Search {
     ///
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for wrong options of the solver or a budget of zero.
-    pub fn run(&self, cost: &mut dyn Objective, bounds: &Bounds, monitor: &mut dyn Monitor) -> Result<Found> {
+    pub(super) fn run(&self, cost: &mut dyn Objective, bounds: &Bounds, monitor: &mut dyn Monitor) -> Result<Found> {
         let Self { solver, stop, seed } = self;
         solver.validate()?;
         stop.validate()?;

@@ -10,11 +10,11 @@ use crate::wording::number;
 /// A bound that a trajectory breaks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Violation {
-    /// What breaks it, such as "velocity of joint 'elbow'".
+    /// Quantity that breaks the bound, for example "velocity of joint 'elbow'".
     pub what: String,
-    /// How far it goes, in `unit`.
+    /// Its extreme value, in `unit`.
     pub value: f64,
-    /// How far it may go, in `unit`.
+    /// Its bound, in `unit`.
     pub bound: f64,
     /// "rad/s" and so on.
     pub unit: Cow<'static, str>,
@@ -29,5 +29,20 @@ impl fmt::Display for Violation {
             return write!(f, "{what} is {beyond} {unit} beyond the {allowed} {unit} allowed");
         }
         write!(f, "{what} is {shown} {unit}, allowed {allowed} {unit}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(value: f64, bound: f64) -> String {
+        Violation { what: "velocity of joint 'a'".into(), value, bound, unit: "rad/s".into() }.to_string()
+    }
+
+    #[test]
+    fn a_violation_names_value_and_bound_or_what_rounding_would_hide() {
+        assert_eq!(shown(2.5, 2.0), "velocity of joint 'a' is 2.500 rad/s, allowed 2.000 rad/s");
+        assert_eq!(shown(2.00001, 2.0), "velocity of joint 'a' is 1.000e-5 rad/s beyond the 2.000 rad/s allowed");
     }
 }

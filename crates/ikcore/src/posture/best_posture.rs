@@ -1,5 +1,5 @@
-//! The best posture of a planar arm: by the published swarm, or by differential evolution over the directions of all
-//! links but two, which close the gap on either side.
+//! The best posture of a planar arm, by the published swarm or by differential evolution over the headings of all links but
+//! the last two, which close the linkage on either side.
 
 use std::f64::consts::PI;
 use std::time::Duration;
@@ -20,11 +20,11 @@ use crate::task::{Target, TipError};
 /// How to search.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PostureOptions {
-    /// What makes a posture good.
+    /// The measure of a posture.
     pub measure: Measure,
-    /// Where joint points may be; None: anywhere.
+    /// The region of joint points; None: anywhere.
     pub region: Option<Rectangle>,
-    /// The published swarm, in place of our own search.
+    /// The published swarm, instead of our own search.
     pub swarm: Option<CircleSwarm>,
     /// Seed of the random draws: the same seed, the same bits.
     pub seed: u64,
@@ -61,7 +61,7 @@ impl Posture {
     }
 }
 
-/// Evaluations of our own search, per link.
+/// Evaluations of our own search per link.
 const EVALUATIONS_A_LINK: usize = 2500;
 
 /// The best posture of the planar arm `robot` with its tip at `target` (m).
@@ -99,7 +99,7 @@ pub fn best_posture(
     Ok(posture(nearest.q.to_vec(), f64::NAN, vec![], status, nearest.evaluations))
 }
 
-/// Our own search; None where no posture was met.
+/// Our own search; None where no posture was found.
 fn evolve(linkage: &Linkage, seed: u64, monitor: &mut dyn Monitor) -> Option<FoundPosture> {
     let links = linkage.links();
     let mut objective = ClosedLinkage { linkage, q: vec![0.0; links], best: None, evaluations: 0 };
@@ -116,8 +116,7 @@ fn evolve(linkage: &Linkage, seed: u64, monitor: &mut dyn Monitor) -> Option<Fou
     best.map(|(index, q)| FoundPosture { q, index, history: vec![], evaluations, status })
 }
 
-/// Minus the index as a function of the headings of all links but the last two, which close the linkage on one of two sides:
-/// the better of them.
+/// Minus the index as a function of the headings of all links but the last two, which close the linkage on the better side.
 struct ClosedLinkage<'a> {
     linkage: &'a Linkage,
     q: Vec<f64>,

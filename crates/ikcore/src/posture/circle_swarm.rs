@@ -6,22 +6,22 @@ use crate::error::{Error, Result, require_positive};
 use crate::rng::LazyRng;
 use crate::solver::{Monitor, Status};
 
-/// More particles or generations than this are a mistake.
+/// Largest number of particles or generations.
 const MOST: usize = 1_000_000;
 
-/// The options, as far as they are published.
+/// Options of the published swarm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CircleSwarm {
     /// Particles; published 5.
     pub population: usize,
     /// Generations, the first draw included; published 10.
     pub generations: usize,
-    /// Attraction to the particle's own best place. phi = c1 + c2 must be above 4: eq. (18) has no root below, for all
-    /// that the paper says "phi > 3".
+    /// Attraction to the particle's own best place. phi = c1 + c2 must be above 4: eq. (18) has no root below, although
+    /// the paper says "phi > 3".
     pub c1: f64,
     /// Attraction to the swarm's best place; printed as the particle's own in eq. (17).
     pub c2: f64,
-    /// Vm: largest velocity of a coordinate (m a generation); not published.
+    /// Vm: largest velocity of a coordinate (m per generation); not published.
     pub velocity_limit: f64,
     /// Random factors from [-1, 1], as printed, instead of [0, 1].
     pub signed: bool,
@@ -33,12 +33,12 @@ impl Default for CircleSwarm {
     }
 }
 
-/// Draws of a particle before no posture is taken to exist.
+/// Draws of a particle after which no posture is assumed to exist.
 const DRAWS: usize = 10_000;
 
-/// What a search has found.
+/// The result of a search.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FoundPosture {
+pub(super) struct FoundPosture {
     /// The best posture (n,).
     pub q: Vec<f64>,
     /// Its index.
@@ -95,8 +95,13 @@ impl CircleSwarm {
         2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs()
     }
 
-    /// The best posture of `linkage` that the swarm meets; None where it meets none.
-    pub fn search(&self, linkage: &Linkage, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Option<FoundPosture> {
+    /// The best posture of `linkage` that the swarm finds; None where it finds none.
+    pub(super) fn search(
+        &self,
+        linkage: &Linkage,
+        rng: &mut LazyRng,
+        monitor: &mut dyn Monitor,
+    ) -> Option<FoundPosture> {
         let n = linkage.links();
         let best = (f64::NEG_INFINITY, vec![], vec![]);
         let mut swarm = Swarm { options: self, linkage, rng, monitor, q: vec![0.0; n], best, evaluations: 0 };
@@ -108,8 +113,8 @@ impl CircleSwarm {
 }
 
 impl Swarm<'_> {
-    /// All generations, or as many as the monitor lets pass; writes the best index after each. None where a particle finds no
-    /// posture.
+    /// Runs all generations, or as many as the monitor allows, and appends the best index after each to `history`. None where a
+    /// particle finds no posture.
     fn run(&mut self, history: &mut Vec<f64>) -> Option<Status> {
         let mut particles = vec![];
         for _ in 0..self.options.population {
@@ -147,7 +152,7 @@ impl Swarm<'_> {
         None
     }
 
-    /// One generation of a particle: eq. (17), back onto the circles, and anew where that fails (step 5).
+    /// One generation of a particle: eq. (17), then back onto the circles; drawn anew where that fails (step 5).
     fn advance(&mut self, particle: &mut Particle) -> Option<()> {
         let CircleSwarm { c1, c2, velocity_limit, signed, .. } = *self.options;
         let chi = self.options.constriction();
@@ -177,7 +182,7 @@ impl Swarm<'_> {
         Some(())
     }
 
-    /// The index of a posture, kept where it is the best.
+    /// The index of a posture; keeps the posture where it is the best.
     fn evaluate(&mut self, points: &[Point2]) -> Option<f64> {
         let index = self.linkage.index(points, &mut self.q)?;
         self.evaluations += 1;

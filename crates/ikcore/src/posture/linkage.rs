@@ -11,7 +11,7 @@ use crate::wording::words;
 /// A point of the plane (m).
 pub type Point2 = [f64; 2];
 
-/// What makes a posture good.
+/// The measure of a posture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Measure {
     /// Yoshikawa's index of the tip; k_m times that is the paper's SM_n, eq. (15).
@@ -23,7 +23,7 @@ pub enum Measure {
 
 words!("measure": Measure { Tip => "tip", Overall => "overall" });
 
-/// A rectangle that no joint point may leave.
+/// A rectangle that all joint points must stay in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rectangle {
     /// Least x and y (m).
@@ -32,7 +32,7 @@ pub struct Rectangle {
     pub upper: Point2,
 }
 
-/// Points count as inside a region up to this distance (m): optima often lie on its edge.
+/// Tolerance (m) on the edge of a region, where optima often lie.
 const ON_EDGE: f64 = 1e-12;
 
 impl Rectangle {
@@ -41,7 +41,7 @@ impl Rectangle {
     }
 }
 
-/// A planar arm whose tip is to be at one place.
+/// A planar arm with its tip held in place.
 #[derive(Debug, Clone)]
 pub struct Linkage {
     robot: Robot,
@@ -122,9 +122,9 @@ impl Linkage {
         Some(points)
     }
 
-    /// `points` moved onto their circles: each in the direction in which it was seen from the one before, the last where the
-    /// circles of the last two links meet, the nearer of the two places. None where they do not meet.
-    pub fn repair(&self, points: &mut [Point2]) -> Option<()> {
+    /// Moves `points` onto their circles: each along the direction from the one before; the last to the nearer intersection of
+    /// the circles of the last two links. None where they do not intersect.
+    pub(super) fn repair(&self, points: &mut [Point2]) -> Option<()> {
         let mut end = self.base;
         let last = points.len() - 1;
         for (point, length) in points[..last].iter_mut().zip(&self.lengths) {
@@ -139,7 +139,7 @@ impl Linkage {
         Some(())
     }
 
-    /// Where the circle about `from` meets the circle about the target, on the left or on the right of the line between.
+    /// The intersection of the circles about `from` and about the target, to the left or the right of the line between.
     fn last_point(&self, from: &Point2, side: f64) -> Option<Point2> {
         let n = self.links();
         let (a, b) = (self.lengths[n - 2], self.lengths[n - 1]);
@@ -172,7 +172,7 @@ impl Linkage {
         })
     }
 
-    /// `angle` turned by whole turns to a place between the limits of joint `j`, the one nearest to zero.
+    /// `angle` moved by whole turns between the limits of joint `j`, nearest to zero.
     fn within_limits(&self, j: usize, angle: f64) -> Option<f64> {
         let joint = &self.robot.joints()[j];
         let nearest = angle - TAU * (angle / TAU).round();

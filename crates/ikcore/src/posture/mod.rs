@@ -1,4 +1,4 @@
-//! Postures of planar arms as points on circles: the best one for a tip position, as published and by our own search.
+//! The best posture of a planar arm for a tip position, as published and by our own search.
 //!
 //! "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", section 2.5: with the tip at E, the
 //! first joint point lies on the circle about the base, the last on the circle about E, each with its link for radius. For
@@ -6,9 +6,9 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | [`linkage`] | joint points, their circles, the index of a posture |
-//! | [`circle_swarm`] | particle swarm over joint points, as published |
-//! | [`best_posture`](mod@best_posture) | the call, and our own search over the directions of the links |
+//! | `linkage` | joint points, their circles, the index of a posture |
+//! | `circle_swarm` | particle swarm over joint points, as published |
+//! | `best_posture` | the call, and our own search over the directions of the links |
 
 mod best_posture;
 mod circle_swarm;

@@ -1,4 +1,4 @@
-//! A robot and a target as something to minimise.
+//! A robot and a target as an objective.
 
 use crate::math::box_step::ROWS;
 use crate::math::f64x4::F64x4;
@@ -12,23 +12,23 @@ use crate::starts::Starts;
 use crate::task::residual::entrywise;
 use crate::task::{Assessment, Criterion, Target};
 
-/// The inverse kinematics problem; it borrows everything, so that building one per tick costs nothing.
+/// The inverse kinematics problem. It borrows everything, so that building one per tick costs nothing.
 #[derive(Debug, Clone, Copy)]
 pub struct Problem<'a> {
     robot: &'a Robot,
     target: &'a Target,
     criterion: Criterion,
-    /// Found when the first start is asked for.
+    /// Looked up when the first start is proposed.
     seeds: Option<Starts<'a>>,
     turns: Turns,
 }
 
-/// Whether configurations that differ by whole turns differ.
+/// Whether configurations that differ by whole turns count as different.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Turns {
-    /// They do: the arm would have to make the turns, as in tracking.
+    /// Different: the arm would have to make the turns, as in tracking.
     Distinct,
-    /// They do not, as for a configuration by itself.
+    /// The same, as for a configuration by itself.
     Equivalent,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Problem<'a> {
         Self { robot, target, criterion: criterion.into(), seeds: None, turns: Turns::Distinct }
     }
 
-    /// The same problem where a joint may be brought back by whole turns.
+    /// The same problem, in which whole turns of a joint do not count.
     pub fn disregarding_turns(self) -> Self {
         Self { turns: Turns::Equivalent, ..self }
     }
@@ -87,8 +87,8 @@ impl Objective for Problem<'_> {
         repeats.then_some(std::f64::consts::TAU)
     }
 
-    /// The robot's indexed configurations, the nearest first, then uniform draws in the box, where a side without a limit ends as
-    /// the joint's sampling range does. The indexed ones also follow a start that the caller gives.
+    /// Proposes the robot's indexed configurations, the nearest first, then uniform draws in the box, whose open sides end at the
+    /// joint's sampling range. The indexed configurations also follow a start that the caller gives.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
         if self.seeds.is_none() {
             let aim = self.criterion.aim(self.target);
@@ -119,7 +119,7 @@ impl Residual for Problem<'_> {
 }
 
 impl Gradient for Problem<'_> {
-    /// E of eq. (11) of Yuan et al. 2016; where components have weights, or the tip a region, half the weighted sum of squares.
+    /// E of eq. (11) of Yuan et al. 2016; half the weighted sum of squares where components have weights or the tip a region.
     #[inline]
     fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> SmoothScore {
         if self.criterion.components.is_some() || self.criterion.region.is_some() {
@@ -143,7 +143,7 @@ impl LeastSquares for Problem<'_> {
 }
 
 impl SideBySide for Problem<'_> {
-    /// The problems are of one robot and one criterion, their targets of one kind that
+    /// The problems share robot and criterion; their targets are of one kind that
     /// [goes side by side](Target::goes_side_by_side).
     #[inline]
     fn linearize_four(problems: [&Self; 4], qs: &[F64x4], out: &mut FourLinearizations) -> [Score; 4] {

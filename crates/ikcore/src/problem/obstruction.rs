@@ -34,12 +34,12 @@ impl Problem<'_> {
     fn outside_region(&self, q: &[f64]) -> Option<String> {
         let (region, tip) = (self.criterion().region.as_ref()?, self.robot().tip_position(q));
         (!region.contains(&tip))
-            .then(|| format!("the tip is outside its region, which asks for {}", region.violated_faces(&tip)))
+            .then(|| format!("the tip is outside its region, which requires {}", region.violated_faces(&tip)))
     }
 
     fn joints_at_limits(&self, bounds: &Bounds, q: &[f64]) -> Option<String> {
         let side = |j: usize| match (q[j] == bounds.lower()[j], q[j] == bounds.upper()[j]) {
-            (true, true) => Some("held by limits that leave it no room"),
+            (true, true) => Some("locked by equal limits"),
             (true, false) => Some("at its lower limit"),
             (false, true) => Some("at its upper limit"),
             (false, false) => None,
@@ -50,7 +50,9 @@ impl Problem<'_> {
             .iter()
             .take(MOST_NAMED)
             .map(|(name, side)| format!("joint '{name}' {side}"))
-            .chain((stuck.len() > MOST_NAMED).then(|| format!("{} more joints at theirs", stuck.len() - MOST_NAMED)))
+            .chain(
+                (stuck.len() > MOST_NAMED).then(|| format!("{} more joints at their limits", stuck.len() - MOST_NAMED)),
+            )
             .collect();
         (!named.is_empty()).then(|| named.join(", "))
     }

@@ -4,9 +4,9 @@ use super::link_capsule::{Bodies, LinkCapsule};
 use super::model::Robot;
 use crate::error::{Error, Result, require_finite, suggestion};
 use crate::kinematics::chain::{LinkFrame, StageMotion};
+use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::vector::distance;
-use crate::math::{Frame, MAX_DOF};
 use crate::wording::listed;
 
 /// Shorter segments count as points (m).
@@ -91,12 +91,7 @@ impl Robot {
         Some((found.stages, found.offset))
     }
 
-    /// The frames reached after 0, 1, 2, ... moving elements; the z axis of each but the first is the element's axis.
-    pub(crate) fn write_stage_frames(&self, q: &[f64], frames: &mut [Frame; MAX_DOF + 1]) {
-        (self.kernels().stage_frames)(self.chain(), q, frames);
-    }
-
-    /// By how much moving element `stage` turns (rad) and slides (m) when each joint changes by up to `reach`.
+    /// Largest turn (rad) and slide (m) of moving element `stage` when each joint changes by up to `reach`.
     #[inline]
     pub(crate) fn stage_travel(&self, stage: usize, reach: &[f64]) -> [f64; 2] {
         let StageMotion { joint, turn_scale, slide_scale, .. } = self.chain().motions[stage];

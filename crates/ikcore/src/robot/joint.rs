@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::math::interval;
+use crate::math::sampling_range;
 use crate::wording::words;
 
 /// Kind of motion of a joint.
@@ -69,7 +69,7 @@ impl Joint {
     /// [`sampling_range`](Self::sampling_range) under other limits (rad or m).
     pub(crate) fn sampling_range_within(&self, lower: f64, upper: f64) -> (f64, f64) {
         let reach = if self.kind.turns() { std::f64::consts::PI } else { UNLIMITED_SLIDE };
-        interval::finite(lower, upper, reach)
+        sampling_range::finite(lower, upper, reach)
     }
 
     /// Checks that the limits do not contradict each other.

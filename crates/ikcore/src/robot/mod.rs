@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `joint`, `description`, `builder` | from joints and elements to a robot |
 //! | `model` | [`Robot`] |
-//! | `batched` | kinematics of many configurations |
+//! | `kinematics`, `batched` | kinematics of one configuration, and of many |
 //! | `link_capsule`, `bodies` | capsules on the links |
 //! | `manufacturing_errors` | the same robot, built inexactly |
 //! | `serialization` | robots as bytes |
@@ -16,6 +16,7 @@ mod bodies;
 mod builder;
 mod description;
 mod joint;
+mod kinematics;
 mod link_capsule;
 mod manufacturing_errors;
 mod model;

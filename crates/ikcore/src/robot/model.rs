@@ -2,18 +2,14 @@
 
 use std::sync::{Arc, OnceLock};
 
-use nalgebra::Matrix6xX;
-
 use super::description::{Description, Element};
 use super::joint::Joint;
 use super::link_capsule::Bodies;
 use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::Chain;
 use crate::kinematics::kernels::Kernels;
-use crate::kinematics::link_frames::link_frames;
-use crate::kinematics::{Columns, FourColumns, Reach, Screws, TaskRank, Wrench};
-use crate::math::f64x4::F64x4;
-use crate::math::{Frame, MAX_DOF, Pose, pose};
+use crate::kinematics::{Reach, TaskRank};
+use crate::math::{Frame, Pose, pose};
 use crate::rng::LazyRng;
 use crate::starts::Starts;
 use crate::starts::index::StartIndex;
@@ -170,74 +166,6 @@ impl Robot {
         }
     }
 
-    /// Pose of the tip at `q` (n,) (rad, m).
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`] or [`Error::NotFinite`].
-    pub fn fk(&self, q: &[f64]) -> Result<Pose> {
-        self.check("joint angles", q)?;
-        Ok(self.tip(q).into())
-    }
-
-    /// Geometric Jacobian at the tip, 6 x n: linear rows (m per rad or m), then angular, in the base's axes.
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`] or [`Error::NotFinite`].
-    pub fn jacobian(&self, q: &[f64]) -> Result<Matrix6xX<f64>> {
-        self.check("joint angles", q)?;
-        let mut columns = [[0.0; 6]; MAX_DOF];
-        self.tip_and_jacobian(q, &mut columns);
-        Ok(Matrix6xX::from_iterator(q.len(), columns[..q.len()].iter().flatten().copied()))
-    }
-
-    /// Pose of every link at `q` (n,), base first, in the order of [`link_names`](Self::link_names).
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`] or [`Error::NotFinite`].
-    pub fn link_poses(&self, q: &[f64]) -> Result<Vec<Pose>> {
-        self.check("joint angles", q)?;
-        Ok(link_frames(&self.chain, &self.kernels.reached(&self.chain, q)).into_iter().map(Pose::from).collect())
-    }
-
-    /// [`fk`](Self::fk) without the check: `q` has one finite entry per joint.
-    #[inline]
-    pub fn tip(&self, q: &[f64]) -> Frame {
-        (self.kernels.tip)(&self.chain, q)
-    }
-
-    /// Position of the tip (m) at `q`, which has one finite entry per joint.
-    #[inline]
-    pub fn tip_position(&self, q: &[f64]) -> [f64; 3] {
-        (self.kernels.tip_position)(&self.chain, q)
-    }
-
-    /// Calls `visit` with the tip's position (m) at each of the configurations `qs`, stored one after another; faster than
-    /// [`tip_position`](Self::tip_position) one by one, and the same bits (for joint angles below 8e5 rad).
-    #[inline]
-    pub fn tip_positions(&self, qs: &[f64], visit: impl FnMut([f64; 3])) {
-        self.kernels.tip_positions(&self.chain, qs, self.dof(), visit);
-    }
-
-    /// Writes the Jacobian and returns the tip, in one pass without the check: `q` has one finite entry per joint.
-    #[inline]
-    pub fn tip_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
-        (self.kernels.jacobian)(&self.chain, q, columns)
-    }
-
-    /// [`tip_and_jacobian`](Self::tip_and_jacobian) of four configurations at once, to the same bits; `qs` and `columns`
-    /// have one entry per joint.
-    #[inline]
-    pub(crate) fn tips_and_jacobians(&self, qs: &[F64x4], columns: &mut FourColumns) -> Frame<F64x4> {
-        (self.kernels.jacobian_four)(&self.chain, qs, columns)
-    }
-
-    /// Writes the joint torques J'w (N m, N for sliding joints) of w = wrench(tip) and returns the tip, in one pass without
-    /// a Jacobian. `q` and `torques` have one entry per joint.
-    #[inline]
-    pub fn tip_and_torques(&self, q: &[f64], wrench: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
-        (self.kernels.torques)(&self.chain, q, wrench, torques)
-    }
-
     /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).
     ///
     /// # Errors
@@ -257,16 +185,6 @@ impl Robot {
     /// Rank of the tip's Jacobian by task, at configurations that are not singular.
     pub fn task_rank(&self) -> TaskRank {
         *self.task_rank.get_or_init(|| TaskRank::of(&self.chain, &self.kernels, &self.sampling_ranges()))
-    }
-
-    /// Bounds on where the tip can be between these joint limits.
-    pub fn reach(&self, lower: &[f64], upper: &[f64]) -> Reach {
-        self.reach_of_links.with_slides(&self.chain, lower, upper)
-    }
-
-    /// Screws of the moving elements at `q`, which has one finite entry per joint; base to tip, mimics included.
-    pub fn screws(&self, q: &[f64]) -> Screws {
-        Screws::of(&self.chain, &self.kernels.reached(&self.chain, q))
     }
 
     /// Starts for bringing the tip to `pose`. The first call on a robot builds its index, which copies with another base
@@ -304,10 +222,16 @@ impl Robot {
         &self.description
     }
 
+    pub(super) fn reach_of_links(&self) -> &Reach {
+        &self.reach_of_links
+    }
+
+    #[inline]
     pub(super) fn chain(&self) -> &Chain {
         &self.chain
     }
 
+    #[inline]
     pub(super) fn kernels(&self) -> &Kernels {
         &self.kernels
     }

@@ -1,4 +1,4 @@
-//! The one list of algorithms: the binding and the contract test read it.
+//! The list of all algorithms. The binding and the contract test read it.
 
 use super::apps::Apps;
 use super::bas::{Bas, BasVariant};
@@ -14,7 +14,7 @@ use super::swarm::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genet
 use crate::error::Result;
 use crate::objective::{Differentiable, Objective};
 
-/// Algorithms that need nothing but values: they minimise anything.
+/// Algorithms that need values alone, so that they minimise any function.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DerivativeFree {
     /// Beetle antennae search.
@@ -38,7 +38,7 @@ pub enum DerivativeFree {
 /// Every algorithm.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Algorithm {
-    /// One that needs values alone.
+    /// A derivative-free algorithm.
     DerivativeFree(DerivativeFree),
     /// APPS, which needs a gradient.
     Apps(Apps),
@@ -52,7 +52,7 @@ pub enum Algorithm {
     NewtonRaphson(NewtonRaphson),
 }
 
-/// `$body` for whichever derivative-free solver it is.
+/// Evaluates `$body` for the derivative-free solver at hand.
 macro_rules! whichever {
     ($algorithm:expr, $solver:ident => $body:expr) => {
         match $algorithm {
@@ -68,7 +68,7 @@ macro_rules! whichever {
     };
 }
 
-/// Every solver is an algorithm.
+/// Conversions from derivative-free solvers.
 macro_rules! listed {
     ($($solver:ident),*) => {$(
         impl From<$solver> for DerivativeFree {
@@ -86,7 +86,7 @@ macro_rules! listed {
 }
 listed!(Bas, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, Qpso);
 
-/// Those that need more than values.
+/// Conversions from solvers that need more than values.
 macro_rules! listed_with_more {
     ($($solver:ident),*) => {$(
         impl From<$solver> for Algorithm {
@@ -99,7 +99,7 @@ macro_rules! listed_with_more {
 listed_with_more!(Apps, BroydenBas, JacobianTranspose, LevenbergMarquardt, NewtonRaphson);
 
 impl DerivativeFree {
-    /// Every one with its default options.
+    /// All of them with default options.
     pub fn all() -> Vec<Self> {
         vec![
             Bas::of(BasVariant::Star).into(),
@@ -124,7 +124,7 @@ impl DerivativeFree {
         whichever!(self, solver => solver.validate())
     }
 
-    /// Members and generations; a single beetle has none.
+    /// The schedule of a population; None for a single beetle.
     fn schedule(&self) -> Option<Schedule> {
         match self {
             Self::Bas(_) => None,
@@ -138,12 +138,12 @@ impl DerivativeFree {
         }
     }
 
-    /// Members of a generation; a single beetle has none.
+    /// Members of a generation; None for a single beetle.
     pub fn population(&self) -> Option<usize> {
         self.schedule().map(|schedule| schedule.population)
     }
 
-    /// Steps without much gain after which an attempt is given up (see [`RestartRule::patience`]): a beetle needs passes to
+    /// Steps without much progress after which an attempt is abandoned (see [`RestartRule::patience`]): a beetle needs passes to
     /// shrink its antennae (of 100 positions for a 7-joint arm, patience 4 and 20 solved 90 and 99 by the star, 83 and 94
     /// by the greedy variant).
     fn patience(&self) -> usize {
@@ -156,7 +156,7 @@ impl DerivativeFree {
         }
     }
 
-    /// Runs once, or again and again by the rule for restarts.
+    /// Runs from one start or, by the rule for restarts, from many.
     pub(super) fn run(
         &self,
         restarts: Option<RestartRule>,
@@ -181,8 +181,8 @@ impl Algorithm {
         all
     }
 
-    /// The algorithm begun again from other starts, with the patience that suits it: a descent shows within a few
-    /// iterations whether it leads anywhere.
+    /// The algorithm with restarts, with the patience that suits it: a descent shows within a few iterations whether it
+    /// converges.
     pub fn into_multi_start(self) -> MultiStart<Self> {
         let patience = match &self {
             Self::DerivativeFree(solver) => solver.patience(),
@@ -208,7 +208,7 @@ impl Algorithm {
         }
     }
 
-    /// Runs once, or again and again by the rule for restarts.
+    /// Runs from one start or, by the rule for restarts, from many.
     pub(super) fn run(
         &self,
         restarts: Option<RestartRule>,

@@ -1,4 +1,4 @@
-//! What a caller chooses: an algorithm from one start, or from many.
+//! The solver that a caller chooses: an algorithm from one start, or from many.
 
 use super::algorithm::{Algorithm, DerivativeFree};
 use super::evaluator::Evaluator;
@@ -9,7 +9,8 @@ use super::stop::Stop;
 use crate::error::{Error, Result};
 use crate::objective::{Differentiable, Objective};
 
-/// An algorithm of list `A`: [`Algorithm`] for robots, [`DerivativeFree`] for functions of which only values are known.
+/// An algorithm `A` from one start or from many: [`Algorithm`] for robots, [`DerivativeFree`] for functions known by their
+/// values alone.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AnySolver<A = Algorithm> {
     /// From the start alone.
@@ -32,7 +33,7 @@ impl<A> AnySolver<A> {
         algorithm
     }
 
-    /// When to begin again, if at all.
+    /// The rule for restarts, if there are any.
     fn restarts(&self) -> Option<RestartRule> {
         match self {
             Self::Single(_) => None,
@@ -49,7 +50,7 @@ impl<A> AnySolver<A> {
 }
 
 impl AnySolver {
-    /// The same, where the algorithm needs values alone.
+    /// The same solver; None where the algorithm needs more than values.
     pub fn into_derivative_free(self) -> Option<AnySolver<DerivativeFree>> {
         match self {
             Self::Single(Algorithm::DerivativeFree(solver)) => Some(AnySolver::Single(solver)),
@@ -68,19 +69,19 @@ impl AnySolver {
         self.validate_restarts().and(self.algorithm().validate())
     }
 
-    /// Whether, along a path, a step that beats the last one is enough (line 16 of Algorithm 1 in Cheng et al. 2020). A
+    /// Whether a step along a path may end once it beats the step before (line 16 of Algorithm 1 in Cheng et al. 2020). A
     /// random search could otherwise go on for long; a descent reaches its end in a few iterations.
-    pub fn settles_for_improvement(&self) -> bool {
+    pub(crate) fn settles_for_improvement(&self) -> bool {
         matches!(self.algorithm(), Algorithm::DerivativeFree(_))
     }
 
-    /// Whether it comes to an end without a budget, solved or not.
-    pub fn ends_by_itself(&self) -> bool {
+    /// Whether it ends by itself without a budget, solved or not.
+    pub(crate) fn ends_by_itself(&self) -> bool {
         matches!(self, Self::Single(Algorithm::DerivativeFree(_) | Algorithm::LevenbergMarquardt(_)))
     }
 
-    /// The descent that is begun again and again, where this is one.
-    pub fn restarted_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
+    /// Levenberg-Marquardt from many starts, where this is the solver.
+    pub(crate) fn restarted_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
         match *self {
             Self::MultiStart(MultiStart { solver: Algorithm::LevenbergMarquardt(solver), rule }) => {
                 Some(MultiStart { solver, rule })
@@ -96,11 +97,11 @@ impl AnySolver {
 }
 
 impl AnySolver<DerivativeFree> {
-    /// Checks that the budget pays for one generation at least.
+    /// Checks that the budget allows at least one generation.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] names the population and the budget.
-    pub fn require_affordable(&self, stop: &Stop) -> Result<()> {
+    pub(crate) fn require_affordable(&self, stop: &Stop) -> Result<()> {
         match self.algorithm().population() {
             Some(population) if population > stop.max_evaluations => {
                 let requirement = format!("at most max_evaluations = {}", stop.max_evaluations);

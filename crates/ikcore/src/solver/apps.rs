@@ -1,5 +1,5 @@
-//! The autonomous path planning solution (APPS) of Yuan et al. 2016: descent down the gradient of the smooth error E by
-//! steps that are cut off joint by joint. Equation numbers are those of the paper.
+//! The autonomous path planning solution (APPS) of Yuan et al. 2016: gradient descent on the smooth error E, with the step of
+//! every joint limited. Equation numbers are those of the paper.
 //!
 //! The search is free, as published: a joint may pass its limits, and eq. (12) brings it back by whole turns.
 
@@ -13,7 +13,7 @@ use crate::objective::{Gradient, Point};
 /// eta of eq. (13) (rad per unit of E's derivative).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LearningRate {
-    /// From the curvature of E along the last step, which the gradients at both of its ends tell (Barzilai and Borwein
+    /// From the curvature of E along the last step, estimated from the gradients at both ends (Barzilai and Borwein
     /// 1988, Two-point step size gradient methods). From random starts to 2000 random targets of the paper's robot it
     /// converges on 85 % in 1000 iterations and on 86 % in 20 000, the best of five fixed rates on 51 and 79 %.
     Auto,
@@ -28,8 +28,7 @@ pub struct Apps {
     pub learning_rate: LearningRate,
     /// Largest change of a joint in an iteration (rad or m): d theta_th of eq. (20).
     pub step_limit: f64,
-    /// E_0: after the first update from an E of at most this much the search ends, solved or not. None: it ends when
-    /// solved.
+    /// E_0: the search ends after the first update from an E of at most this, solved or not. None: it ends when solved.
     pub error_threshold: Option<f64>,
 }
 
@@ -71,7 +70,7 @@ impl Apps {
     }
 }
 
-/// Where the descent stands.
+/// The descent between updates.
 #[derive(Debug, Clone)]
 pub struct State {
     theta: Point,

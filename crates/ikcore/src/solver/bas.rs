@@ -1,13 +1,13 @@
 //! Beetle antennae search as Cheng et al. (2020) plan motions with it: Algorithm 1 and equations (8) to (13).
 //!
-//! A step of this solver is one pass: lines 5 to 15 of Algorithm 1, n explorations with one antenna length. What the
-//! algorithm does with the pass (line 16) is the caller's: the driver stops in the error band or below a given value.
+//! A step of this solver is one pass: lines 5 to 15 of Algorithm 1, n explorations with one antenna length. Line 16 is up to
+//! the caller: the driver stops in the error band or below a given value.
 //!
 //! Readings of what the paper leaves open: o in eq. (12) is the squared norm of the error, so that the antennae shrink
 //! in proportion to the error; it is taken at the best point so far against the target being sought. Passes beyond the
 //! first are made from the best beetle so far.
 //!
-//! Two things follow from the paper's letter. With c2 = 1 a beetle goes exactly where one of its antennae was, so that a
+//! Read literally, the paper has two consequences. With c2 = 1 a beetle goes exactly where one of its antennae was, so that a
 //! third of all evaluations repeats one already made; we repeat it too, for counts that compare. And the best point is
 //! kept over all evaluations, antennae included, which for c2 = 1 is the best beetle of line 15.
 
@@ -17,14 +17,14 @@ use super::driver::Solver;
 use super::evaluator::Evaluator;
 use super::status::Status;
 use crate::error::{Error, Result, require_positive};
-use crate::math::ordered::sign;
+use crate::math::comparison::sign;
 use crate::objective::{Objective, Point};
 use crate::wording::words;
 
-/// From where the next exploration of a pass starts.
+/// Where the next exploration of a pass starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BasVariant {
-    /// Always from the best point before the pass: eq. (8), (9) and (11) to the letter.
+    /// Always from the best point before the pass: eq. (8), (9) and (11) as printed.
     Star,
     /// From where the beetle went, better or not: the original beetle antennae search.
     Chain,
@@ -37,7 +37,7 @@ words!("variant": BasVariant { Star => "star", Chain => "chain", Greedy => "gree
 /// Beetle antennae search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bas {
-    /// From where explorations start.
+    /// Where explorations start.
     pub variant: BasVariant,
     /// Antenna length over error, eq. (12): rad per unit of the error's norm.
     pub c1: f64,
@@ -45,7 +45,7 @@ pub struct Bas {
     pub c2: f64,
     /// Explorations per pass, the paper's n.
     pub explorations: usize,
-    /// Passes after which it gives up; the paper would go on for ever.
+    /// Passes after which it gives up; the paper sets no limit.
     pub max_passes: usize,
 }
 
@@ -56,7 +56,7 @@ impl Default for Bas {
 }
 
 impl Bas {
-    /// A variant with the options that suit it: those that tracked best on a 7-joint arm of about a metre.
+    /// A variant with the options that tracked best on a 7-joint arm of about a metre.
     pub fn of(variant: BasVariant) -> Self {
         let (c1, explorations) = match variant {
             BasVariant::Star => (3.0, 50),
@@ -94,12 +94,12 @@ pub struct State {
 
 /// The beetle within a pass.
 struct Pass {
-    /// From where it explores.
+    /// Where explorations start.
     current: Point,
     current_value: f64,
     /// Antenna length (rad).
     lambda: f64,
-    /// Where it went to in this pass, at best.
+    /// The best place it went to in this pass.
     best: Point,
     best_value: f64,
 }

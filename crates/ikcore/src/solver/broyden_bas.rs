@@ -1,8 +1,8 @@
 //! Antenna differences as secants: a quasi-Newton method that needs residuals alone.
 //!
-//! A beetle that smells with both antennae learns one sign from r(x + lambda b) - r(x). The difference itself is lambda J b,
-//! a secant of the Jacobian: so one antenna per entry of x gives a whole Jacobian, and from then on every step is an antenna
-//! too (Broyden 1965). Antennae are put out again where the steps stop predicting.
+//! Beetle antennae search uses the sign of a difference r(x + lambda b) - r(x) alone. The difference itself is a secant of the
+//! Jacobian, lambda J b: one antenna per entry of x gives a whole Jacobian, and every step then updates it (Broyden 1965).
+//! The antennae are used again where steps are predicted badly.
 
 use super::driver::Solver;
 use super::evaluator::Evaluator;
@@ -18,10 +18,9 @@ pub struct BroydenBas {
     /// Length of the first antennae (rad, m): far above the sensor's noise once the arm has levered it up, far below a
     /// radian, where the arm bends.
     pub antenna_length: f64,
-    /// Evaluations after which a step of a path ends; it goes on in the next.
+    /// Evaluations after which a step of a path ends; the next step continues.
     pub max_evaluations_per_step: usize,
-    /// Measurements by which the sensor of a plant is late: every command is sent so many times more, and the last answer
-    /// counts.
+    /// Delay of a plant's sensor, in measurements: every command is repeated that many times, and the last answer counts.
     pub sensor_delay: usize,
 }
 
@@ -31,17 +30,17 @@ impl Default for BroydenBas {
     }
 }
 
-/// Antennae of a solver, which has no noise to be afraid of: the middle between rounding and curvature.
+/// Antenna length without sensor noise: a compromise between rounding and curvature.
 const NOISELESS_ANTENNA: f64 = 1e-6;
 
-/// Damping after a step that failed, over the squared size of the Jacobian; then ten times more for each failure.
-pub const FIRST_DAMPING: f64 = 1e-3;
+/// Damping after a failed step, over the squared size of the Jacobian; each further failure multiplies it by ten.
+pub(crate) const FIRST_DAMPING: f64 = 1e-3;
 
-/// Damping beyond which no step of any use is left.
-pub const LARGEST_DAMPING: f64 = 1e2;
+/// Damping beyond which steps are too short to be of use.
+pub(crate) const LARGEST_DAMPING: f64 = 1e2;
 
-/// Steps that leave more than half of the residual, in a row, before antennae are put out again.
-pub const SLOW_STEPS: usize = 3;
+/// Steps in a row that leave more than half of the residual, after which the antennae are used again.
+pub(crate) const SLOW_STEPS: usize = 3;
 
 impl BroydenBas {
     /// Checks the options.
@@ -65,9 +64,9 @@ pub struct State {
     residual: [f64; ROWS],
     jacobian: Secant,
     damping: f64,
-    /// Steps since antennae were out that left more than half of the residual.
+    /// Steps since the last antennae that left more than half of the residual.
     slow: usize,
-    /// No step was made since antennae were out.
+    /// No step was made since the last antennae.
     fresh: bool,
 }
 

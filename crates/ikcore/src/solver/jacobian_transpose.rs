@@ -1,5 +1,5 @@
-//! Jacobian transpose: the steepest descent on r'r. No inverse, so that singular configurations do no harm; many small
-//! steps instead.
+//! Jacobian transpose: steepest descent on r'r. Without an inverse, singular configurations do no harm; the price is many
+//! small steps.
 
 use super::driver::Solver;
 use super::evaluator::Evaluator;
@@ -8,10 +8,10 @@ use crate::error::{Result, require_positive};
 use crate::math::vector::dot;
 use crate::objective::{LeastSquares, Linearization, Point};
 
-/// How far a step goes along -J'r.
+/// The length of a step along -J'r.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StepSize {
-    /// Where the linearised residual would be smallest: |g|^2 / |J g|^2 with g = J'r (Buss 2004, Introduction to inverse
+    /// The minimiser of the linearised residual: |g|^2 / |J g|^2 with g = J'r (Buss 2004, Introduction to inverse
     /// kinematics, section 6, which writes it <e, JJ'e> / <JJ'e, JJ'e>).
     Auto,
     /// The same everywhere.
@@ -21,7 +21,7 @@ pub enum StepSize {
 /// The Jacobian transpose method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JacobianTranspose {
-    /// How far a step goes.
+    /// The length of a step.
     pub step_size: StepSize,
 }
 
@@ -57,7 +57,7 @@ impl JacobianTranspose {
     }
 }
 
-/// Where the descent stands.
+/// The descent between steps.
 #[derive(Debug, Clone)]
 pub struct State {
     x: Point,
@@ -85,7 +85,7 @@ impl<O: LeastSquares + ?Sized> Solver<O> for JacobianTranspose {
         let size = self.size(linearization, gradient);
         let mut next = x.clone();
         next.iter_mut().zip(&*gradient).for_each(|(x, slope)| *x -= size * slope);
-        // Without any slope the size is NaN; a step that is not finite leads nowhere.
+        // A zero gradient makes the size NaN.
         if next.iter().any(|x| !x.is_finite()) {
             return Err(Status::Stalled);
         }

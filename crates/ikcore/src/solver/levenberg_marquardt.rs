@@ -15,15 +15,15 @@ pub struct LevenbergMarquardt {
     pub initial_damping: f64,
     /// Factor on the damping after a step that did not lower the value.
     pub increase: f64,
-    /// Factor on the damping after one that did.
+    /// Factor on the damping after a step that lowered the value.
     pub decrease: f64,
-    /// Stalled when a step lowers the value by less than this share.
+    /// The descent stalls when a step lowers the value by less than this fraction.
     pub min_gain: f64,
 }
 
-/// Damping beyond which no step of any use is left.
+/// Damping beyond which steps are too short to be of use.
 const LARGEST_DAMPING: f64 = 1e8;
-/// Damping below which it makes no difference.
+/// Damping below which it has no effect.
 const SMALLEST_DAMPING: f64 = 1e-6;
 
 impl Default for LevenbergMarquardt {
@@ -52,44 +52,44 @@ impl LevenbergMarquardt {
     }
 }
 
-/// Where the descent stands.
+/// The descent between steps.
 #[derive(Debug, Clone)]
 pub struct State {
     x: Point,
     descent: Descent,
-    /// One for the point, one for the trial; `here` says which is which.
+    /// At the point and at the trial; `here` is the index of the point's.
     linearizations: [Linearization; 2],
     here: usize,
 }
 
-/// The value at the point that the descent has come to, and how carefully it goes on.
+/// Value and damping of a descent.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Descent {
     value: f64,
     damping: f64,
 }
 
-/// What becomes of a trial.
+/// The decision about a trial step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
-    /// It is where the descent goes on.
+pub(super) enum TrialVerdict {
+    /// Accepted; the descent goes on from there.
     Kept,
-    /// It is where the descent ends: it gained next to nothing.
+    /// Accepted; the descent ends there, having gained next to nothing.
     KeptAtLast,
-    /// The next trial is nearer.
+    /// Refused; the next trial is shorter.
     Refused,
-    /// There is none nearer that makes a difference.
+    /// Refused; a shorter trial would make no difference.
     RefusedAtLast,
 }
 
-impl Verdict {
-    /// Whether the trial becomes the point.
+impl TrialVerdict {
+    /// Whether the trial is accepted.
     pub fn keeps(self) -> bool {
         matches!(self, Self::Kept | Self::KeptAtLast)
     }
 
     /// # Errors
-    /// [`Status::Stalled`] where the descent is at its end.
+    /// [`Status::Stalled`] at the end of the descent.
     pub fn goes_on(self) -> Result<(), Status> {
         match self {
             Self::Kept | Self::Refused => Ok(()),
@@ -99,24 +99,24 @@ impl Verdict {
 }
 
 impl LevenbergMarquardt {
-    /// A descent from a point of this value.
+    /// A descent that begins at a point of this value.
     #[inline]
     pub(super) fn descent_from(&self, value: f64) -> Descent {
         Descent { value, damping: self.initial_damping }
     }
 
-    /// What becomes of a trial with `value`.
+    /// Decides about a trial with `value`.
     #[inline]
-    pub(super) fn judge(&self, descent: &mut Descent, value: f64) -> Verdict {
+    pub(super) fn judge(&self, descent: &mut Descent, value: f64) -> TrialVerdict {
         let Descent { value: before, damping } = descent;
         if !(value < *before) {
             *damping *= self.increase;
-            return if *damping > LARGEST_DAMPING { Verdict::RefusedAtLast } else { Verdict::Refused };
+            return if *damping > LARGEST_DAMPING { TrialVerdict::RefusedAtLast } else { TrialVerdict::Refused };
         }
         let gain = 1.0 - value / *before;
         *damping = (*damping * self.decrease).max(SMALLEST_DAMPING);
         *before = value;
-        if gain < self.min_gain { Verdict::KeptAtLast } else { Verdict::Kept }
+        if gain < self.min_gain { TrialVerdict::KeptAtLast } else { TrialVerdict::Kept }
     }
 }
 
@@ -124,7 +124,7 @@ impl Descent {
     /// The damping of the next step.
     ///
     /// # Errors
-    /// [`Status::Stalled`] where the value says nothing.
+    /// [`Status::Stalled`] where the value is not finite.
     #[inline]
     pub fn lambda(&self) -> Result<f64, Status> {
         if self.value.is_finite() { Ok(self.damping * self.value) } else { Err(Status::Stalled) }

@@ -59,6 +59,6 @@ pub use status::Status;
 pub use stop::Stop;
 pub use stopwatch::Stopwatch;
 pub use swarm::{
-    Acceptance, BeeColony, BeetleDirection, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, Pso, PsoForm, Qpso,
-    Schedule, TrialUpdate, Walls,
+    BeeColony, BeetleDirection, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, ParticleAcceptance, Pso, PsoForm,
+    Qpso, Schedule, TrialUpdate, Walls,
 };

@@ -1,13 +1,13 @@
-//! The caller's say in a long run: progress and interruption.
+//! Progress and interruption of long runs.
 
 use std::cell::Cell;
 
-/// The caller's say in a long run: asked from the calling thread, every few microseconds of work.
+/// Lets the caller watch and interrupt a long run. It is polled from the calling thread, every few microseconds of work.
 pub trait Monitor {
-    /// False ends the run with [`Status::Interrupted`].
+    /// Returns false to end the run with [`Status::Interrupted`](super::Status::Interrupted).
     fn keep_going(&mut self) -> bool;
 
-    /// Told of the steps of a track, or of the items of a batch, that are done, out of `total`.
+    /// Receives the number of finished steps of a track, items of a batch or evaluations, out of `total`.
     fn progress(&mut self, _done: usize, _total: usize) {}
 }
 
@@ -21,9 +21,9 @@ impl Monitor for Unattended {
     }
 }
 
-/// Tells the caller's monitor how many evaluations are done.
+/// Reports the number of evaluations to the caller's monitor.
 pub(crate) struct EvaluationMonitor<'a> {
-    /// The caller's.
+    /// The caller's monitor.
     pub monitor: &'a mut dyn Monitor,
     /// Evaluations made so far, counted elsewhere.
     pub done: &'a Cell<usize>,

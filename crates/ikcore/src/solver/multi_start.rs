@@ -1,4 +1,4 @@
-//! The one multi-start: any solver, begun again elsewhere when it stalls or its attempt is hopeless.
+//! Multi-start: restarts any solver when it stalls or makes too little progress.
 
 use super::domain::Domain;
 use super::driver::Solver;
@@ -7,7 +7,7 @@ use super::status::Status;
 use crate::error::{Error, Result};
 use crate::objective::{Objective, Point};
 
-/// When to begin again.
+/// When to abandon an attempt and restart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RestartRule {
     /// Starts in all, the caller's included.
@@ -19,18 +19,18 @@ pub struct RestartRule {
 }
 
 impl RestartRule {
-    /// As many starts as the budget allows, each given up when `patience` steps do not halve its value.
+    /// As many starts as the budget allows, each abandoned when `patience` steps do not halve its best value.
     pub fn with_patience(patience: usize) -> Self {
         Self { max_starts: usize::MAX, patience, min_reduction: 2.0 }
     }
 }
 
-/// A solver and the rule by which it begins again.
+/// A solver with restarts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MultiStart<S> {
     /// What runs from each start.
     pub solver: S,
-    /// When to begin again.
+    /// When to restart.
     pub rule: RestartRule,
 }
 
@@ -60,7 +60,7 @@ pub struct State<T> {
     attempt: AttemptProgress,
 }
 
-/// How far an attempt has come.
+/// The progress of an attempt.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AttemptProgress {
     steps: usize,
@@ -69,14 +69,14 @@ pub(super) struct AttemptProgress {
 }
 
 impl AttemptProgress {
-    /// One that has begun at a point of this value.
+    /// That of an attempt that begins at a point of this value.
     pub fn begun_at(value: f64) -> Self {
         Self { steps: 0, milestone: value }
     }
 }
 
 impl RestartRule {
-    /// Counts a step of the attempt; whether it is to be abandoned, its best `value` being what it is now.
+    /// Counts a step of the attempt and returns whether to abandon it, given its best `value` so far.
     #[inline]
     fn abandons(&self, attempt: &mut AttemptProgress, value: f64) -> bool {
         attempt.steps += 1;
@@ -88,10 +88,10 @@ impl RestartRule {
         hopeless
     }
 
-    /// Whether to begin again after a step that ended so.
+    /// Returns whether to restart after `step`.
     ///
     /// # Errors
-    /// The halt of a step that ended the run.
+    /// The status of a step that ended the run.
     #[inline]
     pub(super) fn begins_again(
         &self,
@@ -106,7 +106,7 @@ impl RestartRule {
         }
     }
 
-    /// Where the next attempt begins.
+    /// Returns the start of the next attempt.
     ///
     /// # Errors
     /// [`Status::Solved`] after an attempt that solved it, [`Status::Stalled`] after the last one.

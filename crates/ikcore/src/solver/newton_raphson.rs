@@ -1,5 +1,5 @@
-//! Newton-Raphson: the step that the Jacobian's pseudo-inverse says would reach the target at once. Quick where it works;
-//! nothing keeps it from stepping too far, or from circling, and it says so by spending its budget.
+//! Newton-Raphson: full steps by the pseudo-inverse of the Jacobian. Quick where it converges; nothing keeps it from
+//! overshooting or cycling until its budget is spent.
 
 use super::driver::Solver;
 use super::evaluator::Evaluator;
@@ -11,7 +11,7 @@ use crate::objective::{LeastSquares, Linearization, Point};
 /// Newton-Raphson by the pseudo-inverse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NewtonRaphson {
-    /// Share of the full step that is taken, above 0 and at most 1.
+    /// Fraction of the full step to take, above 0 and at most 1.
     pub step_fraction: f64,
 }
 
@@ -34,7 +34,7 @@ impl NewtonRaphson {
     }
 }
 
-/// Where the iteration stands.
+/// The iteration between steps.
 #[derive(Debug, Clone)]
 pub struct State {
     x: Point,

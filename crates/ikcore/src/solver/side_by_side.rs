@@ -1,7 +1,7 @@
-//! Levenberg-Marquardt from many starts on many objectives: four descend side by side, and where one has ended the next begins.
+//! Levenberg-Marquardt with restarts on many objectives, four side by side: where one run ends, the next begins.
 //!
-//! Each run takes the decisions that [`run`](super::driver::run) would take for it alone, on the same bits; only the arithmetic of a
-//! step is done for four at once.
+//! Results are bit-identical to those of [`run`](super::driver::run): every decision is taken for one run alone, only the
+//! arithmetic of a step is done for four at once.
 
 use super::evaluator::Evaluator;
 use super::levenberg_marquardt::{Descent, LevenbergMarquardt};
@@ -18,9 +18,9 @@ const LANES: usize = 4;
 /// Rounds that the last run may be alone. Its lane does no more than a run by itself would, and takes twice the time.
 const ROUNDS_ALONE: usize = 64;
 
-/// Runs `solver` for each of `runs`: a label, a fresh evaluator and where it begins; all in the box `bounds`, their objectives such as
-/// [`linearize_four`](SideBySide::linearize_four) takes together. `ended` is told label and outcome of each, in the order in which
-/// they end; no outcome where the last one was left alone for long: it is to be begun again by itself.
+/// Runs `solver` on each of `runs` (a label, a fresh evaluator, a start) in the box `bounds`, and calls `ended` with label and
+/// status as each ends. The objectives must fit [`linearize_four`](SideBySide::linearize_four). The status is None where the
+/// last run was left alone for long: the caller runs it again by itself.
 pub(crate) fn run_side_by_side<'a, L, O: SideBySide + 'a>(
     solver: &MultiStart<LevenbergMarquardt>,
     bounds: &Bounds,

@@ -5,10 +5,10 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The list of statuses: variant and number, the name that Python shows, and what it means.
+/// The list of statuses: variant and number, name in Python, meaning.
 macro_rules! statuses {
     ($($variant:ident = $number:literal, $name:literal: $meaning:literal;)+) => {
-        /// How a solve, one item of a batch or one step of a track ended.
+        /// How a solve, an item of a batch or a step of a track ended.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
         #[repr(u8)]
         pub enum Status {
@@ -19,14 +19,14 @@ macro_rules! statuses {
             /// All of them, in the order of their numbers.
             pub const ALL: &[Self] = &[$(Self::$variant),+];
 
-            /// The name as Python shows it.
+            /// The name in Python.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name,)+
                 }
             }
 
-            /// What it says, in words.
+            /// The meaning in one sentence.
             pub fn meaning(self) -> &'static str {
                 match self {
                     $(Self::$variant => $meaning,)+
@@ -39,33 +39,33 @@ macro_rules! statuses {
 statuses! {
     Solved = 0, "SOLVED": "Within the tolerances.";
     Improved = 1, "IMPROVED":
-        "A step of a track: nearer than the step before, not yet within the tolerance. Or a search ended by `value_below`.";
+        "A step of a track that came nearer than the step before, not yet within the tolerance; or a search that reached `value_below`.";
     Capped = 2, "CAPPED":
-        "A step of a track: neither within the tolerance nor nearer than the step before; the best found is kept.";
-    Stalled = 3, "STALLED": "The solver's own rule gave up: nothing more to gain from here.";
+        "A step of a track that is neither within the tolerance nor nearer than the step before; the best configuration found is kept.";
+    Stalled = 3, "STALLED": "The solver's own rule ended the search: no further progress from here.";
     BudgetSpent = 4, "BUDGET_SPENT": "The evaluation or iteration budget is spent.";
-    TimeUp = 5, "TIME_UP": "The time limit is over.";
-    Interrupted = 6, "INTERRUPTED": "It was asked to stop before its end.";
+    TimeUp = 5, "TIME_UP": "The time limit is reached.";
+    Interrupted = 6, "INTERRUPTED": "Stopped on request before the end.";
     Lost = 7, "LOST": "A track that did not stay within its tolerance.";
-    Invalid = 8, "INVALID": "An item of a batch whose target or start is wrong: nothing was solved.";
+    Invalid = 8, "INVALID": "An item of a batch with an invalid target or start; it was not solved.";
     OutOfReach = 9, "OUT_OF_REACH":
-        "Beyond doubt, no configuration reaches so far: the target is farther than the arm is long, or off its plane.";
+        "Provably out of reach: the target is farther away than the arm is long, or off its plane.";
     PlantFailed = 10, "PLANT_FAILED":
-        "A plant that raised an error, or returned what is no position: the run ended with what was recorded.";
+        "The plant raised an error or returned something other than a position; the run ended with what was recorded.";
     BelowThreshold = 11, "BELOW_THRESHOLD": "The solver's own threshold was met before the tolerances were.";
     OutsideLimits = 12, "OUTSIDE_LIMITS":
-        "The search arrived outside the limits, and whole turns do not bring it inside; the best inside is kept.";
+        "The search converged outside the limits, and whole turns do not bring it inside; the best configuration inside is kept.";
     HeldInRegion = 13, "HELD_IN_REGION":
-        "The region of the task keeps the tip from the target; the tip is in it, as near as it may come.";
+        "The region of the task keeps the tip from the target; the tip is in the region, as near as possible.";
 }
 
 impl Status {
-    /// What to try, as the end of a sentence; empty for success.
+    /// What to try next, as the end of a sentence; empty for success.
     pub fn advice(self) -> &'static str {
         match self {
             Self::Solved | Self::Improved => "",
             Self::Capped => {
-                "give it more ticks, wider limits, a wider tolerance, its solver more passes, or a target within reach"
+                "allow more ticks, wider limits, a wider tolerance or more solver passes, or move the target into reach"
             }
             Self::Stalled => "try another start or seed, or MultiStart; the target may be out of reach",
             Self::BudgetSpent => "raise the budget in stop=Stop(...); the target may be out of reach",
@@ -75,8 +75,8 @@ impl Status {
                 "slow the path down, widen the limits, start elsewhere (another start or seed), or move the path into reach"
             }
             Self::OutOfReach => "move or turn the target into reach, or move the base",
-            Self::Invalid => "on_invalid=\"raise\" says what is wrong",
-            Self::PlantFailed => "mend the plant and run again",
+            Self::Invalid => "use on_invalid=\"raise\" to see what is wrong",
+            Self::PlantFailed => "fix the plant and run again",
             Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
             Self::HeldInRegion => "move the target into the region, or widen the region",
             Self::OutsideLimits => {

@@ -4,18 +4,18 @@ use std::time::Duration;
 
 use crate::error::{Error, Result};
 
-/// Limits on a run; whichever comes first. Counts repeat exactly, a time limit does not.
+/// The budgets of a run; it ends at whichever is spent first. Counts are repeatable, a time limit is not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
     /// Objective evaluations (for a robot: forward kinematics), the start included.
     pub max_evaluations: usize,
     /// Iterations as the solver counts them.
     pub max_iterations: usize,
-    /// Iterations that are made even from a start that is solved already.
+    /// Iterations to make even from a start that is solved already.
     pub min_iterations: usize,
-    /// Wall-clock time. Setting it gives up repeatability.
+    /// Wall-clock time. With it, results are no longer repeatable.
     pub max_time: Option<Duration>,
-    /// Stop after a step whose best value is below this. The start itself is not held against it.
+    /// The run ends after a step whose best value is below this. The start itself is not compared with it.
     pub value_below: Option<f64>,
 }
 
@@ -33,7 +33,7 @@ impl Default for Stop {
 }
 
 impl Stop {
-    /// Checks that at least the start may be evaluated and one step made.
+    /// Checks that the budgets allow at least the start and one step.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a budget of zero.

@@ -7,7 +7,7 @@ use super::nearest_by_lane::LANES;
 use crate::kinematics::chain::Chain;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
-use crate::math::interval;
+use crate::math::sampling_range;
 
 /// Indexed configurations that bring the tip near one target, nearest first.
 #[derive(Debug, Clone, Copy)]
@@ -62,7 +62,7 @@ impl Starts<'_> {
     fn write(&self, entry: usize, lower: &[f64], upper: &[f64], q: &mut [f64]) {
         let (configuration, frame) = self.index.entry(entry);
         q.copy_from_slice(configuration);
-        let range = |joint: usize| interval::finite(lower[joint], upper[joint], PI);
+        let range = |joint: usize| sampling_range::finite(lower[joint], upper[joint], PI);
         let mut frame = *frame;
         if let Some(first) = self.index.first {
             let (sine, cosine) = self.turn_of_first(&frame);

@@ -8,7 +8,7 @@ use crate::math::Frame;
 use crate::math::box_step::ROWS;
 use crate::objective::{Linearization, Score};
 
-/// How far a tip is from its target, by a criterion.
+/// The distance of a tip from its target, by a criterion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assessment {
     /// The weighted sum of squares, and whether the target is reached.
@@ -54,7 +54,7 @@ impl Criterion {
 }
 
 impl Components {
-    /// Turns residual and columns, in base coordinates, into the target's frame and weights them.
+    /// Rotates residual and columns from base coordinates into the target's frame and weights them.
     pub(super) fn apply(&self, target: &Target, dof: usize, out: &mut Linearization) {
         let weighted = |vector: &[f64; ROWS]| {
             let turned = turned_into_frame(target, vector);
@@ -67,8 +67,8 @@ impl Components {
     }
 }
 
-/// Both halves of a vector in base coordinates as components along the axes of the target's frame. The difference of two
-/// axes stays as it is: only its length counts.
+/// Rotates both halves of a vector from base coordinates into the target's frame. The difference of two axes is not rotated:
+/// only its length counts.
 fn turned_into_frame(target: &Target, vector: &[f64; ROWS]) -> [f64; ROWS] {
     let along = |frame: &Frame, half: usize| -> [f64; 3] {
         frame.axes.map(|axis| (0..3).map(|k| axis[k] * vector[3 * half + k]).sum())

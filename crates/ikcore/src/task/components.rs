@@ -11,7 +11,7 @@ use crate::math::box_step::ROWS;
 pub struct Components {
     /// Factors on the residuals; a component of weight zero is left free.
     pub weights: [f64; ROWS],
-    /// Largest error of each component (m, rad), instead of those of [`Tolerance`]. Of a pointing target, the fourth is
+    /// Largest error of each component (m, rad), instead of those of [`Tolerance`](super::Tolerance). Of a pointing target, the fourth is
     /// the angle between the axes.
     pub tolerance: Option<[f64; ROWS]>,
 }
@@ -38,7 +38,7 @@ pub(super) fn check_weights(weights: &[f64]) -> Result<()> {
     }
 }
 
-/// Checks that tolerances are positive; infinite ones are.
+/// Checks that tolerances are positive; infinite ones are allowed.
 pub(super) fn check_tolerances(tolerances: &[f64]) -> Result<()> {
     match tolerances.iter().position(|tolerance| !(*tolerance > 0.0)) {
         Some(i) => Err(Error::out_of_range(format!("tolerance[{i}]"), "positive", tolerances[i])),

@@ -11,14 +11,14 @@ use crate::error::Result;
 /// The widest margin (m): no tolerance, however wide, keeps the tip farther from the faces of its region.
 const WIDEST_MARGIN: f64 = 1e-3;
 
-/// When a target is reached, and what its components weigh.
+/// When a target counts as reached, and the weights of its components.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Criterion {
     /// Largest distance and angle.
     pub tolerance: Tolerance,
     /// Weights and tolerances component by component; None: all components weigh the same.
     pub components: Option<Components>,
-    /// Where the tip is to stay; None: anywhere.
+    /// Where the tip must stay; None: anywhere.
     pub region: Option<Region>,
     /// The value of a tip outside its region.
     pub outside: Outside,
@@ -40,13 +40,13 @@ impl Criterion {
         self.components.as_ref().map_or(Ok(()), Components::validate)
     }
 
-    /// Whether components are assessed one by one, so that the distance from a position alone does not decide.
+    /// Whether components are assessed one by one, so that the distance alone does not decide.
     #[inline(always)]
     pub(super) fn is_componentwise(&self) -> bool {
         self.components.is_some() || self.region.is_some()
     }
 
-    /// The distance from the faces at which the tip is led (m).
+    /// The distance from the faces (m) that the tip is led to.
     pub(super) fn margin(&self) -> f64 {
         let within = match self.components.and_then(|components| Some((components.weights, components.tolerance?))) {
             Some((weights, tolerance)) => {
@@ -57,8 +57,8 @@ impl Criterion {
         (0.5 * within).min(WIDEST_MARGIN)
     }
 
-    /// Where the tip is led: the `target`, or the nearest place that the region allows.
-    pub fn aim(&self, target: &Target) -> Target {
+    /// The point that the tip is led to: the `target`, or the nearest place that the region allows.
+    pub(crate) fn aim(&self, target: &Target) -> Target {
         match &self.region {
             Some(region) => target.with_position(|wanted| region.nearest(wanted, self.margin())),
             None => *target,

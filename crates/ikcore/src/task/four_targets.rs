@@ -57,12 +57,12 @@ by_instructions! {
 
 impl Target {
     /// Whether targets of this kind can be [linearized side by side](Self::linearize_four).
-    pub fn goes_side_by_side(&self, criterion: &Criterion) -> bool {
+    pub(crate) fn goes_side_by_side(&self, criterion: &Criterion) -> bool {
         matches!(self, Self::Position(_) | Self::Pose(_)) && !criterion.is_componentwise()
     }
 
     /// [`linearize`](Self::linearize) for four targets, all positions or all poses, to the same bits; `qs` has one entry per joint.
-    pub fn linearize_four(
+    pub(crate) fn linearize_four(
         targets: [&Self; 4],
         robot: &Robot,
         qs: &[F64x4],

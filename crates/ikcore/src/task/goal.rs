@@ -1,50 +1,50 @@
-//! Goals beside the task: what the joints should do where the task leaves them free.
+//! Goals beside the task: costs on the joints where the task leaves them free.
 
 use crate::error::{Result, require_positive};
 use crate::manipulability::{Manipulability, Motion};
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
-/// One goal, as a cost to be lowered along the self-motion. Weights (positive) compare goals with each other.
+/// A cost to lower along the self-motion. Positive weights balance several goals.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Goal {
-    /// Near a posture: |q - posture|^2.
+    /// Closeness to a posture: |q - posture|^2.
     Posture {
         /// (n,) (rad, m).
         posture: Vec<f64>,
-        /// Share among several goals.
+        /// Weight among several goals.
         weight: f64,
     },
-    /// Away from the limits: the sum of ((q - middle) / range)^2 over the joints that have limits.
+    /// Distance from the limits: the sum of ((q - middle) / range)^2 over the joints that have limits.
     Centring {
-        /// Share among several goals.
+        /// Weight among several goals.
         weight: f64,
     },
-    /// Far from singularities: -ln w, with w Yoshikawa's index.
+    /// Distance from singularities: -ln w, with w Yoshikawa's index.
     Manipulability {
-        /// Which motion of the tip counts.
+        /// The motion of the tip that counts.
         motion: Motion,
-        /// Share among several goals.
+        /// Weight among several goals.
         weight: f64,
     },
-    /// The whole arm far from singularities: -ln of the sum of the indices of all links
+    /// Distance of the whole arm from singularities: -ln of the sum of the indices of all links
     /// ([`Manipulability::link_indices`]).
     LinkManipulability {
-        /// Which motion of the links' tips counts.
+        /// The motion of the links' tips that counts.
         motion: Motion,
-        /// Share among several goals.
+        /// Weight among several goals.
         weight: f64,
     },
 }
 
-/// Goals made ready for one robot between its limits.
+/// Goals compiled for one robot and its limits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Goals {
     terms: Vec<Term>,
     gradient: Point,
 }
 
-/// A goal as it is computed.
+/// A goal in its computed form.
 #[derive(Debug, Clone, PartialEq)]
 enum Term {
     /// The sum of stiffness * (q - rest)^2.
@@ -53,18 +53,18 @@ enum Term {
     Manipulability { measure: Manipulability, of: Part, weight: f64 },
 }
 
-/// What an index is taken of.
+/// The part of the arm that an index measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
     Tip,
     AllLinks,
 }
 
-/// An index below this counts as this: a singular posture has no logarithm.
+/// Floor of an index: the logarithm of a singular posture's would be infinite.
 const SINGULAR: f64 = 1e-12;
 
 impl Goal {
-    /// Share among several goals.
+    /// Weight among several goals.
     pub fn weight(&self) -> f64 {
         match self {
             Self::Posture { weight, .. }
@@ -122,7 +122,7 @@ impl Goal {
 }
 
 impl Goals {
-    /// `goals`, which were found in order, for `robot` within `bounds`.
+    /// Compiles validated `goals` for `robot` within `bounds`.
     pub fn new(goals: &[Goal], robot: &Robot, bounds: &Bounds) -> Self {
         let terms = goals.iter().map(|goal| goal.term(robot, bounds)).collect();
         Self { terms, gradient: Point::from_elem(0.0, robot.dof()) }
@@ -142,7 +142,7 @@ impl Goals {
 }
 
 impl Term {
-    /// Adds the gradient at `q` to `gradient`; the cost. `one` is scratch.
+    /// Adds the gradient at `q` to `gradient` and returns the cost. `one` is scratch.
     fn add(&self, robot: &Robot, q: &[f64], one: &mut [f64], gradient: &mut [f64]) -> f64 {
         match self {
             Self::Springs { stiffness, rest } => {

@@ -26,6 +26,7 @@ pub use criterion::Criterion;
 pub use goal::{Goal, Goals};
 pub use region::{Outside, Region};
 pub use target::Target;
-pub use target_motion::{TargetMotion, Twist};
+pub(crate) use target_motion::TargetMotion;
+pub use target_motion::Twist;
 pub use tip_error::{SquaredError, TipError, Tolerance};
 pub use tip_task::{Task, TaskKind};

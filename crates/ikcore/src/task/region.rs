@@ -1,4 +1,4 @@
-//! A box that the tip is kept in: p_min < p < p_max, eq. (5) of Cheng et al. (2020).
+//! A box that the tip must stay in: p_min < p < p_max, eq. (5) of Cheng et al. (2020).
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The value of a tip outside its region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Outside {
-    /// Smaller nearer to the target in the region, so that a search that starts outside finds in.
+    /// Decreasing towards the region, so that a search that starts outside finds its way in.
     #[default]
     Graded,
     /// Infinite, so that a search that starts inside stays there.
@@ -59,8 +59,8 @@ impl Region {
         (0..3).all(|k| self.lower[k] < point[k] && point[k] < self.upper[k])
     }
 
-    /// The nearest point to `point` (m) that is `margin` (m) from every face, or a quarter of the way between two that are
-    /// nearer to each other.
+    /// The point nearest to `point` (m) that is `margin` (m) away from every face; between two close faces, at least a quarter
+    /// of the way.
     #[inline]
     pub fn nearest(&self, point: &[f64; 3], margin: f64) -> [f64; 3] {
         std::array::from_fn(|k| {
@@ -69,7 +69,7 @@ impl Region {
         })
     }
 
-    /// Err unless the tip is inside; `what` names the configuration that puts it there.
+    /// Checks that the tip is inside; `what` names its configuration in the error.
     ///
     /// # Errors
     /// [`Error::OutsideRegion`] names the coordinate, its value and its range.
@@ -86,7 +86,7 @@ impl Region {
         }
     }
 
-    /// The faces that `point` violates, in words.
+    /// Describes the faces that `point` violates.
     pub(crate) fn violated_faces(&self, point: &[f64; 3]) -> String {
         let face = |k: usize| match point[k] {
             at if at <= self.lower[k] => Some(format!("{} above {}", AXES[k], self.lower[k])),

@@ -14,7 +14,7 @@ use crate::objective::Linearization;
 
 impl Criterion {
     /// Describes the faces that keep the tip from `target`, if even the nearest point of the region is beyond the tolerance.
-    pub fn blocked_by_region(&self, target: &Target) -> Option<String> {
+    pub(crate) fn blocked_by_region(&self, target: &Target) -> Option<String> {
         let (region, wanted) = (self.region.as_ref()?, target.position()?);
         let axes = target.frame().map_or(Frame::IDENTITY.axes, |frame| frame.axes);
         let nearest = Frame { axes, origin: region.nearest(&wanted, 0.0) };

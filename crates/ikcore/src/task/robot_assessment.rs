@@ -19,10 +19,16 @@ impl Target {
         }
     }
 
-    /// Hands the [assessments](Self::assess) of the configurations stored one after another to `keep`, in order; several at a time
-    /// where only positions matter.
+    /// Calls `keep` with the [assessment](Self::assess) of each of the configurations stored one after another in `qs`, in order.
+    /// Positions are computed several at a time.
     #[inline]
-    pub fn assess_all(&self, robot: &Robot, qs: &[f64], criterion: &Criterion, mut keep: impl FnMut(Assessment)) {
+    pub(crate) fn assess_all(
+        &self,
+        robot: &Robot,
+        qs: &[f64],
+        criterion: &Criterion,
+        mut keep: impl FnMut(Assessment),
+    ) {
         match (self, criterion.is_componentwise()) {
             (Self::Position(target), false) => {
                 robot.tip_positions(qs, |tip| keep(position_alone(target, &tip, criterion)));
@@ -33,7 +39,7 @@ impl Target {
 
     /// The assessment of `tip`, by `criterion`.
     #[inline]
-    pub fn assess_tip(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
+    pub(crate) fn assess_tip(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
         match &criterion.region {
             Some(region) => self.assess_tip_within(region, tip, criterion),
             None => self.assess_tip_anywhere(tip, criterion),
@@ -47,9 +53,15 @@ impl Target {
         self.linearize_tip(&tip, q.len(), criterion, out)
     }
 
-    /// The same from a tip and its geometric Jacobian, which stands in the first `dof` columns of `out`.
+    /// The same from a tip and its geometric Jacobian, given in the first `dof` columns of `out`.
     #[inline]
-    pub fn linearize_tip(&self, tip: &Frame, dof: usize, criterion: &Criterion, out: &mut Linearization) -> Assessment {
+    pub(crate) fn linearize_tip(
+        &self,
+        tip: &Frame,
+        dof: usize,
+        criterion: &Criterion,
+        out: &mut Linearization,
+    ) -> Assessment {
         match &criterion.region {
             Some(region) => self.linearize_tip_within(region, tip, dof, criterion, out),
             None => self.linearize_tip_anywhere(tip, dof, criterion, out),

@@ -12,11 +12,11 @@ pub enum Target {
     Pose(Frame),
     /// The orientation of a frame, the position left free.
     Orientation(Frame),
-    /// The position of a frame, and the direction that `axis` has in it; the spin about that is left free.
+    /// The position of a frame and the direction of `axis` in it; the spin about the axis is left free.
     Pointing {
-        /// Where the tip would be if its spin mattered too.
+        /// The full pose, spin included.
         frame: Frame,
-        /// Of unit length, in the tip's own coordinates.
+        /// The axis in the tip's own coordinates, of unit length.
         axis: [f64; 3],
     },
 }

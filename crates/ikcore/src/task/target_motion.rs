@@ -5,10 +5,10 @@ use crate::math::Frame;
 use crate::math::hermite::Cubic;
 use crate::math::so3::{rotated, rotation_between};
 
-/// A target on its way: from where it is at the beginning of a tick to where it is at the end. Positions follow the cubic
-/// that meets both velocities, or a straight line where those are not known; orientations turn at constant speed.
+/// The motion of a target from the beginning of a tick to its end. Positions follow the cubic that meets both velocities, or
+/// a straight line where those are unknown; orientations turn at constant speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TargetMotion {
+pub(crate) struct TargetMotion {
     /// At the beginning.
     pub begin: Target,
     /// At the end, of the same kind.
@@ -29,7 +29,7 @@ pub struct Twist {
 }
 
 impl TargetMotion {
-    /// The target after this `share` of the tick, from 0 to 1, and how it moves there.
+    /// The target and its twist at `share` of the tick, from 0 to 1.
     pub fn at(&self, share: f64) -> (Target, Twist) {
         let (from, to) = (self.begin.position().unwrap_or_default(), self.end.position().unwrap_or_default());
         let straight: [f64; 3] = std::array::from_fn(|k| (to[k] - from[k]) / self.dt);
@@ -47,7 +47,7 @@ impl TargetMotion {
 }
 
 impl Target {
-    /// Where this target is after moving with `twist` for `time` (s).
+    /// This target after moving with `twist` for `time` (s).
     pub fn moved(&self, twist: &Twist, time: f64) -> Self {
         let position = self.position().unwrap_or_default();
         let there = std::array::from_fn(|k| position[k] + time * twist.linear[k]);

@@ -1,4 +1,4 @@
-//! How far a tip is from its target, and when that is near enough.
+//! Errors of the tip, and tolerances on them.
 
 use std::fmt;
 
@@ -37,12 +37,12 @@ impl Tolerance {
     }
 }
 
-/// Squared errors, as solvers use them: no root is taken in hot loops. None is what a target does not ask for.
+/// Squared errors, which spare hot loops the root. None where the target does not ask for the part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SquaredError {
     /// Squared distance (m^2).
     pub position: Option<f64>,
-    /// Squared angle (rad^2): to the target's orientation, or to the direction that an axis is to have.
+    /// Squared angle (rad^2): to the target's orientation, or to the direction of its axis.
     pub rotation: Option<f64>,
 }
 
@@ -61,7 +61,7 @@ impl SquaredError {
     }
 }
 
-/// The errors as a caller reads them; NaN is what the target does not ask for.
+/// The errors of the tip; NaN where the target does not ask for the part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TipError {
     /// Distance (m).
@@ -78,7 +78,7 @@ impl From<SquaredError> for TipError {
 }
 
 impl fmt::Display for TipError {
-    /// What was asked for, with its unit.
+    /// Writes the errors that the target asks for, with units.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { position, rotation } = *self;
         match (position.is_nan(), rotation.is_nan()) {

@@ -1,4 +1,4 @@
-//! What a caller asks of the tip, apart from where: the kind of task, its components, the tool that it is for.
+//! Tasks of the tip: which part of a pose matters, weights and tolerances, the tool, the region.
 
 use std::ops::Range;
 
@@ -16,15 +16,15 @@ use crate::robot::Robot;
 /// Which part of a pose matters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TaskKind {
-    /// All of it.
+    /// The whole pose.
     Pose,
     /// The position; the orientation is left free.
     Position,
     /// The orientation; the position is left free.
     Orientation,
-    /// The position, and the direction of one axis of the tip; the spin about it is left free.
+    /// The position and the direction of one axis of the tip; the spin about the axis is left free.
     Pointing {
-        /// In the tip's own coordinates, of any length but zero.
+        /// The axis in the tip's own coordinates, of any length but zero.
         axis: [f64; 3],
     },
 }
@@ -36,14 +36,14 @@ pub struct Task {
     pub kind: TaskKind,
     /// Weights and tolerances by component.
     pub components: Option<Components>,
-    /// From the tip to what is to reach the target; None: the tip itself.
+    /// The tool's pose in the tip's frame; the tool is to reach the target. None: the tip itself.
     pub tool: Option<Pose>,
-    /// Where that is to stay; None: anywhere.
+    /// Where it must stay; None: anywhere.
     pub region: Option<Region>,
 }
 
 impl TaskKind {
-    /// The name as Python shows it.
+    /// The name in Python.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Pose => "Pose",
@@ -53,8 +53,8 @@ impl TaskKind {
         }
     }
 
-    /// Where the entries of its weights and tolerances stand among the six components; the angle of a pointing task stands
-    /// for three.
+    /// The rows among the six components that each entry of its weights and tolerances covers; the angle of a pointing task
+    /// covers three.
     fn rows(&self) -> &'static [Range<usize>] {
         match self {
             Self::Pose => &[0..1, 1..2, 2..3, 3..4, 4..5, 5..6],
@@ -64,7 +64,7 @@ impl TaskKind {
         }
     }
 
-    /// The six components from one entry for each that this kind has; `rest` for the others.
+    /// Expands one entry for each component of this kind to six; `rest` for the others.
     fn expand(&self, what: &str, entries: &[f64], rest: f64) -> Result<[f64; ROWS]> {
         let rows = self.rows();
         if entries.len() != rows.len() {
@@ -170,10 +170,10 @@ impl Task {
         Ok(())
     }
 
-    /// What of `wanted`, a position or a pose, this task asks for.
+    /// Returns the part of `wanted`, a position or a pose, that this task asks for.
     ///
     /// # Errors
-    /// [`Error::WrongTarget`] for a position where the task needs an orientation too.
+    /// [`Error::WrongTarget`] for a position where the task needs an orientation.
     pub fn target(&self, wanted: &Target) -> Result<Target> {
         match (&self.kind, wanted) {
             (TaskKind::Position, Target::Pose(frame)) => Ok(Target::Position(frame.origin)),

@@ -18,7 +18,7 @@ mod step;
 mod track;
 mod track_options;
 
-pub use controller::{Acceptance, Antenna, ControlSession, Controller, Delay, Znnbas};
+pub use controller::{Antenna, ControlSession, Controller, Delay, UpdateRule, Znnbas};
 pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
 pub use plant::{Fault, FunctionPlant, KinematicPlant, Plant};
 pub use record::Record;

@@ -1,4 +1,4 @@
-//! Following a path with an arm that nobody has a model of: a controller, and the plant that answers it.
+//! Tracking without a model: a controller commands a plant and learns from its measurements alone.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +17,7 @@ use crate::wording::{number, time};
 /// How to track without a model.
 #[derive(Debug, Clone)]
 pub struct ModelFreeOptions {
-    /// What moves the arm.
+    /// The controller.
     pub controller: Controller,
     /// Limits on every command, probes included; None: none.
     pub limits: Option<Limits>,
@@ -46,7 +46,7 @@ pub struct ModelFreeRecord {
     pub fault: Option<Fault>,
 }
 
-/// Follows `reference` with whatever `plant` moves, from `start` (n,). Row 0 is one measurement at the start.
+/// Follows `reference` with the tip of `plant`, from `start` (n,). Row 0 is one measurement at the start.
 ///
 /// # Errors
 /// Any [`Error`] for wrong input, and [`Error::PlantFailed`] where the plant does not even answer at the start. One that
@@ -148,7 +148,7 @@ impl ModelFreeRecord {
         (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
     }
 
-    /// What happened, and what to try.
+    /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         if let Some(Fault(reason)) = &self.fault {
             let rows = self.track.rows();

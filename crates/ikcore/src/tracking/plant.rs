@@ -1,4 +1,4 @@
-//! What is controlled: something that takes a joint command and answers with a position.
+//! Plants: arms that take a joint command and return the measured position of their tip.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! What a track leaves behind: a row per tick, and what it amounts to.
+//! The record of a track: one row per tick, and a summary.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::step::Step;
 use crate::kinematics::Beyond;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
-use crate::math::ordered::larger;
+use crate::math::comparison::larger;
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::wording::{number, time};
@@ -48,7 +48,7 @@ pub struct Record {
     pub limits: Limits,
     /// The error band.
     pub criterion: Criterion,
-    /// How far the path leads out of reach, and when (s), where that kept the tip from it beyond doubt.
+    /// Distance by which the path is provably out of reach, and when (s); None where the track succeeded or nothing is proven.
     pub out_of_reach: Option<(Beyond, f64)>,
     /// How the track as a whole ended.
     pub status: Status,
@@ -58,7 +58,7 @@ pub struct Record {
     dt: f64,
 }
 
-/// What a tick has accepted.
+/// Configuration and box of the last tick.
 pub(super) struct Accepted<'a> {
     /// Configuration (n,).
     pub q: &'a [f64],
@@ -231,7 +231,7 @@ impl Record {
         self.step_evaluations.iter().sum()
     }
 
-    /// What happened, and what to try.
+    /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         let last = self.rows() - 1;
         if self.status == Status::Interrupted {

@@ -125,13 +125,13 @@ impl Session {
         &self.criterion
     }
 
-    /// What of `wanted` the task asks for, checked.
+    /// Returns the part of `wanted` that the task asks for, checked.
     fn read<'a>(&self, wanted: &'a Target) -> Result<Cow<'a, Target>> {
         wanted.validate()?;
         self.task.map_or(Ok(Cow::Borrowed(wanted)), |task| task.target(wanted).map(Cow::Owned))
     }
 
-    /// How far `wanted` is out of reach within `bounds`, where it is beyond doubt.
+    /// Returns how far `wanted` is provably out of reach within `bounds`.
     ///
     /// # Errors
     /// As [`step`](Self::step).
@@ -140,7 +140,7 @@ impl Session {
         Ok(Problem::new(&self.robot, &target, self.criterion).beyond_reach(bounds))
     }
 
-    /// What the last tick has accepted.
+    /// Configuration and box of the last tick.
     pub(super) fn accepted(&self) -> Accepted<'_> {
         Accepted { q: &self.q, tick_box: &self.tick_box }
     }
@@ -168,7 +168,7 @@ impl Session {
         Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false })
     }
 
-    /// Moves by one tick towards `target`, inside the limits. Time advances whatever comes of it.
+    /// Moves by one tick towards `target`, inside the limits. Time advances in any case.
     ///
     /// # Errors
     /// [`Error::NotFinite`](crate::Error::NotFinite) for a target that is not finite,

@@ -47,7 +47,7 @@ pub fn track(
     Ok(record)
 }
 
-/// How far the path leads out of reach from row `first` on, and when (s), where it does beyond doubt.
+/// Returns the largest distance by which the path is provably out of reach from row `first` on, and its time (s).
 fn farthest_out_of_reach(reference: &Reference, first: usize, session: &Session) -> Result<Option<(Beyond, f64)>> {
     let mut farthest: Option<(Beyond, f64)> = None;
     let Ok(bounds) = session.limits().position_box() else { return Ok(None) }; // they vary in time

@@ -1,4 +1,4 @@
-//! How to track.
+//! Options of `track` and of a session.
 
 use super::rule::TickRule;
 use crate::error::{Error, Result};
@@ -6,14 +6,14 @@ use crate::limits::{LimitAt, Limits};
 use crate::robot::Robot;
 use crate::task::{Criterion, Goal, Task, Tolerance};
 
-/// How to track.
+/// Options of [`track`](super::track) and [`Session`](super::Session).
 #[derive(Debug, Clone, Default)]
 pub struct TrackOptions {
-    /// What runs in every tick.
+    /// The rule that runs in every tick.
     pub rule: TickRule,
-    /// What of the path matters; None: all that it says.
+    /// The part of the path that matters; None: all of it.
     pub task: Option<Task>,
-    /// What to do with the freedom that the task leaves.
+    /// Goals in the null space of the task.
     pub goals: Vec<Goal>,
     /// The error band.
     pub tolerance: Tolerance,

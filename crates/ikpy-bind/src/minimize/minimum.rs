@@ -10,7 +10,7 @@ use super::function::{Attendant, Failure, Function};
 use crate::convert::{copied, count, summary, table, vector};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
-use crate::monitor::followed;
+use crate::monitor::watched_keeping_result;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::solver::{PyStop, derivative_free_solver};
@@ -143,7 +143,7 @@ pub fn minimize_function(
     };
     let failure = Failure::default();
     let mut objective = Function { function: function.clone(), dimension: lower.len(), vectorized, failure: &failure };
-    let (core, stopped) = followed(py, progress, |watcher| {
+    let (core, stopped) = watched_keeping_result(py, progress, |watcher| {
         let mut attendant = Attendant { watcher, failure: &failure };
         minimize::minimize(&mut objective, &lower, &upper, &options, &mut attendant)
     })?;

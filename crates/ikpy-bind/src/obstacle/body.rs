@@ -69,7 +69,7 @@ fn point_of(pose: &Pose) -> [f64; 3] {
     pose.translation.vector.into()
 }
 
-/// The rotation row after row; None where there is none.
+/// Returns the rows of the rotation; None without one.
 fn rotation_rows(pose: &Pose) -> Option<[[f64; 3]; 3]> {
     let rotation = pose.rotation.matrix();
     let turned = *rotation != Matrix3::identity();

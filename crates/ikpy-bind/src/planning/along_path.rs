@@ -1,13 +1,13 @@
 //! `plan_along_path`.
 
 use ikcore::path::Waypoints;
-use ikcore::planning::{self, AlongPathMethod, AlongPathOptions, TipPath};
+use ikcore::planning::{self, AlongPathOptions, TipPath};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use super::elbow::read_elbow;
 use super::plan::PyPlan;
+use super::tpbso::read_method;
 use crate::convert::{array, count, rigid_matrices, shape_text, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
@@ -24,13 +24,12 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
 ///     start_q: joint positions (n,) at the start; None: chosen by the planner.
 ///     limits: position, velocity and acceleration limits; None: the robot's.
-///     method: "timed": optimises redundancy and timing together; "tpbso": redundancy by a beetle swarm, uniform timing,
-///         splines through every second point (Wang et al. 2019).
+///     method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
+///         uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
 ///     objective: quantity to minimise, "time" or "joint_travel".
-///     elbow: for "tpbso", the sign of the second joint's angle, 1 or -1, unless start_q says it; None: 1.
 ///     accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
 ///         decides how many points of the path the motion passes. None: a thousandth of the path's extent; for "tpbso" 4 %.
-///     solver: solver of the search; None: the method's own.
+///     solver: solver of the search of "timed"; None: differential evolution. `TPBSO` has a solver of its own.
 ///     stop: budgets; None: the method's own.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
@@ -43,8 +42,10 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     LimitError: limits that contradict each other.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
-#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method="timed", objective="time", elbow=None, accuracy=None,
-                    solver=None, stop=None, seed=0, progress=None))]
+#[pyo3(signature = (robot, path, *, start_q=None, limits=None, method=None, objective="time", accuracy=None, solver=None,
+                    stop=None, seed=0, progress=None),
+       text_signature = "(robot, path, *, start_q=None, limits=None, method='timed', objective='time', accuracy=None, \
+                         solver=None, stop=None, seed=0, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_along_path(
     py: Python<'_>,
@@ -52,9 +53,8 @@ pub fn plan_along_path(
     path: &Bound<'_, PyAny>,
     start_q: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
-    #[pyo3(from_py_with = crate::convert::text)] method: &str,
+    method: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] objective: &str,
-    elbow: Option<i128>,
     accuracy: Option<f64>,
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
@@ -65,23 +65,18 @@ pub fn plan_along_path(
     let tip_path = read_tip_path(py, path)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
     let options = AlongPathOptions {
-        method: method.parse().map_err(raise)?,
+        method: read_method(method)?,
         objective: objective.parse().map_err(raise)?,
         start: start_q.map(|q| vector("start_q", q)).transpose()?,
         limits: resolved,
-        elbow: elbow.map(|sign| read_elbow("elbow", sign)).transpose()?,
         accuracy,
         solver: solver.map(|solver| derivative_free_solver("plan_along_path", solver)).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
     let plan = watched(py, progress, |watcher| planning::plan_along_path(&arm, &tip_path, &options, watcher))?;
-    let positions = match options.method {
-        AlongPathMethod::Timed => tip_path.positions().as_flattened().to_vec(),
-        AlongPathMethod::Tpbso => (0..tip_path.points().len()).flat_map(|i| tip_path.points().position(i)).collect(),
-    };
     python_calls::log(py, format!("plan_along_path: {}", plan.message()))?;
-    PyPlan::new(plan, Some(positions), robot, in_force, PyTuple::empty(py).unbind())
+    PyPlan::new(plan, robot, in_force, PyTuple::empty(py).unbind())
 }
 
 /// Reads a `Path`, points (k, 3) or poses (k, 4, 4).

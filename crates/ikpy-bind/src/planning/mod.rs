@@ -1,15 +1,16 @@
 //! Planning: point-to-point motions, motions along paths, and time-optimal timing.
 
 mod along_path;
-mod elbow;
 mod plan;
 mod point_to_point;
 mod time_optimal;
+mod tpbso;
 mod violation;
 
 use pyo3::prelude::*;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<tpbso::PyTpbso>()?;
     module.add_class::<violation::PyViolation>()?;
     module.add_class::<plan::PyPlan>()?;
     module.add_function(wrap_pyfunction!(point_to_point::plan_point_to_point, module)?)?;

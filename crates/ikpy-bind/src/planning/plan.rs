@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use super::violation::PyViolation;
-use crate::convert::{array, table};
+use crate::convert::table;
 use crate::error::raise;
 use crate::limits::PyLimits;
 use crate::outcome::outcome;
@@ -17,7 +17,7 @@ use crate::robot::PyRobot;
 use crate::trajectory::PyTrajectory;
 use crate::traversal::traversed;
 
-/// A planned motion, and what became of the search for it.
+/// A planned motion, and how its search ended.
 #[pyclass(name = "Plan", module = "beetle_ik", frozen)]
 pub struct PyPlan {
     core: Plan,
@@ -104,42 +104,32 @@ impl PyPlan {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = pickling::bytes(py, to_bytes("plan", &self.core))?;
-        pickling::restored_from::<Self>(py, (core, &self.reference, &self.robot, &self.limits, &self.obstacles))
+        pickling::restored_from::<Self>(py, (core, &self.robot, &self.limits, &self.obstacles))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    #[pyo3(signature = (bytes, reference, robot, limits, obstacles))]
     fn _restore(
         bytes: &[u8],
-        reference: Option<&Bound<'_, PyAny>>,
         robot: &Bound<'_, PyRobot>,
         limits: Py<PyLimits>,
         obstacles: Py<PyTuple>,
     ) -> PyResult<Self> {
-        let reference =
-            reference.map(|rows| Ok::<_, PyErr>(array("reference", rows)?.as_slice()?.to_vec())).transpose()?;
-        Self::new(Plan::from_bytes(bytes).map_err(raise)?, reference, robot, limits, obstacles)
+        Self::new(Plan::from_bytes(bytes).map_err(raise)?, robot, limits, obstacles)
     }
 }
 
 impl PyPlan {
-    pub fn new(
-        core: Plan,
-        reference: Option<Vec<f64>>,
-        robot: &Bound<'_, PyRobot>,
-        limits: Py<PyLimits>,
-        obstacles: Py<PyTuple>,
-    ) -> PyResult<Self> {
+    pub fn new(core: Plan, robot: &Bound<'_, PyRobot>, limits: Py<PyLimits>, obstacles: Py<PyTuple>) -> PyResult<Self> {
         let py = robot.py();
         let history: Vec<f64> = core.history.iter().flat_map(|step| [step.evaluations as f64, step.cost]).collect();
         let free = &core.redundancy;
         let orientations = free.iter().flatten().flat_map(|free| [free.value, free.lowest, free.highest]).collect();
         let shape = [free.len(), free.first().map_or(0, |links| links.len()), 3];
-        let reference = reference.map(|positions| {
-            let count = positions.len() / 3;
-            table(py, positions, &[count, 3]).map(Bound::unbind)
-        });
+        let reference = core
+            .reference
+            .as_ref()
+            .map(|positions| table(py, positions.as_flattened().to_vec(), &[positions.len(), 3]).map(Bound::unbind));
         Ok(Self {
             trajectory: Py::new(py, PyTrajectory::from(core.trajectory.clone()))?,
             history: table(py, history, &[core.history.len(), 2])?.unbind(),

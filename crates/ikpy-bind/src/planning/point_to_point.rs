@@ -4,8 +4,8 @@ use ikcore::planning::{self, Endpoint, PointToPointOptions};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 
-use super::elbow::read_elbows;
 use super::plan::PyPlan;
+use super::tpbso::read_method;
 use crate::convert::{array, count, vector};
 use crate::error::{invalid, raise};
 use crate::ik::read_target;
@@ -14,7 +14,7 @@ use crate::monitor::watched;
 use crate::obstacle::Obstacles;
 use crate::python_calls;
 use crate::robot::PyRobot;
-use crate::solver::{PyStop, derivative_free_solver};
+use crate::solver::PyStop;
 
 /// Plans a motion between two ends, from rest to rest.
 ///
@@ -24,13 +24,11 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     start_q, end_q: joint positions (n,) instead.
 ///     limits: position, velocity and acceleration limits; None: the robot's.
 ///     method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
-///         "tpbso": polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
+///         "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
 ///     objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
 ///     obstacles: obstacles of `bik.obstacles` that the robot must not touch. A robot with capsules must not touch itself
 ///         either.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
-///     elbows: for "tpbso" on planar arms, the sign of the second joint's angle at start and end, 1 or -1; None: (1, 1).
-///     solver: solver of the search; None: the method's own.
 ///     stop: budgets; None: the method's own.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
@@ -43,9 +41,10 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     LimitError: limits that contradict each other or exclude an end.
 ///     UnsupportedLimit: jerk limits, or limits that vary in time.
 #[pyfunction]
-#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method="minmax",
-                    objective="time", obstacles=None, margin=None, elbows=None, solver=None, stop=None, seed=0,
-                    progress=None))]
+#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method=None, objective="time",
+                    obstacles=None, margin=None, stop=None, seed=0, progress=None),
+       text_signature = "(robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method='minmax', \
+                         objective='time', obstacles=None, margin=None, stop=None, seed=0, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point(
     py: Python<'_>,
@@ -55,12 +54,10 @@ pub fn plan_point_to_point(
     start_q: Option<&Bound<'_, PyAny>>,
     end_q: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
-    #[pyo3(from_py_with = crate::convert::text)] method: &str,
+    method: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] objective: &str,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
-    elbows: Option<[i128; 2]>,
-    solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
     seed: i128,
     progress: Option<&Bound<'_, PyAny>>,
@@ -71,19 +68,17 @@ pub fn plan_point_to_point(
     let obstacles = Obstacles::read(py, obstacles)?;
     let given = obstacles.tuple;
     let options = PointToPointOptions {
-        method: method.parse().map_err(raise)?,
+        method: read_method(method)?,
         objective: objective.parse().map_err(raise)?,
         obstacles: obstacles.core,
         margin,
-        elbows: elbows.map(read_elbows).transpose()?,
         limits: resolved,
-        solver: solver.map(|solver| derivative_free_solver("plan_point_to_point", solver)).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,
     };
     let plan = watched(py, progress, |watcher| planning::plan_point_to_point(&arm, &start, &end, &options, watcher))?;
     python_calls::log(py, format!("plan_point_to_point: {}", plan.message()))?;
-    PyPlan::new(plan, None, robot, in_force, given)
+    PyPlan::new(plan, robot, in_force, given)
 }
 
 /// Reads an end given as a target or as joint positions.

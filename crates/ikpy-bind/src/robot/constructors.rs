@@ -125,7 +125,7 @@ impl PyRobot {
     /// Raises:
     ///     UnknownNameError: lists the names and suggests the nearest.
     #[staticmethod]
-    fn named(name: &str) -> PyResult<Self> {
+    fn named(#[pyo3(from_py_with = crate::convert::text)] name: &str) -> PyResult<Self> {
         Robot::named(name).map(Self::from).map_err(raise)
     }
 

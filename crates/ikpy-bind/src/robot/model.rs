@@ -27,7 +27,7 @@ type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>
 #[pyclass(name = "Robot", module = "beetle_ik", frozen, eq)]
 pub struct PyRobot {
     pub core: Arc<Robot>,
-    /// Made on first use: most results only store it.
+    /// Made on first use: most results only store it. Holds numbers alone, so that no cycle can pass through it.
     limits: PyOnceLock<Py<PyLimits>>,
 }
 
@@ -107,7 +107,7 @@ impl PyRobot {
         Ok(limits.clone_ref(py))
     }
 
-    /// Collision capsules of the links, each (link, a, b, radius): all points within `radius` (m) of the segment from a (3,)
+    /// Collision capsules of the links, each (link, a, b, radius): all points within the radius (m) of the segment from a (3,)
     /// to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a URDF.
     #[getter]
     fn capsules<'py>(&self, py: Python<'py>) -> Vec<Capsule<'py>> {

@@ -1,5 +1,6 @@
 //! Solvers, one family per file; budgets and statuses.
 
+mod algorithm;
 mod any_solver;
 mod apps;
 mod bas;
@@ -16,8 +17,9 @@ mod swarm;
 
 use pyo3::prelude::*;
 
-use any_solver::add_classes;
-pub use any_solver::{any_solver, derivative_free_solver, known_solver, solver_names};
+use algorithm::add_classes;
+pub use algorithm::solver_names;
+pub use any_solver::{any_solver, derivative_free_solver, derivative_free_to_python, known_solver};
 pub use broyden_bas::PyBroydenBas;
 use multi_start::PyMultiStart;
 pub use stop::{PyStop, status};

@@ -1,10 +1,10 @@
 //! `MultiStart`.
 
-use ikcore::solver::{Algorithm, AnySolver, MultiStart};
+use ikcore::solver::{Algorithm, MultiStart};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyTuple};
 
-use super::any_solver::{any_solver, to_python};
+use super::algorithm::{algorithm, not_a_solver, to_python};
 use crate::convert::count;
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
@@ -24,10 +24,10 @@ impl PyMultiStart {
     #[new]
     #[pyo3(signature = (solver, *, max_starts=None))]
     fn new(solver: &Bound<'_, PyAny>, max_starts: Option<i128>) -> PyResult<Self> {
-        let AnySolver::Single(algorithm) = any_solver(solver)? else {
+        if solver.is_instance_of::<Self>() {
             return Err(invalid("MultiStart takes a single solver, not another MultiStart".into()));
-        };
-        let mut multi_start = algorithm.into_multi_start();
+        }
+        let mut multi_start = algorithm(solver).ok_or_else(|| not_a_solver(solver))?.into_multi_start();
         if let Some(starts) = max_starts {
             multi_start.rule.max_starts = count("max_starts", starts)?;
         }

@@ -1,7 +1,7 @@
 //! `PSO`.
 
 use ikcore::solver::Pso;
-use ikcore::solver::{Acceptance, PsoForm, Walls};
+use ikcore::solver::{ParticleAcceptance, PsoForm, Walls};
 use pyo3::prelude::*;
 
 use super::schedule::{limited, schedule, scheduled, show_schedule};
@@ -61,7 +61,7 @@ impl PyPso {
             c1: c1.unwrap_or(standard.c1),
             c2: c2.unwrap_or(standard.c2),
             velocity_limit,
-            accept: accept.parse::<Acceptance>().map_err(raise)?,
+            accept: accept.parse::<ParticleAcceptance>().map_err(raise)?,
             walls: walls.parse::<Walls>().map_err(raise)?,
             ..standard
         };

@@ -13,7 +13,7 @@ use super::record::{Columns, record};
 use crate::convert::{count, table, vector};
 use crate::error::raise;
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
-use crate::monitor::{Watcher, attended};
+use crate::monitor::{Watcher, watched_with_interpreter};
 use crate::outcome::outcome;
 use crate::path::PyPath;
 use crate::pickling::{self, Reduced};
@@ -163,7 +163,8 @@ pub fn track_model_free(
         tolerance: position_tolerance,
         seed: count("seed", seed)?,
     };
-    let (core, exception) = attended(py, progress, |watcher| run(plant, &reference, &start, &options, watcher))?;
+    let (core, exception) =
+        watched_with_interpreter(py, progress, |watcher| run(plant, &reference, &start, &options, watcher))?;
     python_calls::log(py, format!("track_model_free: {}", core.message()))?;
     PyModelFreeResult::new(py, core, in_force, exception.map(|error| error.into_value(py)))
 }

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use crate::convert::{row, table};
 
-/// The arrays of a record, made once.
+/// The arrays of a record, converted once.
 pub struct Columns {
     pub time: Py<PyArray1<f64>>,
     pub q: Py<PyArrayDyn<f64>>,
@@ -34,13 +34,13 @@ impl Columns {
     }
 }
 
-/// Counts (k,) as numpy holds them.
+/// Converts counts (k,) to a numpy array.
 pub fn counts(py: Python<'_>, counts: &[usize]) -> Py<PyArray1<i64>> {
     row(py, counts.iter().map(|count| *count as i64).collect()).unbind()
 }
 
-/// The getters of a class that has such `columns`. Of what was recorded without a model four things are to be understood
-/// differently; they are given their words.
+/// Defines the getters of a class that has such `columns`. Four of them mean something else without a model, and take their
+/// docstrings as arguments.
 macro_rules! record {
     (
         $class:ident = |$result:ident| $record:expr,

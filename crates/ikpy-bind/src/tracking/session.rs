@@ -1,10 +1,10 @@
 //! The common part of `Tracker` and `ControlSession`.
 
-/// Access to the session of a class that has one, and the getters `q`, `time` and `dt`.
+/// Defines access to the session of a class, and the getters `q`, `time` and `dt`.
 macro_rules! in_progress {
     ($class:ident, $session:ty) => {
         impl $class {
-            /// A panic elsewhere cannot have left the session half-changed: it is written in one go at the end of a call.
+            /// Locks the session. A panic elsewhere cannot have left it half-changed: it is only written at the end of a call.
             fn session(&self) -> std::sync::MutexGuard<'_, $session> {
                 self.session.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
             }

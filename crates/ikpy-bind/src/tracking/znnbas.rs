@@ -1,7 +1,7 @@
 //! `ZNNBAS`.
 
 use ikcore::tracking::Controller;
-use ikcore::tracking::{Acceptance, Antenna, Delay, Znnbas};
+use ikcore::tracking::{Antenna, Delay, UpdateRule, Znnbas};
 use pyo3::prelude::*;
 
 use crate::convert::count;
@@ -67,7 +67,7 @@ impl PyZnnbas {
             },
             delay_steps: count("delay_steps", delay_steps)?,
             delay: delay.parse::<Delay>().map_err(raise)?,
-            accept: accept.parse::<Acceptance>().map_err(raise)?,
+            accept: accept.parse::<UpdateRule>().map_err(raise)?,
             sensor_delay: count("sensor_delay", sensor_delay)?,
         };
         core.validate_numbers().map_err(raise)?;

@@ -2,11 +2,11 @@
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from ... import InvalidInputError, Robot, plan_along_path
+from ... import TPBSO, InvalidInputError, Robot, plan_along_path
 from ... import Path as ReferencePath
 from ..curves import CurveName, make_curve, read_points
 from ..options import (
@@ -22,7 +22,7 @@ from ..options import (
     load_robot,
     numbers,
 )
-from .planned import Animated, Budget, Out, Solver, options, report
+from .planned import Animated, Budget, Out, SearchName, Solver, options, report, search
 
 _DURATION = 1.0  # s; the planner ignores it
 
@@ -67,13 +67,12 @@ def along_path(
     """Plan a motion that moves the tip along a path."""
     arm = load_robot(robot, urdf, base, tip)
     path = _path(arm, curve, points)
-    chosen = options(velocity, acceleration, solver, max_evaluations)
+    chosen = _method(method, solver) | options(velocity, acceleration, max_evaluations)
     report(
         lambda: plan_along_path(
             arm,
             path,
             start_q=None if start_q is None else numbers("--start-q", start_q),
-            method=method.value,
             objective=objective.value,
             accuracy=accuracy,
             seed=seed,
@@ -86,6 +85,13 @@ def along_path(
         animation,
         as_json,
     )
+
+
+def _method(method: Method, solver: SearchName | None) -> dict[str, Any]:
+    """Returns the method and its search as `plan_along_path` takes them."""
+    if method is Method.TPBSO:
+        return {"method": TPBSO(solver=search(solver))}
+    return {"method": method.value, "solver": search(solver)}
 
 
 def _path(robot: Robot, curve: CurveName | None, points: Path | None) -> ReferencePath:

@@ -36,19 +36,21 @@ class SearchName(StrEnum):
 Solver = Annotated[SearchName | None, typer.Option(help="Solver of the search; default: the method's own.")]
 
 
-def options(
-    velocity: str | None, acceleration: str | None, solver: SearchName | None, max_evaluations: int | None
-) -> dict[str, Any]:
-    """Returns the arguments that both planners take."""
+def options(velocity: str | None, acceleration: str | None, max_evaluations: int | None) -> dict[str, Any]:
+    """Returns the keywords that both planners take."""
     chosen: dict[str, Any] = {
         "limits": Limits(
             velocity=limit("--velocity-limit", velocity), acceleration=limit("--acceleration-limit", acceleration)
         ),
-        "solver": None if solver is None else make_solver(SolverName(solver)),
     }
     if max_evaluations is not None:
         chosen["stop"] = Stop(max_evaluations=max_evaluations)
     return chosen
+
+
+def search(solver: SearchName | None) -> Any:
+    """Returns the solver of this name with its defaults."""
+    return None if solver is None else make_solver(SolverName(solver))
 
 
 def report(make: Callable[[], Plan], method: str, seed: int, out: Path | None, animated: bool, as_json: bool) -> None:

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import InvalidInputError, plan_point_to_point, pose
+from ... import TPBSO, InvalidInputError, plan_point_to_point, pose
 from ..._scene import read_obstacles
 from ..options import (
     Acceleration,
@@ -20,7 +20,7 @@ from ..options import (
     load_robot,
     numbers,
 )
-from .planned import Animated, Budget, Out, Solver, options, report
+from .planned import Animated, Budget, Out, SearchName, Solver, options, report, search
 
 
 class Method(StrEnum):
@@ -90,13 +90,12 @@ def point_to_point(
     if link_radius is not None:
         arm = arm.with_capsules(radius=link_radius)
     ends = _end("start", start, start_q) | _end("end", end, end_q)
-    chosen = options(velocity, acceleration, solver, max_evaluations)
+    chosen = {"method": _method(method, solver)} | options(velocity, acceleration, max_evaluations)
     obstacles = [] if scene is None else read_obstacles(scene)
     report(
         lambda: plan_point_to_point(
             arm,
             **ends,
-            method=method.value,
             objective=objective.value,
             obstacles=obstacles,
             seed=seed,
@@ -131,3 +130,12 @@ def _place(option: str, text: str) -> Any:
     if len(values) != 3:
         raise InvalidInputError(f"{option}: expected X,Y,Z or X,Y,Z,ROLL,PITCH,YAW, got {len(values)} numbers")
     return values
+
+
+def _method(method: Method, solver: SearchName | None) -> Any:
+    """Returns the method as `plan_point_to_point` takes it."""
+    if method is Method.TPBSO:
+        return TPBSO(solver=search(solver))
+    if solver is not None:
+        raise InvalidInputError(f"--solver is the search of --method tpbso; {method} has its own: leave it out")
+    return method.value

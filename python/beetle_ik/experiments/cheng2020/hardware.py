@@ -98,7 +98,7 @@ def _draw(resolved: bik.TrackResult, tips: NDArray[np.float64]) -> Drawing:
         space.plot(*resolved.reference.T, color=VERMILION, linewidth=4.0, alpha=0.45, label="circle", zorder=5)
         space.plot(*tips.T, color=BLUE, label="tip", zorder=6)
         space.set_zlim(0.0, None)
-        scale_alike(space, zoom=1.1)
+        scale_alike(space)
         space.legend(loc="upper left")
         error, radius = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
         error.plot(resolved.time, 1e3 * np.linalg.norm(tips - resolved.reference, axis=1), color=BLUE)

@@ -79,5 +79,5 @@ def _draw_arm(axes: Any, result: bik.TrackResult) -> None:
     axes.plot(*result.position.T, color=BLUE, label="tip", zorder=6)
     axes.set_zlim(0.0, None)
     axes.view_init(elev=18, azim=-55)
-    scale_alike(axes, zoom=1.15)
+    scale_alike(axes, zoom=1.0)
     axes.legend(loc="upper left")

@@ -20,7 +20,7 @@ from .tuning import COMMAND
 
 TITLE = "Convergence, memory and time"
 _TARGETS = 200
-_TARGETS_SHORT = 50
+_TARGETS_SHORT = 30
 _PASSES = (200, 2000)
 _WALKS: tuple[Literal["star", "chain"], ...] = ("star", "chain")
 _C1 = (1.0, 3.0, 10.0)

@@ -27,7 +27,7 @@ from .methods import BUDGET, METHODS, PRECISION, Method
 from .rival_claims import rival_claims
 from .settings import IIWA
 from .tuned import BUDGETED, all_tuned
-from .tuning import COMMAND, NO_BAND, SEEDS, TRIED
+from .tuning import COMMAND, FINALISTS, NO_BAND, SEEDS, TRIED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,8 +44,8 @@ swarm is drawn anew in that box in every step, as a plain port of a swarm does; 
 members. The arm starts on the circle.
 
 The paper names no options of any method. Here all are tuned alike, the beetle included, once for the equal precision
-and once for the equal budget: {tried} settings each, drawn at random from fixed ranges, on {seeds} seeds that are used
-for nothing else. The {tests} tests below are on other seeds.
+and once for the equal budget: {tried} settings each, drawn at random from fixed ranges, on one seed, the best
+{finalists} of them on {seeds}, which are used for nothing else. The {tests} tests below are on other seeds.
 """
 _TEXT_PRECISION = """
 **The same precision, 1 mm.** Every method works in each step until it is within a millimetre of the target, and is
@@ -90,7 +90,7 @@ def rivals(comparison: Comparison) -> Part:
     """The comparison as the paper makes it."""
     precise, budgeted = comparison.precise, comparison.budgeted
     blocks: list[Block] = [
-        _TEXT.format(tried=TRIED, seeds=len(SEEDS), tests=len(precise[0].results)),
+        _TEXT.format(tried=TRIED, finalists=FINALISTS, seeds=len(SEEDS), tests=len(precise[0].results)),
         _tuning_table(),
         _TEXT_PRECISION,
         Figure(

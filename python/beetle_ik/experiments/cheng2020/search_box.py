@@ -10,7 +10,7 @@ from ..experiment import Context
 from .boxes import BANDS, BOXES, PLANAR, SCALED, TRUST, WHOLE, Box
 from .methods import BEETLE, METHODS, RIVALS
 from .tuned import BUDGETED, all_tuned
-from .tuning import COMMAND, SEEDS, TRIED
+from .tuning import COMMAND, FINALISTS, SEEDS, TRIED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,9 +50,9 @@ So all methods search three boxes, at three accuracies:
 - a *box as long as the error*: drawn about the best configuration so far, its half width a constant (rad/m) times the
   error, and drawn anew after a few generations. It gives a swarm what eq. (12) gives the beetle, and nothing else.
 
-For each box and accuracy each method is tuned alone: {tried} settings each, BAS included, on {seeds} seeds that
-nothing else uses. The five-link arm is a fourth case: its velocity limit is so tight that the box of a step is small by
-itself.
+For each box and accuracy each method is tuned alone, BAS included: {tried} settings each on one seed, the best
+{finalists} of them on {seeds}, which nothing else uses. The five-link arm is a fourth case: its velocity limit is so
+tight that the box of a step is small by itself.
 
 {finding}
 """
@@ -68,7 +68,7 @@ def search_box(context: Context, whole: dict[str, Spent]) -> Part:
             if (box.name, band, method.name) not in costs:
                 costs[box.name, band, method.name] = _spent(box, band, method.name, seeds)
     blocks: list[Block] = [
-        _TEXT.format(tried=TRIED, seeds=len(SEEDS), finding=_finding(costs)),
+        _TEXT.format(tried=TRIED, finalists=FINALISTS, seeds=len(SEEDS), finding=_finding(costs)),
         Figure(
             name="search_box",
             title="Evaluations a step until every step is within the accuracy, by what is searched",

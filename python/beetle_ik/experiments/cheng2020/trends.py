@@ -45,13 +45,14 @@ and it costs more. The original beetle (*chain*) is sooner in its band too, but 
 because n steps of a random walk lead further away than one. This is what decided for *star* as our reading.
 """
 _TEXT_C1 = """
-**Longer antennae.** "Larger c₁: less computation, more oscillation" holds below an optimum, which is near c₁ = 1 for
-the planar arm and near 3 for the iiwa. Above it the beetle mostly steps too far, and the cost rises again.
+**Longer antennae.** "Larger c₁: less computation, more oscillation" holds below an optimum, which among the values
+tried is {optima}. Above it the beetle mostly steps too far, and the cost rises again.
 """
 _TEXT_C2 = """
 **Longer steps.** c₂ behaves like c₁, since with c₁ fixed it only scales the step. In the chain walk only the product
-c₁c₂ matters: the length of the antennae themselves is irrelevant over a decade.
+c₁c₂ matters: with it kept at {product}, c₁ of {lengths} costs the planar arm {costs} evaluations.
 """
+_LENGTHS = (0.1, 0.3, 1.0)  # c₁, with the product kept
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,13 +116,30 @@ Measurements: TypeAlias = dict[tuple[str, str], list[Measured]]
 def trends(context: Context) -> Part:
     """All three sweeps on both arms, for both readings of the walk."""
     found = {sweep.figure: _measure(context, sweep) for sweep in _SWEEPS}
+    numbers = _in_words(found["figure_5"], _seeds(context))
     blocks: list[Block] = [_TEXT]
     for sweep in _SWEEPS:
         runs = _runs(sweep, context.pick(full=sweep.drawn, short=sweep.short[:2]))
-        blocks += [sweep.text, runs, _table(sweep, found[sweep.figure])]
+        blocks += [sweep.text.format(**numbers), runs, _table(sweep, found[sweep.figure])]
     if not context.short:  # two points a line, of one seed, show no trend
         blocks.append(_overview(found, len(_seeds(context))))
     return Section(TITLE, blocks), _claims(found)
+
+
+def _in_words(by_c1: Measurements, seeds: range) -> dict[str, str]:
+    """The numbers of the text."""
+    optima = {
+        arm: min(rows, key=lambda row: row.evaluations.mean) for (arm, walk), rows in by_c1.items() if walk == "star"
+    }
+    setting = WALKS["chain"][FIVE_LINK.name]
+    product = setting.c1 * setting.c2
+    kept = [_run(FIVE_LINK, replace(setting, c1=c1, c2=product / c1), c1, seeds) for c1 in _LENGTHS]
+    return {
+        "optima": " and ".join(f"c₁ = {row.value:g} for the {arm} (*star*)" for arm, row in optima.items()),
+        "product": f"{product:g}",
+        "lengths": ", ".join(f"{c1:g}" for c1 in _LENGTHS),
+        "costs": ", ".join(number(round(row.evaluations.mean)) for row in kept),
+    }
 
 
 def _seeds(context: Context) -> range:

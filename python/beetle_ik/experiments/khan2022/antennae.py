@@ -10,6 +10,7 @@ import numpy as np
 
 import beetle_ik as bik
 
+from ..._text import counted
 from ...report import BLUE, VERMILION, Check, Claim, Column, Figure, Part, Section, Table, drawing, number
 from ..experiment import Context
 from .settings import STROKE, M, follow, letter
@@ -138,7 +139,7 @@ def _law_factor(gain: float, c1: float, duration: float, *, seed: int) -> float:
 def _table(tried: Sequence[Antenna], seeds: int) -> Table:
     return Table(
         name="both_antennae",
-        title=f"The M without limits, ticks of 1 ms, a delay of one tick, mean of {seeds} seeds",
+        title=f"The M without limits, ticks of 1 ms, a delay of one tick, mean of {counted(seeds, 'seed')}",
         columns=[
             Column(name="antenna"),
             Column(name="h below 10⁻²", unit="s", digits=4),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import beetle_ik as bik
 
+from ..._text import counted
 from ...report import BLUE, VERMILION, Claim, Figure, Part, Section, drawing, number
 from ..experiment import Context
 from .settings import M, Run, follow
@@ -79,7 +80,7 @@ def printed_gain(first: Sequence[float], last: Sequence[float]) -> Claim:
         "The gain is k = -10.",
         source="Algorithm 1, line 5, with eq. (14)",
         rule="With k = -10 in eq. (14) as printed, h is lower after 50 s than at the start, in every run.",
-        measured=f"h from {number(first[0])} to {number(min(last))} m² or more in {len(last)} runs",
+        measured=f"h from {number(first[0])} to {number(min(last))} m² or more in {counted(len(last), 'run')}",
         holds=all(end < start for start, end in zip(first, last, strict=True)),
         reason="With k = 10 it converges. The listing's sign takes in the minus of the equation.",
         section=TITLE,

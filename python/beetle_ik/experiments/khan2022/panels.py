@@ -8,14 +8,14 @@ import numpy as np
 
 import beetle_ik as bik
 
-from ...report import BLACK, BLUE, GREEN, ORANGE, SKY, VERMILION, drawing, line
+from ...report import BLUE, GREEN, ORANGE, SKY, VERMILION, draw_arm_in_space, drawing, line, scale_alike
 from .settings import STAR, Array, Run, star_as_printed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
 _EVERY = 50  # rows of 1 ms between points that are drawn
-_POSTURES = (0.0, 0.03, 0.25, 0.5, 0.75, 1.0)  # shares of the run at which the arm is drawn
+_POSTURES = (0.0, 0.03, 0.25, 0.5, 1.0)  # shares of the run at which the arm is drawn
 
 
 def draw_run(run: Run, robot: bik.Robot) -> Drawing:
@@ -35,19 +35,12 @@ def draw_run(run: Run, robot: bik.Robot) -> Drawing:
 def _draw_arm(space: Any, run: Run, robot: bik.Robot) -> None:
     """Panels (a) and (f): postures from home to the end, and the path."""
     last = len(run.time) - 1
-    shown = run.result.q[[round(share * last) for share in _POSTURES]]
-    postures = np.array([robot.link_poses(q)[:, :3, 3] for q in shown])
-    for i, joints in enumerate(postures):
-        space.plot(*joints.T, color=BLACK, alpha=(i + 2) / (len(postures) + 1), linewidth=2.0, marker="o",
-                   markersize=3.0, label="arm at θ" if i == len(postures) - 1 else None)  # fmt: skip
-    space.plot(*run.result.reference[::_EVERY].T, color=VERMILION, linewidth=3.0, alpha=0.6, label="path")
-    space.plot(*run.tip[::_EVERY].T, color=BLUE, linewidth=0.8, label="tool at θ")
-    everything = np.vstack((postures.reshape(-1, 3), run.tip))
-    low, high = everything.min(axis=0), everything.max(axis=0)
-    for name, least, most in zip("xyz", low, high, strict=True):
-        space.set(**{f"{name}lim": (least, most), f"{name}label": f"{name} [m]"})
-    space.locator_params(nbins=4)
-    space.set_box_aspect(high - low, zoom=1.05)
+    for i, share in enumerate(_POSTURES):
+        alpha = 1.0 if i == len(_POSTURES) - 1 else 0.25
+        draw_arm_in_space(space, robot, run.result.q[round(share * last)], alpha=alpha)
+    space.plot(*run.result.reference[::_EVERY].T, color=VERMILION, linewidth=3.0, alpha=0.8, label="path", zorder=4)
+    space.plot(*run.tip[::_EVERY].T, color=BLUE, linewidth=0.9, label="tool at θ", zorder=5)
+    scale_alike(space, zoom=0.9)
     space.view_init(elev=16.0, azim=-25.0)
     space.legend(loc="upper right", fontsize="small")
 

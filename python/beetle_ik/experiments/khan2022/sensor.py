@@ -56,7 +56,7 @@ class Sensor:
 
 def sensor(context: Context) -> Part:
     """Growing noise, bias and drift."""
-    noise, bias, drift = (context.pick(full=over, short=over[1::2]) for over in (_NOISE, _BIAS, _DRIFT))
+    noise, bias, drift = (context.pick(full=over, short=over[1::3]) for over in (_NOISE, _BIAS, _DRIFT))
     plants: list[tuple[str, Sequence[float], Callable[[float], Any]]] = [
         ("noise [m]", noise, lambda size: bik.KinematicPlant(IIWA, noise=size, seed=context.seed)),
         ("bias [m]", bias, lambda size: Sensor(size, 0.0).move),

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 TITLE = "An arm built wrong, and an arm with servos"
 _DURATION = 150.0  # s, of the circle, for ZNNBAS on servos
+_PRINTED = 5.0  # s, of the circle with the printed constants
 _REPLAYED = 30.0  # s
 _REPLAY_TICK = 0.2  # s
 _TICKS = (0.005, 0.01, 0.02, 0.05, 0.2)  # s
@@ -55,7 +56,7 @@ def servo_arm(context: Context) -> Part:
     except bik.BeetleIkError as absent:
         return Section(TITLE, [_TEXT, f"Servos were not simulated: {absent}"]), decided
     ticks = context.pick(full=_TICKS, short=_TICKS_SHORT)
-    printed = _on_servos(PUBLISHED, DT, 10.0, context.seed)
+    printed = _on_servos(PUBLISHED, DT, _PRINTED, context.seed)
     znnbas, broyden = [], []
     for dt in context.each("khan2022: servo arm", ticks):
         znnbas.append(_on_servos(bik.ZNNBAS(gain=_GAIN_TICK / dt, c1=_C1), dt, _DURATION, context.seed))
@@ -116,7 +117,7 @@ def follows_on_servos(dt: float, error: float) -> Check:
     return Check(
         statement="ZNNBAS follows the circle on servos, given long ticks, eq. (16) and time.",
         rule=f"At the best tick the tool is within {number(1e3 * _FOLLOWED, 1)} mm of the circle (rms).",
-        measured=f"{number(1e3 * error)} mm at ticks of {number(1e3 * dt, 2)} ms",
+        measured=f"{number(1e3 * error)} mm at ticks of {1e3 * dt:g} ms",
         holds=error <= _FOLLOWED,
         section=TITLE,
     )
@@ -220,7 +221,7 @@ def _table(ticks: Sequence[float], znnbas: list[Array], broyden: list[Array], pr
             Column(name="BroydenBAS", unit="mm", digits=4),
         ],
         rows=[
-            [1e3 * DT, 10.0, None, 1e3 * _late(printed), None],
+            [1e3 * DT, _PRINTED, None, 1e3 * _late(printed), None],
             *(
                 [1e3 * dt, _DURATION, 1e3 * _late(slow), None, 1e3 * _late(secants)]
                 for dt, slow, secants in zip(ticks, znnbas, broyden, strict=True)

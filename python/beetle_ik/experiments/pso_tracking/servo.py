@@ -1,7 +1,8 @@
 """One joint with a velocity servo, and the three controllers that the paper compares with: our own baselines.
 
-The paper gives neither plant nor gains, so that nothing of its Figure 8 can be met by number. All three drive the same
-plant, and the same disturbance acts on it.
+The paper gives neither plant nor gains, so that nothing of its Figure 8 can be met by number. All drive the same plant,
+and the same disturbance acts on it. The PID is there twice: by hand, and tuned by a rule, which is the best of a grid
+over the box that the bee colony searches, with as many trials, by the colony's own criterion.
 """
 
 from __future__ import annotations
@@ -20,7 +21,9 @@ _Array = NDArray[np.float64]
 DT = 1e-3  # s
 TIME_CONSTANT = 0.05  # s, of the servo
 MOST = 2.0  # rad/s, of the command
-DISTURBANCE = 0.05  # rad/s, amplitude; 3 rad/s
+DISTURBANCE = 0.05  # rad/s, amplitude
+DISTURBANCE_RATE = 3.0  # rad/s
+MOST_GAINS = (60.0, 120.0, 2.0)  # proportional, integral, derivative, of whatever is tuned
 CENTRES = np.array([(q, qd) for q in (-0.5, 0.0, 0.5) for qd in (-0.8, 0.0, 0.8)])
 WIDTH = 0.45
 ADAPTATION = 200.0  # 1/s^2, of the network's weights while it runs
@@ -37,7 +40,7 @@ class Motion:
 
 def paper_motion(duration: float) -> Motion:
     """Joints 1 and 2 of the paper: 0.5 cos(pi t / 2)."""
-    time = np.arange(0.0, duration, DT)
+    time: _Array = np.arange(0.0, duration, DT, dtype=float)
     return Motion(time, 0.5 * np.cos(np.pi / 2 * time), -np.pi / 4 * np.sin(np.pi / 2 * time))
 
 
@@ -57,22 +60,32 @@ def features(motion: Motion) -> _Array:
 
 
 def simulate(
-    motion: Motion, gains: Gains, *, weights: _Array | None = None, basis: _Array | None = None, adaptation: float = 0.0
+    motion: Motion,
+    gains: Gains,
+    *,
+    weights: _Array | None = None,
+    basis: _Array | None = None,
+    adaptation: float = 0.0,
+    feedforward: bool = False,
 ) -> _Array:
     """Errors (steps,) (rad) of a PID, and where there are `weights` of a network that is added to it and adapts.
+
+    With `feedforward` the wanted velocity is added to the command.
 
     Plant: q' = v, T v' = -v + u + d, |u| bounded, by Euler steps; it begins at the wanted position at rest.
     """
     q, v, sum_of_errors, before = float(motion.q[0]), 0.0, 0.0, 0.0
     errors = np.empty(len(motion.time))
     network = None if weights is None else weights.copy()
-    disturbance = DISTURBANCE * np.sin(3.0 * motion.time)
+    disturbance = DISTURBANCE * np.sin(DISTURBANCE_RATE * motion.time)
     for i in range(len(motion.time)):
         error = motion.q[i] - q
         errors[i] = error
         sum_of_errors += DT * error
         u = gains.proportional * error + gains.integral * sum_of_errors + gains.derivative * (error - before) / DT
         before = error
+        if feedforward:
+            u += motion.qd[i]
         if network is not None and basis is not None:
             u += network @ basis[i]
             network += DT * adaptation * error * basis[i]
@@ -82,9 +95,13 @@ def simulate(
     return errors
 
 
-def pid(motion: Motion, _context: Context) -> _Array:
-    """A PID by hand."""
-    return simulate(motion, Gains())
+def best_on_grid(motion: Motion, context: Context) -> Gains:
+    """The gains of least rms error over the first two seconds; as many trials as the bee colony has."""
+    per_axis = context.pick(full=(10, 8, 5), short=(5, 4, 3))
+    grid = [np.linspace(0.0, most, count) for most, count in zip(MOST_GAINS, per_axis, strict=True)]
+    trial = _beginning(motion)
+    candidates = [Gains(*map(float, gains)) for gains in np.stack(np.meshgrid(*grid), axis=-1).reshape(-1, 3)]
+    return min(candidates, key=lambda gains: _cost(simulate(trial, gains)))
 
 
 def bee_pid(motion: Motion, context: Context) -> _Array:
@@ -92,9 +109,9 @@ def bee_pid(motion: Motion, context: Context) -> _Array:
     trial = _beginning(motion)
 
     def cost(gains: _Array) -> float:
-        return float(np.sqrt(np.mean(simulate(trial, Gains(*gains)) ** 2)))
+        return _cost(simulate(trial, Gains(*gains)))
 
-    found = _least(cost, [0.0] * 3, [60.0, 120.0, 2.0], BeeColony(), context.pick(full=400, short=60), context.seed)
+    found = _least(cost, [0.0] * 3, list(MOST_GAINS), BeeColony(), context.pick(full=400, short=60), context.seed)
     return simulate(motion, Gains(*found))
 
 
@@ -104,18 +121,28 @@ def genetic_network(motion: Motion, context: Context) -> _Array:
     basis = features(trial)
 
     def cost(weights: _Array) -> float:
-        return float(np.sqrt(np.mean(simulate(trial, gains, weights=weights, basis=basis, adaptation=ADAPTATION) ** 2)))
+        return _cost(simulate(trial, gains, weights=weights, basis=basis, adaptation=ADAPTATION))
 
     size = len(CENTRES)
     found = _least(cost, [-1.0] * size, [1.0] * size, Genetic(), context.pick(full=300, short=60), context.seed)
     return simulate(motion, gains, weights=found, basis=features(motion), adaptation=ADAPTATION)
 
 
-CONTROLLERS: dict[str, Callable[[Motion, Context], _Array]] = {
-    "PID": pid,
-    "artificial bee colony": bee_pid,
-    "GA-RBF": genetic_network,
-}
+def controllers(motion: Motion, context: Context) -> dict[str, _Array]:
+    """Errors (steps,) (rad) of each controller."""
+    tuned = best_on_grid(motion, context)
+    return {
+        "PID, by hand": simulate(motion, Gains()),
+        "PID, tuned": simulate(motion, tuned),
+        "PID, tuned, fed forward": simulate(motion, tuned, feedforward=True),  # as the pseudo-inverse is
+        "artificial bee colony": bee_pid(motion, context),
+        "GA-RBF": genetic_network(motion, context),
+    }
+
+
+def _cost(errors: _Array) -> float:
+    """Rms (rad)."""
+    return float(np.sqrt(np.mean(errors**2)))
 
 
 def _beginning(motion: Motion) -> Motion:

@@ -34,12 +34,10 @@ def plan_between(
         robot,
         start,
         end,
-        method="tpbso",
+        method=bik.TPBSO(elbows=elbows, solver=solver),
         objective=objective,
         limits=limits,
         obstacles=obstacles,
-        elbows=elbows,
-        solver=solver,
         stop=stop,
         seed=seed,
     )
@@ -60,11 +58,10 @@ def plan_along(
     return bik.plan_along_path(
         robot,
         path,
-        method="tpbso",
+        method=bik.TPBSO(solver=solver),
         objective=objective,
         limits=limits,
         accuracy=accuracy,
-        solver=solver,
         stop=stop,
         seed=seed,
     )

@@ -9,12 +9,12 @@ from .singularities import singularities
 from .typos import typos
 
 _SUMMARY = """
-The seven motions come out **to the last iteration**: 438, 256, 316, 618, 278, 233 and 281, with the printed angles and
-positions, once one hidden factor is put right: the learning rate and the threshold that the paper prints go with an
-error 20 times as large as its eq. (11). The rest of its Table 6 does not hold: a correct Newton-Raphson does not fail
-on these motions, it solves each in a handful of iterations. APPS is a plain gradient descent: it needs no inverse, but
-from a random start the best fixed learning rate leaves half of all random targets out of reach after 1000 iterations.
-With a rate taken from the gradients themselves it gets to most of them.
+The seven motions come out **to the last iteration**: {counts}, with the printed angles and positions, once one hidden
+factor is put right: the learning rate and the threshold that the paper prints go with an error 20 times as large as
+its eq. (11). **What it says of Newton-Raphson is contradicted**: a correct one does not fail on these motions, it
+solves each in a handful of iterations, more accurately and in less time. APPS is a plain gradient descent. It needs no
+inverse, but it needs a start: from random ones the paper's learning rate reaches a third of random targets. With a rate
+taken from the gradients themselves it gets to most of them.
 """
 
 
@@ -29,7 +29,8 @@ def run(context: Context) -> Report:
         reach(context),
         typos(runs),
     ]
-    return Report.of(_SUMMARY, parts)
+    counts = [str(motion.solution.iterations) for motion in runs]
+    return Report.of(_SUMMARY.format(counts=", ".join(counts)), parts)
 
 
 EXPERIMENT = Experiment(

@@ -13,7 +13,7 @@ import beetle_ik as bik
 from ...report import Claim, Column, Figure, Part, Section, Table, Value, drawing, line, number
 from ..experiment import Context
 from .published import BUDGET, ITERATIONS, MOTIONS, NEWTON_ERRORS, NEWTON_ITERATIONS, TIMES
-from .task import ROBOT, Motion, error, reach
+from .task import ROBOT, Motion, curvatures, error, reach
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -47,8 +47,8 @@ with a small fixed step it stands millimetres to a decimetre away after 4000 ite
 turns the tip by {turn}° and θ₁, θ₄ and θ₆ by {joints}° together: far away in the joints, not in orientation.
 """
 _TEXT_CURVES = """
-What a descent down a gradient costs shows in the curves: the published rate is 2 % below where the last motion
-would become unstable, and still takes hundreds of iterations, because E curves 34 to 73 times as much in one direction
+What a descent down a gradient costs shows in the curves: the published rate is close to where a descent becomes
+unstable, and still takes hundreds of iterations, because E curves {least} to {most} times as much in one direction
 as in another. The automatic rate is not bound by that. Methods that use the Jacobian need a handful of iterations;
 some settle on another branch of the wrist, with the same pose of the tip. All are free to turn past the limits of
 Table 1 here, which is what APPS does until eq. (12) brings it back. **Kept within the limits from step to step, the
@@ -71,6 +71,7 @@ def comparison(context: Context, runs: list[Motion]) -> Part:
         _quickest(partial(_solve, run, bik.NewtonRaphson(), _TOLERANCE, NEWTON_ITERATIONS), repeats) for run in runs
     ]
     counts = {name: [_solve(run, solver, _TOLERANCE, 5000) for run in runs] for name, solver in _METHODS.items()}
+    conditions = [curvature[0] / curvature[-1] for curvature in (curvatures(run.solution.q) for run in runs)]
     worst = max(range(len(runs)), key=lambda i: _mean_error(runs[i], transpose[i]))
     section = Section(
         TITLE,
@@ -83,7 +84,11 @@ def comparison(context: Context, runs: list[Motion]) -> Part:
                 joints=f"{np.degrees(np.abs(runs[worst].solution.q - runs[worst].start)[[0, 3, 5]]).sum():.0f}",
             ),
             _table_6(runs, times, full, transpose),
-            _TEXT_CURVES.format(stuck=number(_mean_error(runs[-1], _kept_inside(runs[-1])), 2)),
+            _TEXT_CURVES.format(
+                stuck=number(_mean_error(runs[-1], _kept_inside(runs[-1])), 2),
+                least=number(min(conditions), 2),
+                most=number(max(conditions), 2),
+            ),
             Figure(
                 name="convergence",
                 title="E against iterations, best so far",

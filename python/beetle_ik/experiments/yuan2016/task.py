@@ -31,6 +31,16 @@ def error(q: Array, goal: Array) -> float:
     return float(0.5 * np.sum((goal - ROBOT.fk(q)) ** 2))
 
 
+def curvatures(q: Array) -> Array:
+    """Of E at a solution, largest first: the eigenvalues of J'J, J the derivative of the matrix's entries.
+
+    A turn w moves three axes, whose squares sum to 2 w'w.
+    """
+    jacobian = ROBOT.jacobian(q) * np.repeat([1.0, np.sqrt(2.0)], 3)[:, None]
+    curvature: Array = np.linalg.svd(jacobian, compute_uv=False) ** 2
+    return curvature
+
+
 def reach(goal: Array, start: Array, solver: bik.APPS, *, budget: int = BUDGET) -> bik.Solution:
     """Send APPS from `start` (rad) to `goal`; more than its threshold asks is not needed to count as solved."""
     return bik.solve(

@@ -1,7 +1,7 @@
-//! What the joint limits leave of a curve: arcs, and the places on them that promise to be best.
+//! Arcs: the parts of a curve of solutions within the joint limits, and the candidate minima of the goals on them.
 //!
-//! Between two places of a walk joints follow cubics, and so, nearly, does the cost of the goals between two places where it
-//! and its slope were asked: where that cubic is lowest is where to go on from.
+//! Between two points of a walk, joints follow cubics. The cost of the goals is approximated by a cubic from its values and
+//! slopes at both ends; the minimum of that cubic is a candidate.
 
 use smallvec::SmallVec;
 

@@ -1,8 +1,8 @@
-//! Another way to the same place: three joints in a row flipped.
+//! Branch flips: the same tip pose by another branch of three joints in a row.
 //!
-//! Where the axes of three joints stand across each other and meet, as in a shoulder or a wrist, every orientation is
-//! taken on twice: half a turn of the first and of the last joint, and the middle one mirrored. Where they pass by each
-//! other at a distance, a flip comes near a solution if they pass near.
+//! Three joints whose axes are perpendicular and meet, as in a shoulder or a wrist, take every orientation twice: turn the
+//! first and the last joint by half a turn and mirror the middle one. Where the axes miss each other by a little, a flip
+//! comes near a solution.
 
 use std::f64::consts::PI;
 

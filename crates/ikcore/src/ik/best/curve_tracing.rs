@@ -1,8 +1,8 @@
-//! Once round the self-motion of a solution, through the joint limits.
+//! Tracing of the self-motion of a solution once round, past the joint limits.
 //!
 //! An arm with one joint more than its task needs moves along closed curves, which its limits cut into arcs. The best
 //! posture may be on an arc so short that no random start finds it; but it is on the curve of one that is found. Each curve
-//! is walked once, and of each of its [`Arcs`] it is told what they promise.
+//! is walked once, and its [`Arcs`] report their candidate minima.
 
 use super::arcs::{Arcs, Candidate};
 use super::curve_walk::{LONGEST, StepKind, Walk};

@@ -1,5 +1,4 @@
-//! The self-motion of an arm with one joint more than its task needs, as a curve that is walked along in long steps, as if
-//! there were no joint limits.
+//! A walk in long steps along the self-motion of an arm with one joint more than its task needs, joint limits ignored.
 //!
 //! Predictor and corrector: a step follows the curve's direction and its bend since the step before; Gauss-Newton brings it
 //! back to the task. Between two places, joints follow the cubics that meet the curve's directions at both.

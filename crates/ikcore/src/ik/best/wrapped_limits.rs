@@ -1,4 +1,4 @@
-//! The room between the joint limits, as seen from a curve that knows none: whole turns of a joint do not matter.
+//! Joint limits up to whole turns, for curves traced without limits.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,7 +10,7 @@ use crate::math::polynomial::roots;
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
-/// Between the joint limits.
+/// Joint limits up to whole turns.
 pub(super) struct WrappedLimits<'a> {
     bounds: &'a Bounds,
     middle: Point,

@@ -28,7 +28,7 @@ const PATHS: u64 = 4;
 /// How often blends are narrowed before the motion stops at every corner instead.
 const NARROWINGS: usize = 12;
 
-/// Plans for ends and options that are in order.
+/// Plans for checked ends and options.
 pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monitor: &mut dyn Monitor) -> Result<Plan> {
     let margin = options.kept_margin()?;
     let lines = as_lines(search.robot)?;
@@ -157,7 +157,7 @@ fn keeps_clear(trees: &mut TreeSearch, trajectory: &Trajectory, margin: f64) -> 
     trees.sweep.check(&TimedMotion(trajectory), [0.0, trajectory.duration()], margin).is_ok()
 }
 
-/// The plan with what its trajectory breaks, by the exact limits and the smallest certified distance.
+/// Completes the plan with the limits and distances that its trajectory breaks.
 fn finish(
     search: &PairSearch,
     scene: &Scene,
@@ -195,6 +195,7 @@ fn finish(
         history,
         clearance,
         accuracy: None,
+        reference: None,
         redundancy: vec![],
         violations,
         status,

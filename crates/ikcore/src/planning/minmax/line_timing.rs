@@ -147,3 +147,87 @@ fn quintic(start: f64, displacement: f64, h: f64) -> Coefficients {
     let over = |power: i32| displacement / h.powi(power);
     polynomial([start, 0.0, 0.0, 10.0 * over(3), -15.0 * over(4), 6.0 * over(5)])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::{Field, Limits, Profile};
+    use crate::robot::Robot;
+
+    fn limits(velocity: f64, acceleration: f64) -> MotionLimits {
+        let robot = Robot::planar(&[1.0, 1.0]).unwrap();
+        let all = |value: f64| vec![Profile::Constant(value)];
+        let limits = Limits::of(&robot).replace(Field::Velocity, all(velocity)).unwrap();
+        let limits = limits.replace(Field::Acceleration, all(acceleration)).unwrap();
+        MotionLimits::new(&robot, Some(&limits), "this test").unwrap()
+    }
+
+    fn corner() -> JointPolyline {
+        JointPolyline(vec![vec![0.0, 0.0], vec![1.0, 0.2], vec![1.2, 1.4], vec![0.3, 1.0]])
+    }
+
+    /// Position, velocity and acceleration of both joints.
+    fn state(motion: &Trajectory, t: f64) -> [[f64; 2]; 3] {
+        let mut state = [[0.0; 2]; 3];
+        let [q, qd, qdd] = &mut state;
+        motion.at(t, q, qd, qdd).unwrap();
+        state
+    }
+
+    #[test]
+    fn one_line_takes_the_time_of_its_tightest_limit() {
+        let line = JointPolyline(vec![vec![0.0, 0.0], vec![0.5, -1.0]]);
+        // By speed: 15/8 of the mean speed; by acceleration: 10 / sqrt(3) of displacement / duration^2.
+        for (velocity, acceleration, expected) in [(0.5, 1e3, 3.75), (1e3, 2.0, (10.0 / 3.0_f64.sqrt() / 2.0).sqrt())] {
+            let limits = limits(velocity, acceleration);
+            let motion = line.with_stops(&limits).unwrap();
+            assert!((motion.duration() - expected).abs() < 1e-9, "{}", motion.duration());
+            assert_eq!(limits.violations(&motion), []);
+            let reach = limits.quintic_reach(1, motion.duration());
+            assert!((reach - 1.0).abs() < 1e-9, "{reach}");
+        }
+    }
+
+    #[test]
+    fn motions_keep_the_limits_and_one_of_them_is_reached() {
+        for (velocity, acceleration) in [(1.0, 4.0), (1.0, 0.5), (3.0, 1.0)] {
+            let limits = limits(velocity, acceleration);
+            let stopping = corner().with_stops(&limits).unwrap();
+            let blended = corner().with_blends(&limits, &[1.0; 4]).unwrap().unwrap();
+            for motion in [&stopping, &blended] {
+                assert_eq!(limits.violations(motion), []);
+                let fastest = motion.max_velocity().into_iter().fold(0.0, f64::max) / velocity;
+                let hardest = motion.max_acceleration().into_iter().fold(0.0, f64::max) / acceleration;
+                assert!(fastest.max(hardest) > 0.99, "{fastest} and {hardest}");
+            }
+            assert!(blended.duration() < stopping.duration());
+        }
+    }
+
+    #[test]
+    fn blends_are_smooth_and_begin_and_end_at_rest() {
+        let motion = corner().with_blends(&limits(1.0, 2.0), &[1.0, 0.5, 1.0, 1.0]).unwrap().unwrap();
+        for &t in motion.knots() {
+            let [before, after] = [state(&motion, t - 1e-9), state(&motion, t + 1e-9)];
+            for (before, after) in before.iter().flatten().zip(after.iter().flatten()) {
+                assert!((before - after).abs() < 1e-6, "{before} and {after} at {t}");
+            }
+        }
+        for t in [0.0, motion.duration()] {
+            assert!(state(&motion, t)[1..].iter().flatten().all(|x| x.abs() < 1e-9));
+        }
+    }
+
+    #[test]
+    fn a_smaller_share_keeps_a_blend_nearer_to_its_corner() {
+        let miss = |share: f64| {
+            let motion = corner().with_blends(&limits(1.0, 50.0), &[1.0, share, 1.0, 1.0]).unwrap().unwrap();
+            let away = |i: usize| {
+                let [q, ..] = state(&motion, motion.duration() * i as f64 / 2000.0);
+                (q[0] - 1.0).hypot(q[1] - 0.2)
+            };
+            (0..=2000).map(away).fold(f64::INFINITY, f64::min)
+        };
+        assert!(miss(0.1) < 0.5 * miss(1.0), "{} and {}", miss(0.1), miss(1.0));
+    }
+}

@@ -13,7 +13,7 @@ use crate::solver::Stopwatch;
 const METHOD: &str = "method=\"minmax\"";
 
 /// Plans from `start` to `end`; see [`plan_point_to_point`](crate::planning::plan_point_to_point).
-pub fn point_to_point(
+pub(crate) fn point_to_point(
     robot: &Robot,
     start: &Endpoint,
     end: &Endpoint,
@@ -23,14 +23,6 @@ pub fn point_to_point(
     let stopwatch = Stopwatch::start();
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     require_pace(robot, &limits)?;
-    if options.solver.is_some() {
-        let problem = format!("{METHOD} has a search of its own: leave solver out, or use method=\"tpbso\"");
-        return Err(Error::Contradiction { problem });
-    }
-    if options.elbows.is_some() {
-        let problem = format!("{METHOD} chooses how the arm bends: leave elbows out, or use method=\"tpbso\"");
-        return Err(Error::Contradiction { problem });
-    }
     let mut search = PairSearch::new(robot, &limits, [start, end], options.seed, stopwatch)?;
     if can_collide(robot, &options.obstacles) {
         among_obstacles::plan(&mut search, options, monitor)

@@ -6,7 +6,7 @@
 //! | [`minmax_planner`] | the planner |
 //! | [`pair_search`] | pairs of configurations for start and end |
 //! | [`branch_pairs`] | the same from all solutions of inverse kinematics |
-//! | [`least_displacement`] | both moved along their self-motion, to the smallest largest displacement |
+//! | [`least_displacement`] | moves both ends along their self-motion, to the smallest maximum displacement |
 //! | [`straight_line_plan`] | straight lines between pairs, of which the best is taken |
 //! | [`line_timing`] | the quickest smooth timing of straight lines |
 //! | [`among_obstacles`] | a path around obstacles, its timing certified |

@@ -1,4 +1,4 @@
-//! Pairs of configurations for both ends, as near to each other in time as can be found.
+//! Search for pairs of end configurations that are near to each other in time.
 
 use super::end_pair::EndPair;
 use super::least_displacement;
@@ -13,7 +13,7 @@ use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
 
-/// What all searches for configurations share.
+/// Robot, limits, ends and random stream shared by the searches for end configurations.
 pub(super) struct PairSearch<'a> {
     pub robot: &'a Robot,
     pub limits: &'a MotionLimits,

@@ -31,22 +31,29 @@ pub(super) struct TreeSearch<'a> {
     pub ranges: Vec<(f64, f64)>,
     /// Configurations that may be examined in all.
     pub budget: usize,
+    /// Ends of edges refused before the edge was examined.
+    refused: usize,
 }
 
 impl<'a> TreeSearch<'a> {
     pub(super) fn new(scene: &'a Scene<'a>, limits: &MotionLimits, margin: f64, budget: usize) -> Self {
         let joints = scene.robot().joints().iter().enumerate();
         let ranges = joints.map(|(j, joint)| joint.sampling_range_within(limits.lower[j], limits.upper[j])).collect();
-        Self { scene, sweep: Sweep::new(scene), margin, ranges, budget }
+        Self { scene, sweep: Sweep::new(scene), margin, ranges, budget, refused: 0 }
     }
 
     /// Whether the straight line keeps clear.
     pub(super) fn is_clear(&mut self, from: &[f64], to: &[f64]) -> bool {
-        self.scene.is_clear(to, self.margin) && self.sweep.check(&Edge { from, to }, [0.0, 1.0], self.margin).is_ok()
+        if !self.scene.is_clear(to, self.margin) {
+            self.refused += 1;
+            return false;
+        }
+        self.sweep.check(&Edge { from, to }, [0.0, 1.0], self.margin).is_ok()
     }
 
+    /// Whether the budget is spent. Refused ends have one of their own: where nothing is clear, no edge is ever examined.
     fn is_spent(&self) -> bool {
-        self.sweep.examined() >= self.budget
+        self.sweep.examined() >= self.budget || self.refused >= self.budget
     }
 
     /// Squared distance, each joint's displacement as a share of its range.
@@ -184,5 +191,83 @@ impl Tree {
         let mut path: Vec<Vec<f64>> = line.map(|node| self.nodes[node].clone()).collect();
         path.reverse();
         path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::obstacle::Obstacle;
+    use crate::rng;
+    use crate::robot::Robot;
+    use crate::solver::Unattended;
+
+    const MARGIN: f64 = 0.01;
+
+    fn arm() -> Robot {
+        Robot::planar(&[1.0, 1.0]).unwrap().with_capsules_along_links(0.02).unwrap()
+    }
+
+    /// Searches with `budget` from `start` to `end`; returns what was found, and how many configurations it examined.
+    fn connect(obstacle: Obstacle, budget: usize, monitor: &mut dyn Monitor) -> (Connection, usize) {
+        let (robot, obstacles) = (arm(), [obstacle]);
+        let limits = MotionLimits::new(&robot, None, "this test").unwrap();
+        let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
+        let mut search = TreeSearch::new(&scene, &limits, MARGIN, budget);
+        let (start, end) = ([-0.8, 0.0], [0.8, 0.0]);
+        let mut rng = rng::stream(1, 0);
+        let found = search.connect(&start, &[end.to_vec()], &mut rng, monitor);
+        if let Connection::Found(path) = &found {
+            assert_eq!((&path.0[0][..], &path.0[path.0.len() - 1][..]), (&start[..], &end[..]));
+            let length = |path: &JointPolyline| -> f64 {
+                path.0.windows(2).map(|line| search.squared_distance(&line[0], &line[1]).sqrt()).sum()
+            };
+            let before = length(path);
+            let shorter = search.shorten(path.clone(), &mut rng, &mut Unattended);
+            for line in path.0.windows(2).chain(shorter.0.windows(2)) {
+                for i in 0..=200 {
+                    let at = |j: usize| line[0][j] + f64::from(i) / 200.0 * (line[1][j] - line[0][j]);
+                    let clearance = scene.clearance(&[at(0), at(1)]).unwrap();
+                    assert!(clearance >= MARGIN, "{clearance} m");
+                }
+            }
+            let length = |path: &JointPolyline| -> f64 {
+                path.0.windows(2).map(|line| search.squared_distance(&line[0], &line[1]).sqrt()).sum()
+            };
+            assert!(length(&shorter) <= before + 1e-12);
+        }
+        (found, search.sweep.examined())
+    }
+
+    #[test]
+    fn a_path_round_an_obstacle_is_clear_and_shortened() {
+        let (found, _) = connect(Obstacle::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Unattended);
+        assert!(matches!(found, Connection::Found(_)), "{found:?}");
+    }
+
+    #[test]
+    fn the_budget_ends_a_search_without_a_way() {
+        let wall = Obstacle::cuboid([1.05, 0.0, 0.0], [1.9, 0.02, 1.0], None).unwrap();
+        let (found, examined) = connect(wall, 2000, &mut Unattended);
+        assert_eq!(found, Connection::NotFound);
+        assert!(examined < 2200, "{examined}"); // an edge that was begun is examined to its end
+    }
+
+    #[test]
+    fn a_search_without_a_single_clear_step_ends_too() {
+        let everywhere = Obstacle::sphere([0.0, 0.0, 0.0], 0.5).unwrap();
+        assert_eq!(connect(everywhere, 2000, &mut Unattended), (Connection::NotFound, 0));
+    }
+
+    #[test]
+    fn a_monitor_interrupts_the_search() {
+        struct Impatient;
+        impl Monitor for Impatient {
+            fn keep_going(&mut self) -> bool {
+                false
+            }
+        }
+        let (found, _) = connect(Obstacle::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Impatient);
+        assert_eq!(found, Connection::Interrupted);
     }
 }

@@ -9,10 +9,10 @@ use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
 /// Pairs of configurations that are tried from random starts, and as many of the quickest branches.
-pub const PAIRS: usize = 8;
+pub(super) const PAIRS: usize = 8;
 
 /// Straight from end to end.
-pub fn without_obstacles(search: &mut PairSearch, objective: Cost, monitor: &mut dyn Monitor) -> Result<Plan> {
+pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monitor: &mut dyn Monitor) -> Result<Plan> {
     let pairs = search.pairs(PAIRS, monitor)?;
     let mut best: Option<(f64, Trajectory)> = None;
     let mut history = vec![];
@@ -35,6 +35,7 @@ pub fn without_obstacles(search: &mut PairSearch, objective: Cost, monitor: &mut
         history,
         clearance: None,
         accuracy: None,
+        reference: None,
         redundancy: vec![],
         violations,
         status,
@@ -44,7 +45,7 @@ pub fn without_obstacles(search: &mut PairSearch, objective: Cost, monitor: &mut
 }
 
 /// The quicker of a quintic and of constant velocity between blends.
-pub fn straight(pair: &EndPair, limits: &MotionLimits) -> Result<Trajectory> {
+pub(super) fn straight(pair: &EndPair, limits: &MotionLimits) -> Result<Trajectory> {
     pair.require_motion()?;
     let line = JointPolyline(vec![pair.start.to_vec(), pair.end.to_vec()]);
     let quintic = line.with_stops(limits)?;
@@ -55,6 +56,6 @@ pub fn straight(pair: &EndPair, limits: &MotionLimits) -> Result<Trajectory> {
 }
 
 /// The error of a search that met no configuration for an end.
-pub fn no_pair() -> Error {
+pub(super) fn no_pair() -> Error {
     Error::Unreachable { what: "end".into(), problem: "no configuration was found: try another seed".into() }
 }

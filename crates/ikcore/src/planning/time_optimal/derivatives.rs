@@ -14,12 +14,12 @@ pub(super) struct PathDerivatives {
 }
 
 impl PathDerivatives {
-    pub fn new(joints: usize) -> Self {
+    pub(super) fn new(joints: usize) -> Self {
         Self { first: [(); 3].map(|()| vec![0.0; joints]), second: [(); 2].map(|()| vec![0.0; joints]) }
     }
 
     /// The derivatives of `path` over `segment`.
-    pub fn fill(&mut self, path: &JointPath, segment: &Segment) {
+    pub(super) fn fill(&mut self, path: &JointPath, segment: &Segment) {
         let Segment { piece, from, length } = *segment;
         let [_, c1, c2, c3] = path.powers(piece);
         let n = c1.len();

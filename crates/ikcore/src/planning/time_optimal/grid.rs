@@ -32,7 +32,7 @@ pub(super) fn check_gridpoints(gridpoints: usize) -> Result<()> {
 /// limit is soon reached, and on the segment to there the mean speed is half of it.
 const HALVINGS: usize = 5;
 
-/// At the most one in so many of a piece's segments is spent on that.
+/// At most one in this many of a piece's segments is spent on halvings.
 const SHARE: usize = 4;
 
 /// Cuts the path into about `wanted` segments, so that no segment reaches over a break and a piece that begins or ends at

@@ -26,7 +26,7 @@ const EVEN_KNOTS: usize = 500;
 /// hold them, halved so often at the most.
 const FAITHFUL: f64 = 1.03;
 const HALVINGS: usize = 2;
-/// What the rounding of polynomials may take from a limit.
+/// Share of a limit reserved for the rounding of polynomials.
 const MARGIN: f64 = 1e-9;
 
 /// The motion of `profile` along `path`, smoothed until it keeps the jerk limits `jerk` too.

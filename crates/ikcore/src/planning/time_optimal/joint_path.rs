@@ -1,4 +1,4 @@
-//! Where the joints go, without when: cubics in a path parameter.
+//! Geometric path of the joints: cubics in a path parameter, without timing.
 
 use crate::error::{Error, Result, require_finite};
 use crate::math::polynomial::{derivative, roots};
@@ -41,7 +41,7 @@ impl PathEnd {
 }
 
 impl JointPath {
-    /// Pieces that are known to be in order.
+    /// A path of pieces that were checked before.
     pub(super) fn from_parts(joints: Vec<String>, breaks: Vec<f64>, coefficients: Vec<f64>) -> Self {
         Self { joints, breaks, coefficients }
     }

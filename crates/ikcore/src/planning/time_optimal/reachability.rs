@@ -28,7 +28,7 @@ impl SpeedProfile {
     ///
     /// # Errors
     /// [`Error::Infeasible`] where the speeds at the ends cannot be had.
-    pub fn fastest(
+    pub(super) fn fastest(
         path: &JointPath,
         limits: &TimingLimits,
         segments: Vec<Segment>,
@@ -44,13 +44,13 @@ impl SpeedProfile {
     }
 
     /// How long each segment takes (s): its length over its mean speed, the speed being linear in time.
-    pub fn spans(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(super) fn spans(&self) -> impl Iterator<Item = f64> + '_ {
         let speeds = self.squared_speeds.windows(2).map(|pair| pair[0].sqrt() + pair[1].sqrt());
         self.segments.iter().zip(speeds).map(|(segment, speeds)| 2.0 * segment.length / speeds)
     }
 
     /// How long the motion takes (s).
-    pub fn duration(&self) -> f64 {
+    pub(super) fn duration(&self) -> f64 {
         self.spans().sum()
     }
 }
@@ -142,7 +142,7 @@ impl Pass<'_> {
 /// launch from the one before would give; on a fine grid that is as good as nothing.
 const LAUNCH_SHARE: f64 = 0.1;
 
-/// Lines that meet to so many digits of their offsets do meet.
+/// Relative tolerance for intersecting lines.
 const ROUNDING: f64 = 1e-12;
 
 /// x at the next grid point, x + 2 u length, must be in its set.

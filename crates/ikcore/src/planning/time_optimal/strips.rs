@@ -15,7 +15,7 @@ pub(super) struct Line {
 
 impl Line {
     #[inline]
-    pub fn at(self, x: f64) -> f64 {
+    pub(super) fn at(self, x: f64) -> f64 {
         self.offset - self.slope * x
     }
 }
@@ -36,7 +36,7 @@ pub(super) struct Strips {
 const NEGLIGIBLE: f64 = 1e-9;
 
 impl Strips {
-    pub fn new(joints: usize) -> Self {
+    pub(super) fn new(joints: usize) -> Self {
         Self {
             offsets: vec![0.0; 3 * joints],
             slopes: vec![0.0; 3 * joints],
@@ -49,7 +49,7 @@ impl Strips {
     ///
     /// On it d2q/dt2 = q'(s) u + q''(s) x(s), with x(s) = x + 2 u (s - s_i), is a quadratic in s. Bounds on its three
     /// Bernstein coefficients bound it at every point, not at the grid points alone.
-    pub fn fill(&mut self, derivatives: &PathDerivatives, length: f64, limits: &TimingLimits) {
+    pub(super) fn fill(&mut self, derivatives: &PathDerivatives, length: f64, limits: &TimingLimits) {
         let n = limits.acceleration.len();
         let [d0, d1, d2] = derivatives.first.each_ref().map(|row| &row[..n]);
         let [e0, e1] = derivatives.second.each_ref().map(|row| &row[..n]);
@@ -76,12 +76,12 @@ impl Strips {
     }
 
     /// The lowest upper line at `x`.
-    pub fn upper(&self, x: f64) -> Line {
+    pub(super) fn upper(&self, x: f64) -> Line {
         self.tightest(x)[0]
     }
 
     /// The lowest upper and the highest lower line at `x`.
-    pub fn tightest(&self, x: f64) -> [Line; 2] {
+    pub(super) fn tightest(&self, x: f64) -> [Line; 2] {
         let mut upper = (f64::INFINITY, Line { offset: f64::INFINITY, slope: 0.0 });
         let mut lower = (f64::NEG_INFINITY, Line { offset: f64::NEG_INFINITY, slope: 0.0 });
         for (&offset, &slope) in self.offsets.iter().zip(&self.slopes) {

@@ -42,7 +42,7 @@ pub fn time_optimal(path: &JointPath, limits: &TimingLimits, options: &TimingOpt
 ///
 /// # Errors
 /// The same, except for position limits.
-pub fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
+pub(crate) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
     let ends =
         [end_range(path, options.start_speed, PathEnd::Start)?, end_range(path, options.end_speed, PathEnd::End)?];
     let fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends);
@@ -65,12 +65,12 @@ pub fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) ->
     }
 }
 
-/// How long the fastest motion from rest to rest on a grid of about so many segments takes (s): quick, for comparing many
+/// Duration (s) of the fastest motion from rest to rest on a grid of about `segments` segments: quick, for comparing many
 /// paths. Position limits are left to the caller.
 ///
 /// # Errors
 /// None in practice: from rest to rest there is always a way.
-pub fn coarse_duration(path: &JointPath, limits: &TimingLimits, segments: usize) -> Result<f64> {
+pub(crate) fn coarse_duration(path: &JointPath, limits: &TimingLimits, segments: usize) -> Result<f64> {
     let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
     SpeedProfile::fastest(path, limits, cut(path, segments), ends).map(|profile| profile.duration())
 }

@@ -11,16 +11,16 @@ use crate::robot::Robot;
 
 /// Joint positions along a path.
 #[derive(Debug, Clone, PartialEq)]
-pub struct JointWaypoints {
+pub(super) struct JointWaypoints {
     /// Path parameters, from 0 to 1.
     pub knots: Vec<f64>,
     /// The joint positions at each knot, row after row.
     pub rows: Vec<f64>,
 }
 
-/// What the joints do at the corners of a path.
+/// Behaviour of the joints at the corners of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Corners {
+pub(super) enum Corners {
     /// One spline leads through them: it rounds each corner, the less the denser its knots are.
     Passed,
     /// A spline ends and the next begins at each corner: the arm stops there, and keeps to the path as well as elsewhere.
@@ -29,7 +29,7 @@ pub enum Corners {
 
 impl Corners {
     /// The alternatives for a path.
-    pub fn on(tip_path: &TipPath) -> &'static [Self] {
+    pub(super) fn on(tip_path: &TipPath) -> &'static [Self] {
         match tip_path.corners().next() {
             None => &[Self::Passed],
             Some(_) => &[Self::Passed, Self::Stopped],
@@ -39,12 +39,12 @@ impl Corners {
 
 /// Splines of a robot's joints along a path.
 #[derive(Debug)]
-pub struct Interpolation<'a> {
+pub(super) struct Interpolation<'a> {
     /// The robot.
     pub robot: &'a Robot,
     /// The path.
     pub tip_path: &'a TipPath,
-    /// What it does at corners.
+    /// Behaviour at corners.
     pub corners: Corners,
 }
 
@@ -65,7 +65,7 @@ impl Interpolation<'_> {
     ///
     /// # Errors
     /// None in practice: waypoints that differ make a spline.
-    pub fn path(&self, waypoints: &JointWaypoints) -> Result<JointPath> {
+    pub(super) fn path(&self, waypoints: &JointWaypoints) -> Result<JointPath> {
         let n = self.robot.dof();
         let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
         // Natural ends, without curvature, would be less accurate.
@@ -88,7 +88,7 @@ impl Interpolation<'_> {
     ///
     /// # Errors
     /// None in practice, as for [`path`](Self::path).
-    pub fn refined(&self, mut waypoints: JointWaypoints, accuracy: f64) -> Result<JointWaypoints> {
+    pub(super) fn refined(&self, mut waypoints: JointWaypoints, accuracy: f64) -> Result<JointWaypoints> {
         for _ in 0..HALVINGS {
             let path = self.path(&waypoints)?;
             let deviation = TipDeviation {

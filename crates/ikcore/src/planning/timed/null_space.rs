@@ -1,12 +1,12 @@
-//! What moves the joints and leaves the tip where it is.
+//! Null space of the task's Jacobian: joint motions that leave the tip in place.
 
 use nalgebra::DMatrix;
 
 /// Singular values below this share of the largest count as zero: a joint motion that leaves the tip where it is.
 const NULL: f64 = 1e-6;
 
-/// An orthonormal basis of what the Jacobian maps to zero.
-pub fn null_space(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+/// Returns an orthonormal basis of the Jacobian's null space.
+pub(super) fn null_space(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
     let gram = jacobian.transpose() * jacobian;
     let eigen = gram.symmetric_eigen();
     let largest = eigen.eigenvalues.amax();
@@ -17,7 +17,7 @@ pub fn null_space(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
 
 /// A basis of the space of `null` near `before`, with `count` columns: where a singularity adds a direction, it is left
 /// out.
-pub fn turned(null: &DMatrix<f64>, before: &DMatrix<f64>, count: usize) -> DMatrix<f64> {
+pub(super) fn turned(null: &DMatrix<f64>, before: &DMatrix<f64>, count: usize) -> DMatrix<f64> {
     let shadow = null * (null.transpose() * before);
     let mut basis = DMatrix::zeros(before.nrows(), count);
     for k in 0..count {
@@ -32,4 +32,33 @@ pub fn turned(null: &DMatrix<f64>, before: &DMatrix<f64>, count: usize) -> DMatr
         basis.set_column(k, &kept);
     }
     basis
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+
+    #[test]
+    fn the_null_space_is_orthonormal_and_moves_nothing() {
+        let mut rng = rng::stream(1, 0);
+        for rank in 1..=6 {
+            let mut random =
+                |rows: usize, columns: usize| DMatrix::from_fn(rows, columns, |_, _| rng.uniform_in(-1.0, 1.0));
+            let jacobian = random(6, rank) * random(rank, 7);
+            let null = null_space(&jacobian);
+            assert_eq!(null.ncols(), 7 - rank);
+            assert!((&jacobian * &null).amax() < 1e-9);
+            assert!((null.transpose() * &null - DMatrix::identity(7 - rank, 7 - rank)).amax() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_turned_basis_spans_the_same_space_near_the_one_before() {
+        let jacobian = DMatrix::from_fn(3, 5, |row, column| ((row + 2) * (column + 1)) as f64 % 3.7);
+        let null = null_space(&jacobian);
+        let swapped = DMatrix::from_columns(&[-null.column(1), null.column(0).into_owned()]);
+        let basis = turned(&null, &swapped, 2);
+        assert!((basis - swapped).amax() < 1e-9);
+    }
 }

@@ -17,7 +17,13 @@ const MET: f64 = 1e-16;
 const DAMPING: f64 = 0.05;
 
 /// Brings `q` onto the target, to a nearby solution; returns by how much that is missed (m, rad), 0 where it is met.
-pub fn project(robot: &Robot, target: &Target, bounds: &Bounds, q: &mut [f64], scratch: &mut Linearization) -> f64 {
+pub(super) fn project(
+    robot: &Robot,
+    target: &Target,
+    bounds: &Bounds,
+    q: &mut [f64],
+    scratch: &mut Linearization,
+) -> f64 {
     let mut problem = Problem::new(robot, target, Tolerance::default());
     let mut next = [0.0; MAX_DOF];
     let mut value = f64::INFINITY;

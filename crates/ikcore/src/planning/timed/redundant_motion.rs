@@ -1,4 +1,4 @@
-//! The configurations in which an arm passes the points of a path, and what may be chosen of them.
+//! The configurations in which an arm passes the points of a path, and the free offsets along its self-motion.
 //!
 //! A nominal motion follows the path with the least joint motion from point to point. At a few nodes along it, offsets in
 //! the null space of the task's Jacobian are free; between nodes they follow natural splines. The nominal configurations
@@ -21,7 +21,7 @@ use crate::task::{Target, Tolerance};
 use crate::wording::number;
 
 /// Nodes of the offsets along the path: the published planner's number of knots.
-pub const NODES: usize = 5;
+pub(super) const NODES: usize = 5;
 
 /// Intervals between the points that the nominal motion passes, corners apart: half the published planner's.
 const INTERVALS: usize = 25;
@@ -34,16 +34,16 @@ const STARTS: usize = 16;
 const JUMP: f64 = 1.5;
 
 /// The arm on its path.
-pub struct RedundantMotion<'a> {
+pub(super) struct RedundantMotion<'a> {
     robot: &'a Robot,
     tip_path: &'a TipPath,
     bounds: Bounds,
-    /// What the tip reaches at the nominal motion's knots.
+    /// Targets of the tip at the nominal motion's knots.
     targets: Vec<Target>,
     nominal: JointWaypoints,
     /// Directions of the self-motion at each node: a column each.
     bases: Vec<DMatrix<f64>>,
-    /// What the offset at a node contributes at a point: point by point, node by node.
+    /// Weight of each node's offset at each point: point by point, node by node.
     weights: Vec<f64>,
     /// Whether the first configuration is given, and stays as it is.
     starts_as_given: bool,
@@ -55,7 +55,7 @@ impl<'a> RedundantMotion<'a> {
     ///
     /// # Errors
     /// [`Error::Unreachable`] names the first place that no motion from any start reached.
-    pub fn new(robot: &'a Robot, tip_path: &'a TipPath, start: Option<&[f64]>, seed: u64) -> Result<Self> {
+    pub(super) fn new(robot: &'a Robot, tip_path: &'a TipPath, start: Option<&[f64]>, seed: u64) -> Result<Self> {
         let joints = robot.joints();
         let knots = tip_path.knots(INTERVALS);
         let mut motion = Self {
@@ -78,12 +78,12 @@ impl<'a> RedundantMotion<'a> {
     }
 
     /// The nominal motion.
-    pub fn nominal(&self) -> &JointWaypoints {
+    pub(super) fn nominal(&self) -> &JointWaypoints {
         &self.nominal
     }
 
     /// Takes another nominal motion on the same path.
-    pub fn take(&mut self, nominal: JointWaypoints) {
+    pub(super) fn take(&mut self, nominal: JointWaypoints) {
         self.targets = nominal.knots.iter().map(|knot| self.tip_path.target(*knot)).collect();
         self.weights = node_weights(&nominal.knots);
         self.nominal = nominal;
@@ -91,28 +91,28 @@ impl<'a> RedundantMotion<'a> {
     }
 
     /// Number of joints.
-    pub fn dof(&self) -> usize {
+    pub(super) fn dof(&self) -> usize {
         self.robot.dof()
     }
 
     /// Number of points passed.
-    pub fn points(&self) -> usize {
+    pub(super) fn points(&self) -> usize {
         self.targets.len()
     }
 
     /// How many numbers are free at each node.
-    pub fn freedom(&self) -> usize {
+    pub(super) fn freedom(&self) -> usize {
         self.bases[0].ncols()
     }
 
     /// Whether the first configuration is given.
-    pub fn starts_as_given(&self) -> bool {
+    pub(super) fn starts_as_given(&self) -> bool {
         self.starts_as_given
     }
 
     /// Writes the configurations at all points for the offsets `z` (node by node; rad, m along the self-motion) into
     /// `waypoints`; returns by how much points are missed, summed (m, rad).
-    pub fn place(&mut self, z: &[f64], waypoints: &mut [f64]) -> f64 {
+    pub(super) fn place(&mut self, z: &[f64], waypoints: &mut [f64]) -> f64 {
         let n = self.dof();
         let freedom = self.freedom();
         let mut missed = 0.0;
@@ -237,7 +237,7 @@ impl Lost {
 }
 
 /// Sum over the joints of how far each goes.
-pub fn travel(waypoints: &[f64], n: usize) -> f64 {
+pub(super) fn travel(waypoints: &[f64], n: usize) -> f64 {
     (n..waypoints.len()).map(|i| (waypoints[i] - waypoints[i - n]).abs()).sum()
 }
 

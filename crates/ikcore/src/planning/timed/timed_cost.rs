@@ -12,7 +12,7 @@ use crate::planning::{Cost, JointPath, MotionLimits, TimingLimits};
 
 /// The duration, or the joint travel, of the motion along a path, as a function of the offsets along the self-motion at
 /// its nodes.
-pub struct TimedCost<'a> {
+pub(super) struct TimedCost<'a> {
     /// The configurations that the arm may choose from.
     pub motion: RedundantMotion<'a>,
     /// The splines through those chosen.
@@ -21,7 +21,7 @@ pub struct TimedCost<'a> {
     pub limits: &'a MotionLimits,
     /// The same for its timing.
     pub timing_limits: &'a TimingLimits,
-    /// What is minimised.
+    /// Quantity to minimise.
     pub objective: Cost,
     /// How far the tip may be from the path (m, rad).
     pub accuracy: f64,
@@ -39,12 +39,12 @@ const SEGMENTS_A_PIECE: usize = 2;
 /// may move it by as much.
 const MARGIN: f64 = 5e-4;
 
-/// What a violation costs, as a multiple of the scale, where it is as large as its limit.
+/// Cost of a violation as large as its limit, as a multiple of the scale.
 const BROKEN: f64 = 10.0;
 
 impl TimedCost<'_> {
     /// The range of the offsets; None where the arm has no choice.
-    pub fn bounds(&self) -> Option<Bounds> {
+    pub(super) fn bounds(&self) -> Option<Bounds> {
         let freedom = self.motion.freedom();
         let free = if self.motion.starts_as_given() { freedom } else { 0 };
         let reach = |i: usize| if i < free { (0.0, 0.0) } else { (-REACH, REACH) };
@@ -52,7 +52,7 @@ impl TimedCost<'_> {
     }
 
     /// The joint positions for these offsets, at the nominal motion's knots, and by how much they miss the path (m, rad).
-    pub fn waypoints(&mut self, z: &[f64]) -> (JointWaypoints, f64) {
+    pub(super) fn waypoints(&mut self, z: &[f64]) -> (JointWaypoints, f64) {
         let knots = self.motion.nominal().knots.clone();
         let mut waypoints = JointWaypoints { rows: vec![0.0; knots.len() * self.motion.dof()], knots };
         let missed = self.motion.place(z, &mut waypoints.rows);

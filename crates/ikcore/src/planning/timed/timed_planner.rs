@@ -33,14 +33,13 @@ const SEGMENTS_A_PIECE: usize = 4;
 ///
 /// # Errors
 /// As [`plan_along_path`](crate::planning::plan_along_path).
-pub fn along_path(
+pub(crate) fn along_path(
     robot: &Robot,
     tip_path: &TipPath,
     options: &AlongPathOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let stopwatch = Stopwatch::start();
-    require_supported(options)?;
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     let timing_limits = timing_limits_of(robot, options.limits.as_ref())?;
     // Points sampled from a curve determine it no better than to their coarseness.
@@ -113,6 +112,7 @@ fn plan(
         cost: options.objective.of(robot, &trajectory),
         clearance: None,
         accuracy: Some(deviation.distance.value),
+        reference: Some(tip_path.positions().to_vec()),
         redundancy: vec![],
         violations,
         status: match &found {
@@ -138,18 +138,6 @@ fn search(cost: &mut TimedCost<'_>, options: &AlongPathOptions, monitor: &mut dy
         seed: options.seed,
     };
     search.run(cost, &bounds, monitor).map(Some)
-}
-
-/// Err for an option that only the other planner knows.
-fn require_supported(options: &AlongPathOptions) -> Result<()> {
-    match options.elbow {
-        None => Ok(()),
-        Some(_) => Err(Error::Contradiction {
-            problem: format!(
-                "{METHOD} chooses how the arm bends: give start_q instead of elbow, or use method=\"tpbso\""
-            ),
-        }),
-    }
 }
 
 /// Err unless `q` has the tip at the beginning of the path, as near as it must be all along.

@@ -1,4 +1,4 @@
-//! The curve that the tip is to follow, whatever the time.
+//! The curve that the tip follows, without its timing.
 //!
 //! | file | what |
 //! |---|---|

@@ -7,7 +7,7 @@ use crate::path::Waypoints;
 ///
 /// # Errors
 /// [`Error::InvalidPath`].
-pub fn refuse_repetition(points: &Waypoints) -> Result<()> {
+pub(crate) fn refuse_repetition(points: &Waypoints) -> Result<()> {
     let repeats =
         |i: &usize| points.position(*i) == points.position(i - 1) && points.rotation(*i) == points.rotation(i - 1);
     match (1..points.len()).find(repeats) {

@@ -152,7 +152,7 @@ impl TipPath {
         knots
     }
 
-    /// What the tip is to reach at this path parameter.
+    /// Returns the target of the tip at this path parameter.
     pub fn target(&self, share: f64) -> Target {
         let (row, part) = self.locate(share);
         let position = self.position(share);

@@ -4,14 +4,14 @@ use crate::error::Result;
 use crate::obstacle::{Obstacle, Scene, Shape, Sweep};
 use crate::planning::collision_checks::{self, TimedMotion, refuse_collision, too_near};
 use crate::planning::planar_arm::PlanarArm;
-use crate::planning::point_to_point::PointToPointOptions;
+use crate::planning::planner_options::PointToPointOptions;
 use crate::planning::violation::Violation;
 use crate::robot::Robot;
 use crate::trajectory::Trajectory;
 
-/// What a motion of a robot may not touch.
+/// Obstacles and links that a motion must stay clear of.
 #[derive(Debug, Clone)]
-pub struct CollisionTest<'a> {
+pub(super) struct CollisionTest<'a> {
     scene: Scene<'a>,
     margin: f64,
     /// For a planar arm of lines among ellipses: the exact test of section 4, several times quicker than distances.
@@ -27,17 +27,17 @@ struct UnitDisc {
     semi_axes: [f64; 2],
 }
 
-/// What a search keeps beyond the margin, as a share of the arm's length, because the arm may come nearer between two samples.
+/// Distance that the search adds to the margin, as a share of the arm's length, because the arm may come nearer between two samples.
 /// Without it 9 to 20 of 20 plans graze an obstacle that their samples miss.
 const ALLOWANCE: f64 = 0.005;
 
 impl<'a> CollisionTest<'a> {
-    /// What `robot`, seen as `lines` where it has no other shape, may not touch of the planner's `options`.
+    /// The constraint of the planner's `options` for `robot`, or for its `lines` where it has no other shape.
     ///
     /// # Errors
     /// [`Error::NoCapsules`](crate::Error::NoCapsules), [`Error::InvalidObstacle`](crate::Error::InvalidObstacle),
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a negative margin.
-    pub fn new(robot: &'a Robot, lines: Option<&'a Robot>, options: &'a PointToPointOptions) -> Result<Self> {
+    pub(super) fn new(robot: &'a Robot, lines: Option<&'a Robot>, options: &'a PointToPointOptions) -> Result<Self> {
         let margin = options.kept_margin()?;
         let scene = collision_checks::scene(robot, lines, &options.obstacles)?;
         let flat = lines.and_then(|lines| {
@@ -53,12 +53,12 @@ impl<'a> CollisionTest<'a> {
     ///
     /// # Errors
     /// [`Error::InCollision`](crate::Error::InCollision).
-    pub fn refuse_collision(&self, what: &str, q: &[f64]) -> Result<()> {
+    pub(super) fn refuse_collision(&self, what: &str, q: &[f64]) -> Result<()> {
         refuse_collision(what, &self.scene, q, self.margin)
     }
 
     /// How many links touch something at `q`, or whether any does: g_3 of eq. (15) for one moment.
-    pub fn touching(&self, q: &[f64]) -> f64 {
+    pub(super) fn touching(&self, q: &[f64]) -> f64 {
         let Some((arm, discs)) = &self.flat else {
             return if self.scene.is_clear(q, self.margin) { 0.0 } else { 1.0 };
         };
@@ -74,7 +74,7 @@ impl<'a> CollisionTest<'a> {
 
     /// The smallest distance (m) on all of the motion, proven between samples too, and what it breaks; None where nothing
     /// can touch.
-    pub fn clearance(&self, trajectory: &Trajectory) -> Option<(f64, Option<Violation>)> {
+    pub(super) fn clearance(&self, trajectory: &Trajectory) -> Option<(f64, Option<Violation>)> {
         let near = Sweep::new(&self.scene).smallest(&TimedMotion(trajectory), [0.0, trajectory.duration()])?;
         let distance = near.contact.distance;
         Some((distance, (distance < self.margin).then(|| too_near(&near.contact, self.margin))))

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::ik::{Query, Solution, SolveContext, SolveOptions, solve_query};
 use crate::planning::endpoint::Endpoint;
 use crate::planning::motion_limits::MotionLimits;
-use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Place, PlanarArm};
+use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, PlanarArm, PlanarTarget};
 use crate::rng;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
@@ -14,7 +14,7 @@ use crate::task::Target;
 
 /// The configurations of one end.
 #[derive(Debug, Clone)]
-pub enum EndConfigurations {
+pub(super) enum EndConfigurations {
     /// A single one.
     Fixed(Vec<f64>),
     /// A planar arm: the absolute orientations phi of the links from the third on are free.
@@ -22,7 +22,7 @@ pub enum EndConfigurations {
         /// The arm.
         arm: PlanarArm,
         /// Where its tip is to be.
-        place: Place,
+        place: PlanarTarget,
         /// Which way it bends.
         elbow: Elbow,
     },
@@ -30,10 +30,10 @@ pub enum EndConfigurations {
     OneOf(Vec<Vec<f64>>),
 }
 
-/// Inverse kinematics from so many random starts makes the list of [`EndConfigurations::OneOf`].
+/// Random starts of the inverse kinematics that fills [`EndConfigurations::OneOf`].
 const STARTS: usize = 48;
 
-/// A target that is not reached from so many of them is taken to be out of reach: each is a search from many starts of its own.
+/// Failed starts after which a target counts as out of reach; each of them is itself a multi-start search.
 const FUTILE_STARTS: usize = 3;
 
 /// Solutions nearer to each other than this in every joint count as one (rad or m).
@@ -44,7 +44,7 @@ impl EndConfigurations {
     ///
     /// # Errors
     /// [`Error::OutsideLimits`] for a configuration beyond its limits, [`Error::Unreachable`] for a target out of reach.
-    pub fn new(
+    pub(super) fn new(
         what: &str,
         end: &Endpoint,
         robot: &Robot,
@@ -70,7 +70,7 @@ impl EndConfigurations {
     }
 
     /// Number of parameters.
-    pub fn dimension(&self) -> usize {
+    pub(super) fn dimension(&self) -> usize {
         match self {
             Self::Fixed(_) => 0,
             Self::Planar { arm, place, .. } => arm.dof() - ELBOW_LINKS - usize::from(place.orientation.is_some()),
@@ -79,7 +79,7 @@ impl EndConfigurations {
     }
 
     /// The range of each parameter.
-    pub fn range(&self) -> (f64, f64) {
+    pub(super) fn range(&self) -> (f64, f64) {
         match self {
             Self::Fixed(_) | Self::Planar { .. } => (-PI, PI),
             Self::OneOf(_) => (0.0, 1.0),
@@ -90,7 +90,7 @@ impl EndConfigurations {
     ///
     /// # Errors
     /// The cosine of eq. (1), which no angle has, where the parameters of a planar arm allow no solution.
-    pub fn configuration(&self, parameters: &[f64], q: &mut [f64]) -> Result<(), f64> {
+    pub(super) fn configuration(&self, parameters: &[f64], q: &mut [f64]) -> Result<(), f64> {
         match self {
             Self::Fixed(fixed) => q.copy_from_slice(fixed),
             Self::Planar { arm, place, elbow } => match place.orientation {
@@ -112,9 +112,9 @@ impl EndConfigurations {
 }
 
 /// The closed form, where there is one.
-fn planar(robot: &Robot, target: &Target) -> Option<(PlanarArm, Place)> {
+fn planar(robot: &Robot, target: &Target) -> Option<(PlanarArm, PlanarTarget)> {
     let arm = PlanarArm::of(robot)?;
-    let place = arm.place(target)?;
+    let place = arm.planar_target(target)?;
     (arm.dof() >= ELBOW_LINKS + usize::from(place.orientation.is_some())).then_some((arm, place))
 }
 

@@ -22,8 +22,10 @@ mod penalties;
 mod published_settings;
 mod redundancy;
 mod rest_segment;
+mod tpbso_options;
 mod via_point_cost;
 mod via_point_planner;
 
 pub(super) use path_planner::along_path;
+pub use tpbso_options::Tpbso;
 pub(super) use via_point_planner::point_to_point;

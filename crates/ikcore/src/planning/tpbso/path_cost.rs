@@ -28,7 +28,7 @@ const LONGEST_OVER_MIDDLE: f64 = 1.5;
 
 /// The cost F of eq. (25), as a function of \[x_phi (5 a free link), T\].
 #[derive(Debug, Clone)]
-pub struct PathCost<'a> {
+pub(super) struct PathCost<'a> {
     robot: &'a Robot,
     limits: &'a MotionLimits,
     redundancy: Redundancy,
@@ -52,7 +52,7 @@ struct Motion {
 impl<'a> PathCost<'a> {
     /// The cost of motions of `robot`, a planar arm, along `redundancy`'s path, with the tip within `accuracy` (m) of the
     /// points that its splines do not pass.
-    pub fn new(
+    pub(super) fn new(
         robot: &'a Robot,
         limits: &'a MotionLimits,
         redundancy: Redundancy,
@@ -82,7 +82,7 @@ impl<'a> PathCost<'a> {
     ///
     /// # Errors
     /// [`Error::InvalidPath`](crate::Error::InvalidPath) for a start that is not on the path.
-    pub fn bounds(&mut self) -> Result<Bounds> {
+    pub(super) fn bounds(&mut self) -> Result<Bounds> {
         let whole_range = self.limits.whole_range_time();
         let mut ranges = vec![(0.0, 1.0); NODES * self.redundancy.links()];
         if let Some(q) = self.start {
@@ -109,7 +109,7 @@ impl<'a> PathCost<'a> {
     }
 
     /// The motion of decision vector `x`; None where a point has no configuration.
-    pub fn trajectory(&mut self, x: &[f64]) -> Option<Result<Trajectory>> {
+    pub(super) fn trajectory(&mut self, x: &[f64]) -> Option<Result<Trajectory>> {
         let (nodes, duration) = (&x[..x.len() - 1], x[x.len() - 1]);
         self.place_knots(nodes).ok()?;
         let knots: Vec<f64> = self.spline.knots().iter().map(|u| u * duration).collect();
@@ -125,7 +125,7 @@ impl<'a> PathCost<'a> {
     }
 
     /// The free orientations of decision vector `x` at every point of the path; those without are left out.
-    pub fn orientations(&mut self, x: &[f64]) -> Vec<Orientations> {
+    pub(super) fn orientations(&mut self, x: &[f64]) -> Vec<Orientations> {
         let nodes = &x[..x.len() - 1];
         self.redundancy.curvatures(nodes, &mut self.node_curvatures);
         let mut q = vec![0.0; self.robot.dof()];
@@ -135,7 +135,7 @@ impl<'a> PathCost<'a> {
 
     /// The largest deviations of the tip from `tip_path` in the motion of the last [`trajectory`](Self::trajectory), at its points and
     /// between them.
-    pub fn deviation(&self, tip_path: &TipPath) -> LargestDeviation {
+    pub(super) fn deviation(&self, tip_path: &TipPath) -> LargestDeviation {
         // Points at equal times need not lie at equal distances.
         let shares = tip_path.point_shares();
         let last = shares.len() - 1;

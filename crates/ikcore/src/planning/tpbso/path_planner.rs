@@ -3,6 +3,7 @@
 use super::path_cost::PathCost;
 use super::published_settings::{METHOD, no_configuration, search};
 use super::redundancy::Redundancy;
+use super::tpbso_options::Tpbso;
 use crate::error::{Error, Result, require_positive};
 use crate::planning::planar_arm::PlanarArm;
 use crate::planning::tip_path::{TipPath, refuse_repetition};
@@ -12,9 +13,10 @@ use crate::solver::Monitor;
 use crate::solver::Stopwatch;
 
 /// Plans along a path, for planar arms.
-pub fn along_path(
+pub(crate) fn along_path(
     robot: &Robot,
     tip_path: &TipPath,
+    tpbso: &Tpbso,
     options: &AlongPathOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
@@ -23,13 +25,13 @@ pub fn along_path(
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     limits.require_velocities(METHOD)?;
     let start = options.start_within(robot, &limits)?;
-    let elbow = start.map_or(options.elbow.unwrap_or_default(), |q| arm.elbow(q));
+    let elbow = start.map_or_else(|| tpbso.elbow_along_path(), |q| Ok(arm.elbow(q)))?;
     let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * tip_path.extent());
     require_positive("accuracy", accuracy)?;
     refuse_repetition(tip_path.points())?;
     let redundancy = Redundancy::new(arm, tip_path.points(), elbow)?;
     let mut cost = PathCost::new(robot, &limits, redundancy, options.objective, accuracy, start);
-    let search = search(options.solver.as_ref(), options.stop, options.seed);
+    let search = search(tpbso.solver.as_ref(), options.stop, options.seed);
     let bounds = cost.bounds()?;
     let found = search.run(&mut cost, &bounds, monitor)?;
     let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration("some point of the path")))?;
@@ -41,6 +43,7 @@ pub fn along_path(
         cost: options.objective.of(robot, &trajectory),
         clearance: None,
         accuracy: Some(deviation.distance.value),
+        reference: Some(tip_path.points().positions().to_vec()),
         redundancy: cost.orientations(&found.x),
         status: found.status(violations.is_empty()),
         violations,

@@ -5,10 +5,10 @@ use crate::planning::search::Search;
 use crate::solver::{AnySolver, BeetleSwarm, DerivativeFree, Schedule, Stop};
 
 /// The method, in messages.
-pub const METHOD: &str = "method=\"tpbso\"";
+pub(super) const METHOD: &str = "method=\"tpbso\"";
 
 /// The search for a decision vector: as published, but for what is given.
-pub fn search(solver: Option<&AnySolver<DerivativeFree>>, stop: Option<Stop>, seed: u64) -> Search {
+pub(super) fn search(solver: Option<&AnySolver<DerivativeFree>>, stop: Option<Stop>, seed: u64) -> Search {
     Search {
         solver: solver.cloned().unwrap_or_else(published_swarm),
         stop: stop.unwrap_or_else(published_budget),
@@ -30,7 +30,7 @@ fn published_budget() -> Stop {
 
 /// The error of a search that met no vector with a configuration: its budget was of a few vectors, or the free links rarely
 /// leave the other two a solution.
-pub fn no_configuration(what: &str) -> Error {
+pub(super) fn no_configuration(what: &str) -> Error {
     let problem = "the search met no configuration that reaches it: raise the budget in stop=Stop(...)".into();
     Error::Unreachable { what: what.into(), problem }
 }

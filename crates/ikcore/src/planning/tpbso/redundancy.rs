@@ -7,19 +7,19 @@ use smallvec::SmallVec;
 use crate::error::{Error, Result};
 use crate::math::cubic_spline::CubicSpline;
 use crate::path::Waypoints;
-use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Orientation, Orientations, Place, PlanarArm, wrapped};
+use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Orientation, Orientations, PlanarArm, PlanarTarget, wrapped};
 use crate::task::Target;
 use crate::wording::number;
 
 /// Numbers in \[0, 1\] by which the path of each free orientation is given: the paper's x_phi.
-pub const NODES: usize = 5;
+pub(super) const NODES: usize = 5;
 
 /// A planar arm along the points of a path.
 #[derive(Debug, Clone)]
-pub struct Redundancy {
+pub(super) struct Redundancy {
     arm: PlanarArm,
     elbow: Elbow,
-    places: Vec<Place>,
+    places: Vec<PlanarTarget>,
     nodes: CubicSpline,
 }
 
@@ -29,24 +29,24 @@ impl Redundancy {
     /// # Errors
     /// [`Error::Unreachable`] for a point beside the arm's plane or out of its reach, or a path of poses for an arm of two
     /// links.
-    pub fn new(arm: PlanarArm, path: &Waypoints, elbow: Elbow) -> Result<Self> {
+    pub(super) fn new(arm: PlanarArm, path: &Waypoints, elbow: Elbow) -> Result<Self> {
         let nodes = CubicSpline::natural((0..NODES).map(|i| i as f64 / (NODES - 1) as f64).collect());
         let places = (0..path.len()).map(|i| place(&arm, path, i)).collect::<Result<Vec<_>>>()?;
         Ok(Self { arm, elbow, places, nodes })
     }
 
     /// Where the tip is to be at point `i` of the path.
-    pub fn place(&self, i: usize) -> &Place {
+    pub(super) fn place(&self, i: usize) -> &PlanarTarget {
         &self.places[i]
     }
 
     /// Number of points of the path.
-    pub fn points(&self) -> usize {
+    pub(super) fn points(&self) -> usize {
         self.places.len()
     }
 
     /// Number of orientations that are free.
-    pub fn links(&self) -> usize {
+    pub(super) fn links(&self) -> usize {
         self.arm.dof() - ELBOW_LINKS - usize::from(self.places[0].orientation.is_some())
     }
 
@@ -55,8 +55,14 @@ impl Redundancy {
     ///
     /// # Errors
     /// The cosine of eq. (1) where there is no configuration.
-    pub fn configuration(&self, i: usize, x: &[f64], curvatures: &[f64], q: &mut [f64]) -> Result<Orientations, f64> {
-        let Place { mut position, orientation } = self.places[i];
+    pub(super) fn configuration(
+        &self,
+        i: usize,
+        x: &[f64],
+        curvatures: &[f64],
+        q: &mut [f64],
+    ) -> Result<Orientations, f64> {
+        let PlanarTarget { mut position, orientation } = self.places[i];
         let mut link = self.arm.dof() - 1;
         let mut absolute: SmallVec<[f64; 8]> = SmallVec::new();
         if let Some(given) = orientation {
@@ -85,8 +91,8 @@ impl Redundancy {
     ///
     /// # Errors
     /// [`Error::InvalidPath`] where the tip is elsewhere at `q`.
-    pub fn shares_of(&self, q: &[f64]) -> Result<Vec<f64>> {
-        let Place { mut position, orientation } = self.places[0];
+    pub(super) fn shares_of(&self, q: &[f64]) -> Result<Vec<f64>> {
+        let PlanarTarget { mut position, orientation } = self.places[0];
         let tip = self.arm.corners(q).last().unwrap_or(position);
         let absolute = self.arm.orientations(q);
         let mut link = self.arm.dof() - 1;
@@ -115,7 +121,7 @@ impl Redundancy {
     }
 
     /// Writes the second derivatives of the splines through the nodes `x`.
-    pub fn curvatures(&self, x: &[f64], curvatures: &mut [f64]) {
+    pub(super) fn curvatures(&self, x: &[f64], curvatures: &mut [f64]) {
         for (values, curvatures) in x.chunks_exact(NODES).zip(curvatures.chunks_exact_mut(NODES)) {
             self.nodes.curvatures(values, curvatures);
         }
@@ -128,14 +134,14 @@ const START_TOLERANCE: f64 = 1e-6;
 /// Stands for a cosine where not even its triangle exists.
 const OUT_OF_REACH: f64 = 2.0;
 
-fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<Place> {
+fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<PlanarTarget> {
     let target = match path.pose(i) {
         Some(pose) => Target::from(&pose),
         None => Target::Position(path.position(i)),
     };
     let unreachable = |problem: String| Error::Unreachable { what: format!("point {i} of the path"), problem };
     let beside = || unreachable("it lies beside the plane that the arm moves in".into());
-    let place = arm.place(&target).ok_or_else(beside)?;
+    let place = arm.planar_target(&target).ok_or_else(beside)?;
     let held = usize::from(place.orientation.is_some());
     if arm.dof() < ELBOW_LINKS + held {
         return Err(unreachable("an arm of two links cannot choose its orientation".into()));
@@ -147,6 +153,33 @@ fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<Place> {
 }
 
 /// `angle` by whole turns nearest to `other`.
-pub fn nearest_turn(angle: f64, other: f64) -> f64 {
+pub(super) fn nearest_turn(angle: f64, other: f64) -> f64 {
     angle + TAU * ((other - angle) / TAU).round()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Robot;
+
+    #[test]
+    fn shares_of_a_configuration_lead_back_to_it() {
+        let robot = Robot::planar(&[1.0, 0.8, 0.6, 0.4]).unwrap();
+        let arm = PlanarArm::of(&robot).unwrap();
+        let q = [0.3, 0.7, -0.4, 0.5];
+        let tip = robot.tip_position(&q);
+        let points = Waypoints::new(vec![tip, [tip[0] - 0.1, tip[1], tip[2]]], None).unwrap();
+        let elbow = arm.elbow(&q);
+        let redundancy = Redundancy::new(arm, &points, elbow).unwrap();
+        let nodes: Vec<f64> = redundancy.shares_of(&q).unwrap().into_iter().flat_map(|share| [share; NODES]).collect();
+        let mut curvatures = vec![1.0; nodes.len()];
+        redundancy.curvatures(&nodes, &mut curvatures);
+        let mut found = [0.0; 4];
+        let free = redundancy.configuration(0, &nodes, &curvatures, &mut found).unwrap();
+        assert!(q.iter().zip(found).all(|(q, found)| (q - found).abs() < 1e-9), "{found:?}");
+        assert_eq!(free.len(), redundancy.links());
+        assert!(free.iter().all(|free| free.lowest <= free.value && free.value <= free.highest), "{free:?}");
+        let error = redundancy.shares_of(&[0.0; 4]).unwrap_err().to_string();
+        assert!(error.contains("start_q puts the tip"), "{error}");
+    }
 }

@@ -11,15 +11,15 @@ use crate::trajectory::{Coefficients, polynomial};
 /// Velocity and acceleration vanish at the rest, so that what is left of them is quadratic: all extremes in closed form,
 /// where the paper looks at samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RestSegment {
+pub(super) struct RestSegment {
     rest: f64,
     c: [f64; 3],
     duration: f64,
 }
 
-/// What a joint passes between the two segments.
+/// Position and velocity of a joint where the two segments meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ViaPoint {
+pub(super) struct ViaPoint {
     /// theta_m (rad or m).
     pub position: f64,
     /// Its rate (rad/s or m/s).
@@ -28,7 +28,7 @@ pub struct ViaPoint {
 
 /// The largest values in a segment, and its part of the travel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extremes {
+pub(super) struct Extremes {
     /// Largest speed (rad/s or m/s).
     pub speed: f64,
     /// Largest acceleration (rad/s^2 or m/s^2).
@@ -43,19 +43,19 @@ pub struct Extremes {
 
 impl RestSegment {
     /// From rest at `start` to `via` in `t1` (s): eq. (3) with the coefficients of eq. (4).
-    pub fn leaving(start: f64, via: ViaPoint, t1: f64) -> Self {
+    pub(super) fn leaving(start: f64, via: ViaPoint, t1: f64) -> Self {
         let a3 = (4.0 * via.position - via.velocity * t1 - 4.0 * start) / t1.powi(3);
         let a4 = (via.velocity * t1 - 3.0 * via.position + 3.0 * start) / t1.powi(4);
         Self { rest: start, c: [a3, a4, 0.0], duration: t1 }
     }
 
     /// The acceleration with which a segment that left rest arrives at its via point.
-    pub fn final_acceleration(&self) -> f64 {
+    pub(super) fn final_acceleration(&self) -> f64 {
         self.acceleration(self.duration)
     }
 
     /// From `via`, passed with this `acceleration`, to rest at `end` in `t2` (s): eq. (5) and (6), in the time left.
-    pub fn arriving(via: ViaPoint, acceleration: f64, end: f64, t2: f64) -> Self {
+    pub(super) fn arriving(via: ViaPoint, acceleration: f64, end: f64, t2: f64) -> Self {
         let [_, _, _, a3, a4, a5] = quintic(via, acceleration, end, t2);
         let c3 = -(a3 + 4.0 * a4 * t2 + 10.0 * a5 * t2 * t2);
         let c4 = a4 + 5.0 * a5 * t2;
@@ -63,10 +63,10 @@ impl RestSegment {
     }
 
     /// No motion, to be overwritten.
-    pub const STILL: Self = Self { rest: 0.0, c: [0.0; 3], duration: 0.0 };
+    pub(super) const STILL: Self = Self { rest: 0.0, c: [0.0; 3], duration: 0.0 };
 
     /// Position at s.
-    pub fn position(&self, s: f64) -> f64 {
+    pub(super) fn position(&self, s: f64) -> f64 {
         let [c3, c4, c5] = self.c;
         self.rest + s.powi(3) * (c3 + s * (c4 + s * c5))
     }
@@ -84,7 +84,7 @@ impl RestSegment {
     }
 
     /// The exact extremes.
-    pub fn extremes(&self) -> Extremes {
+    pub(super) fn extremes(&self) -> Extremes {
         let [c3, c4, c5] = self.c;
         let turning_points = self.inner_roots(3.0 * c3, 4.0 * c4, 5.0 * c5);
         let inflections = self.inner_roots(6.0 * c3, 12.0 * c4, 20.0 * c5);
@@ -115,13 +115,13 @@ impl RestSegment {
 }
 
 /// The polynomial of the first segment, eq. (4).
-pub fn quartic(start: f64, via: ViaPoint, t1: f64) -> Coefficients {
+pub(super) fn quartic(start: f64, via: ViaPoint, t1: f64) -> Coefficients {
     let RestSegment { rest, c: [a3, a4, _], .. } = RestSegment::leaving(start, via, t1);
     polynomial([rest, 0.0, 0.0, a3, a4])
 }
 
 /// The coefficients of the second segment, eq. (6).
-pub fn quintic(via: ViaPoint, acceleration: f64, end: f64, t2: f64) -> [f64; 6] {
+pub(super) fn quintic(via: ViaPoint, acceleration: f64, end: f64, t2: f64) -> [f64; 6] {
     let ViaPoint { position, velocity } = via;
     let way = end - position;
     let coasting = acceleration * t2 * t2;

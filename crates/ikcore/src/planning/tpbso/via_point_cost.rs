@@ -23,7 +23,7 @@ const LONGEST: f64 = 4.0;
 
 /// The cost F of eq. (15), as a function of \[theta_m (n), its rate (n), phi_s, phi_f, t1, t2\].
 #[derive(Debug, Clone)]
-pub struct ViaPointCost<'a> {
+pub(super) struct ViaPointCost<'a> {
     robot: &'a Robot,
     limits: &'a MotionLimits,
     start: EndConfigurations,
@@ -48,7 +48,7 @@ type Ends = [[f64; MAX_DOF]; 2];
 
 impl<'a> ViaPointCost<'a> {
     /// The cost of motions of `robot` between these ends within `limits`, whose velocities are finite.
-    pub fn new(
+    pub(super) fn new(
         robot: &'a Robot,
         limits: &'a MotionLimits,
         [start, end]: [EndConfigurations; 2],
@@ -59,7 +59,7 @@ impl<'a> ViaPointCost<'a> {
     }
 
     /// The range of the decision vector.
-    pub fn bounds(&self) -> Bounds {
+    pub(super) fn bounds(&self) -> Bounds {
         let n = self.robot.dof();
         let positions = (0..n).map(|j| self.limits.finite_range(j));
         let velocities = self.limits.velocity.iter().map(|limit| (-limit, *limit));
@@ -70,7 +70,7 @@ impl<'a> ViaPointCost<'a> {
     }
 
     /// The motion of decision vector `x`; None where an end has no configuration.
-    pub fn trajectory(&self, x: &[f64]) -> Option<Result<Trajectory>> {
+    pub(super) fn trajectory(&self, x: &[f64]) -> Option<Result<Trajectory>> {
         let decision = self.take_apart(x);
         let [start, end] = self.ends(&decision).ok()?;
         let (mut first, mut second) = (vec![], vec![]);
@@ -166,7 +166,7 @@ impl<'a> ViaPointCost<'a> {
         travel
     }
 
-    /// Hands the configurations at [`SAMPLES`] moments of each segment to `visit`, in order.
+    /// Calls `visit` with the configurations at [`SAMPLES`] instants of each segment, in order.
     fn samples(&self, segments: &[[RestSegment; MAX_DOF]; 2], decision: &Decision<'_>, mut visit: impl FnMut(&[f64])) {
         let n = self.robot.dof();
         let mut q = [0.0; MAX_DOF];
@@ -195,5 +195,34 @@ impl Objective for ViaPointCost<'_> {
     /// Never solved: there is no cost that a search could stop at.
     fn evaluate(&mut self, x: &[f64]) -> Score {
         Score { value: self.value(x), solved: false }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::{Field, Limits, Profile};
+
+    #[test]
+    fn the_cost_is_that_of_the_trajectory_until_it_breaks_a_limit() {
+        let robot = Robot::planar(&[1.0, 1.0]).unwrap();
+        let all = |value: f64| vec![Profile::Constant(value)];
+        let limits = Limits::of(&robot).replace(Field::Velocity, all(1.0)).unwrap();
+        let limits = limits.replace(Field::Acceleration, all(2.0)).unwrap();
+        let limits = MotionLimits::new(&robot, Some(&limits), "this test").unwrap();
+        for objective in [Cost::Time, Cost::JointTravel] {
+            let ends = [vec![0.0, 0.0], vec![0.5, -0.4]].map(EndConfigurations::Fixed);
+            let mut cost = ViaPointCost::new(&robot, &limits, ends, objective, None);
+            assert_eq!((cost.dimension(), cost.bounds().lower().len()), (6, 6));
+            let slow = [0.25, -0.2, 0.1, -0.1, 3.0, 3.0];
+            let motion = cost.trajectory(&slow).unwrap().unwrap();
+            assert_eq!(limits.violations(&motion), []);
+            let (value, exact) = (cost.evaluate(&slow).value, objective.of(&robot, &motion));
+            assert!((value - exact).abs() < 1e-9, "{objective}: {value} for {exact}");
+            let hasty = [0.25, -0.2, 0.1, -0.1, 0.2, 0.2];
+            assert!(!limits.violations(&cost.trajectory(&hasty).unwrap().unwrap()).is_empty());
+            let penalty = BROKEN_LIMIT * objective.scale(&robot, &limits);
+            assert!(cost.evaluate(&hasty).value > penalty, "{objective}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 use super::collision_constraint::CollisionTest;
 use super::end_configurations::EndConfigurations;
 use super::published_settings::{METHOD, no_configuration, search};
+use super::tpbso_options::Tpbso;
 use super::via_point_cost::ViaPointCost;
 use crate::error::Result;
 use crate::planning::collision_checks::{as_lines, can_collide};
@@ -13,10 +14,10 @@ use crate::solver::Monitor;
 use crate::solver::Stopwatch;
 
 /// Plans from end to end.
-pub fn point_to_point(
+pub(crate) fn point_to_point(
     robot: &Robot,
-    start: &Endpoint,
-    end: &Endpoint,
+    [start, end]: [&Endpoint; 2],
+    tpbso: &Tpbso,
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
@@ -32,10 +33,10 @@ pub fn point_to_point(
         }
         EndConfigurations::new(what, end, robot, &limits, elbow, options.seed, monitor)
     };
-    let [start_elbow, end_elbow] = options.elbows.unwrap_or_default();
+    let [start_elbow, end_elbow] = tpbso.elbows;
     let (start, end) = (configurations("start", start, start_elbow)?, configurations("end", end, end_elbow)?);
     let mut cost = ViaPointCost::new(robot, &limits, [start, end], options.objective, collisions.as_ref());
-    let search = search(options.solver.as_ref(), options.stop, options.seed);
+    let search = search(tpbso.solver.as_ref(), options.stop, options.seed);
     let bounds = cost.bounds();
     let found = search.run(&mut cost, &bounds, monitor)?;
     let trajectory = cost.trajectory(&found.x).unwrap_or_else(|| Err(no_configuration("start or end")))?;
@@ -50,6 +51,7 @@ pub fn point_to_point(
         objective: options.objective,
         cost: options.objective.of(robot, &trajectory),
         accuracy: None,
+        reference: None,
         redundancy: vec![],
         history: found.history,
         clearance,

@@ -2,7 +2,7 @@
 
 use crate::objective::Point;
 
-/// The best point met so far.
+/// The best point of a run so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BestPoint {
     /// Where; empty before the first evaluation.
@@ -14,14 +14,14 @@ pub struct BestPoint {
 }
 
 impl Default for BestPoint {
-    /// Nothing met yet.
+    /// No point yet.
     fn default() -> Self {
         Self { x: Point::new(), value: f64::INFINITY, solved: false }
     }
 }
 
 impl BestPoint {
-    /// Takes a point in where it is better: solved before unsolved, then the lower value, then the earlier.
+    /// Keeps `x` where it is better: solved before unsolved, then the lower value, then the earlier.
     #[inline]
     pub(super) fn challenge(&mut self, x: &[f64], value: f64, solved: bool) {
         let better = (solved && !self.solved) || (solved == self.solved && value < self.value);

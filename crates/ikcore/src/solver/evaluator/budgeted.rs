@@ -1,4 +1,4 @@
-//! Between solver and objective: counts, clips, checks, and keeps the best.
+//! The evaluator: counts, budgets, and the end of a run.
 
 use super::best_point::BestPoint;
 use crate::objective::{Bounds, CallPattern, Objective, Score};
@@ -29,11 +29,11 @@ pub struct Evaluator<'a, O: ?Sized> {
     pub(super) solved_outside: bool,
 }
 
-/// What a run has done so far.
+/// The counts of a run so far, and its best point.
 pub(super) struct Progress {
     pub(super) evaluations: usize,
     iterations: usize,
-    /// Evaluations at which the monitor and the clock are asked next.
+    /// Number of evaluations at which monitor and clock are polled next.
     next_poll: usize,
     best: BestPoint,
     attempts: usize,
@@ -55,7 +55,7 @@ impl Default for Progress {
 }
 
 impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
-    /// A fresh view with nothing counted yet.
+    /// An evaluator with nothing counted yet.
     pub fn new(
         objective: &'a mut O,
         bounds: &'a Bounds,
@@ -97,7 +97,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         self.objective
     }
 
-    /// What it was made of: the objective, the generator and the monitor.
+    /// Returns the objective, the generator and the monitor.
     pub(crate) fn into_parts(self) -> (&'a mut O, &'a mut LazyRng, &'a mut dyn Monitor) {
         (self.objective, self.rng, self.monitor)
     }
@@ -107,7 +107,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         self.dimension
     }
 
-    /// The box.
+    /// The box that points are confined to.
     pub fn bounds(&self) -> &'a Bounds {
         self.bounds
     }
@@ -149,7 +149,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         self.progress.attempt_value = f64::INFINITY;
     }
 
-    /// Clips `x` to the box, or wraps it there, as the solver declared.
+    /// Clips `x` to the box or wraps it into the box, as the solver declared.
     #[inline]
     pub(super) fn admit(&self, x: &mut [f64]) {
         match self.domain {
@@ -158,7 +158,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         }
     }
 
-    /// What the driver asks before the first step: is the start solved already?
+    /// Ends the run before the first step if the start is solved already.
     ///
     /// # Errors
     /// [`Status::Solved`].
@@ -189,7 +189,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         if self.progress.best.solved { Status::Solved } else { signal }
     }
 
-    /// Err(Solved) once the best point passes the problem's own test.
+    /// Ends the run once the best point passes the problem's own test.
     ///
     /// # Errors
     /// [`Status::Solved`].
@@ -197,7 +197,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         if self.progress.best.solved { Err(Status::Solved) } else { Ok(()) }
     }
 
-    /// Err(OutsideBox) if the last point evaluated was solved, but outside the box.
+    /// Ends the run if the last point evaluated was solved, but outside the box.
     ///
     /// # Errors
     /// [`Status::OutsideLimits`].
@@ -210,7 +210,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         if self.own_threshold { Ok(()) } else { self.check_solved() }
     }
 
-    /// Counts evaluations, before they are made.
+    /// Counts evaluations before they are made.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
@@ -238,7 +238,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         }
     }
 
-    /// The value of a point that was evaluated; remembers it, and the point where it is better than the best.
+    /// Records the score of `x`, keeps `x` where it is the best so far, and returns its value.
     #[inline]
     pub(in crate::solver) fn record(&mut self, x: &[f64], score: Score) -> f64 {
         let value = if score.value.is_finite() { score.value } else { f64::INFINITY };

@@ -1,4 +1,4 @@
-//! Evaluations with residuals and derivatives, and the view of a run for solvers that use values alone.
+//! Evaluations of residuals and derivatives, and the evaluator for solvers that use values alone.
 
 use std::mem;
 
@@ -52,8 +52,7 @@ impl<O: Gradient + ?Sized> Evaluator<'_, O> {
 }
 
 impl Evaluator<'_, dyn Differentiable + '_> {
-    /// Lends the run to a solver that uses values alone, so that such a solver is compiled once, whatever else the objective
-    /// offers.
+    /// Runs `work` with an evaluator of values alone, so that a derivative-free solver is compiled once for all objectives.
     pub(in crate::solver) fn with_values_only<R>(
         &mut self,
         work: impl FnOnce(&mut Evaluator<'_, dyn Objective + '_>) -> R,

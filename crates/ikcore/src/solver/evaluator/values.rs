@@ -22,10 +22,10 @@ impl<O: Objective + ?Sized> Evaluator<'_, O> {
         Ok(self.record(x, score))
     }
 
-    /// Clips the points stored one after another in `xs`, and writes the value of each.
+    /// Clips the points stored one after another in `xs` and writes the value of each.
     ///
     /// # Errors
-    /// As for one point; with a budget for some of them only, the first ones are evaluated before the halt.
+    /// As for one point; with a budget for some of them only, the first ones are evaluated before the run ends.
     pub fn evaluate_all(&mut self, mut xs: &mut [f64], values: &mut [f64]) -> Result<(), Status> {
         for values in values.chunks_mut(self.pattern.batch_size) {
             let affordable = values.len().min(self.stop.max_evaluations - self.progress.evaluations);

@@ -1,5 +1,5 @@
 //! Artificial bee colony (Karaboga 2005; Karaboga and Basturk 2007): employed bees search near their food source,
-//! onlookers near good ones, and a source that yields nothing better for long is left to a scout.
+//! onlookers near good ones, and a scout replaces a source that has not improved for long.
 
 use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
@@ -44,11 +44,11 @@ impl BeeColony {
 #[derive(Debug, Clone)]
 pub struct State {
     population: Population,
-    /// Trials in vain at each source.
+    /// Failed trials at each source.
     trials: Vec<usize>,
     /// The source that each onlooker flies to.
     chosen: Vec<usize>,
-    /// Where bees look.
+    /// The places that bees try.
     candidates: Members,
     /// Running sum of the fitness of the sources.
     fitness: Vec<f64>,
@@ -84,7 +84,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeeColony {
 }
 
 impl BeeColony {
-    /// The source with the most trials in vain, once beyond the limit, is exchanged for a uniform draw.
+    /// Replaces the source with the most failed trials, once beyond the limit, by a uniform draw.
     fn send_scout<O: Objective + ?Sized>(
         &self,
         state: &mut State,

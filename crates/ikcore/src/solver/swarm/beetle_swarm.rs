@@ -1,7 +1,7 @@
 //! Beetle swarm optimisation (Wang et al. 2019, "trajectory-planning beetle swarm optimization", equations (26) to (32)):
 //! particles with antennae, which lie along their velocity.
 //!
-//! The equations do not run as printed. Read so: eq. (27) has an inertia weight and a limit on the velocity, without
+//! The equations do not work as printed. We read them as follows: eq. (27) has an inertia weight and a limit on the velocity, without
 //! which the swarm diverges; the antennae of eq. (28) to (30) stand at x +- V d/2 (the paper prints one name for both)
 //! with the velocity just updated, as line 7 of its Algorithm 1 has it. [`BeetleSwarm::literal`] has no inertia weight.
 
@@ -10,14 +10,14 @@ use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
 use super::velocities::Velocities;
 use crate::error::{Error, Result, require_positive};
-use crate::math::ordered::sign;
+use crate::math::comparison::sign;
 use crate::objective::Objective;
 use crate::solver::Status;
 use crate::solver::driver::Solver;
 use crate::solver::evaluator::Evaluator;
 use crate::wording::words;
 
-/// Which way a beetle goes along its velocity, given what its antennae smell.
+/// The direction of a beetle along its velocity, given the values at its antennae.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BeetleDirection {
     /// With the sign of F(right) - F(left), as eq. (28) prints it: against the slope where the velocity leads downhill,
@@ -32,7 +32,7 @@ words!("direction": BeetleDirection { Printed => "printed", Downhill => "downhil
 /// Beetle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeetleSwarm {
-    /// Beetles and generations; every beetle takes three evaluations a generation.
+    /// Beetles and generations; every beetle takes three evaluations per generation.
     pub schedule: Schedule,
     /// Inertia weight; eq. (27) has none, which is 1.
     pub inertia: f64,
@@ -40,13 +40,13 @@ pub struct BeetleSwarm {
     pub c1: f64,
     /// Attraction to the swarm's best place, eq. (27).
     pub c2: f64,
-    /// Largest velocity, as a share of the box's width a generation.
+    /// Largest velocity per generation, as a fraction of the box's width.
     pub velocity_limit: f64,
-    /// lambda of eq. (26): the share of the velocity in a move; the rest is the antennae's.
+    /// lambda of eq. (26): the weight of the velocity in a move; the rest is the antennae's.
     pub velocity_share: f64,
     /// delta at first, eq. (28).
     pub step: f64,
-    /// eta of eq. (32): what delta is multiplied by in a generation.
+    /// eta of eq. (32): factor on delta per generation.
     pub step_decay: f64,
     /// c of eq. (31): delta over the distance d of the antennae.
     pub step_over_antennae: f64,
@@ -74,7 +74,7 @@ impl Default for BeetleSwarm {
 }
 
 impl BeetleSwarm {
-    /// Eq. (27) as it is printed, without inertia weight; velocities may cross the whole box.
+    /// Eq. (27) as printed, without inertia weight; velocities may cross the whole box.
     pub fn literal() -> Self {
         Self { inertia: 1.0, velocity_limit: 1.0, ..Self::default() }
     }

@@ -1,23 +1,23 @@
-//! The best place of each member, and of them all.
+//! The best place of each member, and of the whole population.
 
 use super::population::{Members, Population};
 
-/// The best place that each member has been at: p of particle swarms, and g, the best of them.
+/// The best place of each member so far: p of particle swarms, and g, the best of them.
 #[derive(Debug, Clone)]
 pub(super) struct BestPlaces {
-    /// Where each was at its best.
+    /// The best place of each member.
     pub members: Members,
-    /// The best of them.
+    /// Index of the best of them.
     pub leader: usize,
 }
 
 impl BestPlaces {
-    /// Nothing remembered yet of so many members.
+    /// Room for `population` members, none of which has a best place yet.
     pub fn new(population: usize, dimension: usize) -> Self {
         Self { members: Members::new(population, dimension), leader: 0 }
     }
 
-    /// Takes over the places that are better in `now`; the first time, all of them.
+    /// Updates the places that are better in `now`; the first time, all of them.
     pub fn update(&mut self, now: &Population) {
         for i in 0..now.members.values.len() {
             if now.members.values[i] < self.members.values[i] || now.generation == 1 {

@@ -10,7 +10,7 @@ use crate::solver::driver::Solver;
 use crate::solver::evaluator::Evaluator;
 use crate::wording::words;
 
-/// When a trial that does no worse takes its vector's place.
+/// When a trial that is no worse replaces its vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrialUpdate {
     /// After all trials, as published: they are evaluated together.
@@ -30,7 +30,7 @@ pub struct DifferentialEvolution {
     pub weight: f64,
     /// CR: probability that a coordinate comes from the mutant.
     pub crossover_rate: f64,
-    /// When a better trial takes its vector's place.
+    /// When a trial that is no worse replaces its vector.
     pub update: TrialUpdate,
 }
 
@@ -94,7 +94,7 @@ impl<O: Objective + ?Sized> Solver<O> for DifferentialEvolution {
     }
 }
 
-/// Trial `i` takes its vector's place if it is no worse.
+/// Replaces vector `i` by its trial if that is no worse.
 fn select(members: &mut Members, trials: &Members, i: usize) {
     if trials.values[i] <= members.values[i] {
         members.take(i, trials, i);

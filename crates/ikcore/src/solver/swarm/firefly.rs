@@ -1,4 +1,4 @@
-//! Firefly algorithm (Yang 2009): fireflies fly towards brighter ones, less so over a distance, and a little at random.
+//! Firefly algorithm (Yang 2009): fireflies move towards brighter ones, less so over a distance, plus a random part.
 //!
 //! The published loop runs over fireflies i and j, moves i towards j where j is brighter, and evaluates i at once. Here the
 //! loop over j is the outer one: every firefly has its turn to attract all that are less bright, and these are evaluated
@@ -22,9 +22,9 @@ pub struct Firefly {
     pub attractiveness: f64,
     /// gamma: absorption of light, with distances measured in widths of the box.
     pub absorption: f64,
-    /// alpha: size of the random part, as a share of the box's width.
+    /// alpha: size of the random part, as a fraction of the box's width.
     pub randomness: f64,
-    /// What alpha is multiplied by with every turn.
+    /// Factor on alpha per turn.
     pub randomness_decay: f64,
 }
 
@@ -74,10 +74,10 @@ impl Firefly {
 #[derive(Debug, Clone)]
 pub struct State {
     population: Population,
-    /// Those who move in a turn, the first so many of the list, and where to.
+    /// Indices of the fireflies that move this turn (a prefix of the list is in use), and where they move to.
     moving: Vec<usize>,
     moved: Members,
-    /// Whose turn it is.
+    /// The firefly whose turn it is.
     attractor: usize,
     /// alpha of this turn.
     randomness: f64,
@@ -130,7 +130,8 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
     }
 }
 
-/// Lists in `moving` who is less bright than `light`, and counts them. Without a branch, which nobody could predict.
+/// Lists the fireflies less bright than `light` in `moving` and returns their number. Without branches, which would be
+/// unpredictable.
 fn list_dimmer(values: &[f64], light: f64, moving: &mut [usize]) -> usize {
     let mut count = 0;
     for (i, value) in values.iter().enumerate() {

@@ -19,18 +19,18 @@ use crate::solver::evaluator::Evaluator;
 pub struct Genetic {
     /// Members and generations.
     pub schedule: Schedule,
-    /// Share of the members that survive unchanged, rounded up: MATLAB's EliteCount, 5 %.
+    /// Fraction of the members that survive unchanged, rounded up: MATLAB's EliteCount, 5 %.
     pub elite_share: f64,
-    /// Share of the other members that are born by crossover: MATLAB's CrossoverFraction.
+    /// Fraction of the other members that are born by crossover: MATLAB's CrossoverFraction.
     pub crossover_share: f64,
     /// Members of a tournament, the best of which becomes a parent: MATLAB's selectiontournament.
     pub tournament: usize,
     /// Probability that a coordinate of a mutant moves; one moves in any case. MATLAB's Gaussian mutation moves all, which
     /// is 1; one over the dimension searches coordinate by coordinate.
     pub mutation_rate: f64,
-    /// Standard deviation of mutations at first, as a share of the box's width.
+    /// Standard deviation of mutations at first, as a fraction of the box's width.
     pub mutation_scale: f64,
-    /// What it is multiplied by in a generation.
+    /// Factor on the standard deviation per generation.
     pub mutation_decay: f64,
 }
 
@@ -76,7 +76,7 @@ impl Genetic {
         Ok(())
     }
 
-    /// Survivors; at least one member is always a child.
+    /// Number of survivors; at least one member is always a child.
     fn elite(&self) -> usize {
         let population = self.schedule.population;
         ((self.elite_share * population as f64).ceil() as usize).min(population - 1)
@@ -88,9 +88,9 @@ impl Genetic {
 pub struct State {
     population: Population,
     children: Members,
-    /// Members, the best first as far as the elite goes.
+    /// Indices of members; the elite comes first.
     ranking: Vec<usize>,
-    /// Standard deviation of mutations, as a share of the width.
+    /// Standard deviation of mutations, as a fraction of the width.
     scale: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What all populations share: the members of a generation, the best place of each, and when the search gives up.
+//! The members of a population and their generations.
 //!
 //! The first generation is the start and, for the rest, uniform draws in the box. A step of a swarm is one generation:
 //! the first step draws and evaluates the other members, so that a start that is solved costs one evaluation.
@@ -8,7 +8,7 @@ use crate::objective::{Objective, Point};
 use crate::solver::Status;
 use crate::solver::evaluator::Evaluator;
 
-/// The share of the best value that counts as a gain: the function tolerance of the MATLAB solvers.
+/// Fraction of the best value that counts as a gain: the function tolerance of the MATLAB solvers.
 const GAIN: f64 = 1e-6;
 
 /// Points, one after another, and their values.
@@ -38,7 +38,7 @@ impl Members {
         &self.points[i * self.dimension..(i + 1) * self.dimension]
     }
 
-    /// Member `i`, to be moved.
+    /// Member `i`, writable.
     #[inline]
     pub fn point_mut(&mut self, i: usize) -> &mut [f64] {
         &mut self.points[i * self.dimension..(i + 1) * self.dimension]
@@ -49,14 +49,14 @@ impl Members {
         self.points.chunks_exact(self.dimension)
     }
 
-    /// Makes member `i` the same as `other`'s member `j`.
+    /// Copies member `j` of `other` to member `i`.
     #[inline]
     pub fn take(&mut self, i: usize, other: &Self, j: usize) {
         self.point_mut(i).copy_from_slice(other.point(j));
         self.values[i] = other.values[j];
     }
 
-    /// The lowest value's member, the first of equals.
+    /// Index of the member with the lowest value, the first of equals.
     pub fn best(&self) -> usize {
         (1..self.values.len()).fold(0, |best, i| if self.values[i] < self.values[best] { i } else { best })
     }
@@ -101,12 +101,12 @@ pub(super) struct Population {
     without_gain: usize,
 }
 
-/// Which generation a step has begun.
+/// The generation that a step begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Generation {
-    /// The first, whose members are drawn and evaluated already.
+    /// The first; its members are drawn and evaluated already.
     First,
-    /// One that the algorithm makes of the one before.
+    /// A generation that the algorithm makes from the one before.
     Later,
 }
 
@@ -129,7 +129,7 @@ impl Population {
     }
 
     /// Begins a step: gives up where the schedule says so, and completes the first generation by drawing and evaluating its
-    /// other members. Later generations are the algorithm's work.
+    /// other members. Later generations are left to the algorithm.
     ///
     /// # Errors
     /// The evaluator's [`Status`]; [`Status::Stalled`] by the schedule.
@@ -163,7 +163,7 @@ impl Population {
     }
 }
 
-/// Fills `rows` with copies of `row`, so that a loop over the coordinates of all members can read what they have in common.
+/// Fills `rows` with copies of `row`, so that one loop over the coordinates of all members can read common data.
 pub(super) fn tile(row: &[f64], rows: &mut [f64]) {
     let mut filled = row.len().min(rows.len());
     rows[..filled].copy_from_slice(&row[..filled]);

@@ -18,7 +18,7 @@ use crate::solver::driver::Solver;
 use crate::solver::evaluator::Evaluator;
 use crate::wording::words;
 
-/// What keeps velocities from growing.
+/// The rule that keeps velocities from growing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PsoForm {
     /// The whole new velocity is multiplied by chi, which follows from the attractions.
@@ -62,12 +62,12 @@ impl PsoForm {
     }
 }
 
-/// What becomes of a coordinate that would leave the box; techniques compared by Helwig, Branke and Mostaghim (2013).
+/// What happens to a coordinate that would leave the box; techniques compared by Helwig, Branke and Mostaghim (2013).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Walls {
-    /// It stops at the wall, and has no velocity left.
+    /// It stops at the wall and loses its velocity.
     Absorbing,
-    /// It is drawn anew in the box, and keeps its velocity. What mealpy's PSO does.
+    /// It is drawn anew in the box and keeps its velocity, as in mealpy's PSO.
     Random,
 }
 
@@ -75,31 +75,31 @@ words!("walls": Walls { Absorbing => "absorbing", Random => "random" });
 
 /// Whether a particle stays where it went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Acceptance {
+pub enum ParticleAcceptance {
     /// Always, as published.
     Always,
-    /// Where that is its best place so far; else it returns there. Quicker on smooth functions, and what mealpy's PSO does.
+    /// Where that is its best place so far; otherwise it returns there. Quicker on smooth functions; as in mealpy's PSO.
     Improving,
 }
 
-words!("accept": Acceptance { Always => "always", Improving => "improving" });
+words!("accept": ParticleAcceptance { Always => "always", Improving => "improving" });
 
 /// Particle swarm optimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pso {
     /// Particles and generations.
     pub schedule: Schedule,
-    /// What keeps velocities from growing.
+    /// The rule that keeps velocities from growing.
     pub form: PsoForm,
     /// Attraction to the particle's own best place.
     pub c1: f64,
     /// Attraction to the swarm's best place.
     pub c2: f64,
-    /// Largest velocity, as a share of the box's width a generation.
+    /// Largest velocity per generation, as a fraction of the box's width.
     pub velocity_limit: f64,
     /// Whether a particle stays where it went.
-    pub accept: Acceptance,
-    /// What becomes of a coordinate that would leave the box.
+    pub accept: ParticleAcceptance,
+    /// What happens to a coordinate that would leave the box.
     pub walls: Walls,
 }
 
@@ -110,7 +110,7 @@ impl Default for Pso {
 }
 
 impl Pso {
-    /// A form with its published attractions. Half the width is the dynamic range X_max of Eberhart and Shi (2000).
+    /// A form with its published attractions. The velocity limit of half the width is the dynamic range X_max of Eberhart and Shi (2000).
     pub fn of(form: PsoForm) -> Self {
         let attraction = form.attraction();
         Self {
@@ -119,7 +119,7 @@ impl Pso {
             c1: attraction,
             c2: attraction,
             velocity_limit: 0.5,
-            accept: Acceptance::Always,
+            accept: ParticleAcceptance::Always,
             walls: Walls::Absorbing,
         }
     }
@@ -196,7 +196,7 @@ impl<O: Objective + ?Sized> Solver<O> for Pso {
             population.members.evaluate_from(0, evaluator)?;
         }
         memory.update(population);
-        if self.accept == Acceptance::Improving {
+        if self.accept == ParticleAcceptance::Improving {
             population.members.points.copy_from_slice(&memory.members.points);
         }
         Ok(())
@@ -238,7 +238,7 @@ impl TiledBounds {
     }
 }
 
-/// Moves x by v. A coordinate that met its bound has no velocity left.
+/// Moves x by v. A coordinate that meets its bound loses its velocity.
 #[inline]
 fn move_within(x: &mut f64, v: &mut f64, lower: f64, upper: f64) {
     let wanted = *x + *v;

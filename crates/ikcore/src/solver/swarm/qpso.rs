@@ -1,5 +1,5 @@
-//! Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): particles have no velocity, but are found around
-//! an attractor with a spread that follows from their distance to the mean best place.
+//! Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): particles have no velocity. They are drawn around an
+//! attractor, with a spread in proportion to their distance from the mean best place.
 
 use super::best_places::BestPlaces;
 use super::population::{Generation, Members, Population, tile};
@@ -67,8 +67,8 @@ impl<O: Objective + ?Sized> Solver<O> for Qpso {
     }
 }
 
-/// What an update reads, repeated for every particle, so that it is one long loop over all coordinates, which the compiler
-/// vectorises whatever the dimension.
+/// The data of an update, repeated for every particle, so that an update is one long loop over all coordinates, which the
+/// compiler vectorises whatever the dimension.
 #[derive(Debug, Clone)]
 struct Scratch {
     /// Mean of the best places.
@@ -101,7 +101,7 @@ fn find_mean(memory: &BestPlaces, mean: &mut [f64]) {
 }
 
 impl Qpso {
-    /// x = phi p + (1 - phi) g -+ alpha |m - x| ln(1/u), phi, u and the sign anew for each coordinate.
+    /// x = phi p + (1 - phi) g -+ alpha |m - x| ln(1/u), with phi, u and the sign drawn for each coordinate.
     fn draw_particles(&self, points: &mut [f64], memory: &BestPlaces, scratch: &mut Scratch, rng: &mut LazyRng) {
         tile(memory.members.point(memory.leader), &mut scratch.leader);
         tile(&scratch.mean, &mut scratch.means);
@@ -111,7 +111,7 @@ impl Qpso {
         let (g, mean, draws) = (&scratch.leader[..count], &scratch.means[..count], &scratch.draws[..count]);
         for k in 0..count {
             let [phi, rest] = split(draws[k]);
-            // Sign and size from one draw, evenly in (-1, 1): neither end can occur, where the logarithm is infinite.
+            // Sign and size from one draw, uniform in (-1, 1). The ends, where the logarithm is infinite, cannot occur.
             let signed = 2.0 * rest - (1.0 - LAST_PLACE);
             let spread = self.expansion * (mean[k] - x[k]).abs() * -ln(1.0 - signed.abs());
             x[k] = g[k] + phi * (p[k] - g[k]) + spread.copysign(signed);

@@ -9,7 +9,7 @@ pub struct Schedule {
     pub population: usize,
     /// Generations after which the swarm gives up, the first included.
     pub max_generations: usize,
-    /// It gives up earlier after so many generations in a row without a gain of a millionth of the best value.
+    /// Generations in a row without a gain of a millionth of the best value, after which the swarm gives up earlier.
     pub stall_generations: usize,
 }
 
@@ -17,13 +17,13 @@ pub struct Schedule {
 const LARGEST_POPULATION: usize = 1_000_000;
 
 impl Schedule {
-    /// Members of a generation; as many generations as the budget allows, but no more than 50 without a gain (the MATLAB
-    /// genetic algorithm's default).
+    /// `population` members; as many generations as the budget allows, at most 50 without a gain (the default of the MATLAB
+    /// genetic algorithm).
     pub const fn of(population: usize) -> Self {
         Self { population, max_generations: usize::MAX, stall_generations: 50 }
     }
 
-    /// Checks the counts; the algorithm needs `fewest` members.
+    /// Checks the counts; the algorithm needs at least `fewest` members.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] names the option and its range.

@@ -1,7 +1,7 @@
-//! Velocities of a swarm of particles: those of PSO, and of beetles that fly as particles do.
+//! Velocities of a particle swarm or a beetle swarm.
 //!
-//! What all particles have in common is repeated for each of them, so that an update is one long loop over all coordinates,
-//! which the compiler vectorises whatever the dimension.
+//! Common data is repeated for each particle, so that an update is one long loop over all coordinates, which the compiler
+//! vectorises whatever the dimension.
 
 use super::best_places::BestPlaces;
 use super::population::{Population, tile};
@@ -20,7 +20,7 @@ pub(super) struct Velocities {
 }
 
 impl Velocities {
-    /// Particles at rest; `limit` is the largest velocity as a share of the box's width a generation; infinite: none.
+    /// Particles at rest. `limit` is the largest velocity per generation as a fraction of the box's width; infinite: no limit.
     pub fn new(population: &Population, limit: f64) -> Self {
         let none = vec![0.0; population.members.points.len()];
         let mut limits = none.clone();
@@ -39,7 +39,7 @@ impl Velocities {
         }
     }
 
-    /// v = w v + c1 r1 (p - x) + c2 r2 (g - x), r1 and r2 anew for each coordinate, clamped to the largest.
+    /// v = w v + c1 r1 (p - x) + c2 r2 (g - x), with r1 and r2 drawn for each coordinate; clamped to the limits.
     pub fn update(&mut self, [w, c1, c2]: [f64; 3], population: &Population, memory: &BestPlaces, rng: &mut LazyRng) {
         tile(memory.members.point(memory.leader), &mut self.leader);
         rng.fill(&mut self.draws);

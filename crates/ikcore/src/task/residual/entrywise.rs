@@ -1,5 +1,5 @@
-//! E of Yuan et al. 2016, eq. (11): half the sum of squared differences between the entries of the target's matrix and the
-//! tip's, and the wrench on the tip that is minus its gradient.
+//! The smooth error E of Yuan et al. 2016, eq. (11), and its negative gradient as a wrench on the tip. E is half the sum of
+//! squared differences between the entries of the target's matrix and the tip's.
 //!
 //! Moved by v and turned by w, the tip changes E by -(f . v + m . w). Here f = p_d - p, and, since a turn moves the axis
 //! r_c by w x r_c, m is the sum of r_c x d_c over the columns r_c of its rotation and d_c of the wanted one.
@@ -11,16 +11,16 @@ use crate::math::arithmetic::NoFma;
 use crate::math::so3::cross;
 use crate::task::target::Target;
 
-/// E: of a pose over its three axes and position, of other targets over the parts that they ask for.
+/// E, over the parts of a pose that the target asks for.
 #[inline]
-pub fn error(target: &Target, tip: &Frame) -> f64 {
+pub(crate) fn error(target: &Target, tip: &Frame) -> f64 {
     let away = target.position().map_or(0.0, |wanted| position::error(&wanted, &tip.origin));
     0.5 * (axes(target, tip).map(|(r, d)| position::error(&d, &r)).sum::<f64>() + away)
 }
 
 /// The wrench (f, m), minus the derivative of E.
 #[inline]
-pub fn wrench(target: &Target, tip: &Frame) -> Wrench {
+pub(crate) fn wrench(target: &Target, tip: &Frame) -> Wrench {
     let [fx, fy, fz] = target.position().map_or([0.0; 3], |wanted| position::residual(&tip.origin, &wanted));
     let mut moment = [0.0; 3];
     for (r, d) in axes(target, tip) {
@@ -30,7 +30,7 @@ pub fn wrench(target: &Target, tip: &Frame) -> Wrench {
     [fx, fy, fz, moment[0], moment[1], moment[2]]
 }
 
-/// The axes of the tip that have a direction to take, and that direction.
+/// The axes of the tip that the target constrains, with their wanted directions.
 #[inline]
 fn axes(target: &Target, tip: &Frame) -> impl Iterator<Item = ([f64; 3], [f64; 3])> {
     let (pairs, count) = match target {

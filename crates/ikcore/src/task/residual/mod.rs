@@ -1,4 +1,4 @@
-//! Residuals of the kinds of targets and their derivatives, one kind a file.
+//! Residuals and their derivatives, one kind of target per file; `entrywise` is the smooth error of APPS.
 
 pub mod entrywise;
 pub mod orientation;

@@ -1,7 +1,7 @@
 //! The tip's orientation: r = phi = log(R R_d'), in base coordinates.
 //!
-//! A small turn w of the tip changes phi by the inverse left Jacobian of SO(3) at phi times w; with it the derivative is
-//! exact at any distance from the target, not only near it.
+//! A small turn w of the tip changes phi by J_l^-1(phi) w, with J_l the left Jacobian of SO(3). The derivative is exact at any
+//! distance from the target.
 
 use crate::math::Frame;
 use crate::math::box_step::ROWS;
@@ -11,14 +11,15 @@ use crate::math::vec3::Vec3;
 
 /// The squared geodesic angle.
 #[inline(always)]
-pub fn error(target: &Frame, tip: &Frame) -> f64 {
+pub(crate) fn error(target: &Frame, tip: &Frame) -> f64 {
     let [x, y, z] = rotation_between(target, tip);
     x * x + y * y + z * z
 }
 
-/// Angular rows of residual and derivative from the tip's geometric Jacobian, which stands in `columns`; the squared angle.
+/// Writes the angular rows of residual and derivative, from the tip's geometric Jacobian given in `columns`, and returns the
+/// squared angle.
 #[inline(always)]
-pub fn linearize<R: Real>(
+pub(crate) fn linearize<R: Real>(
     target: &Axes<R>,
     tip: &Axes<R>,
     residual: &mut [R::Stored; ROWS],

@@ -1,8 +1,8 @@
-//! The tip at a point, and one of its axes in a direction: r = (p - p_d, a - d), in base coordinates; the spin about that
-//! axis is left free.
+//! The tip at a point with one of its axes in a direction: r = (p - p_d, a - d), in base coordinates; the spin about the axis
+//! is left free.
 //!
-//! a is the tip's axis and d what it is to be. Their difference is smooth wherever the axis points, which the angle between
-//! them is not; its length is 2 sin(angle / 2), and a small turn w of the tip changes it by w x a.
+//! a is the tip's axis and d the wanted one. Unlike the angle between them, their difference is smooth everywhere; its length
+//! is 2 sin(angle / 2), and a small turn w of the tip changes it by w x a.
 
 use super::position;
 use crate::math::Frame;
@@ -13,13 +13,13 @@ use crate::task::tip_error::SquaredError;
 
 /// Squared distance and squared angle between the axes, and the sum of squares r'r.
 #[inline]
-pub fn error(target: &Frame, axis: &[f64; 3], tip: &Frame) -> (SquaredError, f64) {
+pub(crate) fn error(target: &Frame, axis: &[f64; 3], tip: &Frame) -> (SquaredError, f64) {
     errors(target, tip, &difference(target, axis, tip))
 }
 
-/// Residual and derivative from the tip's geometric Jacobian, which stands in `out`.
+/// Residual and derivative from the tip's geometric Jacobian, given in `out`.
 #[inline]
-pub fn linearize(
+pub(crate) fn linearize(
     target: &Frame,
     axis: &[f64; 3],
     tip: &Frame,

@@ -9,16 +9,16 @@ use crate::task::tip_error::SquaredError;
 
 /// Squared distance and squared angle.
 #[inline]
-pub fn error(target: &Frame, tip: &Frame) -> SquaredError {
+pub(crate) fn error(target: &Frame, tip: &Frame) -> SquaredError {
     SquaredError {
         position: Some(position::error(&target.origin, &tip.origin)),
         rotation: Some(orientation::error(target, tip)),
     }
 }
 
-/// Residual and derivative from the tip's geometric Jacobian, which stands in `out`.
+/// Residual and derivative from the tip's geometric Jacobian, given in `out`.
 #[inline]
-pub fn linearize(target: &Frame, tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
+pub(crate) fn linearize(target: &Frame, tip: &Frame, dof: usize, out: &mut Linearization) -> SquaredError {
     out.residual[..3].copy_from_slice(&position::residual(&target.origin, &tip.origin));
     let Linearization { residual, columns } = out;
     let rotation = orientation::linearize(&axes_of(target), &axes_of(tip), residual, &mut columns[..dof]).stored();

@@ -4,20 +4,20 @@ use crate::objective::Linearization;
 
 /// p - p_d (m).
 #[inline(always)]
-pub fn residual(target: &[f64; 3], tip: &[f64; 3]) -> [f64; 3] {
+pub(crate) fn residual(target: &[f64; 3], tip: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| tip[k] - target[k])
 }
 
 /// The squared distance.
 #[inline(always)]
-pub fn error(target: &[f64; 3], tip: &[f64; 3]) -> f64 {
+pub(crate) fn error(target: &[f64; 3], tip: &[f64; 3]) -> f64 {
     let [x, y, z] = residual(target, tip);
     x * x + y * y + z * z
 }
 
-/// Residual and derivative from the tip's geometric Jacobian, which stands in `out`; the angular rows are emptied.
+/// Residual and derivative from the tip's geometric Jacobian, given in `out`; sets the angular rows to zero.
 #[inline]
-pub fn linearize(target: &[f64; 3], tip: &[f64; 3], dof: usize, out: &mut Linearization) {
+pub(crate) fn linearize(target: &[f64; 3], tip: &[f64; 3], dof: usize, out: &mut Linearization) {
     let [x, y, z] = residual(target, tip);
     out.residual = [x, y, z, 0.0, 0.0, 0.0];
     for column in &mut out.columns[..dof] {

@@ -7,7 +7,7 @@
 //! other steps only that is learned which noise does not explain, and an error that it explains is no reason to put out
 //! antennae. How noisy the sensor is to begin with, three measurements of the start tell.
 
-use super::control_tick::{ControlTick, Verdict};
+use super::control_tick::{ControlTick, TickProgress};
 use super::noise::{Noise, median};
 use crate::math::box_step::LEAST_DAMPING;
 use crate::math::secant::{Secant, antenna};
@@ -19,13 +19,13 @@ use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
 /// A measurement that misses the prediction by more than this share of the predicted motion is sent for again.
 const SURPRISING: f64 = 1.0;
 
-/// An error of so many noise levels is hardly told from none: another step would follow the noise.
+/// An error below this many noise levels cannot be told from noise: another step would follow the noise.
 const NEAR_ENOUGH: f64 = 1.25;
 
 /// Steps in a row that came no nearer, before antennae are put out again: they shake the tool.
 const FAILED_STEPS: usize = 2;
 
-/// What the controller remembers.
+/// State of the controller between measurements.
 #[derive(Debug)]
 pub(super) struct BroydenBasState {
     options: BroydenBas,
@@ -37,7 +37,7 @@ pub(super) struct BroydenBasState {
     /// The last command, and what it was for.
     sent: Point,
     purpose: Purpose,
-    /// What the next command is to be for.
+    /// Purpose of the next command.
     next: Purpose,
     damping: f64,
     /// Steps in a row that left more than half of the error, and steps in a row that came no nearer at all.
@@ -52,7 +52,7 @@ pub(super) struct BroydenBasState {
     measurements: usize,
 }
 
-/// What a command is for.
+/// Purpose of a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
     /// To measure at the start again, which was at `first` before, and then at `second` (m).
@@ -68,7 +68,7 @@ enum Purpose {
 }
 
 impl BroydenBasState {
-    pub fn new(options: BroydenBas, start: &[f64], tolerance: f64) -> Box<Self> {
+    pub(super) fn new(options: BroydenBas, start: &[f64], tolerance: f64) -> Box<Self> {
         Box::new(Self {
             options,
             tolerance,
@@ -88,24 +88,24 @@ impl BroydenBasState {
         })
     }
 
-    pub fn begin(&mut self, position: [f64; 3]) {
+    pub(super) fn begin(&mut self, position: [f64; 3]) {
         self.position = position;
         self.next = Purpose::Repeat { first: position, second: None };
     }
 
-    pub fn accepted(&self) -> &[f64] {
+    pub(super) fn accepted(&self) -> &[f64] {
         &self.q
     }
 
-    pub fn measured(&self) -> (&[f64], [f64; 3]) {
+    pub(super) fn measured(&self) -> (&[f64], [f64; 3]) {
         (&self.q, self.position)
     }
 
-    pub fn sent(&self) -> &[f64] {
+    pub(super) fn sent(&self) -> &[f64] {
         &self.sent
     }
 
-    pub fn choose_command(&mut self, tick: ControlTick<'_>) {
+    pub(super) fn choose_command(&mut self, tick: ControlTick<'_>) {
         if self.due > 0 {
             tick.bounds.clip(&mut self.sent);
             return;
@@ -165,43 +165,43 @@ impl BroydenBasState {
         self.damping + doubt * doubt / self.jacobian.size(self.q.len()).max(f64::MIN_POSITIVE)
     }
 
-    pub fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> Verdict {
+    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
         self.measurements += 1;
         let spent = self.measurements >= self.options.max_evaluations_per_step;
         self.due -= 1;
-        let verdict = if self.due == 0 { self.learn(tick, position) } else { Verdict::GoOn };
-        if spent || verdict == Verdict::TickOver {
+        let verdict = if self.due == 0 { self.learn(tick, position) } else { TickProgress::GoOn };
+        if spent || verdict == TickProgress::TickOver {
             self.measurements = 0;
-            return Verdict::TickOver;
+            return TickProgress::TickOver;
         }
-        Verdict::GoOn
+        TickProgress::GoOn
     }
 
     /// The answer to the last command was `position`.
-    fn learn(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> Verdict {
+    fn learn(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
         let verdict = match self.purpose {
             Purpose::Repeat { first, second: None } => {
                 self.next = Purpose::Repeat { first, second: Some(position) };
-                Verdict::GoOn
+                TickProgress::GoOn
             }
             Purpose::Repeat { first, second: Some(second) } => {
                 self.know_start([first, second, position]);
-                Verdict::GoOn
+                TickProgress::GoOn
             }
             Purpose::Stand => {
                 (self.position, self.next) = (position, Purpose::Antenna { joint: 0 });
-                Verdict::GoOn
+                TickProgress::GoOn
             }
             Purpose::Antenna { joint } => {
                 self.feel(joint, position);
-                Verdict::GoOn
+                TickProgress::GoOn
             }
             Purpose::Step => self.believe(tick, position, None),
             Purpose::Again { first } => self.believe(tick, position, Some(first)),
         };
         let near_enough = self.tolerance.max(NEAR_ENOUGH * self.noise.level());
         let arrived = self.next == Purpose::Step && distance(&self.position, &tick.target) <= near_enough;
-        if arrived { Verdict::TickOver } else { verdict }
+        if arrived { TickProgress::TickOver } else { verdict }
     }
 
     /// Where the start is, and how noisy the sensor: one of the three measurements may be an outlier.
@@ -220,7 +220,7 @@ impl BroydenBasState {
     }
 
     /// A step was measured at `position`, and if it was sent again, at `first` before.
-    fn believe(&mut self, tick: ControlTick<'_>, position: [f64; 3], first: Option<[f64; 3]>) -> Verdict {
+    fn believe(&mut self, tick: ControlTick<'_>, position: [f64; 3], first: Option<[f64; 3]>) -> TickProgress {
         let Self { q, sent, jacobian, .. } = self;
         let dq = || sent.iter().zip(q.iter()).map(|(to, from)| to - from);
         let predicted = jacobian.predict(dq());
@@ -232,7 +232,7 @@ impl BroydenBasState {
         match first {
             None if surprising && !noisy => {
                 self.next = Purpose::Again { first: position };
-                return Verdict::GoOn;
+                return TickProgress::GoOn;
             }
             Some(first) if surprising && distance(&position, &first) > 0.5 * miss => {
                 self.noise.note(distance(&position, &first));
@@ -247,7 +247,7 @@ impl BroydenBasState {
     }
 
     /// Keeps a step that came nearer; else does something about it, unless noise hides what.
-    fn judge(&mut self, tick: ControlTick<'_>, position: [f64; 3], noisy: bool) -> Verdict {
+    fn judge(&mut self, tick: ControlTick<'_>, position: [f64; 3], noisy: bool) -> TickProgress {
         let squared_error = |position: [f64; 3]| squared_distance(&position, &tick.target);
         let (before, after) = (squared_error(self.position), squared_error(position));
         if after < before {
@@ -260,10 +260,10 @@ impl BroydenBasState {
             if self.slow >= SLOW_STEPS {
                 self.next = Purpose::Stand;
             }
-            return Verdict::GoOn;
+            return TickProgress::GoOn;
         }
         if noisy {
-            return Verdict::TickOver;
+            return TickProgress::TickOver;
         }
         self.failed += 1;
         if !self.fresh {
@@ -271,15 +271,15 @@ impl BroydenBasState {
             if self.failed >= FAILED_STEPS {
                 self.next = Purpose::Stand;
             }
-            return Verdict::GoOn;
+            return TickProgress::GoOn;
         }
         self.damping = (self.damping * 10.0).max(FIRST_DAMPING);
         if self.damping <= LARGEST_DAMPING {
-            return Verdict::GoOn;
+            return TickProgress::GoOn;
         }
         // Nothing more to gain in this tick; the next one starts as carefully as this one did.
         self.damping = FIRST_DAMPING;
-        Verdict::TickOver
+        TickProgress::TickOver
     }
 }
 

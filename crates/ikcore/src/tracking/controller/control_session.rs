@@ -1,6 +1,6 @@
-//! A controller at work on an arm that somebody else moves: clock, limits, and whose turn it is.
+//! A controller in use on an arm that the caller moves: clock, limits, and whether a command or a measurement is due.
 
-use super::control_tick::{ControlTick, Verdict};
+use super::control_tick::{ControlTick, TickProgress};
 use super::controller_choice::{Controller, RunningController};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
@@ -13,10 +13,10 @@ use crate::task::TipError;
 use crate::tracking::record::Accepted;
 use crate::tracking::step::Step;
 
-/// A controller in progress. [`command`](Self::command) says where to send the arm, [`observe`](Self::observe) is told where
-/// its tip was there; a tick is over when the controller has no more to ask in it.
+/// A controller in use. [`command`](Self::command) returns where to send the arm, [`observe`](Self::observe) takes the
+/// position measured there; a tick ends when the controller needs no further measurement.
 ///
-/// The first command is the start itself: it only tells where the tip is, and time stands still.
+/// The first command is the start itself: it only measures where the tip is, and time does not advance.
 #[derive(Debug)]
 pub struct ControlSession {
     running: RunningController,
@@ -38,7 +38,7 @@ pub struct ControlSession {
     rng: LazyRng,
 }
 
-/// Whose turn it is.
+/// Whether a command or a measurement is due.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
     /// Nothing was measured yet.
@@ -172,7 +172,7 @@ impl ControlSession {
             return Ok(Some(self.end_tick(target)));
         }
         let tick = ControlTick { target, bounds: &self.tick_box.bounds };
-        if self.running.observe(tick, position) == Verdict::GoOn {
+        if self.running.observe(tick, position) == TickProgress::GoOn {
             self.stage = Stage::Within;
             return Ok(None);
         }
@@ -203,7 +203,7 @@ impl ControlSession {
         }
     }
 
-    /// What the last tick has accepted.
+    /// Configuration and box of the last tick.
     pub(in crate::tracking) fn accepted(&self) -> Accepted<'_> {
         Accepted { q: &self.q, tick_box: &self.tick_box }
     }

@@ -5,15 +5,15 @@ use crate::objective::Bounds;
 /// A tick, as a controller sees it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ControlTick<'a> {
-    /// Where the tip shall be at its end (m).
+    /// Target of the tip at its end (m).
     pub target: [f64; 3],
-    /// Where commands may lie.
+    /// Box of the commands.
     pub bounds: &'a Bounds,
 }
 
-/// What a controller says after a measurement.
+/// Whether a tick goes on after a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum TickProgress {
     /// It has another command for this tick.
     GoOn,
     /// The tick is over.

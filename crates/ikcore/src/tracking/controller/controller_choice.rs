@@ -1,19 +1,19 @@
 //! The choice of controller, and the controller in use.
 
 use super::broyden_bas::BroydenBasState;
-use super::control_tick::{ControlTick, Verdict};
+use super::control_tick::{ControlTick, TickProgress};
 use super::znnbas::Znnbas;
 use super::znnbas_state::ZnnbasState;
 use crate::error::Result;
 use crate::rng::LazyRng;
 use crate::solver::BroydenBas;
 
-/// What a caller chooses.
+/// A controller and its options.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Controller {
-    /// Secants.
+    /// Carries a Jacobian estimate along the path.
     BroydenBas(BroydenBas),
-    /// Signs.
+    /// Moves by the sign of each measured change.
     Znnbas(Znnbas),
 }
 
@@ -70,7 +70,7 @@ impl RunningController {
     }
 
     /// Where the tip was at the last command (m).
-    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> Verdict {
+    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
         match self {
             Self::BroydenBas(memory) => memory.observe(tick, position),
             Self::Znnbas(memory) => memory.observe(tick, position),

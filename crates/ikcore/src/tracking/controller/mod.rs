@@ -19,4 +19,4 @@ mod znnbas_state;
 
 pub use control_session::ControlSession;
 pub use controller_choice::Controller;
-pub use znnbas::{Acceptance, Antenna, Delay, Znnbas};
+pub use znnbas::{Antenna, Delay, UpdateRule, Znnbas};

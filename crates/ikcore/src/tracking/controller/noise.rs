@@ -1,8 +1,8 @@
-//! How noisy a sensor is, as far as repeated measurements tell.
+//! Noise level of a sensor, estimated from repeated measurements.
 
 use crate::math::vector::distance;
 
-/// What noise explains: distances up to this many noise levels.
+/// Distances up to this many noise levels may be noise alone.
 const EXPLAINED: f64 = 3.0;
 
 /// The root mean square distance of two measurements, over the mean one of the nearest two of three; noise is Gaussian.
@@ -11,7 +11,7 @@ const TWO_OVER_NEAREST_OF_THREE: f64 = 1.62;
 /// How far apart two measurements of the same command lie (m): the median of the last three that could tell, so that an
 /// outlier counts for nothing.
 #[derive(Debug, Default)]
-pub struct Noise {
+pub(super) struct Noise {
     repeats: [f64; 3],
     noted: usize,
     level: f64,
@@ -19,7 +19,7 @@ pub struct Noise {
 
 impl Noise {
     /// Two measurements of one command were `repeat` apart (m).
-    pub fn note(&mut self, repeat: f64) {
+    pub(super) fn note(&mut self, repeat: f64) {
         self.repeats[self.noted % 3] = repeat;
         self.noted += 1;
         let [a, b, c] = self.repeats;
@@ -27,29 +27,29 @@ impl Noise {
     }
 
     /// Three measurements of one command (m). One of them may be an outlier, so the nearest two count.
-    pub fn note_three(&mut self, [a, b, c]: [[f64; 3]; 3]) {
+    pub(super) fn note_three(&mut self, [a, b, c]: [[f64; 3]; 3]) {
         let nearest = distance(&a, &b).min(distance(&b, &c)).min(distance(&a, &c));
         (0..2).for_each(|_| self.note(TWO_OVER_NEAREST_OF_THREE * nearest));
     }
 
     /// The noise of one measurement (m), root mean square; zero until there is evidence.
-    pub fn level(&self) -> f64 {
+    pub(super) fn level(&self) -> f64 {
         self.level
     }
 
     /// Whether a motion or an error of this size (m) may be nothing but noise.
-    pub fn explains(&self, size: f64) -> bool {
+    pub(super) fn explains(&self, size: f64) -> bool {
         size < EXPLAINED * self.level
     }
 
     /// How much to learn from a prediction that missed by `miss` (m): the part of it that noise does not explain. Learning all
     /// carries the noise of every measurement into the Jacobian, until the steps go astray.
-    pub fn share(&self, miss: f64) -> f64 {
+    pub(super) fn share(&self, miss: f64) -> f64 {
         (1.0 - (EXPLAINED * self.level / miss).powi(2)).max(0.0)
     }
 }
 
 /// The middle one of three.
-pub fn median(a: f64, b: f64, c: f64) -> f64 {
+pub(super) fn median(a: f64, b: f64, c: f64) -> f64 {
     a.max(b).min(a.min(b).max(c))
 }

@@ -9,7 +9,7 @@
 //! theta is the state of an integrator: the arm never stands there, but at theta', a random antenna away.
 //!
 //! The proof of Theorem 1 describes another algorithm, which keeps theta' where h fell and else goes back to theta and waits.
-//! It is here as [`Acceptance::Improving`]: the theorem holds for it, while the target stands still.
+//! It is here as [`UpdateRule::Improving`]: the theorem holds for it, while the target stands still.
 
 use crate::error::{Error, Result, require_positive};
 use crate::wording::words;
@@ -29,12 +29,12 @@ pub enum Antenna {
     },
 }
 
-/// What a measurement is compared with.
+/// The measurement that a new one is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Delay {
-    /// The measurement so many ticks before: eq. (13).
+    /// The one `delay_steps` ticks before: eq. (13).
     Sliding,
-    /// One that is taken anew every so many ticks: lines 17 to 20 of Algorithm 1.
+    /// One renewed every `delay_steps` ticks: lines 17 to 20 of Algorithm 1.
     Held,
 }
 
@@ -42,7 +42,7 @@ words!("delay": Delay { Sliding => "sliding", Held => "held" });
 
 /// When theta moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Acceptance {
+pub enum UpdateRule {
     /// In every tick: eq. (15).
     Always,
     /// To theta' where that is nearer to the target of now than theta is, else not at all: the proof of Theorem 1. Gain and
@@ -50,23 +50,23 @@ pub enum Acceptance {
     Improving,
 }
 
-words!("accept": Acceptance { Always => "always", Improving => "improving" });
+words!("accept": UpdateRule { Always => "always", Improving => "improving" });
 
 /// ZNNBAS.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Znnbas {
     /// k of eq. (14) (1/s), positive to converge. A gain times dt above 0.3 overshoots.
     pub gain: f64,
-    /// Ticks by which the sensor is late: a measurement is held against the command and the target of so many ticks before.
+    /// Delay of the sensor in ticks: a measurement belongs to the command and target of that many ticks before.
     pub sensor_delay: usize,
     /// lambda of eq. (10).
     pub antenna: Antenna,
     /// alpha of eq. (13), in ticks; gain times delay should stay below 1.
     pub delay_steps: usize,
-    /// What a measurement is compared with.
+    /// The measurement that a new one is compared with.
     pub delay: Delay,
     /// When theta moves.
-    pub accept: Acceptance,
+    pub accept: UpdateRule,
 }
 
 impl Default for Znnbas {
@@ -78,7 +78,7 @@ impl Default for Znnbas {
             antenna: Antenna::Adaptive { c1: 0.3 },
             delay_steps: 1,
             delay: Delay::Sliding,
-            accept: Acceptance::Always,
+            accept: UpdateRule::Always,
         }
     }
 }

@@ -1,8 +1,8 @@
 //! ZNNBAS at work: Algorithm 1, tick by tick.
 
-use super::control_tick::{ControlTick, Verdict};
-use super::znnbas::{Acceptance, Antenna, Delay, Znnbas};
-use crate::math::ordered::sign;
+use super::control_tick::{ControlTick, TickProgress};
+use super::znnbas::{Antenna, Delay, UpdateRule, Znnbas};
+use crate::math::comparison::sign;
 use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::rng::LazyRng;
@@ -10,21 +10,21 @@ use crate::rng::LazyRng;
 /// The longest adaptive antenna (rad).
 const LONGEST: f64 = 0.5;
 
-/// What the controller remembers from tick to tick.
+/// State of the controller between ticks.
 #[derive(Debug)]
-pub struct ZnnbasState {
+pub(super) struct ZnnbasState {
     /// k dt.
     gain: f64,
     antenna: Antenna,
     delay: Delay,
-    accept: Acceptance,
+    accept: UpdateRule,
     /// theta, the state of the integrator.
     theta: Point,
     /// Where the tip was at the last theta that was measured (m).
     standing: [f64; 3],
     /// theta', where the arm was sent.
     sent: Point,
-    /// What the last measurement said: where, of which command, and h.
+    /// The last measurement: position, its command, and h.
     position: [f64; 3],
     answered: Point,
     value: f64,
@@ -32,7 +32,7 @@ pub struct ZnnbasState {
     past: Past,
 }
 
-/// Commands that a late sensor has not answered yet, with their targets; the slots in turn.
+/// Commands that a late sensor has not answered yet, with their targets; a ring buffer.
 #[derive(Debug)]
 struct OnTheWay {
     sent: Vec<f64>,
@@ -40,7 +40,7 @@ struct OnTheWay {
     ticks: usize,
 }
 
-/// The measurements of the last so many ticks, the slots in turn.
+/// The measurements of the last `delay_steps` ticks, a ring buffer.
 #[derive(Debug)]
 struct Past {
     sent: Vec<f64>,
@@ -49,7 +49,7 @@ struct Past {
 }
 
 impl ZnnbasState {
-    pub fn new(options: &Znnbas, start: &[f64], dt: f64) -> Box<Self> {
+    pub(super) fn new(options: &Znnbas, start: &[f64], dt: f64) -> Box<Self> {
         let (n, delay) = (start.len(), options.delay_steps);
         Box::new(Self {
             gain: options.gain * dt,
@@ -71,30 +71,30 @@ impl ZnnbasState {
         })
     }
 
-    pub fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {
+    pub(super) fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {
         (self.position, self.standing, self.value) = (position, position, squared_distance(&target, &position));
         // Until the first answer comes, the arm stands at the start.
         self.on_the_way.targets.fill(target);
     }
 
-    pub fn accepted(&self) -> &[f64] {
+    pub(super) fn accepted(&self) -> &[f64] {
         &self.theta
     }
 
-    pub fn measured(&self) -> (&[f64], [f64; 3]) {
+    pub(super) fn measured(&self) -> (&[f64], [f64; 3]) {
         (&self.answered, self.position)
     }
 
-    pub fn sent(&self) -> &[f64] {
+    pub(super) fn sent(&self) -> &[f64] {
         &self.sent
     }
 
-    pub fn choose_command(&mut self, tick: ControlTick<'_>, rng: &mut LazyRng) {
+    pub(super) fn choose_command(&mut self, tick: ControlTick<'_>, rng: &mut LazyRng) {
         let Self { theta, sent, antenna, .. } = self;
         rng.symmetric(sent); // b, line 14
         let error = match self.accept {
-            Acceptance::Always => self.value,
-            Acceptance::Improving => squared_distance(&tick.target, &self.standing),
+            UpdateRule::Always => self.value,
+            UpdateRule::Improving => squared_distance(&tick.target, &self.standing),
         };
         let lengths = match antenna {
             Antenna::Constant(lengths) => &lengths[..],
@@ -106,25 +106,25 @@ impl ZnnbasState {
         tick.bounds.clip(sent); // (11)
     }
 
-    pub fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> Verdict {
+    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
         self.position = position;
         self.answered.copy_from_slice(&self.sent);
         let target = self.on_the_way.swap(&mut self.answered, tick.target);
         self.value = squared_distance(&target, &position); // h of (12)
         match self.accept {
-            Acceptance::Always => self.move_theta(),
-            Acceptance::Improving
+            UpdateRule::Always => self.move_theta(),
+            UpdateRule::Improving
                 if squared_distance(&tick.target, &position) < squared_distance(&tick.target, &self.standing) =>
             {
                 self.theta.copy_from_slice(&self.answered);
                 self.standing = position;
             }
-            Acceptance::Improving => {}
+            UpdateRule::Improving => {}
         }
         // A limit may have closed in since the command.
         tick.bounds.clip(&mut self.theta);
         self.past.push(&self.answered, self.value);
-        Verdict::TickOver
+        TickProgress::TickOver
     }
 
     /// One Euler step of eq. (14).

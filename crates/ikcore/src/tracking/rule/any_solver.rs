@@ -6,7 +6,7 @@ use crate::problem::Problem;
 use crate::solver::{AnySolver, Evaluator, Status, Stop};
 use crate::task::{Criterion, Outside};
 
-pub fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> TickResult {
+pub(super) fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> TickResult {
     let Tick { robot, target, criterion, tick_box, last_value, rng, monitor, .. } = tick;
     // The arm begins inside its region: nothing outside need be looked at.
     let kept = Criterion { outside: Outside::Infinite, ..*criterion };

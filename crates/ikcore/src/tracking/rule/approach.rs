@@ -22,9 +22,9 @@ const NEAR: f64 = 0.5;
 
 /// The displacement of the joints to a target that the arm is behind (n,) (rad, m).
 pub(super) struct Approach {
-    /// What the joints have to catch up with.
+    /// Displacement that the joints still have to catch up.
     catch_up: Point,
-    /// What they do beside that, to keep up with the target's own motion.
+    /// Displacement that follows the target's own motion.
     keep_up: Point,
     /// The target is far where the tick can cover less than this share of the displacement.
     far_below: f64,
@@ -36,7 +36,7 @@ pub(super) struct Approach {
 
 impl Approach {
     /// The approach from `q`. Tip and Jacobian are those at `near`, the configuration of the tick's box that is nearest to `q`.
-    pub fn new(q: &[f64], near: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Self {
+    pub(super) fn new(q: &[f64], near: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Self {
         let to = |target: &Target| -> Point {
             let end = destination(target, near, tip, columns, tick);
             end.iter().zip(q).map(|(end, q)| end - q).collect()
@@ -76,17 +76,17 @@ impl Approach {
     }
 
     /// Whether the target is so far away that joints are better moved in proportion.
-    pub fn is_far(&self) -> bool {
+    pub(super) fn is_far(&self) -> bool {
         self.within_reach < self.far_below
     }
 
     /// Whether an arm that went straight to the target could not stop there.
-    pub fn needs_braking(&self) -> bool {
+    pub(super) fn needs_braking(&self) -> bool {
         self.within_braking < 1.0
     }
 
     /// Moves `q` by one tick.
-    pub fn advance(&self, q: &mut [f64], tick: &Tick<'_>) {
+    pub(super) fn advance(&self, q: &mut [f64], tick: &Tick<'_>) {
         let share = self.within_reach.min(self.within_braking);
         for (q, (catch_up, keep_up)) in q.iter_mut().zip(self.catch_up.iter().zip(&self.keep_up)) {
             *q += keep_up + share * catch_up;

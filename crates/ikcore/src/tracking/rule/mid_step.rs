@@ -23,9 +23,9 @@ use crate::task::Assessment;
 /// Steps by the model in one tick; they converge quadratically, so that more would not help.
 const MOST_STEPS: usize = 10;
 
-/// What the rule remembers from tick to tick. Boxed, so that handing a Jacobian on is handing on a pointer.
+/// State of the rule between ticks. Boxed, so that passing a Jacobian on copies a pointer.
 #[derive(Debug, Default)]
-pub struct MidStepState {
+pub(crate) struct MidStepState {
     /// At the accepted configuration, once there was a tick.
     begin: Box<Kinematics>,
     begin_known: bool,
@@ -74,7 +74,7 @@ impl Kinematics {
     }
 }
 
-pub fn advance(memory: &mut MidStepState, q: &[f64], mut tick: Tick<'_>) -> TickResult {
+pub(super) fn advance(memory: &mut MidStepState, q: &[f64], mut tick: Tick<'_>) -> TickResult {
     let mut found = TickResult::at(q);
     tick.tick_box.clip(&mut found.q);
     if !memory.begin_known || *found.q != *q {
@@ -101,7 +101,7 @@ pub fn advance(memory: &mut MidStepState, q: &[f64], mut tick: Tick<'_>) -> Tick
 
 impl MidStepState {
     /// Drops what is known: the arm is not where the last tick ended.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         (self.begin_known, self.before_known) = (false, false);
     }
 

@@ -13,7 +13,7 @@ pub(in crate::tracking) struct Tick<'a> {
     pub robot: &'a Robot,
     pub target: &'a Target,
     pub criterion: &'a Criterion,
-    /// What to do with the freedom that the target leaves.
+    /// Goals in the null space of the target.
     pub goals: &'a mut Goals,
     /// The velocity of the target at the end of the tick (m/s), if it is known.
     pub velocity: Option<[f64; 3]>,
@@ -77,7 +77,7 @@ impl TickResult {
     }
 
     /// Takes over the tip at `q`.
-    pub fn set_tip(&mut self, tip: &Frame, target: &Target, criterion: &Criterion) {
+    pub(crate) fn set_tip(&mut self, tip: &Frame, target: &Target, criterion: &Criterion) {
         (self.assessment, self.position) = (target.assess_tip(tip, criterion), tip.origin);
     }
 

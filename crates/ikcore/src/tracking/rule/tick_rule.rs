@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::robot::Robot;
 use crate::solver::AnySolver;
 
-/// What runs in every tick.
+/// The rule that runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum TickRule {
     /// Steps by the model: one evaluation of kinematics and Jacobian is enough for most ticks.
@@ -72,14 +72,14 @@ impl TickRule {
 
 impl RunningRule {
     /// Drops what is remembered of the last tick: the arm is not where the rule left it.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         if let Self::MidStep(memory) = self {
             memory.forget();
         }
     }
 
     /// Ends one tick that begins at `q`.
-    pub fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> TickResult {
+    pub(crate) fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> TickResult {
         match self {
             Self::MidStep(memory) => mid_step::advance(memory, q, tick),
             Self::Solver(solver) => any_solver::advance(solver, q, tick),

@@ -105,15 +105,20 @@ impl WeightedPseudoInverse {
     }
 }
 
-/// What a tick works with; nothing is remembered from tick to tick.
+/// Scratch of a tick; nothing is kept from tick to tick.
 #[derive(Debug, Default)]
-pub struct Scratch {
+pub(crate) struct Scratch {
     linearization: Box<Linearization>,
     /// Of the target a little later and a little earlier.
     neighbours: [Box<Linearization>; 2],
 }
 
-pub fn advance(rule: &WeightedPseudoInverse, scratch: &mut Scratch, q: &[f64], mut tick: Tick<'_>) -> TickResult {
+pub(super) fn advance(
+    rule: &WeightedPseudoInverse,
+    scratch: &mut Scratch,
+    q: &[f64],
+    mut tick: Tick<'_>,
+) -> TickResult {
     let mut found = TickResult::at(q);
     let mut stage = |from: &[f64], share: f64| {
         found.evaluations += 1;

@@ -1,0 +1,140 @@
+//! Options of the planners: method, objective, limits and budget.
+
+use std::str::FromStr;
+
+use super::cost::Cost;
+use super::motion_limits::MotionLimits;
+use super::tpbso::Tpbso;
+use crate::error::{Error, Result};
+use crate::limits::Limits;
+use crate::obstacle::Obstacle;
+use crate::robot::Robot;
+use crate::solver::{AnySolver, DerivativeFree, Stop};
+
+/// How to plan from end to end.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum PointToPointMethod {
+    /// Configurations of both ends with the smallest maximum displacement, joined as fast as the limits allow.
+    #[default]
+    MinMax,
+    /// Polynomials through a via point, found by a swarm.
+    Tpbso(Tpbso),
+}
+
+impl From<Tpbso> for PointToPointMethod {
+    fn from(options: Tpbso) -> Self {
+        Self::Tpbso(options)
+    }
+}
+
+impl FromStr for PointToPointMethod {
+    type Err = Error;
+
+    /// Reads "minmax" or "tpbso", each with its defaults.
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "minmax" => Ok(Self::MinMax),
+            "tpbso" => Ok(Tpbso::default().into()),
+            _ => Err(Error::unknown_option("method", name, &["minmax", "tpbso"])),
+        }
+    }
+}
+
+/// How to plan along a path.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum AlongPathMethod {
+    /// Redundancy and fastest timing in one search.
+    #[default]
+    Timed,
+    /// Redundancy found by a swarm, uniform time, splines through every second point.
+    Tpbso(Tpbso),
+}
+
+impl From<Tpbso> for AlongPathMethod {
+    fn from(options: Tpbso) -> Self {
+        Self::Tpbso(options)
+    }
+}
+
+impl FromStr for AlongPathMethod {
+    type Err = Error;
+
+    /// Reads "timed" or "tpbso", each with its defaults.
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "timed" => Ok(Self::Timed),
+            "tpbso" => Ok(Tpbso::default().into()),
+            _ => Err(Error::unknown_option("method", name, &["timed", "tpbso"])),
+        }
+    }
+}
+
+/// Options of [`plan_point_to_point`](super::plan_point_to_point).
+#[derive(Debug, Clone, Default)]
+pub struct PointToPointOptions {
+    /// The planner.
+    pub method: PointToPointMethod,
+    /// Quantity to minimise.
+    pub objective: Cost,
+    /// Obstacles to avoid. A robot that has capsules avoids itself too.
+    pub obstacles: Vec<Obstacle>,
+    /// Distance to keep from obstacles and between links (m); None: 1 mm.
+    pub margin: Option<f64>,
+    /// Limits to keep; None: the robot's.
+    pub limits: Option<Limits>,
+    /// Budget of the search; None: the method's own.
+    pub stop: Option<Stop>,
+    /// Seed of the random draws: the same seed, the same bits.
+    pub seed: u64,
+}
+
+/// Distance that is kept by default (m).
+const DEFAULT_MARGIN: f64 = 1e-3;
+
+impl PointToPointOptions {
+    /// The distance to keep from obstacles and between links (m).
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a margin that is negative or not finite.
+    pub(super) fn kept_margin(&self) -> Result<f64> {
+        let margin = self.margin.unwrap_or(DEFAULT_MARGIN);
+        if margin.is_finite() && margin >= 0.0 {
+            return Ok(margin);
+        }
+        Err(Error::out_of_range("margin", "zero or more and finite", margin))
+    }
+}
+
+/// Options of [`plan_along_path`](super::plan_along_path).
+#[derive(Debug, Clone, Default)]
+pub struct AlongPathOptions {
+    /// The planner.
+    pub method: AlongPathMethod,
+    /// Quantity to minimise.
+    pub objective: Cost,
+    /// Configuration to start from (n,); None: the planner's choice.
+    pub start: Option<Vec<f64>>,
+    /// Limits to keep; None: the robot's.
+    pub limits: Option<Limits>,
+    /// Allowed distance of the tip from the path (m) and angle from its orientation (rad); None: the method's own.
+    pub accuracy: Option<f64>,
+    /// The search of [`AlongPathMethod::Timed`]; None: differential evolution. [`Tpbso`] has its own.
+    pub solver: Option<AnySolver<DerivativeFree>>,
+    /// Budget of the search; None: the method's own.
+    pub stop: Option<Stop>,
+    /// Seed of the random draws: the same seed, the same bits.
+    pub seed: u64,
+}
+
+impl AlongPathOptions {
+    /// The given start, checked against the limits; None: the planner's choice.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::OutsideLimits`].
+    pub(super) fn start_within(&self, robot: &Robot, limits: &MotionLimits) -> Result<Option<&[f64]>> {
+        let Some(q) = &self.start else { return Ok(None) };
+        robot.check("start_q", q)?;
+        robot.require_within("start_q", q, &limits.lower, &limits.upper)?;
+        Ok(Some(q))
+    }
+}
