@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ._core import InvalidInputError, Trajectory
 from ._csv import read_table, write_table
 from ._files import path_of, whole_file
+from ._text import listed
 
 # Columns are named "q:joint", "qd:joint", "qdd:joint": position, velocity and acceleration of each joint.
 _DERIVATIVES = ("q", "qd", "qdd")
@@ -83,7 +84,7 @@ def joint_positions(
     if not columns:
         raise InvalidInputError(
             f"{os.fspath(file)}, line 1: no joint positions: expected a column for each joint, "
-            f"named 'q:joint' or 'joint'; columns found: {', '.join(table)}"
+            f"named 'q:joint' or 'joint'; columns found: {listed(table)}"
         )
     return list(columns), np.column_stack([table[column] for column in columns.values()])
 
@@ -128,7 +129,7 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
         if name not in stored:
             raise InvalidInputError(
                 f"{os.fspath(file)}: not a trajectory: '{name}' is missing; "
-                f"the file holds: {', '.join(stored) or 'nothing'}"
+                f"the file holds: {listed(stored) or 'nothing'}"
             )
     joint_names = stored["joint_names"]
     if joint_names.ndim != 1 or joint_names.dtype.kind != "U":

@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._arguments import require
 from .._core import InvalidInputError, Robot
+from .._text import listed
 
 Matrix: TypeAlias = NDArray[np.float64]
-_LIST_LENGTH = 400  # characters of a list of names in a message
 Kind: TypeAlias = Literal["revolute", "continuous", "prismatic"]
 
 
@@ -96,15 +96,6 @@ def parts(robot: Robot, library: str) -> tuple[Matrix, list[Matrix | Motion | Li
             # A scale of -1 is the opposite axis.
             shown.append(Motion(joint, turns, scale * axis, scale * offset))
     return base, shown, tool
-
-
-def listed(names: list[str]) -> str:
-    """Joins names with commas, up to a readable length."""
-    shown = ", ".join(names)
-    if len(shown) <= _LIST_LENGTH:
-        return shown
-    kept = shown[:_LIST_LENGTH].rpartition(", ")[0]
-    return f"{kept} and {len(names) - kept.count(', ') - 1} more"
 
 
 def only_leaf(library: str, what: str, leaves: list[str]) -> str:

@@ -9,7 +9,8 @@ import numpy as np
 from .._arguments import require, require_text
 from .._core import InvalidInputError, Robot, UnknownNameError, pose
 from .._needs import library
-from .chain import ChainReader, listed, only_leaf
+from .._text import listed
+from .chain import ChainReader, only_leaf
 
 if TYPE_CHECKING:
     import mujoco

@@ -7,7 +7,8 @@ import numpy as np
 from .._arguments import require
 from .._core import InvalidInputError, Robot, UnknownNameError, pose
 from .._needs import library
-from .chain import ChainReader, Kind, Link, Motion, listed, only_leaf, parts
+from .._text import listed
+from .chain import ChainReader, Kind, Link, Motion, only_leaf, parts
 
 if TYPE_CHECKING:
     import pinocchio as pin
