@@ -407,3 +407,19 @@ def test_unaligned_arrays_are_copied() -> None:
     target = packed["target"][0]
     assert not target.flags.aligned
     np.testing.assert_array_equal(solve(target).q, solve([0.3, 0.3, 1.0]).q)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda name: bik.Robot.named(name),
+        lambda name: bik.Robot.from_urdf(name),
+        lambda name: IIWA.with_capsules([(name, [0, 0, 0], [0, 0, 1], 0.1)]),
+        lambda name: bik.Robot.from_urdf(f"<robot><joint name='{name}' type='x'/></robot>"),
+        lambda name: bik.Robot.from_dh(a=[1], alpha=[0], d=[0], kinds=[name]),
+    ],
+)
+def test_long_names_are_cut_in_messages(call: Callable[[str], object]) -> None:
+    with pytest.raises(bik.BeetleIkError) as caught:
+        call("n" * 10**6)
+    assert len(str(caught.value)) < 1000

@@ -253,10 +253,9 @@ fn no_capsules(robot: &Robot) -> Error {
             "give it capsules with {given}, or load a URDF whose links have <collision> shapes of spheres, cylinders, \
              capsules and boxes"
         ),
-        _ => format!(
-            "robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
-             robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
-        ),
+        _ => "robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
+              robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
+            .into(),
     };
     Error::NoCapsules { robot: robot.name().into(), problem, remedy }
 }

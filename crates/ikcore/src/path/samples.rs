@@ -8,8 +8,8 @@ use super::{Curve, Polyline};
 use crate::error::{Error, Result};
 use crate::math::Pose;
 
-/// Positions, or poses, at given times; between them the position moves on a straight line and the orientation about a
-/// fixed axis, both at constant speed.
+/// Positions, or poses, at given times. Between them the position moves along a straight line and the orientation about
+/// a fixed axis, both at constant speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "(Polyline, Rotations)")]
 pub struct Samples {
@@ -42,7 +42,7 @@ impl Samples {
     ///
     /// # Errors
     /// [`Error::InvalidPath`] for fewer than 2 points, [`Error::WrongLength`], [`Error::NotFinite`],
-    /// [`Error::OutOfRange`] where the first time is not zero, [`Error::NotIncreasing`].
+    /// [`Error::OutOfRange`] if the first time is not zero, [`Error::NotIncreasing`].
     pub fn from_positions(times: Vec<f64>, positions: Vec<[f64; 3]>) -> Result<Self> {
         Ok(Self { positions: Polyline::through(times, positions)?, rotations: None })
     }
@@ -82,7 +82,7 @@ impl Curve for Samples {
         let knots = self.positions.knots();
         let (row, elapsed) = knots.locate(t);
         let (from, to) = (rotations[row], rotations[row + 1]);
-        // The quaternion's power is exact for the smallest angles too, where slerp's arc cosine is not.
+        // The quaternion power is exact for the smallest angles too; the arc cosine of slerp is not.
         let reached = from.rotation_to(&to).powf(elapsed / knots.span(row)) * from;
         Some(reached.to_rotation_matrix().into_inner())
     }

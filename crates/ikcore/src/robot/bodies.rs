@@ -2,7 +2,7 @@
 
 use super::link_capsule::{Bodies, LinkCapsule};
 use super::model::Robot;
-use crate::error::{Error, Result, require_finite, suggestion};
+use crate::error::{Error, Result, require_finite, shortened, suggestion};
 use crate::kinematics::chain::{LinkFrame, StageMotion};
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
@@ -33,7 +33,7 @@ impl Robot {
             if !self.link_names().any(|name| name == capsule.link) {
                 return Err(Error::UnknownLink {
                     robot: self.name().into(),
-                    name: capsule.link.clone(),
+                    name: shortened(&capsule.link),
                     suggestion: suggestion(&capsule.link, self.link_names()),
                     known: listed(self.link_names()),
                 });

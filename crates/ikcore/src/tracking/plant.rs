@@ -8,19 +8,19 @@ use crate::robot::Robot;
 
 /// An arm and its sensor, as a controller sees them.
 pub trait Plant {
-    /// Sends the arm to `command` (n,) (rad, m) and says where its tip is then (m).
+    /// Sends the arm to `command` (n,) (rad, m) and returns the measured position of its tip (m).
     ///
     /// # Errors
-    /// [`Fault`] ends the run, with what was recorded until then.
+    /// [`Fault`] ends the run; the rows recorded so far are kept.
     fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault>;
 
-    /// Ticks between two looks at the monitor: one, unless measurements take next to no time.
+    /// Ticks between two polls of the monitor: one, unless measurements are almost free.
     fn ticks_between_looks(&self) -> usize {
         1
     }
 }
 
-/// Why a plant has no answer, as the end of "the plant ...".
+/// Why a plant failed, as the end of "the plant ...".
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fault(pub String);
 
@@ -34,8 +34,8 @@ impl<F: FnMut(&[f64]) -> [f64; 3]> Plant for FunctionPlant<F> {
     }
 }
 
-/// A robot that goes at once where it is sent, and a sensor with Gaussian noise. Give it another robot than the one you
-/// have in mind ([`Robot::with_errors`]), and it is an arm with a wrong model.
+/// A robot that reaches every command at once, and a sensor with Gaussian noise. To simulate a wrong model, pass a
+/// robot that differs from the nominal one ([`Robot::with_errors`]).
 #[derive(Debug, Clone)]
 pub struct KinematicPlant {
     robot: Robot,
@@ -52,11 +52,11 @@ impl KinematicPlant {
         if !(noise.is_finite() && noise >= 0.0) {
             return Err(Error::out_of_range("noise", "zero or more and finite", noise));
         }
-        // Stream 0 of the same seed is the controller's.
+        // The controller uses stream 0 of the same seed.
         Ok(Self { robot, noise, rng: rng::stream(seed, 1) })
     }
 
-    /// The robot that moves.
+    /// The simulated robot.
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
@@ -84,7 +84,7 @@ impl Plant for KinematicPlant {
     }
 }
 
-/// Err unless a measured position is finite.
+/// Checks that a measured position is finite.
 pub(super) fn check(position: [f64; 3]) -> Result<[f64; 3], Fault> {
     match require_finite("the position", &position, |k| format!("entry {k}")) {
         Ok(()) => Ok(position),

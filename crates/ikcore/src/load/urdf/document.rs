@@ -111,7 +111,7 @@ fn new_name<'a>(node: Node<'a, '_>, tag: &str, names: &mut HashSet<&'a str>) -> 
 }
 
 fn read_joint(joint: Node, name: &str) -> Result<UrdfJoint> {
-    let owner = format!("joint '{name}'");
+    let owner = format!("joint '{}'", shortened(name));
     let kind = joint_kind(joint, &owner)?;
     let link = |tag: &str| match xml::children(joint, tag).next() {
         Some(end) => xml::required(end, "link", &format!("<{tag}> of {owner}")).map(str::to_owned),

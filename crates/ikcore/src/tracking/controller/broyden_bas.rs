@@ -1,11 +1,12 @@
 //! [`BroydenBas`] as a controller: the Jacobian estimate is carried along the path.
 //!
-//! A sensor may be noisy, and now and then wrong altogether, so a step that came out quite otherwise than predicted is sent
-//! again before it is believed. If the second measurement agrees with the first, the Jacobian is to blame: it learns, and if
-//! that does not help antennae are put out again. If it agrees with the prediction, the first was an outlier. If it
-//! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there. From
-//! other steps only that is learned which noise does not explain, and an error that it explains is no reason to put out
-//! antennae. How noisy the sensor is to begin with, three measurements of the start tell.
+//! A sensor is noisy, and some measurements are outliers. So a measurement that differs strongly from the prediction is
+//! repeated before it is used. If the second measurement agrees with the first, the Jacobian is wrong: it is updated
+//! and, if that does not help, antennae are put out again. If the second measurement agrees with the prediction, the
+//! first was an outlier. If it agrees with neither, the difference is noise and gives its level: steps below that level
+//! do not update the Jacobian, and the tick ends there. Larger steps update the Jacobian only by the change above the
+//! noise level, and an error below that level does not put out antennae. The initial noise level comes from three
+//! measurements of the start.
 
 use super::control_tick::{ControlTick, TickProgress};
 use super::noise::{Noise, median};
@@ -16,13 +17,14 @@ use crate::objective::Point;
 use crate::solver::BroydenBas;
 use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
 
-/// A measurement that misses the prediction by more than this share of the predicted motion is sent for again.
+/// A measurement is repeated if it misses the prediction by more than this fraction of the predicted motion.
 const SURPRISING: f64 = 1.0;
 
-/// An error below this many noise levels cannot be told from noise: another step would follow the noise.
+/// An error below this multiple of the noise level is indistinguishable from noise: another step would follow the
+/// noise.
 const NEAR_ENOUGH: f64 = 1.25;
 
-/// Steps in a row that came no nearer, before antennae are put out again: they shake the tool.
+/// Consecutive steps without improvement before antennae are put out again; antennae shake the tool.
 const FAILED_STEPS: usize = 2;
 
 /// State of the controller between measurements.
@@ -31,22 +33,22 @@ pub(super) struct BroydenBasState {
     options: BroydenBas,
     tolerance: f64,
     jacobian: Secant<3>,
-    /// The accepted configuration, and the position measured there (m).
+    /// Accepted configuration, and the position measured there (m).
     q: Point,
     position: [f64; 3],
-    /// The last command, and what it was for.
+    /// Last command, and its purpose.
     sent: Point,
     purpose: Purpose,
     /// Purpose of the next command.
     next: Purpose,
     damping: f64,
-    /// Steps in a row that left more than half of the error, and steps in a row that came no nearer at all.
+    /// Consecutive steps that left more than half of the error, and consecutive steps without improvement.
     slow: usize,
     failed: usize,
-    /// No step was accepted since antennae were out.
+    /// No step was accepted since the antennae were last put out.
     fresh: bool,
     noise: Noise,
-    /// How often the last command is still to be sent, for a sensor that is late.
+    /// How many more times the last command is sent, for a sensor with delay.
     due: usize,
     /// Measurements in this tick.
     measurements: usize,
@@ -55,15 +57,15 @@ pub(super) struct BroydenBasState {
 /// Purpose of a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
-    /// To measure at the start again, which was at `first` before, and then at `second` (m).
+    /// Measure at the start again: `first` and `second` are the earlier measurements (m).
     Repeat { first: [f64; 3], second: Option<[f64; 3]> },
-    /// To measure at the accepted configuration, before antennae are put out.
+    /// Measure at the accepted configuration, before antennae are put out.
     Stand,
-    /// To put out the antenna of a joint. As a plan: of this one or, where it has no room, of the next that has.
+    /// Put out the antenna of a joint. As `next`: of this joint or, if it has no room, of the next joint that has.
     Antenna { joint: usize },
-    /// To come nearer.
+    /// Step towards the target.
     Step,
-    /// The same step again, because this position (m) surprised.
+    /// Repeat the step, because the measurement `first` (m) missed the prediction.
     Again { first: [f64; 3] },
 }
 
@@ -123,7 +125,7 @@ impl BroydenBasState {
         };
     }
 
-    /// A limit may close in on the accepted configuration: then the arm has to be measured where it may stand.
+    /// A limit may have closed in on the accepted configuration: clips it to the box, and has it measured again.
     fn return_to_box(&mut self, tick: ControlTick<'_>) {
         if !tick.bounds.contains(&self.q) {
             tick.bounds.clip(&mut self.q);
@@ -131,7 +133,7 @@ impl BroydenBasState {
         }
     }
 
-    /// The first antenna, from `joint` on, that has room; the first step where none has.
+    /// Puts out the first antenna, from `joint` on, that has room; takes the first step if none has.
     fn put_out_antenna(&mut self, joint: usize, tick: ControlTick<'_>) -> Purpose {
         let (lower, upper) = (tick.bounds.lower(), tick.bounds.upper());
         for j in joint..self.q.len() {
@@ -156,7 +158,7 @@ impl BroydenBasState {
         self.jacobian.step(&residual, self.damping(), &self.q, bounds, &mut self.sent);
     }
 
-    /// What noise has left of a column in the dark must not be taken for a way to move.
+    /// Adds damping for noise, so that the noise in a small column is not taken for a direction of motion.
     fn damping(&self) -> f64 {
         let doubt = self.noise.level() / self.options.antenna_length;
         if doubt == 0.0 {
@@ -177,7 +179,7 @@ impl BroydenBasState {
         TickProgress::GoOn
     }
 
-    /// The answer to the last command was `position`.
+    /// Processes the measurement `position` of the last command.
     fn learn(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
         let verdict = match self.purpose {
             Purpose::Repeat { first, second: None } => {
@@ -204,7 +206,7 @@ impl BroydenBasState {
         if arrived { TickProgress::TickOver } else { verdict }
     }
 
-    /// Where the start is, and how noisy the sensor: one of the three measurements may be an outlier.
+    /// Estimates position and noise level at the start from three measurements, one of which may be an outlier.
     fn know_start(&mut self, [a, b, c]: [[f64; 3]; 3]) {
         self.position = std::array::from_fn(|k| median(a[k], b[k], c[k]));
         self.noise.note_three([a, b, c]);
@@ -219,7 +221,7 @@ impl BroydenBasState {
         }
     }
 
-    /// A step was measured at `position`, and if it was sent again, at `first` before.
+    /// Processes the measurement of a step; `first` is the measurement before, if the step was repeated.
     fn believe(&mut self, tick: ControlTick<'_>, position: [f64; 3], first: Option<[f64; 3]>) -> TickProgress {
         let Self { q, sent, jacobian, .. } = self;
         let dq = || sent.iter().zip(q.iter()).map(|(to, from)| to - from);
@@ -246,7 +248,8 @@ impl BroydenBasState {
         self.judge(tick, position, noisy)
     }
 
-    /// Keeps a step that came nearer; else does something about it, unless noise hides what.
+    /// Accepts a step that reduced the error. Otherwise raises the damping or puts out antennae, unless the cause is
+    /// noise.
     fn judge(&mut self, tick: ControlTick<'_>, position: [f64; 3], noisy: bool) -> TickProgress {
         let squared_error = |position: [f64; 3]| squared_distance(&position, &tick.target);
         let (before, after) = (squared_error(self.position), squared_error(position));
@@ -267,7 +270,7 @@ impl BroydenBasState {
         }
         self.failed += 1;
         if !self.fresh {
-            // The first failure has taught the Jacobian something, and may have been noise.
+            // The first failure has updated the Jacobian, and may have been noise.
             if self.failed >= FAILED_STEPS {
                 self.next = Purpose::Stand;
             }
@@ -277,7 +280,7 @@ impl BroydenBasState {
         if self.damping <= LARGEST_DAMPING {
             return TickProgress::GoOn;
         }
-        // Nothing more to gain in this tick; the next one starts as carefully as this one did.
+        // No more improvement in this tick; the next one starts with the same damping as this one.
         self.damping = FIRST_DAMPING;
         TickProgress::TickOver
     }

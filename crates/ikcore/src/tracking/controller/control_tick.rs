@@ -1,11 +1,11 @@
-//! One tick, as a controller sees it.
+//! The tick of a controller: input, and whether it continues.
 
 use crate::objective::Bounds;
 
-/// A tick, as a controller sees it.
+/// The input of a controller for a tick.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ControlTick<'a> {
-    /// Target of the tip at its end (m).
+    /// Target of the tip at the end of the tick (m).
     pub target: [f64; 3],
     /// Box of the commands.
     pub bounds: &'a Bounds,
@@ -14,7 +14,7 @@ pub(super) struct ControlTick<'a> {
 /// Whether a tick goes on after a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TickProgress {
-    /// It has another command for this tick.
+    /// The controller has another command for this tick.
     GoOn,
     /// The tick is over.
     TickOver,

@@ -45,7 +45,7 @@ impl Controller {
     }
 }
 
-/// A controller at work, with what it remembers.
+/// A controller in use, with its state.
 #[derive(Debug)]
 pub(super) enum RunningController {
     BroydenBas(Box<BroydenBasState>),
@@ -53,7 +53,7 @@ pub(super) enum RunningController {
 }
 
 impl RunningController {
-    /// Makes up its mind about the next command.
+    /// Chooses the next command.
     pub(super) fn choose_command(&mut self, tick: ControlTick<'_>, rng: &mut LazyRng) {
         match self {
             Self::BroydenBas(memory) => memory.choose_command(tick),
@@ -61,7 +61,7 @@ impl RunningController {
         }
     }
 
-    /// The last command; the start before there was one.
+    /// The last command; the start if there was none yet.
     pub(super) fn sent(&self) -> &[f64] {
         match self {
             Self::BroydenBas(memory) => memory.sent(),
@@ -69,7 +69,7 @@ impl RunningController {
         }
     }
 
-    /// Where the tip was at the last command (m).
+    /// Takes the tip position measured at the last command (m).
     pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
         match self {
             Self::BroydenBas(memory) => memory.observe(tick, position),
@@ -77,7 +77,7 @@ impl RunningController {
         }
     }
 
-    /// Where the tip was at the start, before the first tick (m).
+    /// Takes the tip position measured at the start, before the first tick (m).
     pub(super) fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {
         match self {
             Self::BroydenBas(memory) => memory.begin(position),
@@ -93,7 +93,7 @@ impl RunningController {
         }
     }
 
-    /// The command that the tick stands for, and the position measured there (m).
+    /// The command at which the position of the tick was measured, and that position (m).
     pub(super) fn measured(&self) -> (&[f64], [f64; 3]) {
         match self {
             Self::BroydenBas(memory) => memory.measured(),
