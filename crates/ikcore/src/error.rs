@@ -76,11 +76,13 @@ pub enum Error {
         known: String,
     },
     /// No tip was given, but the tree of links has several leaves.
-    #[error("robot '{robot}' ends in several links: say which one is the tip; leaves: {leaves}")]
+    #[error("robot '{robot}' ends in {count} links: say which one is the tip; leaves, by number of joints: {leaves}")]
     AmbiguousTip {
         /// The robot's name.
         robot: String,
-        /// The leaf links, separated by commas.
+        /// The number of leaf links.
+        count: usize,
+        /// The leaf links, each with the number of its joints, most joints first.
         leaves: String,
     },
     /// An invalid description of a robot.
@@ -210,16 +212,14 @@ pub enum Error {
         problem: String,
     },
     /// The robot has no capsules, so its shape is unknown.
-    #[error(
-        "robot '{robot}' {problem}: give it capsules with with_capsules(radius=...) along its links or \
-         with_capsules([(link, a, b, radius), ...]), or load a URDF whose links have <collision> shapes of spheres, \
-         cylinders, capsules and boxes"
-    )]
+    #[error("robot '{robot}' {problem}: {remedy}")]
     NoCapsules {
         /// The robot's name.
         robot: String,
         /// The problem, and the remedy.
         problem: String,
+        /// How to give it capsules.
+        remedy: String,
     },
     /// A start or end in collision.
     #[error("{what}: link '{link}' is {depth} {other}")]
@@ -310,7 +310,7 @@ impl Error {
     /// Shorthand for [`Error::UnknownOption`].
     pub(crate) fn unknown_option(what: &str, value: &str, known: &[&str]) -> Self {
         let known = known.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
-        Self::UnknownOption { what: what.into(), value: value.into(), known }
+        Self::UnknownOption { what: what.into(), value: shortened(value), known }
     }
 
     /// Shorthand for [`Error::OutOfRange`].
@@ -330,6 +330,17 @@ pub(crate) fn require_finite(what: &str, values: &[f64], name: impl Fn(usize) ->
 /// Checks that `value` is finite and above zero.
 pub(crate) fn require_positive(what: &str, value: f64) -> Result<()> {
     if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Error::out_of_range(what, "positive and finite", value)) }
+}
+
+/// Length up to which a message repeats a text (characters).
+const ECHO_LENGTH: usize = 200;
+
+/// A given text for a message, cut to a readable length.
+pub(crate) fn shortened(text: &str) -> String {
+    match text.char_indices().nth(ECHO_LENGTH) {
+        None => text.into(),
+        Some((end, _)) => format!("{}...", &text[..end]),
+    }
 }
 
 /// ` (did you mean 'x'?)` for the candidate nearest to `name`, or empty if none is near.

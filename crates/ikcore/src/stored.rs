@@ -33,9 +33,17 @@ pub fn from_bytes<T: DeserializeOwned>(what: &str, bytes: &[u8]) -> Result<T> {
     }
     match rest.split_first_chunk() {
         Some((stored, payload)) if u64::from_le_bytes(*stored) == checksum(payload) => {
-            postcard::from_bytes(payload).map_err(|problem| corrupt(what, problem.to_string()))
+            postcard::from_bytes(payload).map_err(|problem| corrupt(what, reason(problem)))
         }
         _ => Err(corrupt(what, "the bytes were damaged: their checksum differs".into())),
+    }
+}
+
+/// Why the payload cannot be read. The decoder drops the message of a type that refuses its own values.
+fn reason(problem: postcard::Error) -> String {
+    match problem {
+        postcard::Error::SerdeDeCustom => "its values contradict each other".into(),
+        problem => problem.to_string(),
     }
 }
 

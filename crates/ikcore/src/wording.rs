@@ -45,6 +45,23 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
+/// Length of a list of names in a message: long enough for a known robot, short enough to read (characters).
+const LIST_LENGTH: usize = 400;
+
+/// Joins names with commas, up to a readable length; then says how many more there are.
+pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let mut names = names.into_iter();
+    let mut list = names.next().unwrap_or_default().to_owned();
+    while let Some(name) = names.next() {
+        if list.len() + name.len() > LIST_LENGTH {
+            return format!("{list} and {} more", 1 + names.count());
+        }
+        list += ", ";
+        list += name;
+    }
+    list
+}
+
 /// A time (s), rounded to 1e-9 s to remove the rounding of sums of dt.
 pub(crate) fn time(seconds: f64) -> f64 {
     (seconds * 1e9).round() / 1e9
@@ -53,6 +70,15 @@ pub(crate) fn time(seconds: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_long_list_ends_in_a_count() {
+        let names: Vec<String> = (0..100_000).map(|i| format!("link_{i:06}")).collect();
+        assert_eq!(listed([]), "");
+        assert_eq!(listed(names[..3].iter().map(String::as_str)), "link_000000, link_000001, link_000002");
+        let list = listed(names.iter().map(String::as_str));
+        assert!(list.ends_with("link_000030 and 99969 more"), "{list}");
+    }
 
     #[test]
     fn four_digits_whatever_the_size() {

@@ -15,7 +15,16 @@ if TYPE_CHECKING:
 
 _ROBOT = "Robot"
 
-RobotName = Annotated[str | None, typer.Argument(help="A built-in robot; `beetle-ik robots` lists them.")]
+
+def complete_robot(incomplete: str) -> list[str]:
+    """Returns the built-in robots that begin with what was typed."""
+    return [name for name in Robot.names() if name.startswith(incomplete)]
+
+
+RobotName = Annotated[
+    str | None,
+    typer.Argument(help="A built-in robot; `beetle-ik robots` lists them.", autocompletion=complete_robot),
+]
 UrdfFile = Annotated[
     Path | None, typer.Option("--urdf", help="A URDF file, instead of a built-in robot.", rich_help_panel=_ROBOT)
 ]

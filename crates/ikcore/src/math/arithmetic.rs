@@ -177,6 +177,15 @@ pub(crate) fn has_fma() -> bool {
     std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
 }
 
+/// The instructions that the kernels run with on this machine.
+pub fn instructions() -> &'static str {
+    #[cfg(target_arch = "x86_64")]
+    if has_fma() {
+        return "AVX2 and FMA";
+    }
+    if cfg!(target_arch = "aarch64") { "NEON" } else { "baseline" }
+}
+
 /// Compiles a function twice, for any machine of the architecture and for AVX2 with FMA, and calls the version for this
 /// machine. In the body `A` is the [`Arithmetic`]. Functions that the body calls must be `#[inline(always)]`, or
 /// closures inside the body, to be compiled with its instructions.

@@ -6,7 +6,17 @@ use crate::error::{Error, Result, require_finite};
 
 /// Times (s) that start at zero and increase: the ends of the segments of a piecewise function of time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<f64>")]
 pub struct Knots(Vec<f64>);
+
+/// Stored knots are checked again.
+impl TryFrom<Vec<f64>> for Knots {
+    type Error = Error;
+
+    fn try_from(times: Vec<f64>) -> Result<Self> {
+        Self::new("knots", times)
+    }
+}
 
 impl Knots {
     /// Checks the times (s); `what` names them in errors.

@@ -37,6 +37,7 @@ pub mod ticks;
 pub(crate) mod vec3;
 pub(crate) mod vector;
 
+pub use arithmetic::instructions;
 pub use frame::Frame;
 pub use knots::Knots;
 

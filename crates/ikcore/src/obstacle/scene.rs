@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::math::arithmetic::NoFma;
 use crate::math::{Frame, MAX_DOF};
 use crate::robot::{Joint, Robot};
+use crate::wording::listed;
 
 /// A capsule of the robot, seen from the moving element that carries it.
 #[derive(Debug, Clone)]
@@ -85,7 +86,7 @@ impl<'a> Scene<'a> {
     /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane.
     pub fn new(robot: &'a Robot, obstacles: &'a [Obstacle]) -> Result<Self> {
         if robot.capsules().is_empty() || !robot.unread_collision_shapes().is_empty() {
-            return Err(Error::NoCapsules { robot: robot.name().into(), problem: missing(robot) });
+            return Err(no_capsules(robot));
         }
         if let Some(i) = obstacles.iter().position(Obstacle::is_flat)
             && !moves_in_plane(robot)
@@ -239,10 +240,22 @@ fn moves_in_plane(robot: &Robot) -> bool {
     tip.origin[2].abs() < 1e-9 && columns[..robot.dof()].iter().all(flat)
 }
 
-/// Why the shape of a robot is not known.
-fn missing(robot: &Robot) -> String {
-    match robot.unread_collision_shapes() {
+/// Says which shapes are missing and how to give them.
+fn no_capsules(robot: &Robot) -> Error {
+    let unread = robot.unread_collision_shapes();
+    let problem = match unread {
         [] => "has no capsules, so that nothing is known of the room it takes up".into(),
-        unread => format!("has collision shapes that cannot be read ({})", unread.join(", ")),
-    }
+        _ => format!("has collision shapes that cannot be read ({})", listed(unread.iter().map(String::as_str))),
+    };
+    let given = "with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])";
+    let remedy = match robot.capsules() {
+        [] => format!(
+            "give it capsules with {given}, or load a URDF whose links have <collision> shapes of spheres, cylinders, \
+             capsules and boxes"
+        ),
+        _ => "robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
+              robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
+            .into(),
+    };
+    Error::NoCapsules { robot: robot.name().into(), problem, remedy }
 }

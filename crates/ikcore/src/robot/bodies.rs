@@ -2,11 +2,12 @@
 
 use super::link_capsule::{Bodies, LinkCapsule};
 use super::model::Robot;
-use crate::error::{Error, Result, require_finite, suggestion};
+use crate::error::{Error, Result, require_finite, shortened, suggestion};
 use crate::kinematics::chain::{LinkFrame, StageMotion};
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::vector::distance;
+use crate::wording::listed;
 
 /// Shorter segments count as points (m).
 const SHORTEST: f64 = 1e-9;
@@ -32,9 +33,9 @@ impl Robot {
             if !self.link_names().any(|name| name == capsule.link) {
                 return Err(Error::UnknownLink {
                     robot: self.name().into(),
-                    name: capsule.link.clone(),
+                    name: shortened(&capsule.link),
                     suggestion: suggestion(&capsule.link, self.link_names()),
-                    known: self.link_names().collect::<Vec<_>>().join(", "),
+                    known: listed(self.link_names()),
                 });
             }
             let ends = [capsule.a, capsule.b];

@@ -54,6 +54,15 @@ pub(crate) struct Description {
     pub elements: Vec<Element>,
 }
 
+/// Err for more moving joints than the kernels hold.
+pub(crate) fn require_supported(robot: &str, moving: usize) -> Result<()> {
+    if moving <= MAX_DOF {
+        return Ok(());
+    }
+    let problem = format!("{moving} moving joints between base and tip; at most {MAX_DOF} are supported");
+    Err(Error::InvalidRobot { robot: robot.into(), problem })
+}
+
 impl Description {
     /// Names of the links, base to tip.
     pub fn link_names(&self) -> impl Iterator<Item = &str> {
@@ -86,11 +95,7 @@ impl Description {
         if moving == 0 || self.joints.is_empty() {
             return Err(invalid("no joint moves between base and tip".into()));
         }
-        if moving > MAX_DOF || self.joints.len() > MAX_DOF {
-            return Err(invalid(format!(
-                "{moving} moving joints between base and tip; at most {MAX_DOF} are supported"
-            )));
-        }
+        require_supported(&self.name, moving.max(self.joints.len()))?;
         let mut names = HashSet::new();
         for joint in &self.joints {
             if !names.insert(&joint.name) {

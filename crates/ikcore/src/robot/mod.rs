@@ -23,6 +23,7 @@ mod model;
 mod serialization;
 
 pub use builder::ChainBuilder;
+pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
 pub(crate) use link_capsule::Bodies;

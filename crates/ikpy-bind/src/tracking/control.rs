@@ -15,6 +15,7 @@ use crate::convert::{copied, count, counted, point, summary, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::solver::PyBroydenBas;
+use crate::traversal::traversed;
 
 /// A model-free controller for your own loop and hardware.
 ///
@@ -33,6 +34,8 @@ pub struct PyControlSession {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PyControlSession: limits);
 
 in_progress!(PyControlSession, ControlSession);
 

@@ -46,4 +46,5 @@ EXPERIMENT = Experiment(
         "Search”, *EAI Transactions on AI and Robotics*, 2022"
     ),
     run=run,
+    extras=("sim",),
 )

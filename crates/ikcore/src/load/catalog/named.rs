@@ -2,7 +2,7 @@
 
 use super::arm::Arm;
 use super::{franka, hydraulic, kinova, kuka, universal_robots};
-use crate::error::{Error, Result, suggestion};
+use crate::error::{Error, Result, shortened, suggestion};
 use crate::robot::Robot;
 
 /// Source of a built-in robot.
@@ -47,7 +47,7 @@ impl Robot {
             Some((_, Table(arm))) => arm.build(name),
             Some((_, Made(make))) => make(),
             None => Err(Error::UnknownRobot {
-                name: name.into(),
+                name: shortened(name),
                 suggestion: suggestion(name, Self::names()),
                 known: Self::names().collect::<Vec<_>>().join(", "),
             }),

@@ -5,7 +5,7 @@ use std::string::FromUtf8Error;
 use super::chain;
 use super::document::Document;
 use super::tree::Tree;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shortened};
 use crate::robot::Robot;
 
 impl Robot {
@@ -52,7 +52,7 @@ impl Robot {
 
 fn read(path: &str) -> Result<String> {
     let bytes =
-        std::fs::read(path).map_err(|error| Error::Unreadable { path: path.into(), problem: error.to_string() })?;
+        std::fs::read(path).map_err(|error| Error::Unreadable { path: shortened(path), problem: error.to_string() })?;
     let text = String::from_utf8(bytes).map_err(|error| not_utf8(&error))?;
     if let Some(stem) = path.strip_suffix(".xacro") {
         let stem = stem.strip_suffix(".urdf").unwrap_or(stem);

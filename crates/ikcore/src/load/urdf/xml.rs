@@ -2,7 +2,7 @@
 
 use roxmltree::Node;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shortened};
 
 /// Advice for unexpanded xacro.
 const EXPAND: &str = "run `xacro robot.xacro > robot.urdf` and load the result";
@@ -38,6 +38,19 @@ pub(super) fn line(node: Node) -> u32 {
     node.document().text_pos_at(node.range().start).row
 }
 
+/// Lines of elements in the order of the text, from 1. One pass: [`line`] reads from the beginning for each.
+pub(super) fn lines<'a, 'x: 'a>(text: &str, nodes: impl Iterator<Item = Node<'a, 'x>>) -> Vec<u32> {
+    let (mut at, mut line) = (0, 1);
+    nodes
+        .map(|node| {
+            let start = node.range().start;
+            line += text.as_bytes()[at..start].iter().filter(|byte| **byte == b'\n').count() as u32;
+            at = start;
+            line
+        })
+        .collect()
+}
+
 /// An error at an element.
 pub(super) fn error_at(node: Node, problem: impl Into<String>) -> Error {
     Error::Urdf { line: Some(line(node)), problem: problem.into() }
@@ -61,7 +74,7 @@ pub(super) fn children<'a, 'x: 'a>(node: Node<'a, 'x>, tag: &'a str) -> impl Ite
 pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<Option<&'a str>> {
     match node.attribute(name) {
         Some(text) if text.contains("${") || text.contains("$(") => {
-            Err(error_at(node, format!("{name}=\"{text}\" is not expanded: {EXPAND}")))
+            Err(error_at(node, format!("{name}=\"{}\" is not expanded: {EXPAND}", shortened(text))))
         }
         text => Ok(text),
     }
@@ -78,7 +91,10 @@ pub(super) fn vector(node: Node, name: &str, what: &str) -> Result<Option<[f64; 
     let numbers: Vec<f64> = text.split_whitespace().map_while(|word| word.parse().ok()).collect();
     match <[f64; 3]>::try_from(numbers) {
         Ok(vector) if text.split_whitespace().count() == 3 && vector.iter().all(|x| x.is_finite()) => Ok(Some(vector)),
-        _ => Err(error_at(node, format!("{what} must be 3 finite numbers separated by spaces, got '{text}'"))),
+        _ => Err(error_at(
+            node,
+            format!("{what} must be 3 finite numbers separated by spaces, got '{}'", shortened(text)),
+        )),
     }
 }
 
@@ -87,6 +103,6 @@ pub(super) fn number(node: Node, name: &str, what: &str) -> Result<Option<f64>> 
     let Some(text) = attribute(node, name)? else { return Ok(None) };
     match text.trim().parse::<f64>() {
         Ok(number) if !number.is_nan() => Ok(Some(number)),
-        _ => Err(error_at(node, format!("{what} must be a number, got '{text}'"))),
+        _ => Err(error_at(node, format!("{what} must be a number, got '{}'", shortened(text)))),
     }
 }
