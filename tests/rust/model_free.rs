@@ -8,6 +8,7 @@ use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{BroydenBas, Status, Unattended};
+use ikcore::task::Tolerance;
 use ikcore::tracking::{
     Antenna, ControlSession, Controller, Fault, FunctionPlant, KinematicPlant, ModelFreeOptions, ModelFreeRecord,
     Plant, Znnbas, track_model_free,
@@ -163,7 +164,11 @@ fn a_late_sensor_costs_measurements_and_no_accuracy() {
     let plane = Plane::xy([0.3, 0.3, 1.0]).unwrap();
     let fine = Path::new(Circle::new(plane, 0.2, 30.0).unwrap()).sample(1e-3).unwrap();
     let znnbas = Znnbas { sensor_delay: 20, ..Znnbas::default() };
-    let options = ModelFreeOptions { controller: Controller::Znnbas(znnbas), tolerance: 0.02, ..options(0) };
+    let options = ModelFreeOptions {
+        controller: Controller::Znnbas(znnbas),
+        tolerance: Tolerance { position: 0.02, rotation: 0.02 },
+        ..options(0)
+    };
     let record = track_model_free(&mut late_plant(20), &fine, &ON_CIRCLE, &options, &mut Unattended).unwrap();
     assert_eq!(record.track.status, Status::Solved, "{}", record.message());
 }
@@ -305,7 +310,7 @@ fn a_session_gives_the_same_commands_as_the_run() {
         let options = ModelFreeOptions { controller: controller.clone(), ..options(3) };
         let record = on_circle(&mut exact_plant(), &options);
         let limits = options.limits.clone().unwrap();
-        let mut session = ControlSession::new(&controller, &ON_CIRCLE, 0.2, limits, 1e-9, 3).unwrap();
+        let mut session = ControlSession::new(&controller, &ON_CIRCLE, 0.2, limits, options.tolerance, 3).unwrap();
         for i in 0..=150 {
             let step = loop {
                 let command = session.command(record.track.reference[i]).unwrap().to_vec();
@@ -322,7 +327,8 @@ fn a_session_gives_the_same_commands_as_the_run() {
 #[test]
 fn turns_are_kept() {
     let mut session =
-        ControlSession::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none_for(2), 1e-6, 0).unwrap();
+        ControlSession::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none_for(2), Tolerance::default(), 0)
+            .unwrap();
     let early = "observe: there is no command to answer; call command(target) first";
     assert_eq!(message(session.observe([0.0; 3])), early);
     session.command([1.0, 0.0, 0.0]).unwrap();

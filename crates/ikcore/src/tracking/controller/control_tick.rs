@@ -1,12 +1,13 @@
 //! One tick, as a controller sees it.
 
 use crate::objective::Bounds;
+use crate::tracking::tip_pose::TipPose;
 
 /// A tick, as a controller sees it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ControlTick<'a> {
-    /// Target of the tip at its end (m).
-    pub target: [f64; 3],
+    /// Target of the tip at its end.
+    pub target: &'a TipPose,
     /// Box of the commands.
     pub bounds: &'a Bounds,
 }
