@@ -324,6 +324,54 @@ fn a_session_gives_the_same_commands_as_the_run() {
     }
 }
 
+/// The circle, the tip turned as at the start.
+fn turned_circle(arm: &Robot) -> Reference {
+    let circle = Path::new(Circle::new(Plane::xy([0.3, 0.3, 1.0]).unwrap(), 0.2, 30.0).unwrap());
+    let rotation = *arm.fk(&ON_CIRCLE).unwrap().rotation.matrix();
+    circle.with_orientation(rotation).unwrap().sample(0.2).unwrap()
+}
+
+#[test]
+fn broyden_tracks_poses_with_a_wrong_model() {
+    for seed in 0..SEEDS {
+        let wrong = wrong_arm(seed);
+        let tolerance = Tolerance { position: 1e-6, rotation: 1e-6 };
+        let options = ModelFreeOptions { tolerance, limits: None, ..options(0) };
+        let mut plant = KinematicPlant::new(wrong.clone(), 0.0, 0).unwrap().with_orientation(0.0).unwrap();
+        let reference = turned_circle(&wrong);
+        let record = track_model_free(&mut plant, &reference, &ON_CIRCLE, &options, &mut Unattended).unwrap();
+        assert_eq!(record.track.status, Status::Solved, "seed {seed}: {}", record.message());
+        assert!(record.track.evaluations() <= 1200, "seed {seed}: {}", record.track.evaluations());
+        for i in 1..record.track.rows() {
+            let tip = wrong.fk(&record.track.q[7 * i..][..7]).unwrap();
+            let turned = tip.rotation.angle_to(&reference.pose(i).unwrap().rotation);
+            assert!(true_error(&wrong, &record, i) <= 1e-6 && turned <= 1.1e-6, "seed {seed}, row {i}: {turned:.1e}");
+        }
+    }
+}
+
+#[test]
+fn targets_are_positions_or_poses_throughout() {
+    let pose = robot("iiwa14").fk(&ON_CIRCLE).unwrap();
+    let start = || {
+        let limits = Limits::none_for(2);
+        ControlSession::new(&Controller::default(), &[0.0; 2], 0.1, limits, Tolerance::default(), 0).unwrap()
+    };
+    let mut session = start();
+    session.command(&pose).unwrap();
+    let problem = "position: expected a pose (4, 4), like the target, got a position (3,)";
+    assert_eq!(message(session.observe([0.0; 3])), problem);
+    let step = session.observe(&pose).unwrap().unwrap();
+    assert_eq!((step.error.position, step.error.rotation), (0.0, 0.0), "the turn is not lost by a mistake");
+    let problem = "target: expected a pose (4, 4), as before, got a position (3,)";
+    assert_eq!(message(session.command([0.0; 3])), problem);
+    let mut session = start();
+    session.command([0.0; 3]).unwrap();
+    assert!(session.observe(&pose).unwrap().unwrap().error.rotation.is_nan(), "the orientation is free");
+    let problem = "target: expected a position (3,), as before, got a pose (4, 4)";
+    assert_eq!(message(session.command(&pose)), problem);
+}
+
 #[test]
 fn turns_are_kept() {
     let mut session =

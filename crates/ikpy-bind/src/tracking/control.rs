@@ -39,15 +39,16 @@ in_progress!(PyControlSession, ControlSession);
 
 #[pymethods]
 impl PyControlSession {
-    /// Returns the next command (n,) (rad, m), which moves the tip towards `target`, a position (3,) (m) or a pose (4, 4), for the end of the tick. It is
-    /// inside the limits, and the velocity limits allow it from the last accepted configuration.
+    /// Returns the next command (n,) (rad, m), which moves the tip towards `target` for the end of the tick: a position (3,)
+    /// (m), or a pose (4, 4) if the first target was one. It is inside the limits, and the velocity limits allow it from the
+    /// last accepted configuration.
     fn command<'py>(&self, py: Python<'py>, target: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let target = tip_pose("target", target)?;
         Ok(copied(py, self.session().command(target).map_err(raise)?))
     }
 
-    /// Takes the `position` (3,) (m) or the pose (4, 4) of the tip measured at the last command; a pose if the targets are
-    /// poses. Returns a `Step` if the tick has ended, else None.
+    /// Takes the `position` (3,) (m) or the pose (4, 4) of the tip, measured at the last command; it must be a pose if the
+    /// targets are poses. Returns a `Step` if the tick has ended, else None.
     fn observe(&self, py: Python<'_>, position: &Bound<'_, PyAny>) -> PyResult<Option<PyStep>> {
         let position = tip_pose("position", position)?;
         let (watch, mut session) = (Stopwatch::start(), self.session());
