@@ -1,20 +1,21 @@
-//! Acceleration limits: what a joint that moves can do in one tick, and still stop before its position limit.
+//! Acceleration limits: the motion of a joint in one tick after which it can still stop before its position limit.
 //!
-//! Without the second, position and acceleration limits cannot both hold. In continuous time a joint may go at
+//! If joints could not stop in time, position and acceleration limits could not both hold. In continuous time the speed
+//! limit is |q'| <= sqrt(2 a distance); with ticks it is a little lower, and computed exactly here.
 //! |q'| <= sqrt(2 a distance); in ticks at a little less, which is counted exactly here.
 
 use super::{Limits, TickBox};
 
-/// Bounds that cross by less than this (rad, m; relative beyond 1) do so by rounding.
+/// Bounds that cross by less than this (rad, m; relative beyond 1) cross by rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// The share of its acceleration with which a joint plans to brake: with all of it, rounding could make it late.
+/// Fraction of its acceleration limit that a joint plans to brake with; with all of it, rounding could make it late.
 const PLANNED: f64 = 1.0 - 1e-6;
 
 impl Limits {
-    /// Narrows `tick`, the box of the positions and velocities at `q`, to what the acceleration limits allow an arm that
-    /// moves at `qd` (rad/s, m/s) in the tick of `dt` from `from` to `to` (s). Returns whether that leaves every joint
-    /// something; one that is left nothing brakes as hard as it may, past its other limits.
+    /// Narrows `tick`, the box from position and velocity limits at `q`, by the acceleration limits of an arm that
+    /// moves at `qd` (rad/s, m/s), in the tick of `dt` from `from` to `to` (s). Returns false if a joint has no
+    /// admissible position; it then brakes as hard as it may, past its other limits.
     pub(crate) fn brake(&self, q: &[f64], qd: &[f64], [from, to]: [f64; 2], dt: f64, tick: &mut TickBox) -> bool {
         let Some(accelerations) = &self.acceleration else { return true };
         let (lower, upper) = tick.bounds.parts_mut();
@@ -37,15 +38,15 @@ impl Limits {
         feasible
     }
 
-    /// The longest step (rad, m) of joint `j` over the tick from `from` to `to` (s) after which it can still stop within
-    /// `distance` of where it is.
+    /// The longest step (rad, m) of joint `j` over the tick from `from` to `to` (s) after which it can still stop
+    /// within `distance` of its position.
     pub(crate) fn longest_step_before(&self, j: usize, distance: f64, [from, to]: [f64; 2]) -> f64 {
         let acceleration = self.acceleration_over(j, from, to);
         let dt = to - from;
         if acceleration == f64::INFINITY { distance } else { longest_step(distance, PLANNED * acceleration * dt * dt) }
     }
 
-    /// The acceleration limit of joint `j` over the tick from `from` to `to` (s); infinite where there is none.
+    /// The acceleration limit of joint `j` over the tick from `from` to `to` (s); infinite without one.
     pub(crate) fn acceleration_over(&self, j: usize, from: f64, to: f64) -> f64 {
         self.acceleration.as_ref().map_or(f64::INFINITY, |profiles| profiles[j].smallest(from, to).1)
     }
@@ -54,8 +55,9 @@ impl Limits {
 /// The longest step of a tick after which a joint that shortens its steps by `change` from tick to tick stays within
 /// `distance`.
 ///
-/// Steps s, s - change, s - 2 change, ... of m ticks sum to m s - change m (m - 1) / 2. Within `distance` for every m is
-/// s <= distance / m + change (m - 1) / 2; the least of these is at m near sqrt(2 distance / change).
+/// Steps s, s - change, s - 2 change, ... of m ticks sum to m s - change m (m - 1) / 2. This is within `distance` for
+/// every m if s <= distance / m + change (m - 1) / 2; the smallest right-hand side is at m near sqrt(2 distance /
+/// change).
 fn longest_step(distance: f64, change: f64) -> f64 {
     if change == 0.0 || distance <= 0.0 || distance == f64::INFINITY {
         return distance.max(0.0);

@@ -1,4 +1,4 @@
-//! The limits in force, and what they must hold for.
+//! The limits of all joints, and their checks.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::objective::Bounds;
 use crate::robot::Robot;
 
-/// The limits in force: per joint and field a function of time.
+/// The limits of all joints: a function of time for each joint and field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
     joints: Vec<String>,
@@ -32,23 +32,23 @@ impl Limits {
         }
     }
 
-    /// No limits, for `n` joints that are known by their numbers (from 0) alone.
+    /// No limits, for `n` joints that are named by their indices (from 0).
     pub fn none_for(n: usize) -> Self {
         Self::none((0..n).map(|j| j.to_string()).collect())
     }
 
-    /// No limits for joints of these names.
+    /// No limits, for joints of these names.
     pub fn none(joints: Vec<String>) -> Self {
         let all = |value: f64| vec![Profile::Constant(value); joints.len()];
         let (lower, upper, velocity) = (all(f64::NEG_INFINITY), all(f64::INFINITY), all(f64::INFINITY));
         Self { joints, lower, upper, velocity, acceleration: None, jerk: None }
     }
 
-    /// Replaces one field for all joints; one profile per joint, or a single one for all of them.
+    /// Replaces one field for all joints, with one profile per joint or a single one for all of them.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] for another number of profiles or one without samples, [`Error::OutOfRange`] for NaN,
-    /// [`Error::NotFinite`] for a sinusoid of anything that is not finite.
+    /// [`Error::WrongLength`] for a wrong number of profiles or a profile without samples, [`Error::OutOfRange`] for
+    /// NaN, [`Error::NotFinite`] for a sinusoid with a parameter that is not finite.
     pub fn replace(mut self, field: Field, mut profiles: Vec<Profile>) -> Result<Self> {
         let n = self.joints.len();
         if profiles.len() == 1 {
@@ -71,7 +71,7 @@ impl Limits {
         Ok(self)
     }
 
-    /// The profiles of a field, one per joint; None where there is no such limit.
+    /// The profiles of a field, one per joint; `None` without such limits.
     pub fn field(&self, field: Field) -> Option<&[Profile]> {
         match field {
             Field::Lower => Some(&self.lower),
@@ -82,11 +82,11 @@ impl Limits {
         }
     }
 
-    /// Checks for `ticks` ticks of `dt` (s), or for t = 0 alone, that no velocity limit is negative and that every tick
-    /// leaves each joint a position.
+    /// Checks, for `ticks` ticks of `dt` (s) or for t = 0 alone, that no velocity, acceleration or jerk limit is
+    /// negative and that the position range of every joint is never empty.
     ///
     /// # Errors
-    /// [`Error::NegativeLimit`] and [`Error::EmptyRange`] say which joint and when.
+    /// [`Error::NegativeLimit`] and [`Error::EmptyRange`] name the joint and the time.
     pub fn validate(&self, dt: f64, ticks: usize) -> Result<()> {
         for field in [Field::Velocity, Field::Acceleration, Field::Jerk] {
             for (profile, joint) in self.field(field).unwrap_or_default().iter().zip(&self.joints) {
@@ -113,7 +113,7 @@ impl Limits {
         Ok(())
     }
 
-    /// Err if a field is set that `method` cannot keep.
+    /// Checks that no field is set that `method` does not support.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`].
@@ -126,8 +126,8 @@ impl Limits {
         }
     }
 
-    /// The values of a field, one per joint; empty where there is no such limit. Err where they vary in time, which `method`
-    /// cannot keep.
+    /// Returns the values of a field, one per joint; empty without such limits. An error if they vary over time, which
+    /// `method` does not support.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`].
@@ -147,10 +147,10 @@ impl Limits {
         self.field(field).unwrap_or_default().iter().any(|profile| *profile != Profile::Constant(f64::INFINITY))
     }
 
-    /// The position limits as a box, for solving without time.
+    /// Returns the position limits as a box, for solving without time.
     ///
     /// # Errors
-    /// [`Error::UnsupportedLimit`] where they vary in time; [`Error::EmptyRange`].
+    /// [`Error::UnsupportedLimit`] if they vary over time; [`Error::EmptyRange`].
     pub(crate) fn position_box(&self) -> Result<Bounds> {
         self.validate(0.0, 0)?;
         let constants = |field: Field| self.constants(field, "solve", "one configuration has no time; give numbers");
@@ -162,10 +162,10 @@ impl Limits {
         &self.joints[joint]
     }
 
-    /// Err unless these are limits for the joints of `robot`.
+    /// Checks that these limits have as many joints as `robot`.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] for another number of joints.
+    /// [`Error::WrongLength`] if not.
     pub(crate) fn require_for(&self, robot: &Robot) -> Result<()> {
         if self.joints.len() == robot.dof() {
             return Ok(());
@@ -174,7 +174,7 @@ impl Limits {
         Err(Error::WrongLength { what, expected, got: self.joints.len() })
     }
 
-    /// Err unless `q` lies within the position limits at time `t` (s); `what` names it.
+    /// Checks that `q` is within the position limits at time `t` (s); `what` names it in the error.
     ///
     /// # Errors
     /// [`Error::OutsideLimits`] names the joint, its value and its limits.

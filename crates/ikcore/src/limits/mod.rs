@@ -1,12 +1,12 @@
-//! Limits on joint motion: functions of time, and the box of joint positions that they leave for the next tick.
+//! Limits on joint motion as functions of time, and the box of joint positions that they allow at the end of a tick.
 //!
 //! | file | what |
 //! |---|---|
 //! | `field` | [`Field`]: positions, velocity, acceleration, jerk |
 //! | `profile` | [`Profile`]: one limit of one joint over time |
-//! | `joint_limits` | [`Limits`]: those in force, per joint and field |
-//! | `tick_box` | [`TickBox`]: where one tick may end |
-//! | `braking` | room to brake, where accelerations are limited |
+//! | `joint_limits` | [`Limits`]: all joints, all fields |
+//! | `tick_box` | [`TickBox`]: position and velocity limits as the box of one tick |
+//! | `braking` | acceleration limits narrow that box, so that joints can stop in time |
 
 mod braking;
 mod field;

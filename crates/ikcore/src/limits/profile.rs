@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::comparison::larger;
 
-/// mean + amplitude sin(angular_frequency t + phase): eq. (7) of Cheng et al. (2020), its sign mended.
+/// mean + amplitude sin(angular_frequency t + phase): eq. (7) of Cheng et al. (2020), its sign corrected.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sinusoid {
     /// The paper's H (rad/s).
@@ -21,7 +21,7 @@ pub struct Sinusoid {
 }
 
 impl Sinusoid {
-    /// Its value at `t` (s).
+    /// The value at `t` (s).
     pub fn at(&self, t: f64) -> f64 {
         self.mean + self.amplitude * (self.angular_frequency * t + self.phase).sin()
     }
@@ -29,7 +29,7 @@ impl Sinusoid {
     /// (time, value) of its largest (`sign` 1) or smallest value (-1) over \[`from`, `to`\] (s).
     fn extreme(&self, sign: f64, from: f64, to: f64) -> (f64, f64) {
         let Self { mean, amplitude, angular_frequency, phase } = *self;
-        // Whole turns are peaks. In turns, so that nothing is divided: this runs in every tick.
+        // In units of turns, so that peaks are at integers; without divisions, because this runs in every tick.
         let quarter = 0.25 * sign * amplitude.signum();
         let turns = |t: f64| (angular_frequency * t + phase) * (1.0 / TAU) - quarter;
         let (begin, end) = (turns(from), turns(to));
@@ -39,7 +39,7 @@ impl Sinusoid {
             let time = (TAU * (peak + quarter) - phase) / angular_frequency;
             return (larger(time, from).min(to), mean + sign * amplitude.abs());
         }
-        // From peak to peak there is but one valley: the end that is nearer to its peak is the higher one.
+        // There is only one valley between two peaks, so the end nearer to its peak is the higher one.
         let low_is_higher = low - (peak - 1.0) < peak - high;
         let higher = if low_is_higher == (begin <= end) { from } else { to };
         (higher, self.at(higher))
@@ -49,11 +49,11 @@ impl Sinusoid {
 /// A limit of one joint over time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Profile {
-    /// The same at all times.
+    /// Constant.
     Constant(f64),
-    /// Oscillating.
+    /// A sinusoid.
     Sinusoid(Sinusoid),
-    /// Values `step` seconds apart from t = 0 on, linear in between, the last one held.
+    /// Values `step` seconds apart from t = 0, with linear interpolation; the last one is held.
     Sampled {
         /// Time between values (s).
         step: f64,
@@ -63,7 +63,7 @@ pub enum Profile {
 }
 
 impl Profile {
-    /// Its value at `t` (s).
+    /// The value at `t` (s).
     pub fn at(&self, t: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,
@@ -77,17 +77,17 @@ impl Profile {
         }
     }
 
-    /// (time, value) of its smallest value over \[`from`, `to`\] (s).
+    /// (time, value) of the smallest value over \[`from`, `to`\] (s).
     #[inline]
     pub fn smallest(&self, from: f64, to: f64) -> (f64, f64) {
         match self {
-            // Most limits never change, and a control loop asks some twenty times a tick.
+            // Fast path: most limits are constant, and a control loop calls this some twenty times a tick.
             Self::Constant(value) => (from, *value),
             _ => self.extreme(-1.0, from, to),
         }
     }
 
-    /// (time, value) of its largest value over \[`from`, `to`\] (s).
+    /// (time, value) of the largest value over \[`from`, `to`\] (s).
     #[inline]
     pub fn largest(&self, from: f64, to: f64) -> (f64, f64) {
         match self {
@@ -96,7 +96,8 @@ impl Profile {
         }
     }
 
-    /// The largest (`sign` 1) or smallest (-1): of samples at one of them, or at an end of the interval.
+    /// (time, value) of the largest (`sign` 1) or smallest (-1) value. For samples it is at a sample or at an end of
+    /// the interval.
     fn extreme(&self, sign: f64, from: f64, to: f64) -> (f64, f64) {
         match self {
             Self::Constant(value) => (from, *value),
@@ -112,7 +113,8 @@ impl Profile {
         }
     }
 
-    /// Err unless it is a number at every time; `what` names it, as in "velocity limit of joint 'elbow'".
+    /// Checks that there is no NaN, and that sinusoids are finite; `what` names the profile, e.g. "velocity limit of
+    /// joint 'elbow'".
     pub(super) fn validate(&self, what: &str) -> Result<()> {
         let no_number = |value: f64, place: &str| Error::out_of_range(format!("{what}{place}"), "a number", value);
         match self {

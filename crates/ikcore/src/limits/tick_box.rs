@@ -1,4 +1,5 @@
-//! The box of one tick: position limits intersected with what the velocity limit lets the ACCEPTED configuration reach.
+//! The box of one tick: the position limits intersected with the range that the velocity limits allow from the accepted
+//! configuration.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,20 +8,20 @@ use crate::math::comparison::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::wording::words;
 
-/// Where in a tick its limit is taken.
+/// Which time of a tick its limit is evaluated at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum LimitAt {
-    /// The smallest limit over the tick, so that it holds at every instant.
+    /// The smallest limit over the tick; it then holds at every instant.
     #[default]
     Interval,
-    /// The limit at the tick's beginning, as Cheng et al. (2020) take it.
+    /// The limit at the start of the tick, as in Cheng et al. (2020).
     Start,
 }
 
 words!("limit_at": LimitAt { Interval => "interval", Start => "start" });
 
 impl LimitAt {
-    /// The `limit` that holds for the tick from `from` to `to` (s).
+    /// Returns the value of `limit` for the tick from `from` to `to` (s).
     fn of(self, limit: &Profile, from: f64, to: f64) -> f64 {
         match self {
             Self::Interval => limit.smallest(from, to).1,
@@ -29,7 +30,7 @@ impl LimitAt {
     }
 }
 
-/// Where one tick may end, and the limits that it came from.
+/// The box of joint positions at the end of one tick, and the limits that it comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TickBox {
     /// The box of the joints (rad, m).
@@ -38,21 +39,21 @@ pub(crate) struct TickBox {
     pub velocity: Point,
     /// The lower position limits over the tick (rad, m).
     pub floor: Point,
-    /// The upper ones.
+    /// The upper position limits over the tick (rad, m).
     pub ceiling: Point,
     varying: [Varying; 3],
-    /// Every tick has this box, wherever it begins.
+    /// Every tick has this box, whatever the configuration.
     lasting: bool,
 }
 
-/// Which values of one kind of limit change from tick to tick.
+/// Which values of one kind of limit vary over time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Varying {
-    /// Nothing: numbers.
+    /// None: all are constant.
     Not,
-    /// One value, which all joints share.
+    /// All alike: joints share one profile.
     Together,
-    /// The value of each joint.
+    /// Each joint on its own.
     Apart,
 }
 
@@ -65,7 +66,7 @@ impl Varying {
         }
     }
 
-    /// Writes what varies.
+    /// Updates the values that vary.
     #[inline]
     fn update(self, values: &mut [f64], limits: &[Profile], value: impl Fn(&Profile) -> f64) {
         match self {
@@ -77,7 +78,7 @@ impl Varying {
 }
 
 impl TickBox {
-    /// The box of an arm that begins to move at `q`, to be narrowed for every tick by the same limits.
+    /// Returns the box of an arm at `q`, to be narrowed in every tick by the same limits.
     pub(crate) fn around(q: &[f64], limits: &Limits) -> Self {
         let Limits { lower, upper, velocity, acceleration, .. } = limits;
         let fields = [velocity, lower, upper];
@@ -92,12 +93,12 @@ impl TickBox {
 }
 
 impl Limits {
-    /// Writes the velocity limits that hold for each of `ticks`, (from, to) (s), a row (n,) for each.
+    /// Writes the velocity limits of each of `ticks`, (from, to) (s), one row (n,) per tick.
     pub(crate) fn write_velocities(&self, ticks: impl Iterator<Item = [f64; 2]>, at: LimitAt, rows: &mut [f64]) {
-        // Once: to compare limits of many samples takes long.
+        // Determined once, since comparing limits of many samples is slow.
         let varying = match Varying::of(&self.velocity) {
             Varying::Together => Varying::Together,
-            // Constant ones are written too: the rows are still empty.
+            // Constant limits are written too, because the rows are still empty.
             Varying::Not | Varying::Apart => Varying::Apart,
         };
         for (row, [from, to]) in rows.chunks_exact_mut(self.velocity.len()).zip(ticks) {
@@ -110,9 +111,10 @@ impl Limits {
         [self.lower[j].largest(from, to).1, self.upper[j].smallest(from, to).1]
     }
 
-    /// Narrows `tick` to the positions that joints at `q` may have at the end of the tick from `from` to `to` (s), which lasts
-    /// `dt`: `to - from` is rounded, the more so the later, and the reach must not depend on that. Returns whether every joint
-    /// can be within its position limits then; one that cannot is sent towards them as fast as it may go.
+    /// Narrows `tick` to the positions that joints at `q` may have at the end of the tick from `from` to `to` (s). `dt`
+    /// is passed separately: `to - from` has a rounding error that grows with time, and the box must not depend on it.
+    /// Returns false if a joint cannot be within its position limits by then; it is sent towards them as fast as its
+    /// velocity limit allows.
     pub(crate) fn narrow(&self, q: &[f64], [from, to]: [f64; 2], dt: f64, at: LimitAt, tick: &mut TickBox) -> bool {
         if tick.lasting {
             return true;
@@ -126,11 +128,12 @@ impl Limits {
         let (lower, upper) = (&mut lower[..n], &mut upper[..n]);
         let (velocity, floor, ceiling) = (&velocity[..n], &floor[..n], &ceiling[..n]);
         for j in 0..n {
-            // A limit that varies may fall below zero at a time that could not be checked beforehand: then the joint stands still.
+            // A varying limit may become negative at a time that was not checked beforehand; the joint then stands
+            // still.
             let reach = larger(velocity[j] * dt, 0.0);
             let (slowest, fastest) = (reachable(q[j], -reach), reachable(q[j], reach));
             lower[j] = smaller(larger(slowest, floor[j]), fastest);
-            // Limits that cross later than could be checked leave a point between them, not an empty box.
+            // If limits cross at a time that was not checked, the box becomes a point between them, never empty.
             upper[j] = larger(larger(smaller(fastest, ceiling[j]), slowest), lower[j]);
         }
         (0..n).all(|j| floor[j] <= lower[j] && upper[j] <= ceiling[j])
@@ -141,8 +144,8 @@ impl Limits {
 #[inline(always)]
 fn reachable(q: f64, reach: f64) -> f64 {
     let end = q + reach;
-    // Half of all ends are rounded too far, at random: a branch would be guessed wrong as often. The number next to `end` on
-    // the side of q has bits that are lower by one where `end` and `reach` have the same sign, else higher.
+    // Half of all ends are rounded too far, at random, so a branch would be mispredicted as often. In the bits of
+    // `end`, the next number towards q is one lower if `end` and `reach` have the same sign, else one higher.
     let bits = end.to_bits() as i64;
     let towards_q = -(1 | ((bits ^ reach.to_bits() as i64) >> 63));
     let too_far = i64::from((end - q).abs() > reach.abs());
@@ -248,7 +251,7 @@ mod tests {
             assert!(limits.narrow(&[q], [0.0, 0.1], 0.1, LimitAt::Interval, &mut tick));
             assert_eq!((tick.bounds.lower()[0], tick.bounds.upper()[0]), (-1.0, 2.0));
         }
-        // Where accelerations are limited a tick's box is narrowed further, and the next one must not inherit that.
+        // Acceleration limits narrow the box of a tick further; the next tick must not inherit that.
         let limits = limits.replace(Field::Acceleration, vec![Profile::Constant(1.0)]).unwrap();
         let mut tick = TickBox::around(&[0.3], &limits);
         limits.narrow(&[0.3], [0.0, 0.1], 0.1, LimitAt::Interval, &mut tick);

@@ -7,9 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::{Curve, Plane};
 use crate::error::{Result, require_positive};
 
-/// A circle at constant speed, once round, from the axis a towards b:
-/// p(t) = p0 + D/2 cos(2 pi t/T) A + D/2 sin(2 pi t/T) B (Cheng et al. 2020, eq. (14), which does not say that its A
-/// and B must be orthonormal).
+/// One turn of a circle at constant speed, from the axis a towards b: p(t) = p0 + D/2 cos(2 pi t/T) A + D/2 sin(2 pi
+/// t/T) B (Cheng et al. 2020, eq. (14); the paper does not state that A and B must be orthonormal).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Circle {
     plane: Plane,

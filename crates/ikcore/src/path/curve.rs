@@ -5,20 +5,20 @@ use std::fmt::Debug;
 
 use nalgebra::Matrix3;
 
-/// A curve that is passed through in time.
+/// A curve parametrised by time.
 ///
-/// Time `t` (s) is clamped to `[0, duration]`: before and after, the values are those of the ends.
+/// Time `t` (s) is clamped to `[0, duration]`.
 pub trait Curve: Any + Debug + Send + Sync {
-    /// How long one pass takes (s); positive.
+    /// Duration of one pass (s); positive.
     fn duration(&self) -> f64;
 
     /// Position (m) in the frame of the robot's base.
     fn position(&self, t: f64) -> [f64; 3];
 
-    /// Velocity (m/s): the derivative of [`position`](Self::position); at a corner, that of the segment that begins.
+    /// Velocity (m/s): the derivative of [`position`](Self::position); at a corner, the velocity of the next segment.
     fn velocity(&self, t: f64) -> [f64; 3];
 
-    /// Orientation, for a curve that has its own.
+    /// Orientation, if the curve defines one.
     fn rotation(&self, _t: f64) -> Option<Matrix3<f64>> {
         None
     }

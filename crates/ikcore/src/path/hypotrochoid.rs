@@ -1,4 +1,4 @@
-//! The hypotrochoid, the star of Khan et al., EAI Transactions on AI and Robotics 2022.
+//! The hypotrochoid: the star of Khan et al., EAI Transactions on AI and Robotics 2022.
 
 use std::f64::consts::TAU;
 
@@ -7,10 +7,11 @@ use serde::{Deserialize, Serialize};
 use super::{Curve, Plane};
 use crate::error::{Error, Result, require_positive};
 
-/// After more turns than this a curve counts as one that never closes.
+/// A curve that needs more turns than this counts as one that never closes.
 const MAX_TURNS: u32 = 100;
 
-/// What a pen draws that sits at distance d from the centre of a circle of radius r, which rolls inside one of radius R:
+/// The curve drawn by a pen at distance d from the centre of a circle of radius r that rolls inside a circle of radius
+/// R:
 ///
 /// a: (R - r) cos u + d cos((R - r)/r u),  b: (R - r) sin u - d sin((R - r)/r u),  u from 0 to 2 pi LCM(r, R)/R.
 ///
@@ -30,7 +31,7 @@ pub struct Hypotrochoid {
 }
 
 impl Hypotrochoid {
-    /// The closed curve of these radii and this pen `distance` (m) about the plane's centre, in `duration` (s).
+    /// The closed curve with these radii and this pen `distance` (m) about the centre of the plane, in `duration` (s).
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a length or duration that is not positive, or an inner radius that does not fit inside

@@ -4,11 +4,11 @@ use super::{Plane, Polyline};
 use crate::error::{Result, require_positive};
 
 impl Polyline {
-    /// The letter M as one writes it, from its lower left corner, with its middle at the plane's centre: `width` (m)
-    /// along a, `height` (m) along b, in `duration` (s).
+    /// The letter M, from its lower left corner, centred in the plane: `width` (m) along a, `height` (m) along b, in
+    /// `duration` (s).
     ///
-    /// The segments are those of Khan et al. 2022, eq. (19). It leaves their times open: here they take equal time, so
-    /// that the two short segments are the slower ones.
+    /// The segments are those of Khan et al. 2022, eq. (19). The paper leaves their times open: here they take equal
+    /// times, so the two short segments are slower.
     ///
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a width, height or duration that is not positive.

@@ -1,5 +1,6 @@
-//! Reference paths for the tip: curves in space and time (one per file), a [`Path`] along any of them, its samples at the
-//! ticks ([`Reference`]), and places without times ([`Waypoints`]). No joints, no limits: those are `trajectory` and `limits`.
+//! Reference paths for the tip: curves in space and time (one per file), a [`Path`] along any of them, its samples at
+//! the ticks ([`Reference`]), and points without times ([`Waypoints`]). Joint motion is in `trajectory`, limits are in
+//! `limits`.
 //!
 //! | curve | from |
 //! |---|---|

@@ -1,16 +1,16 @@
-//! The check that orientations given to a path are rotations.
+//! Checks that the orientations of a path are rotations.
 
 use nalgebra::Matrix3;
 
 use crate::error::Result;
 use crate::math::pose;
 
-/// The rotation, made exactly orthonormal; `what` names it in errors.
+/// Returns the rotation, made exactly orthonormal; `what` names it in errors.
 pub(super) fn check_rotation(what: &str, rotation: &Matrix3<f64>) -> Result<Matrix3<f64>> {
     Ok(pose::from_matrix(what, &rotation.to_homogeneous())?.rotation.into_inner())
 }
 
-/// The rotations of all rows, made exactly orthonormal; errors name the row.
+/// Returns the rotations of all rows, made exactly orthonormal; errors name the row.
 pub(super) fn check_rotations<'a>(rows: impl Iterator<Item = &'a Matrix3<f64>>) -> Result<Vec<Matrix3<f64>>> {
     rows.enumerate().map(|(row, rotation)| check_rotation(&format!("path rotation of row {row}"), rotation)).collect()
 }

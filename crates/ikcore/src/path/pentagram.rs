@@ -6,8 +6,8 @@ use super::{Plane, Polyline};
 use crate::error::{Result, require_positive};
 
 impl Polyline {
-    /// The pentagram with its points at `radius` (m) from the plane's centre, in `duration` (s): five segments of one
-    /// length and speed, from the point that lies along b and back to it.
+    /// The pentagram with its points at `radius` (m) from the centre of the plane, in `duration` (s): five segments of
+    /// equal length and speed, starting and ending at the point along b.
     ///
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a radius or duration that is not positive.

@@ -1,11 +1,11 @@
-//! Where a plane curve lies in space.
+//! The plane of a plane curve.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require_finite};
 
-/// How far the axes may be from orthonormal; what is within is made exact.
+/// Tolerance for orthonormal axes; axes within it are made exact.
 const TOLERANCE: f64 = 1e-6;
 
 /// A plane in space: a centre and two orthonormal axes `a` and `b`.
@@ -20,7 +20,7 @@ impl Plane {
     /// The plane through `center` (m) along `a` and `b`, in the frame of the robot's base.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; [`Error::InvalidPath`] where the axes are not orthonormal to 1e-6.
+    /// [`Error::NotFinite`]; [`Error::InvalidPath`] if the axes are not orthonormal to 1e-6.
     pub fn new(center: [f64; 3], a: [f64; 3], b: [f64; 3]) -> Result<Self> {
         for (what, vector) in [("path center", &center), ("path axis a", &a), ("path axis b", &b)] {
             require_finite(what, vector, |i| format!("entry {i}"))?;
@@ -49,7 +49,7 @@ impl Plane {
         Self::new(center, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
     }
 
-    /// The upright plane through `center` (m) that faces along x: a = y, b = z.
+    /// The vertical plane through `center` (m) facing along x: a = y, b = z.
     ///
     /// # Errors
     /// [`Error::NotFinite`].

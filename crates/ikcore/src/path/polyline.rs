@@ -15,8 +15,7 @@ pub struct Polyline {
 }
 
 impl Polyline {
-    /// The segments through `points` (m) in `duration` (s), at one speed from end to end. A point that repeats the one
-    /// before it adds nothing.
+    /// Segments through `points` (m) in `duration` (s), at constant speed. Repeated points are skipped.
     ///
     /// # Errors
     /// [`Error::InvalidPath`] for fewer than 2 points or points without extent, [`Error::NotFinite`],
@@ -41,7 +40,7 @@ impl Polyline {
         Self::through(times, vertices)
     }
 
-    /// The segments that pass each vertex (m) at its time (s).
+    /// Segments that pass each vertex (m) at its time (s).
     pub(super) fn through(times: Vec<f64>, vertices: Vec<[f64; 3]>) -> Result<Self> {
         check_points(&vertices)?;
         if times.len() != vertices.len() {
@@ -51,14 +50,14 @@ impl Polyline {
         Ok(Self { knots: Knots::new("path times", times)?, vertices })
     }
 
-    /// The segments between `vertices` (m), each in the same share of `duration` (s).
+    /// Segments between `vertices` (m), each taking an equal part of `duration` (s).
     pub(super) fn equal_times<const N: usize>(vertices: [[f64; 3]; N], duration: f64) -> Result<Self> {
         require_positive("duration", duration)?;
         let times = (0..N).map(|i| duration * (i as f64 / (N - 1) as f64)).collect();
         Self::through(times, vertices.to_vec())
     }
 
-    /// When each vertex is passed.
+    /// Times of the vertices.
     pub(super) fn knots(&self) -> &Knots {
         &self.knots
     }

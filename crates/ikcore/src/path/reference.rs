@@ -6,8 +6,8 @@ use super::waypoints::Waypoints;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Pose;
 
-/// Positions, and where wanted rotations, at the ticks t_i = i dt: row 0 is where to start, row i where to be at the end
-/// of tick i.
+/// Positions, and optionally rotations, at the ticks t_i = i dt. Row 0 is the start; row i is the target at the end of
+/// tick i.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
     dt: f64,
@@ -21,7 +21,7 @@ impl Reference {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for `dt` not positive, [`Error::InvalidPath`] for fewer than 2 rows,
-    /// [`Error::WrongLength`] where rows of positions and rotations differ in number, [`Error::NotFinite`],
+    /// [`Error::WrongLength`] if there are not as many rotations as positions, [`Error::NotFinite`],
     /// [`Error::NotRigid`].
     pub fn new(dt: f64, positions: Vec<[f64; 3]>, rotations: Option<Vec<Matrix3<f64>>>) -> Result<Self> {
         require_positive("dt", dt)?;
@@ -31,7 +31,7 @@ impl Reference {
     /// The same reference with the velocities (m/s) of its positions, for rules that work with velocities.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] where they are not one a position, [`Error::NotFinite`].
+    /// [`Error::WrongLength`] unless there is one per position, [`Error::NotFinite`].
     pub fn with_velocities(self, velocities: Vec<[f64; 3]>) -> Result<Self> {
         if velocities.len() != self.points.len() {
             let expected = format!("{}, one a position", self.points.len());
@@ -48,7 +48,7 @@ impl Reference {
         self.dt
     }
 
-    /// Number of rows: one more than there are ticks.
+    /// Number of rows, one more than the number of ticks.
     pub fn len(&self) -> usize {
         self.points.len()
     }
@@ -63,7 +63,7 @@ impl Reference {
         self.points.position(i)
     }
 
-    /// Velocity at row `i` (m/s), if it is known; at a corner, that of the segment that begins.
+    /// Velocity at row `i` (m/s), if known; at a corner, the velocity of the next segment.
     pub fn velocity(&self, i: usize) -> Option<[f64; 3]> {
         self.velocities.as_ref().map(|velocities| velocities[i])
     }

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::{Curve, Plane};
 use crate::error::{Error, Result, require_positive};
 
-/// A rose: r = radius cos(k u) at the angle u from the axis a, which grows at a constant rate. It has k petals for odd
-/// k, drawn in half a turn, and 2 k petals for even k, drawn in a full one.
+/// A rose: r = radius cos(k u) at the angle u from the axis a; u grows at a constant rate. For odd k it has k petals,
+/// drawn in half a turn; for even k it has 2 k, drawn in a full turn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rose {
     plane: Plane,

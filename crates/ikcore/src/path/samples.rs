@@ -10,8 +10,8 @@ use crate::error::Error;
 use crate::error::Result;
 use crate::math::Pose;
 
-/// Positions, or poses, at given times; between them the position moves on a straight line and the orientation about a
-/// fixed axis, both at constant speed.
+/// Positions, or poses, at given times. Between them the position moves along a straight line and the orientation about
+/// a fixed axis, both at constant speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Samples {
     positions: Polyline,
@@ -23,7 +23,7 @@ impl Samples {
     ///
     /// # Errors
     /// [`Error::InvalidPath`] for fewer than 2 points, [`Error::WrongLength`], [`Error::NotFinite`],
-    /// [`Error::OutOfRange`] where the first time is not zero, [`Error::NotIncreasing`].
+    /// [`Error::OutOfRange`] if the first time is not zero, [`Error::NotIncreasing`].
     pub fn from_positions(times: Vec<f64>, positions: Vec<[f64; 3]>) -> Result<Self> {
         Ok(Self { positions: Polyline::through(times, positions)?, rotations: None })
     }
@@ -63,7 +63,7 @@ impl Curve for Samples {
         let knots = self.positions.knots();
         let (row, elapsed) = knots.locate(t);
         let (from, to) = (rotations[row], rotations[row + 1]);
-        // The quaternion's power is exact for the smallest angles too, where slerp's arc cosine is not.
+        // The quaternion power is exact for the smallest angles too; the arc cosine of slerp is not.
         let reached = from.rotation_to(&to).powf(elapsed / knots.span(row)) * from;
         Some(reached.to_rotation_matrix().into_inner())
     }

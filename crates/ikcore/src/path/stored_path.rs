@@ -21,7 +21,7 @@ enum StoredCurve {
 }
 
 impl StoredCurve {
-    /// The form in which `curve` is stored; None for a curve of your own.
+    /// Returns the stored form of `curve`; `None` for a user's curve.
     fn of(curve: &dyn Curve) -> Option<Self> {
         let curve: &dyn Any = curve;
         let circle = || curve.downcast_ref().cloned().map(Self::Circle);
@@ -44,10 +44,10 @@ impl StoredCurve {
 }
 
 impl Path {
-    /// The path as bytes, for storing and for copying between processes.
+    /// Returns the path as bytes, for storing and for copying between processes.
     ///
     /// # Errors
-    /// [`Error::InvalidPath`] for a curve of your own: only the library's can be stored.
+    /// [`Error::InvalidPath`] for a user's curve: only the library's curves can be stored.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
         let Some(curve) = StoredCurve::of(&*self.curve) else {
             return Err(Error::InvalidPath {
@@ -57,10 +57,10 @@ impl Path {
         stored::to_bytes("path", &(curve, self.orientation))
     }
 
-    /// The path that [`to_bytes`](Self::to_bytes) stored.
+    /// Returns the path stored by [`to_bytes`](Self::to_bytes).
     ///
     /// # Errors
-    /// [`Error::Corrupt`] for bytes of another version, damaged ones, or those of something else.
+    /// [`Error::Corrupt`] for bytes of another version, of another type, or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let (curve, orientation): (StoredCurve, Option<Matrix3<f64>>) = stored::from_bytes("path", bytes)?;
         Ok(Self { curve: curve.curve(), orientation })

@@ -1,4 +1,4 @@
-//! A curve with the orientation to hold along it.
+//! A curve, with an optional constant orientation.
 
 use std::sync::Arc;
 
@@ -10,9 +10,10 @@ use crate::error::Result;
 use crate::math::ticks::ticks_of_path;
 use crate::math::{Pose, pose};
 
-/// A reference in space and time for the tip: a [`Curve`], and where wanted an orientation. Cheap to clone.
+/// A reference in space and time for the tip: a [`Curve`], and optionally an orientation. Cheap to clone.
 ///
-/// As in [`Curve`], time `t` (s) is clamped to `[0, duration]`, and all is in the frame of the robot's base.
+/// As in [`Curve`], time `t` (s) is clamped to `[0, duration]`, and positions and rotations are in the frame of the
+/// robot's base.
 #[derive(Debug, Clone)]
 pub struct Path {
     pub(super) curve: Arc<dyn Curve>,
@@ -25,17 +26,17 @@ impl Path {
         Self { curve: Arc::new(curve), orientation: None }
     }
 
-    /// The same path with this constant orientation, in place of any other.
+    /// The same path with this constant orientation, which replaces any other.
     ///
     /// # Errors
-    /// [`Error::NotFinite`](crate::Error::NotFinite) or [`Error::NotRigid`](crate::Error::NotRigid) for a matrix that is
-    /// no rotation to 1e-6.
+    /// [`Error::NotFinite`](crate::Error::NotFinite) or [`Error::NotRigid`](crate::Error::NotRigid) unless the matrix
+    /// is a rotation to 1e-6.
     pub fn with_orientation(&self, rotation: Matrix3<f64>) -> Result<Self> {
         let orientation = Some(check_rotation("path orientation", &rotation)?);
         Ok(Self { curve: Arc::clone(&self.curve), orientation })
     }
 
-    /// How long one pass takes (s).
+    /// Duration of one pass (s).
     pub fn duration(&self) -> f64 {
         self.curve.duration()
     }
@@ -45,7 +46,7 @@ impl Path {
         self.curve.position(t)
     }
 
-    /// Velocity (m/s); at a corner, that of the segment that begins.
+    /// Velocity (m/s); at a corner, the velocity of the next segment.
     pub fn velocity(&self, t: f64) -> [f64; 3] {
         self.curve.velocity(t)
     }
@@ -65,11 +66,11 @@ impl Path {
         self.rotation(t).map(|rotation| pose::from_parts(self.position(t), rotation))
     }
 
-    /// The path at the ticks i `dt` (s), from 0 to the first tick at or after its end.
+    /// Samples the path at the ticks i `dt` (s), from 0 to the first tick at or after its end.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for `dt` not positive, longer than the path, or so small that there
-    /// would be over 10 million ticks.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) for `dt` not positive, longer than the path, or so small that
+    /// more than 10 million ticks would result.
     pub fn sample(&self, dt: f64) -> Result<Reference> {
         let times = (0..=ticks_of_path(self.duration(), dt)?).map(|i| i as f64 * dt);
         let positions = times.clone().map(|t| self.position(t)).collect();
@@ -77,7 +78,7 @@ impl Path {
         Reference::new(dt, positions, rotations)
     }
 
-    /// The same with the velocities at the ticks.
+    /// Like [`sample`](Self::sample), with the velocities at the ticks.
     ///
     /// # Errors
     /// As [`sample`](Self::sample).

@@ -1,4 +1,4 @@
-//! Places to pass one after another, without times.
+//! Points of a path without times.
 
 use nalgebra::Matrix3;
 
@@ -15,7 +15,7 @@ pub struct Waypoints {
 
 #[expect(clippy::len_without_is_empty, reason = "there are always at least two points")]
 impl Waypoints {
-    /// These positions (m), with a rotation for each where `rotations` are given.
+    /// Waypoints at these positions (m), with one rotation each if `rotations` are given.
     ///
     /// # Errors
     /// [`Error::InvalidPath`] for fewer than 2 points, [`Error::WrongLength`] unless there is one rotation per position,
@@ -58,7 +58,7 @@ impl Waypoints {
     }
 }
 
-/// Err unless there are at least two points and all are finite.
+/// Checks that there are at least two points and that all are finite.
 pub(super) fn check_points(points: &[[f64; 3]]) -> Result<()> {
     if points.len() < 2 {
         let problem = format!("it needs at least 2 points, got {}", points.len());

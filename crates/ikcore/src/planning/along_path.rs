@@ -12,8 +12,8 @@ use crate::solver::Monitor;
 /// Plans a motion of `robot` whose tip follows `tip_path`.
 ///
 /// # Errors
-/// Any [`Error`] for wrong input, [`Error::Unreachable`] for a place out of reach. A plan that breaks something is a status,
-/// not an error.
+/// Any [`Error`] for wrong input, [`Error::Unreachable`] if a point is out of reach. A plan that violates limits is a
+/// status, not an error.
 pub fn plan_along_path(
     robot: &Robot,
     tip_path: &TipPath,

@@ -1,4 +1,4 @@
-//! Shared by the planners among obstacles: the robot's shape, collision errors, and trajectories as certifiable motions.
+//! Shared by planners with obstacles: the robot's shape, collision errors, and trajectories as certifiable motions.
 
 use super::planar_arm::PlanarArm;
 use super::violation::Violation;
@@ -9,17 +9,18 @@ use crate::robot::Robot;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
 use crate::wording::number;
 
-/// Distance added to the margin at ends and on straight lines (m), so that their timed motion can be certified too.
+/// Distance added to the margin at end configurations and on straight lines (m), so that their timed motion can be
+/// certified too.
 pub(super) const RESERVE: f64 = 5e-5;
 
-/// Whether there is anything that `robot` could touch: an obstacle, or itself where its shape is known.
+/// Whether `robot` can collide: with an obstacle, or with itself if its shape is known.
 pub(super) fn can_collide(robot: &Robot, obstacles: &[Obstacle]) -> bool {
     let shape_known = !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
     !obstacles.is_empty() || shape_known
 }
 
-/// `robot` with a line for every link where it is a planar arm of which no shape is given, as in Wang et al. (2019); None for
-/// any other robot.
+/// `robot` with a line for every link if it is a planar arm without a shape, as in Wang et al. (2019); `None` for any
+/// other robot.
 ///
 /// # Errors
 /// As [`Robot::with_capsules_along_links`].
@@ -29,7 +30,8 @@ pub(super) fn as_lines(robot: &Robot) -> Result<Option<Robot>> {
     if no_shape && is_planar() { robot.with_capsules_along_links(0.0).map(Some) } else { Ok(None) }
 }
 
-/// `robot`, or its `lines` where it has no other shape, among `obstacles`. Lines may cross each other: they have no thickness.
+/// The scene of `robot`, or of its `lines` if it has no shape, among `obstacles`. Lines may cross each other: they have
+/// no thickness.
 ///
 /// # Errors
 /// As [`Scene::new`].
@@ -40,7 +42,7 @@ pub(super) fn scene<'a>(robot: &'a Robot, lines: Option<&'a Robot>, obstacles: &
     }
 }
 
-/// Err for a configuration nearer to something than the margin; `what` names it.
+/// Checks that a configuration keeps the margin; `what` names it in the error.
 ///
 /// # Errors
 /// [`Error::InCollision`].
@@ -59,7 +61,7 @@ pub(super) fn refuse_collision(what: &str, scene: &Scene, q: &[f64], margin: f64
     }
 }
 
-/// The violation of a distance below the margin.
+/// Returns the violation for a distance below the margin.
 pub(super) fn too_near(contact: &Contact, margin: f64) -> Violation {
     let what = format!("distance of link '{}' from {}", contact.link, contact.other);
     Violation { what, value: contact.distance, bound: margin, unit: "m".into() }

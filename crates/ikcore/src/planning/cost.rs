@@ -9,7 +9,7 @@ use crate::robot::Robot;
 use crate::trajectory::{Coefficients, Trajectory};
 use crate::wording::words;
 
-/// Chords that each piece of the tip's curve is measured by; on smooth pieces good to six digits.
+/// Chords per piece of the tip's curve; accurate to six digits on smooth pieces.
 const CHORDS: usize = 256;
 
 /// Quantity that a plan minimises (Wang et al. 2019, eq. 8-10).
@@ -18,16 +18,16 @@ pub enum Cost {
     /// Duration of the motion (s): eq. (8) and (19).
     #[default]
     Time,
-    /// Distance that all joints travel, summed (rad, m): eq. (9) and (20).
+    /// Total travel of all joints (rad, m): eq. (9) and (20).
     JointTravel,
-    /// Distance that the tip travels (m): eq. (10).
+    /// Travel of the tip (m): eq. (10).
     TipTravel,
 }
 
 words!("objective": Cost { Time => "time", JointTravel => "joint_travel", TipTravel => "tip_travel" });
 
 impl Cost {
-    /// Its name in messages.
+    /// The name of the objective in messages.
     pub fn noun(self) -> &'static str {
         match self {
             Self::Time => "a duration",
@@ -36,7 +36,7 @@ impl Cost {
         }
     }
 
-    /// Its unit. The metres of prismatic joints are added to the radians of the others.
+    /// The unit of the objective. Metres of prismatic joints are added to radians of the others.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Time => "s",
@@ -45,7 +45,7 @@ impl Cost {
         }
     }
 
-    /// Its value on `trajectory` (s, rad or m).
+    /// The value of the objective on `trajectory` (s, rad or m).
     pub(super) fn of(self, robot: &Robot, trajectory: &Trajectory) -> f64 {
         match self {
             Self::Time => trajectory.duration(),
@@ -54,7 +54,7 @@ impl Cost {
         }
     }
 
-    /// A large value of it for `robot` under `limits`, by which penalties are scaled.
+    /// A large value of the objective for `robot` under `limits`, which scales penalties.
     pub(super) fn scale(self, robot: &Robot, limits: &MotionLimits) -> f64 {
         let ranges = (0..limits.dof()).map(|j| limits.finite_range(j));
         match self {
@@ -71,7 +71,7 @@ fn chain_length(robot: &Robot) -> f64 {
     poses.windows(2).map(|ends| (ends[1].translation.vector - ends[0].translation.vector).norm()).sum()
 }
 
-/// Returns the joint travel: exact, from turning point to turning point.
+/// Returns the joint travel, computed exactly from turning point to turning point.
 fn joint_travel(trajectory: &Trajectory) -> f64 {
     let (knots, n) = (trajectory.knots(), trajectory.joints().len());
     let of_piece = |(i, polynomial): (usize, &Coefficients)| {

@@ -1,4 +1,4 @@
-//! How far the tip is from the path that it is to follow.
+//! Deviation of the tip from its path.
 
 use super::tip_path::TipPath;
 use super::violation::Violation;
@@ -7,27 +7,27 @@ use crate::math::so3::{norm, rotation_between};
 use crate::robot::Robot;
 use crate::task::Target;
 
-/// Samples between two knots; the largest value is then sought between the neighbours of the best sample.
+/// Samples between two knots; the maximum is then refined between the neighbours of the best sample.
 const SAMPLES: usize = 10;
 
-/// Steps of that ternary search, each of which leaves two thirds of the interval.
+/// Steps of that ternary search, each of which keeps two thirds of the interval.
 const STEPS: usize = 8;
 
 /// Joint positions as a function of the path parameter.
 pub(super) trait Configurations: Fn(f64, &mut [f64]) {}
 impl<F: Fn(f64, &mut [f64])> Configurations for F {}
 
-/// The distance between the tip of a robot that moves through these configurations and its path.
+/// Deviation of the tip of a robot that moves through these configurations from its path.
 pub(super) struct TipDeviation<'a, C> {
     /// The robot.
     pub robot: &'a Robot,
-    /// Where its tip should be.
+    /// The path of its tip.
     pub tip_path: &'a TipPath,
-    /// Where its joints are.
+    /// Its joint positions.
     pub configurations: C,
 }
 
-/// The largest value of a quantity, and the path parameter at which it occurs.
+/// A largest value, and the path parameter at which it occurs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Largest {
     /// The value.
@@ -47,12 +47,12 @@ impl Largest {
 pub(super) struct LargestDeviation {
     /// Distance from the path (m).
     pub distance: Largest,
-    /// Angle between the tip's orientation and that of the path (rad); 0 where the path has none.
+    /// Angle between the tip's orientation and that of the path (rad); 0 if the path has no orientation.
     pub angle: Largest,
 }
 
 impl LargestDeviation {
-    /// The violations where the tip is to stay within `accuracy` (m, rad).
+    /// Returns the violations for a tip that must stay within `accuracy` (m, rad).
     pub(super) fn violations(&self, tip_path: &TipPath, accuracy: f64) -> impl Iterator<Item = Violation> {
         let of = |quantity: &str, largest: Largest, unit: &'static str| {
             let what = format!("{quantity} of the tip from {}", tip_path.place(largest.share));
@@ -76,8 +76,8 @@ impl<C: Configurations> TipDeviation<'_, C> {
         self.distance(share, share, share).max(self.angle(share))
     }
 
-    /// An upper bound of [`at`](Self::at) that is quicker to compute: the distance (m) from the path at this very parameter, or
-    /// the angle (rad) if that is larger.
+    /// An upper bound of [`at`](Self::at) that is quicker to compute: the distance (m) from the path point at the same
+    /// parameter, or the angle (rad) if that is larger.
     pub(super) fn bound(&self, share: f64) -> f64 {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
@@ -91,15 +91,15 @@ impl<C: Configurations> TipDeviation<'_, C> {
         }
     }
 
-    /// The larger of distance (m) and angle (rad) at `samples` places between two path parameters.
+    /// The largest [`at`](Self::at) at `samples` parameters between two path parameters.
     pub(super) fn between(&self, from: f64, to: f64, samples: usize) -> f64 {
         let at = |i: usize| from + (to - from) * i as f64 / (samples + 1) as f64;
         let off = |share: f64| self.distance(share, from, to).max(self.angle(share));
         (1..=samples).map(|i| off(at(i))).fold(0.0, f64::max)
     }
 
-    /// The distance from the path near `share`, up to one interval before `from` and after `to`: what counts is where the tip
-    /// goes, not when.
+    /// The distance from the part of the path around `share` that extends one interval before `from` and after `to`:
+    /// only the position of the tip matters, not its time.
     fn distance(&self, share: f64, from: f64, to: f64) -> f64 {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];

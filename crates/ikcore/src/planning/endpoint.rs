@@ -1,20 +1,20 @@
-//! Where a motion starts or ends.
+//! The start or end of a motion.
 
 use crate::error::{Error, Result};
 use crate::robot::Robot;
 use crate::task::Target;
 
-/// Where a motion starts or ends.
+/// The start or end of a motion.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Endpoint {
-    /// The tip is there; which configuration is the planner's choice.
+    /// A target of the tip; the planner chooses the configuration.
     Target(Target),
-    /// Exactly this configuration (n,) (rad, m).
+    /// A configuration (n,) (rad, m).
     Configuration(Vec<f64>),
 }
 
 impl Endpoint {
-    /// Err unless all numbers are finite and a configuration has one a joint; `what` names the end.
+    /// Checks that all numbers are finite and that a configuration has one per joint; `what` names the end.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::WrongLength`].

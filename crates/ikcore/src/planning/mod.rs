@@ -1,7 +1,7 @@
 //! Planning: motions between two ends or along a path, within the limits of the joints.
 //!
-//! No control loop (that is `tracking`), and no single configuration (that is `ik`). A planner takes options, searches, and
-//! returns a [`Plan`]: a trajectory, its cost and the limits it breaks. In reading order:
+//! Planners have no control loop (see `tracking`) and do not solve single configurations (see `ik`). A planner takes
+//! options, searches, and returns a [`Plan`]: a trajectory, its cost and the limits it violates. In reading order:
 //!
 //! | file | what |
 //! |---|---|
@@ -11,15 +11,15 @@
 //! | `tip_path` | [`TipPath`]: the curve that the tip follows |
 //! | `plan`, `violation` | the result |
 //! | `cost` | [`Cost`]: duration, joint travel or tip travel |
-//! | `motion_limits` | constant limits of each joint, and which of them a trajectory breaks |
+//! | `motion_limits` | constant limits of each joint, and their violations by a trajectory |
 //! | `minmax` | between two ends: the nearest configurations, joined directly or around obstacles |
 //! | `timed` | along a path: redundancy and fastest timing in one search |
 //! | `time_optimal` | the fastest timing of a joint path |
 //! | `tpbso` | both problems as published by Wang et al. (2019) |
-//! | `planar_arm` | closed-form inverse kinematics of planar arms, redundancy left open |
+//! | `planar_arm` | closed-form inverse kinematics of planar arms, with the redundancy as a parameter |
 //! | `search` | runs a solver on the cost of a plan and records its progress |
 //! | `deviation` | the distance of the tip from its path |
-//! | `collision_checks` | margins, collision errors and certifiable motions, shared by planners among obstacles |
+//! | `collision_checks` | margins, collision errors and certifiable motions, shared by planners with obstacles |
 
 mod along_path;
 mod collision_checks;

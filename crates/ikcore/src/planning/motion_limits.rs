@@ -9,7 +9,7 @@ use crate::math::sampling_range;
 use crate::robot::{JointKind, Robot};
 use crate::trajectory::Trajectory;
 
-/// Constant limits of each joint (n,); infinite where there is none.
+/// Constant limits of each joint (n,); infinite if there is none.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MotionLimits {
     /// Lower position limits (rad, m).
@@ -23,15 +23,15 @@ pub(crate) struct MotionLimits {
     joints: Vec<(String, JointKind)>,
 }
 
-/// A limit counts as kept up to this share of it: the rounding of a polynomial's coefficients.
+/// Relative excess over a limit that counts as rounding of the polynomial coefficients.
 const ROUNDING: f64 = 1e-9;
 
 impl MotionLimits {
-    /// The limits for `robot`, its own where None; `method` names the planner in errors.
+    /// The limits for `robot`; `None` means its own. `method` names the planner in errors.
     ///
     /// # Errors
-    /// [`Error::UnsupportedLimit`] for jerk limits and such that vary in time, [`Error::OutOfRange`] for a velocity or
-    /// acceleration limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`], [`Error::WrongLength`].
+    /// [`Error::UnsupportedLimit`] for jerk limits and limits that vary over time, [`Error::OutOfRange`] for a velocity
+    /// or acceleration limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`], [`Error::WrongLength`].
     pub(crate) fn new(robot: &Robot, limits: Option<&Limits>, method: &str) -> Result<Self> {
         let limits = limits.cloned().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
@@ -67,12 +67,13 @@ impl MotionLimits {
         self.joints.iter().map(|(name, _)| name.clone()).collect()
     }
 
-    /// Range of positions that a search may use for a joint (rad, m): its limits, or half a turn to either side without limits.
+    /// Range of positions that a search may use for a joint (rad, m): its limits, or half a turn to either side without
+    /// them.
     pub(crate) fn finite_range(&self, joint: usize) -> (f64, f64) {
         sampling_range::finite(self.lower[joint], self.upper[joint], PI)
     }
 
-    /// Time (s) that the slowest joint takes through its range, at full speed or from rest to rest at full acceleration.
+    /// Time (s) of the slowest joint through its range, at full speed or from rest to rest at full acceleration.
     pub(crate) fn whole_range_time(&self) -> f64 {
         let time = |j: usize| {
             let (lower, upper) = self.finite_range(j);
@@ -90,7 +91,7 @@ impl MotionLimits {
         robot.with_limits(|j, joint| (joint.lower, joint.upper) = (self.lower[j], self.upper[j]))
     }
 
-    /// Err for a joint without a velocity limit, which `method` needs.
+    /// Checks that every joint has a velocity limit, which `method` needs.
     ///
     /// # Errors
     /// [`Error::OutOfRange`].
@@ -105,7 +106,7 @@ impl MotionLimits {
         }
     }
 
-    /// Returns the limits that `trajectory` breaks, by the exact extremes of its polynomials.
+    /// Returns the limits that `trajectory` violates, by the exact extremes of its polynomials.
     pub(crate) fn violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
         let (velocity, acceleration) = (trajectory.max_velocity(), trajectory.max_acceleration());
         let mut found = vec![];
@@ -133,7 +134,7 @@ impl MotionLimits {
         found
     }
 
-    /// Err for a joint that may not move at all.
+    /// Checks that no joint is locked by a zero limit.
     fn require_motion(&self) -> Result<()> {
         for (name, values) in [("velocity", &self.velocity), ("acceleration", &self.acceleration)] {
             if let Some(j) = values.iter().position(|value| *value <= 0.0) {

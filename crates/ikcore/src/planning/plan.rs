@@ -14,7 +14,7 @@ use crate::wording::number;
 /// A planned motion and the outcome of the search for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// The best motion that keeps all limits, or the least violating one.
+    /// The best motion that keeps all limits, or the one that violates them least.
     pub trajectory: Trajectory,
     /// Quantity that was minimised.
     pub objective: Cost,
@@ -22,19 +22,18 @@ pub struct Plan {
     pub cost: f64,
     /// Improvements of the search, in the order of evaluations.
     pub history: Vec<Improvement>,
-    /// Smallest distance (m) between robot and obstacles on the trajectory; None where there are no obstacles.
+    /// Smallest distance (m) between robot and obstacles on the trajectory; `None` without obstacles.
     pub clearance: Option<f64>,
-    /// Largest distance (m) of the tip from the path that it was to follow, at its points and between them; None from end
-    /// to end.
+    /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.
     pub accuracy: Option<f64>,
-    /// Positions that the tip was to follow (m), straight in between; None from end to end.
+    /// Positions of the path (m), joined by straight lines; `None` for point-to-point plans.
     pub reference: Option<Vec<[f64; 3]>>,
-    /// The orientations that a planar arm was free to choose, at every point of the path, from the tip's link down; empty
-    /// where there is no such choice.
+    /// The orientations chosen for the free links of a planar arm, at every point of the path, from the last link
+    /// inwards; empty for other arms.
     pub redundancy: Vec<Orientations>,
-    /// Bounds that the trajectory breaks; empty for a plan that succeeded.
+    /// Bounds that the trajectory violates; empty for a plan that succeeded.
     pub violations: Vec<Violation>,
-    /// [`Status::Solved`] for a trajectory that breaks nothing; else why the search ended.
+    /// [`Status::Solved`] for a trajectory without violations; else why the search ended.
     pub status: Status,
     /// Evaluations of the planner's cost.
     pub evaluations: usize,
@@ -42,16 +41,16 @@ pub struct Plan {
     pub elapsed: Duration,
 }
 
-/// A step of a search to something better.
+/// An improvement during a search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Improvement {
-    /// Evaluations up to then, that one included.
+    /// Evaluations up to and including this one.
     pub evaluations: usize,
-    /// The lowest value of the search's function from then on; with penalties as long as the plan breaks something.
+    /// The lowest cost from then on; it includes penalties as long as the plan violates limits.
     pub cost: f64,
 }
 
-/// Violations written out in a message.
+/// Number of violations that a message lists.
 const NAMED_IN_MESSAGE: usize = 3;
 
 impl Plan {

@@ -1,9 +1,9 @@
-//! Arms that move in a plane: their inverse kinematics in closed form, the redundancy left open.
+//! Planar arms: their inverse kinematics in closed form, with the redundancy as a parameter.
 //!
-//! The unknowns are orientations of links, and the first two links close the gap; in
-//! [`Linkage`](crate::posture::Linkage) the tip is held, the unknowns are joint points on circles, and the last two links
-//! close it. Each measures the links for itself: lengths that differ in the last bit would lead the swarms of the
-//! reproduced papers to other plans and postures.
+//! Here the unknowns are orientations of links, and the first two links close the chain. In
+//! [`Linkage`](crate::posture::Linkage) the tip is fixed, the unknowns are joint positions on circles, and the last two
+//! links close the chain. Each measures the link lengths itself, because lengths that differ in the last bit would lead
+//! the swarms of the reproduced papers to other plans and postures.
 
 use std::f64::consts::{PI, TAU};
 
@@ -15,25 +15,25 @@ use crate::robot::{JointKind, Robot};
 use crate::task::Target;
 use crate::wording::number;
 
-/// An arm of revolute joints about the z axis: in the plane of x and y its links are the sides of a polygon.
+/// An arm of revolute joints about the z axis; its links are the sides of a polygon in the x-y plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanarArm {
-    /// The first joint (m).
+    /// Position of the first joint (m).
     base: [f64; 2],
     /// Height of the plane in which the tip moves (m).
     height: f64,
     /// Distance from each joint to the next, or to the tip (m).
     lengths: Vec<f64>,
-    /// Direction of each link at q = 0, seen from the link before (rad).
+    /// Direction of each link at q = 0, relative to the previous link (rad).
     offsets: Vec<f64>,
-    /// Orientation of the tip's x axis seen from the last link (rad).
+    /// Orientation of the tip's x axis relative to the last link (rad).
     tool: f64,
 }
 
-/// The sign of the second joint's angle: where the arccosine of eq. (1) leaves a choice.
+/// The sign of the second joint's angle, which the arccosine of eq. (1) leaves open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Elbow {
-    /// theta_2 >= 0, as the arccosine itself gives it.
+    /// theta_2 >= 0, the value of the arccosine.
     #[default]
     Positive,
     /// theta_2 <= 0.
@@ -50,16 +50,16 @@ impl Elbow {
     }
 }
 
-/// Links further along than these two are the redundancy.
+/// The links after these two are the redundancy.
 pub(super) const ELBOW_LINKS: usize = 2;
 
 const HOLE: &str = "inside the hole that the arm leaves about its base";
 
-/// Largest deviation of a robot from a polygon of links (m).
+/// Largest deviation of a robot from the polygon of its links (m).
 const AGREEMENT: f64 = 1e-9;
 
 impl PlanarArm {
-    /// `robot` as a planar arm of at least two links; None where it is something else.
+    /// `robot` as a planar arm of at least two links; `None` if it is not one.
     pub fn of(robot: &Robot) -> Option<Self> {
         let n = robot.dof();
         if n < ELBOW_LINKS || robot.joints().iter().any(|joint| joint.kind == JointKind::Prismatic) {
@@ -74,7 +74,7 @@ impl PlanarArm {
         if !columns[..n].iter().all(vertical) {
             return None;
         }
-        // A column is z x (tip - joint), which says where the joint is.
+        // A column is z x (tip - joint), which gives the position of the joint.
         let mut places: Vec<[f64; 2]> =
             columns[..n].iter().map(|c| [tip.origin[0] - c[1], tip.origin[1] + c[0]]).collect();
         let base = places[0];
@@ -87,7 +87,7 @@ impl PlanarArm {
         arm.agrees_with(robot).then_some(arm)
     }
 
-    /// Whether the polygon moves as the robot does: one configuration tells a coupled joint from independent ones.
+    /// Whether the polygon moves as the robot does. One configuration is enough to detect coupled joints.
     fn agrees_with(&self, robot: &Robot) -> bool {
         let q: Vec<f64> = (0..self.dof()).map(|i| 0.3 + 0.7 * i as f64).collect();
         let (x, y) = self.corners(&q).last().unwrap_or_default().into();
@@ -106,7 +106,7 @@ impl PlanarArm {
         &self.lengths
     }
 
-    /// The first joint, the others and the tip at `q` (n,), one after another (m).
+    /// Positions of the first joint, the others and the tip at `q` (n,) (m).
     pub fn corners<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = [f64; 2]> + 'a {
         let mut at = self.base;
         let mut direction = 0.0;
@@ -119,8 +119,8 @@ impl PlanarArm {
         std::iter::once(self.base).chain(links)
     }
 
-    /// Where the tip is to be in the plane, and its orientation (rad) if that is given; None for a target beside the plane, or
-    /// one that is neither a position nor a pose.
+    /// The target in the plane, with the orientation (rad) if given. `None` for a target outside the plane, or one that
+    /// is neither a position nor a pose.
     pub fn planar_target(&self, target: &Target) -> Option<PlanarTarget> {
         let position = target.position()?;
         let orientation = match target {
@@ -136,7 +136,7 @@ impl PlanarArm {
         in_plane.then_some(PlanarTarget { position: [position[0], position[1]], orientation })
     }
 
-    /// Why a place cannot be reached, in words; None where it can.
+    /// Why a target cannot be reached, in words; `None` if it can.
     pub fn problem(&self, place: &PlanarTarget) -> Option<String> {
         let (free, held) = match &place.orientation {
             None => (self.dof(), [].as_slice()),
@@ -147,8 +147,8 @@ impl PlanarArm {
         Some(format!("it is {distance} m {side}"))
     }
 
-    /// How far beyond (positive) or inside of (negative) what the first `links` links reach a point is from the base (m);
-    /// None where they reach it.
+    /// Distance (m) of a point from the annulus that the first `links` links reach: positive outside, negative in the
+    /// hole; `None` if they reach it.
     pub fn gap(&self, [x, y]: [f64; 2], links: usize) -> Option<f64> {
         let distance = (x - self.base[0]).hypot(y - self.base[1]);
         let longest = self.lengths[..links].iter().copied().fold(0.0, f64::max);
@@ -161,7 +161,7 @@ impl PlanarArm {
         }
     }
 
-    /// Where link `link` (from 0) starts when it ends in `end` at this absolute `orientation` (rad).
+    /// Start of link `link` (from 0) that ends in `end` at this absolute `orientation` (rad).
     pub fn start_of(&self, link: usize, [x, y]: [f64; 2], orientation: f64) -> [f64; 2] {
         let (sine, cosine) = orientation.sin_cos();
         [x - self.lengths[link] * cosine, y - self.lengths[link] * sine]
@@ -178,23 +178,23 @@ impl PlanarArm {
             .collect()
     }
 
-    /// Which way the arm bends at `q`.
+    /// The elbow of the arm at `q`.
     pub fn elbow(&self, q: &[f64]) -> Elbow {
         if wrapped(q[1] + self.offsets[1]) < 0.0 { Elbow::Negative } else { Elbow::Positive }
     }
 
-    /// Where link `links` (from 0) has to start so that the links from it on, at `orientations` (rad, absolute), end in
+    /// Start of link `links` (from 0) such that it and the links after it, at `orientations` (rad, absolute), end in
     /// `position`.
     pub fn wrist(&self, position: [f64; 2], links: usize, orientations: &[f64]) -> [f64; 2] {
         let held = (links..self.dof()).zip(orientations);
         held.fold(position, |end, (link, orientation)| self.start_of(link, end, *orientation))
     }
 
-    /// The joint angles (rad, wrapped to (-pi, pi]) that put the tip at `position` (m) with the links from the third on
-    /// at these absolute `orientations` (rad).
+    /// Writes the joint angles (rad, wrapped to (-pi, pi]) that put the tip at `position` (m), with the third and later
+    /// links at these absolute `orientations` (rad).
     ///
     /// # Errors
-    /// cos(theta_2) of eq. (1), which no angle has: above 1 the wrist is out of reach, below -1 inside the hole.
+    /// The infeasible cos(theta_2) of eq. (1): above 1 the wrist is out of reach, below -1 inside the hole.
     pub fn solve(&self, position: [f64; 2], orientations: &[f64], elbow: Elbow, q: &mut [f64]) -> Result<(), f64> {
         let [x, y] = self.wrist(position, ELBOW_LINKS, orientations);
         let (x, y) = (x - self.base[0], y - self.base[1]);
@@ -204,7 +204,7 @@ impl PlanarArm {
             return Err(cosine);
         }
         let bend = elbow.sign() * cosine.acos();
-        // Eq. (2) gives the cosine of theta_1 alone; this is the angle with its sign.
+        // Eq. (2) gives only the cosine of theta_1; this is the angle with its sign.
         let first = y.atan2(x) - (l2 * bend.sin()).atan2(l1 + l2 * cosine);
         let mut direction = 0.0;
         for (i, q) in q.iter_mut().enumerate() {
@@ -219,9 +219,9 @@ impl PlanarArm {
         Ok(())
     }
 
-    /// The orientations (rad) of link `link` (from 0, at least 2) from which the links before it can reach its start,
-    /// when it ends in `position`: middle and half-width of an interval; a half-width of pi is the full circle. None where
-    /// there is none.
+    /// The orientations (rad) of link `link` (from 0, at least 2) that ends in `position`, such that the links before
+    /// it reach its start: middle and half-width of an interval. A half-width of pi is the full circle; `None` if there
+    /// is no such orientation.
     ///
     /// The law of cosines in the triangle of base, start and end of the link: the paper's "geometric method".
     pub fn orientation_range(&self, position: [f64; 2], link: usize) -> Option<(f64, f64)> {
@@ -244,16 +244,16 @@ impl PlanarArm {
 /// Target of a planar arm's tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarTarget {
-    /// In the plane (m).
+    /// Position in the plane (m).
     pub position: [f64; 2],
-    /// Absolute orientation of the last link (rad), where it is given.
+    /// Absolute orientation of the last link (rad), if given.
     pub orientation: Option<f64>,
 }
 
 /// An orientation and the range that it was chosen from (rad).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Orientation {
-    /// Its value.
+    /// The chosen value.
     pub value: f64,
     /// The lowest possible.
     pub lowest: f64,
@@ -261,10 +261,10 @@ pub struct Orientation {
     pub highest: f64,
 }
 
-/// Orientations of several links, from the tip down.
+/// Orientations of several links, from the last one inwards.
 pub type Orientations = SmallVec<[Orientation; 4]>;
 
-/// The angle (rad) in (-pi, pi] that differs by whole turns.
+/// The angle (rad) in (-pi, pi] that differs from `angle` by whole turns.
 pub(super) fn wrapped(angle: f64) -> f64 {
     let wrapped = angle - TAU * (angle / TAU).round();
     if wrapped <= -PI { wrapped + TAU } else { wrapped }

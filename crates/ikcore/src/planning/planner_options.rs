@@ -11,7 +11,7 @@ use crate::obstacle::Obstacle;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, DerivativeFree, Stop};
 
-/// How to plan from end to end.
+/// Methods of point-to-point planning.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum PointToPointMethod {
     /// Configurations of both ends with the smallest maximum displacement, joined as fast as the limits allow.
@@ -40,7 +40,7 @@ impl FromStr for PointToPointMethod {
     }
 }
 
-/// How to plan along a path.
+/// Methods of planning along a path.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum AlongPathMethod {
     /// Redundancy and fastest timing in one search.
@@ -76,9 +76,9 @@ pub struct PointToPointOptions {
     pub method: PointToPointMethod,
     /// Quantity to minimise.
     pub objective: Cost,
-    /// Obstacles to avoid. A robot that has capsules avoids itself too.
+    /// Obstacles to avoid. A robot with capsules also avoids self-collision.
     pub obstacles: Vec<Obstacle>,
-    /// Distance to keep from obstacles and between links (m); None: 1 mm.
+    /// Distance to keep from obstacles and between links (m). `None` means 1 mm.
     pub margin: Option<f64>,
     /// Limits to keep; None: the robot's.
     pub limits: Option<Limits>,
@@ -88,7 +88,7 @@ pub struct PointToPointOptions {
     pub seed: u64,
 }
 
-/// Distance that is kept by default (m).
+/// Default distance to keep (m).
 const DEFAULT_MARGIN: f64 = 1e-3;
 
 impl PointToPointOptions {
@@ -112,13 +112,14 @@ pub struct AlongPathOptions {
     pub method: AlongPathMethod,
     /// Quantity to minimise.
     pub objective: Cost,
-    /// Configuration to start from (n,); None: the planner's choice.
+    /// Start configuration (n,). `None` leaves it to the planner.
     pub start: Option<Vec<f64>>,
     /// Limits to keep; None: the robot's.
     pub limits: Option<Limits>,
-    /// Allowed distance of the tip from the path (m) and angle from its orientation (rad); None: the method's own.
+    /// Allowed distance of the tip from the path (m) and angle from its orientation (rad). `None` means the method's
+    /// own.
     pub accuracy: Option<f64>,
-    /// The search of [`AlongPathMethod::Timed`]; None: differential evolution. [`Tpbso`] has its own.
+    /// The solver of [`AlongPathMethod::Timed`]. `None` means differential evolution. [`Tpbso`] has its own.
     pub solver: Option<AnySolver<DerivativeFree>>,
     /// Budget of the search; None: the method's own.
     pub stop: Option<Stop>,
@@ -127,7 +128,7 @@ pub struct AlongPathOptions {
 }
 
 impl AlongPathOptions {
-    /// The given start, checked against the limits; None: the planner's choice.
+    /// Returns the given start, checked against the limits; `None` if the planner chooses it.
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::OutsideLimits`].

@@ -1,4 +1,4 @@
-//! Planning from one end to another.
+//! Planning from point to point.
 
 use super::endpoint::Endpoint;
 use super::plan::Plan;
@@ -8,11 +8,11 @@ use crate::error::Result;
 use crate::robot::Robot;
 use crate::solver::Monitor;
 
-/// Plans a motion of `robot` from `start` to `end`, at rest at both.
+/// Plans a motion of `robot` from rest at `start` to rest at `end`.
 ///
 /// # Errors
-/// Any [`Error`](crate::Error) for wrong input, [`Error::Unreachable`](crate::Error::Unreachable) for an end out of reach.
-/// A plan that breaks something is a status, not an error.
+/// Any [`Error`](crate::Error) for wrong input, [`Error::Unreachable`](crate::Error::Unreachable) if an end is out of
+/// reach. A plan that violates limits is a status, not an error.
 pub fn plan_point_to_point(
     robot: &Robot,
     start: &Endpoint,

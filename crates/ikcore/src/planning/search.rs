@@ -30,7 +30,7 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// Returns the status of a plan that keeps all limits, or does not.
+    /// Returns the status of a plan: solved if `keeps_everything`, else why the search ended.
     pub(super) fn status(&self, keeps_everything: bool) -> Status {
         match self.status {
             Status::Interrupted => Status::Interrupted,
@@ -52,7 +52,7 @@ impl Search {
         let done = Cell::new(0);
         let mut recorded = Recorded { cost, history: vec![], done: &done };
         let mut reporting = EvaluationMonitor { monitor, done: &done, total: stop.max_evaluations };
-        // Stream 0 and those after it belong to the inverse kinematics of the ends.
+        // Streams from 0 on belong to the inverse kinematics of the ends.
         let mut rng = rng::stream(*seed, u64::MAX);
         let mut x0 = Point::from_elem(0.0, recorded.dimension());
         bounds.sample(&mut rng, &mut x0);
@@ -66,7 +66,7 @@ impl Search {
     }
 }
 
-/// Remembers every improvement.
+/// Records every improvement.
 struct Recorded<'a> {
     cost: &'a mut dyn Objective,
     history: Vec<Improvement>,

@@ -1,4 +1,4 @@
-//! A bound that a planned trajectory breaks.
+//! Violations of bounds by a planned trajectory.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -7,16 +7,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::wording::number;
 
-/// A bound that a trajectory breaks.
+/// A bound that a trajectory violates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Violation {
-    /// Quantity that breaks the bound, for example "velocity of joint 'elbow'".
+    /// The quantity, for example "velocity of joint 'elbow'".
     pub what: String,
-    /// Its extreme value, in `unit`.
+    /// Extreme value of the quantity, in `unit`.
     pub value: f64,
-    /// Its bound, in `unit`.
+    /// The bound, in `unit`.
     pub bound: f64,
-    /// "rad/s" and so on.
+    /// The unit, for example "rad/s".
     pub unit: Cow<'static, str>,
 }
 

@@ -1,11 +1,12 @@
 //! Following a path, tick by tick, inside the limits.
 //!
-//! Algorithm 1 of Cheng et al. (2020), with what it leaves open settled:
+//! Algorithm 1 of Cheng et al. (2020). Our choices where the paper leaves something open:
 //!
-//! - The box of a tick is the position limits intersected with what the velocity limit lets the accepted configuration
-//!   reach, so that no answer can break either. A position limit that closes in faster than its joint may move is
-//!   followed at the joint's limit, and reported.
-//! - The tick's rule works until the error is in its band or, for random searches, below that of the tick before.
+//! - The box of a tick is the intersection of the position limits with the range that the velocity limits allow from
+//!   the accepted configuration, so that no result can violate either. If a position limit closes in faster than its
+//!   joint may move, the joint follows at its velocity limit, and the violation is reported.
+//! - The rule of a tick works until the error is in its band or, for random searches, below the error of the previous
+//!   tick.
 //! - Time always advances, and the best configuration found is always kept.
 
 mod controller;

@@ -20,11 +20,11 @@ use crate::wording::time;
 pub struct ModelFreeOptions {
     /// The controller.
     pub controller: Controller,
-    /// Limits on every command, probes included; None: none.
+    /// Limits on every command, probes included. `None` means unlimited.
     pub limits: Option<Limits>,
     /// The error band.
     pub tolerance: Tolerance,
-    /// Seed of the random draws: the same seed, the same bits.
+    /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 
@@ -42,11 +42,11 @@ impl Default for ModelFreeOptions {
 /// The record of a track without a model.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ModelFreeRecord {
-    /// Rows as in any track: `q` what was accepted, `position` what was measured (m), at `command`. Its violations are those
-    /// of all commands.
+    /// Rows as in any track: `q` is the accepted configuration, `position` the position measured at `command` (m). The
+    /// violations cover all commands.
     pub track: Record,
-    /// The command at which each row's position was measured (k, n). [`Znnbas`](super::controller::Znnbas) measures an antenna
-    /// away from what it accepts.
+    /// The command at which each row's position was measured (k, n). It differs from `q` for
+    /// [`Znnbas`](super::controller::Znnbas), which measures an antenna away from the accepted configuration.
     pub command: Vec<f64>,
     /// Why the plant ended the run, if it did.
     pub fault: Option<Fault>,
@@ -55,8 +55,8 @@ pub struct ModelFreeRecord {
 /// Follows `reference` with the tip of `plant`, from `start` (n,). Row 0 is one measurement at the start.
 ///
 /// # Errors
-/// Any [`Error`] for wrong input, and [`Error::PlantFailed`] where the plant does not even answer at the start. One that
-/// fails later ends the run with [`Status::PlantFailed`]. A path that cannot be followed is a status, not an error.
+/// Any [`Error`] for wrong input, and [`Error::PlantFailed`] if the plant fails at the start. A plant that fails later
+/// ends the run with [`Status::PlantFailed`]. A path that cannot be followed is a status, not an error.
 pub fn track_model_free(
     plant: &mut dyn Plant,
     reference: &Reference,
@@ -108,7 +108,7 @@ fn check_delay(controller: &Controller, ticks: usize) -> Result<()> {
     }
 }
 
-/// Commands and measurements until the controller has no more to ask in this tick.
+/// Sends commands and takes measurements until the controller ends the tick.
 fn tick(
     plant: &mut dyn Plant,
     session: &mut ControlSession,

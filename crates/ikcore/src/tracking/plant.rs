@@ -10,19 +10,19 @@ use crate::robot::Robot;
 
 /// An arm and its sensor, as a controller sees them.
 pub trait Plant {
-    /// Sends the arm to `command` (n,) (rad, m) and says where its tip is then: a position (m) or a pose.
+    /// Sends the arm to `command` (n,) (rad, m) and returns the measured tip: its position (m) or its pose.
     ///
     /// # Errors
-    /// [`Fault`] ends the run, with what was recorded until then.
+    /// [`Fault`] ends the run; the rows recorded so far are kept.
     fn measure(&mut self, command: &[f64]) -> Result<TipPose, Fault>;
 
-    /// Ticks between two looks at the monitor: one, unless measurements take next to no time.
+    /// Ticks between two polls of the monitor: one, unless measurements are almost free.
     fn ticks_between_looks(&self) -> usize {
         1
     }
 }
 
-/// Why a plant has no answer, as the end of "the plant ...".
+/// Why a plant failed, as the end of "the plant ...".
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fault(pub String);
 
@@ -36,8 +36,8 @@ impl<F: FnMut(&[f64]) -> T, T: Into<TipPose>> Plant for FunctionPlant<F> {
     }
 }
 
-/// A robot that goes at once where it is sent, and a sensor with Gaussian noise. Give it another robot than the one you
-/// have in mind ([`Robot::with_errors`]), and it is an arm with a wrong model.
+/// A robot that reaches every command at once, and a sensor with Gaussian noise. To simulate a wrong model, pass a
+/// robot that differs from the nominal one ([`Robot::with_errors`]).
 #[derive(Debug, Clone)]
 pub struct KinematicPlant {
     robot: Robot,
@@ -53,11 +53,11 @@ impl KinematicPlant {
     /// [`Error::OutOfRange`] for noise that is negative or not finite.
     pub fn new(robot: Robot, noise: f64, seed: u64) -> Result<Self> {
         require_noise("noise", noise)?;
-        // Stream 0 of the same seed is the controller's.
+        // The controller uses stream 0 of the same seed.
         Ok(Self { robot, noise, rotation_noise: None, rng: rng::stream(seed, 1) })
     }
 
-    /// The same plant with a sensor that measures poses, with a noise of this standard deviation (rad) about each axis of the
+    /// The same plant with a sensor that measures poses, with noise of this standard deviation (rad) about each axis of the
     /// base.
     ///
     /// # Errors
@@ -67,7 +67,7 @@ impl KinematicPlant {
         Ok(Self { rotation_noise: Some(rotation_noise), ..self })
     }
 
-    /// The robot that moves.
+    /// The simulated robot.
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
@@ -120,7 +120,7 @@ impl Plant for KinematicPlant {
     }
 }
 
-/// Err unless a measurement is finite and tells what `target` asks for.
+/// Checks that a measurement is finite, and returns as much of it as `target` asks for.
 pub(super) fn check(tip: TipPose, target: &TipPose) -> Result<TipPose, Fault> {
     if tip.require_finite("tip").is_err() {
         let what = if tip.is_oriented() { "pose" } else { "position" };

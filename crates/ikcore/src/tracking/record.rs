@@ -12,11 +12,11 @@ use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::wording::{number, time};
 
-/// Rounding that a limit may be exceeded by: units in the last place of q.
+/// Excess over a limit that counts as rounding, in units in the last place of q.
 const ALLOWED_ULPS: f64 = 4.0;
 
-/// The record of a track: k rows, row 0 the start at t = 0, row i the tick that ends at t_i = i dt. Tables are stored
-/// row after row.
+/// The record of a track: k rows. Row 0 is the start at t = 0; row i is the tick that ends at t_i = i dt. Tables are
+/// stored in row-major order.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Record {
     /// Joints per row, n.
@@ -25,30 +25,31 @@ pub struct Record {
     pub q: Vec<f64>,
     /// Tip positions (k, 3) (m).
     pub position: Vec<[f64; 3]>,
-    /// Wanted positions (k, 3) (m).
+    /// Reference positions (k, 3) (m).
     pub reference: Vec<[f64; 3]>,
-    /// Distances from them (k,) (m).
+    /// Distances from the reference positions (k,) (m).
     pub position_error: Vec<f64>,
-    /// Angles from the wanted orientations (k,) (rad); NaN where none was asked for.
+    /// Angles from the reference orientations (k,) (rad); NaN where the task has no orientation.
     pub rotation_error: Vec<f64>,
     /// How each tick ended (k,).
     pub step_status: Vec<Status>,
     /// Evaluations of the forward kinematics per tick (k,).
     pub step_evaluations: Vec<usize>,
-    /// Iterations per tick (k,); passes of the beetle.
+    /// Iterations per tick (k,); for beetle antennae search, passes.
     pub step_iterations: Vec<usize>,
-    /// Largest excess of a displacement over v dt or of a position over its limit (rad, m); 0 within 4 ulp.
+    /// Largest excess of a displacement over v dt or of a position over its limit (rad, m); 0 if within 4 ulp.
     pub max_violation: f64,
     /// The joint of that excess, and when (s).
     pub worst_violation: Option<(usize, f64)>,
-    /// Smallest distance of a speed from its limit (rad/s, m/s); infinite without limits, below zero only where
-    /// `max_violation` is above.
+    /// Smallest distance of a speed from its limit (rad/s, m/s); infinite without limits, negative only if
+    /// `max_violation` is positive.
     pub limit_margin: f64,
     /// The limits in force.
     pub limits: Limits,
     /// The error band.
     pub criterion: Criterion,
-    /// Distance by which the path is provably out of reach, and when (s); None where the track succeeded or nothing is proven.
+    /// Distance by which the path is provably out of reach, and when (s). `None` if the track succeeded or nothing is
+    /// proven.
     pub out_of_reach: Option<(Beyond, f64)>,
     /// How the track as a whole ended.
     pub status: Status,
@@ -62,7 +63,7 @@ pub struct Record {
 pub(super) struct Accepted<'a> {
     /// Configuration (n,).
     pub q: &'a [f64],
-    /// The limits that it was held against.
+    /// The limits that `q` is checked against.
     pub tick_box: &'a TickBox,
 }
 
@@ -104,7 +105,7 @@ impl Record {
         self.dt
     }
 
-    /// Appends what a tick has accepted.
+    /// Appends the result of a tick.
     pub(super) fn push(&mut self, accepted: &Accepted<'_>, reference: [f64; 3], step: &Step) {
         self.note_violations(accepted);
         self.q.extend_from_slice(accepted.q);
@@ -117,7 +118,7 @@ impl Record {
         self.step_iterations.push(step.iterations);
     }
 
-    /// What the tick that has just ended breaks of its limits.
+    /// Records limit violations of the tick that has just ended.
     fn note_violations(&mut self, accepted: &Accepted<'_>) {
         let rows = self.rows();
         if rows == 0 {
@@ -131,7 +132,7 @@ impl Record {
             fastest = larger((q - before).abs() - velocity * self.dt, fastest);
             farthest = larger(larger(floor - q, q - ceiling), farthest);
         }
-        // From displacements, which keep the limit to the last bit; velocities round once more.
+        // Computed from displacements, which keep the limit to the last bit; velocities add a rounding error.
         self.limit_margin = self.limit_margin.min(0.0 - fastest / self.dt);
         let limited_acceleration = self.limits.field(Field::Acceleration).is_some();
         if limited_acceleration || larger(fastest, farthest) > self.max_violation {
@@ -139,7 +140,7 @@ impl Record {
         }
     }
 
-    /// Which joints break a limit in the tick from `from` to `to` (s), and by how much.
+    /// Finds the joints that violate a limit in the tick from `from` to `to` (s), and by how much.
     fn find_violations(&mut self, accepted: &Accepted<'_>, [from, to]: [f64; 2]) {
         let Accepted { q, tick_box: TickBox { velocity, floor, ceiling, .. } } = *accepted;
         for j in 0..q.len() {
@@ -151,7 +152,7 @@ impl Record {
         }
     }
 
-    /// Remembers the worst `excess` (rad, m) over a limit of joint `j`, at `q` and `when` (s), unless it is rounding.
+    /// Keeps the worst `excess` (rad, m) over a limit of joint `j`, at `q` and `when` (s), unless it is rounding.
     #[inline]
     pub(super) fn note_excess(&mut self, excess: f64, j: usize, q: f64, when: f64) {
         if excess <= self.max_violation {
@@ -164,15 +165,16 @@ impl Record {
         }
     }
 
-    /// By how much the displacement `step` of joint `j` differs from that of the tick before, beyond the acceleration limit.
+    /// Returns by how much the displacement `step` of joint `j` differs from that of the tick before, beyond the
+    /// acceleration limit.
     fn too_sudden(&self, j: usize, step: f64, [from, to]: [f64; 2]) -> f64 {
         let rows = self.rows();
         let before = if rows > 1 { self.q[(rows - 1) * self.dof + j] - self.q[(rows - 2) * self.dof + j] } else { 0.0 };
         (step - before).abs() - self.limits.acceleration_over(j, from, to) * self.dt * self.dt
     }
 
-    /// Sums up: the track has succeeded if, once in its band, it stayed there, and every limit was kept; it was held in its
-    /// region if, at times, it was as near to its band as that allows.
+    /// Sets the status of the whole track. It is solved if it stayed in the band once it had reached it, and every
+    /// limit was kept; it was held in its region if at times it came only as near to the band as the region allows.
     pub(super) fn finish(&mut self, interrupted: bool, elapsed: Duration) {
         self.elapsed = elapsed;
         let last = *self.step_status.last().unwrap_or(&Status::Capped);
@@ -186,7 +188,7 @@ impl Record {
         };
     }
 
-    /// How many rows there are, k.
+    /// Number of rows, k.
     pub fn rows(&self) -> usize {
         self.position.len()
     }
@@ -200,12 +202,12 @@ impl Record {
         row as f64 * self.dt
     }
 
-    /// When the tick of row `row`, from 1, begins and ends (s).
+    /// Returns when the tick of row `row` (1 or more) begins and ends (s).
     fn ends(&self, row: usize) -> [f64; 2] {
         [self.time_of(row - 1), self.time_of(row)]
     }
 
-    /// The velocity limit that each velocity was held against (k, n); NaN in row 0.
+    /// Velocity limits that the velocities are checked against (k, n); NaN in row 0.
     pub fn velocity_limit(&self) -> Vec<f64> {
         let mut limits = vec![f64::NAN; self.q.len()];
         let ticks = (1..self.q.len() / self.dof).map(|i| self.ends(i));
@@ -221,12 +223,12 @@ impl Record {
         at_rest.chain(moving).collect()
     }
 
-    /// The first row within the band, or as near to it as the region allows.
+    /// The first row in the band, or as near to it as the region allows.
     pub fn joined(&self) -> Option<usize> {
         self.step_status.iter().position(is_in_place)
     }
 
-    /// Evaluations of the forward kinematics in all.
+    /// Total evaluations of the forward kinematics.
     pub fn evaluations(&self) -> usize {
         self.step_evaluations.iter().sum()
     }
@@ -280,7 +282,7 @@ impl Record {
         )
     }
 
-    /// Errors (m, rad) with their units, as far as they were asked for.
+    /// Formats errors (m, rad) with their units; components that the task leaves out are omitted.
     fn in_words(&self, position: f64, rotation: f64) -> String {
         let asked =
             |errors: &[f64], value: f64| if errors.iter().any(|error| !error.is_nan()) { value } else { f64::NAN };
@@ -289,17 +291,17 @@ impl Record {
     }
 }
 
-/// Whether a tick ended where it was to: in the band, or as near to it as the region allows.
+/// Returns true if the tick ended in the band, or as near to it as the region allows.
 fn is_in_place(status: &Status) -> bool {
     matches!(status, Status::Solved | Status::HeldInRegion)
 }
 
-/// The smallest error; NaN, which was not asked for, does not count.
+/// The smallest error; NaN (not part of the task) is ignored.
 fn smallest(errors: &[f64]) -> f64 {
     errors.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// The largest error; NaN, which was not asked for, does not count.
+/// The largest error; NaN (not part of the task) is ignored.
 fn largest(errors: &[f64]) -> f64 {
     errors.iter().copied().fold(0.0, f64::max)
 }

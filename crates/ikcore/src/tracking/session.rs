@@ -1,4 +1,4 @@
-//! One control loop: the accepted configuration, the clock, the box of the tick and the rule that moves within it.
+//! One control loop: the accepted configuration, the clock, the box of the tick and the rule that runs in it.
 
 use std::borrow::Cow;
 
@@ -16,7 +16,7 @@ use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::{Assessment, Criterion, Goals, Target, Task};
 
-/// Bisections of a tick that would leave the region: they find how much of it may be kept to a thousandth.
+/// Bisections of a tick that would leave the region; they find the admissible fraction to one thousandth.
 const BISECTIONS: usize = 10;
 
 /// A tracker in progress.
@@ -33,11 +33,11 @@ pub struct Session {
     dt: f64,
     ticks: usize,
     q: Point,
-    /// Where the last tick began.
+    /// Configuration at the start of the last tick.
     before: Point,
-    /// The value accepted in the tick before: what a random search has to beat.
+    /// The value accepted in the previous tick, which a random search must beat.
     last_value: Option<f64>,
-    /// Where the target was at the end of that tick, and its velocity (m/s) if known.
+    /// Target at the end of the previous tick, and its velocity (m/s) if known.
     last_target: Option<(Target, Option<[f64; 3]>)>,
     tick_box: TickBox,
     seed: u64,
@@ -45,11 +45,11 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session at rest in `start` (n,) at t = 0, with ticks of `dt` (s).
+    /// A session at rest at `start` (n,) at t = 0, with ticks of `dt` (s).
     ///
     /// # Errors
-    /// Any [`Error`](crate::Error) for wrong input: a start outside its limits, limits that this tracker cannot keep, a
-    /// time step that is not positive.
+    /// Any [`Error`](crate::Error) for wrong input: a start outside its limits, limits that this tracker does not
+    /// support, a time step that is not positive.
     pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
         let limits = options.limits_for(robot);
         require_positive("dt", dt)?;
@@ -67,7 +67,7 @@ impl Session {
         robot.check("start", start)?;
         let robot = options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone());
         require_inside(&robot, &limits, &criterion, "start", start)?;
-        // Where limits vary, what goals take for a joint's range is that at the start.
+        // If limits vary over time, goals use the joint ranges at the start.
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &robot, &ranges);
         Ok(Self {
@@ -125,7 +125,7 @@ impl Session {
         &self.criterion
     }
 
-    /// Returns the part of `wanted` that the task asks for, checked.
+    /// Returns the part of `wanted` that the task uses, validated.
     fn read<'a>(&self, wanted: &'a Target) -> Result<Cow<'a, Target>> {
         wanted.validate()?;
         self.task.map_or(Ok(Cow::Borrowed(wanted)), |task| task.target(wanted).map(Cow::Owned))
@@ -145,12 +145,13 @@ impl Session {
         Accepted { q: &self.q, tick_box: &self.tick_box }
     }
 
-    /// The robot that is moved.
+    /// The tracked robot.
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
-    /// Stands still and takes the error to `target`, which moves at `velocity` (m/s), as what the first tick has to beat.
+    /// Evaluates the start without moving; its error to `target`, which moves at `velocity` (m/s), is the value that
+    /// the first tick must beat.
     ///
     /// # Errors
     /// As [`step`](Self::step).
@@ -168,17 +169,17 @@ impl Session {
         Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false })
     }
 
-    /// Moves by one tick towards `target`, inside the limits. Time advances in any case.
+    /// Moves by one tick towards `target`, inside the limits. Time advances whether or not the target is reached.
     ///
     /// # Errors
     /// [`Error::NotFinite`](crate::Error::NotFinite) for a target that is not finite,
-    /// [`Error::WrongTarget`](crate::Error::WrongTarget) for one that says too little for the task.
+    /// [`Error::WrongTarget`](crate::Error::WrongTarget) if the target lacks a component that the task needs.
     pub fn step(&mut self, target: &Target, monitor: &mut dyn Monitor) -> Result<Step> {
         self.step_moving(target, None, monitor)
     }
 
-    /// The same with the velocity (m/s) that the target has at the end of the tick, for rules that work with velocities;
-    /// None: they take the way from where it was.
+    /// Like [`step`](Self::step), with the velocity (m/s) of the target at the end of the tick, for rules that work
+    /// with velocities. `None` derives it from the previous target.
     ///
     /// # Errors
     /// As [`step`](Self::step).
@@ -232,8 +233,8 @@ impl Session {
         Ok(Step { status, error: error.into(), position, evaluations, iterations, inside_limits, interrupted })
     }
 
-    /// Takes back as much of a tick as would bring the tip out of its region. Where the tick began the tip is inside, and the box
-    /// is convex, so that any part of the tick ends in it.
+    /// Shortens a tick that would take the tip out of its region. The tick starts inside the region and the box is
+    /// convex, so any fraction of the tick ends in the box.
     fn keep_in_region(&mut self, target: &Target, found: &mut TickResult) {
         let region = self.criterion.region.as_ref().filter(|region| !region.contains(&found.position));
         let Some(region) = region else { return };
@@ -251,10 +252,10 @@ impl Session {
         self.running.forget();
     }
 
-    /// Back to rest in `start` (n,), at t = 0.
+    /// Resets the session to rest at `q` (n,), at t = 0.
     ///
     /// # Errors
-    /// As [`new`](Self::new) for the start.
+    /// As [`new`](Self::new) for a start.
     pub fn reset(&mut self, q: &[f64]) -> Result<()> {
         self.robot.check("q", q)?;
         require_inside(&self.robot, &self.limits, &self.criterion, "q", q)?;
@@ -266,20 +267,20 @@ impl Session {
     }
 }
 
-/// q + share * (end - q), never beyond `end` by rounding.
+/// Writes q + share * (end - q); rounding cannot take it beyond `end`.
 fn between(q: &[f64], end: &[f64], share: f64, out: &mut [f64]) {
     for (out, (q, end)) in out.iter_mut().zip(q.iter().zip(end)) {
         *out = (q + share * (end - q)).clamp(q.min(*end), q.max(*end));
     }
 }
 
-/// Err unless `q` is within the position limits, and puts the tip in its region; `what` names it.
+/// Checks that `q` is within the position limits and that its tip is in the region; `what` names it in the error.
 fn require_inside(robot: &Robot, limits: &Limits, criterion: &Criterion, what: &str, q: &[f64]) -> Result<()> {
     limits.require_inside(what, 0.0, q)?;
     criterion.region.map_or(Ok(()), |region| region.require_inside(what, &robot.tip_position(q)))
 }
 
-/// Err where an arm may not be able to stand still, and so to stay in a region.
+/// Checks that the arm can stop at any time, without which it cannot be kept in a region.
 fn require_room_to_stop(limits: &Limits) -> Result<()> {
     let method = "a task with a region";
     let remedy = "an arm that may not stop at once can be carried out of it; leave one of the two out";

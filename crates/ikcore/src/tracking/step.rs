@@ -8,19 +8,20 @@ use crate::task::TipError;
 /// The result of one tick.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Step {
-    /// [`Status::Solved`] in the band, [`Status::Improved`] nearer than before, else [`Status::Capped`].
+    /// [`Status::Solved`] in the band, [`Status::HeldInRegion`] if the region keeps it out of the band,
+    /// [`Status::Improved`] if nearer than before, else [`Status::Capped`].
     pub status: Status,
     /// Errors at the accepted configuration.
     pub error: TipError,
-    /// Position of the tip there (m).
+    /// Tip position at the accepted configuration (m).
     pub position: [f64; 3],
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
-    /// Iterations of the rule; passes of the beetle.
+    /// Iterations of the rule; for beetle antennae search, passes.
     pub iterations: usize,
-    /// False where a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this tick.
+    /// False if this tick cannot bring a joint back within its position limits or slow it down to its velocity limit.
     pub inside_limits: bool,
-    /// The monitor asked to stop; nothing was accepted and time stands still.
+    /// The monitor asked to stop: no configuration was accepted, and time did not advance.
     pub interrupted: bool,
 }
 

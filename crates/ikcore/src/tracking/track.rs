@@ -1,4 +1,4 @@
-//! A path followed to its end.
+//! Tracking of a whole path.
 
 use super::record::Record;
 use super::session::Session;
@@ -14,11 +14,11 @@ use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status, Stop};
 use crate::task::{Goal, Target, Tolerance};
 
-/// Follows `reference` with the tip of `robot`, from `start` (n,), or from a configuration solved for its first point.
+/// Follows `reference` with the tip of `robot`, from `start` (n,) or from a configuration solved for its first point.
 ///
 /// # Errors
-/// Any [`Error`](crate::Error) for wrong input. A path that cannot be followed is a status, not an error. A monitor that
-/// asks to stop leaves the record of the ticks that were finished.
+/// Any [`Error`](crate::Error) for wrong input. A path that cannot be followed is a status, not an error. If the
+/// monitor asks to stop, the record holds the finished ticks.
 pub fn track(
     robot: &Robot,
     reference: &Reference,
@@ -61,7 +61,7 @@ fn farthest_out_of_reach(reference: &Reference, first: usize, session: &Session)
     Ok(farthest)
 }
 
-/// Ticks to the end of `reference`; false where the monitor asked to stop before.
+/// Steps to the end of `reference`; returns false if the monitor asked to stop before.
 fn follow(
     reference: &Reference,
     session: &mut Session,
@@ -70,7 +70,7 @@ fn follow(
 ) -> Result<bool> {
     let last = reference.len() - 1;
     for i in 1..=last {
-        // Asked here too: most ticks are over before the evaluator would ask.
+        // Polled here too, since most ticks end before the evaluator polls the monitor.
         if !monitor.keep_going() {
             return Ok(false);
         }
@@ -84,7 +84,7 @@ fn follow(
     Ok(true)
 }
 
-/// The target of row `i`: a pose where the reference has orientations.
+/// Returns the target of row `i`: a pose if the reference has orientations, else a position.
 fn target(reference: &Reference, i: usize) -> Target {
     match reference.pose(i) {
         Some(pose) => Target::from(&pose),
@@ -92,12 +92,12 @@ fn target(reference: &Reference, i: usize) -> Target {
     }
 }
 
-/// Evaluations within which the first configuration is chosen: no worse than the best of all most of the time, in a sixth of
-/// the time. A target that is still unsolved gets a solve's whole budget.
+/// Evaluation budget of the first configuration: most of the time no worse than the best of all, in a sixth of the
+/// time. If the target is still unsolved, the full budget of a solve is used.
 const CHOOSING: usize = 1000;
 
-/// A configuration on, or nearest to, the path's first point, by the default solver: the best for the goals, or one with
-/// room for what is to come.
+/// Solves for a configuration on, or nearest to, the first point of the path: the best for the goals or, without goals,
+/// one away from singularities and limits.
 fn first_configuration(
     robot: &Robot,
     reference: &Reference,
@@ -112,7 +112,7 @@ fn first_configuration(
     let limits = Limits::of(robot)
         .replace(Field::Lower, at_start(Field::Lower))?
         .replace(Field::Upper, at_start(Field::Upper))?;
-    // Tighter than the band, so that the track does not begin at its edge.
+    // Tighter than the band, so that the track does not start at its edge.
     let tolerance =
         Tolerance { position: 0.1 * options.tolerance.position, rotation: 0.1 * options.tolerance.rotation };
     let target = target(reference, 0);
@@ -129,7 +129,7 @@ fn first_configuration(
     Ok(solve(robot, &target, &options, monitor)?.q.to_vec())
 }
 
-/// Goals for a start that has the most room for what is to come: away from singularities and limits.
+/// Default goals of the start: away from singularities and limits.
 fn roomy(target: &Target) -> Vec<Goal> {
     let motion = if matches!(target, Target::Position(_)) { Motion::Position } else { Motion::Pose };
     vec![Goal::Manipulability { motion, weight: 1.0 }, Goal::Centring { weight: 1.0 }]

@@ -11,29 +11,29 @@ use crate::task::{Criterion, Goal, Task, Tolerance};
 pub struct TrackOptions {
     /// The rule that runs in every tick.
     pub rule: TickRule,
-    /// The part of the path that matters; None: all of it.
+    /// The part of the path to follow. `None` means all of it.
     pub task: Option<Task>,
     /// Goals in the null space of the task.
     pub goals: Vec<Goal>,
     /// The error band.
     pub tolerance: Tolerance,
-    /// Limits to keep; None keeps the robot's.
+    /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
-    /// Where in a tick its velocity limit is taken.
+    /// Which time of a tick its velocity limit is evaluated at.
     pub limit_at: LimitAt,
-    /// Seed of the random draws: the same seed, the same bits.
+    /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 
 impl TrackOptions {
-    /// When a tick is within its band.
+    /// Returns the criterion that a tick is in its band.
     pub(super) fn criterion(&self) -> Result<Criterion> {
         self.task.as_ref().map_or(Ok(()), Task::validate)?;
         let criterion = self.task.map_or(self.tolerance.into(), |task| task.criterion(self.tolerance));
         criterion.validate().map(|()| criterion)
     }
 
-    /// Checks that the rule serves the goals, and the goals the robot.
+    /// Checks that the rule supports the goals, and the robot too.
     pub(super) fn check_goals(&self, robot: &Robot) -> Result<()> {
         if !self.goals.is_empty() && !self.rule.serves_goals() {
             let problem = "goals beside the path are served by the library's own rule and by WeightedPseudoInverse: leave \

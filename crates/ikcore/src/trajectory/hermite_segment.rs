@@ -1,5 +1,6 @@
-//! The polynomial of a segment of length h (s) that meets given values at both ends: Hermite interpolation in the time
-//! since its start, as trajectories store it. [`Cubic`](crate::math::hermite::Cubic) runs over the share of a way.
+//! Polynomials of a segment of length h (s) that meet given values at both ends: Hermite interpolation in the time
+//! since its start, as trajectories store it. For the normalised parameter 0 to 1 see
+//! [`Cubic`](crate::math::hermite::Cubic).
 
 use super::coefficients::{Coefficients, polynomial};
 
@@ -16,7 +17,7 @@ pub(super) fn cubic(h: f64, [q0, q1]: [f64; 2], [v0, v1]: [f64; 2]) -> Coefficie
 
 /// Meets two positions, two velocities and two accelerations.
 pub(super) fn quintic(h: f64, [q0, q1]: [f64; 2], [v0, v1]: [f64; 2], [a0, a1]: [f64; 2]) -> Coefficients {
-    // What is left to do at the end after coasting with the start's acceleration.
+    // Remaining differences at the end after coasting with the acceleration of the start.
     let position = q1 - (q0 + h * (v0 + 0.5 * h * a0));
     let velocity = h * (v1 - (v0 + h * a0));
     let acceleration = h * h * (a1 - a0);

@@ -1,4 +1,4 @@
-//! Joint motion in time.
+//! Joint motion in time: piecewise polynomials with exact extremes.
 
 mod coefficients;
 mod hermite_segment;

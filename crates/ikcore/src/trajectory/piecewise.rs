@@ -1,4 +1,4 @@
-//! Piecewise polynomials, one a segment and joint.
+//! Piecewise polynomials, one per segment and joint.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +9,8 @@ use crate::math::Knots;
 use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range};
 use crate::math::ticks::ticks;
 
-/// How far a joint may jump at a knot (rad or m, relative beyond 1): coefficients that were stored or computed meet only
-/// up to rounding.
+/// Largest jump of a joint at a knot (rad or m, relative beyond 1); stored or computed coefficients meet only up to
+/// rounding.
 const CONTINUITY_TOLERANCE: f64 = 1e-6;
 
 /// The motion of all joints in time: piecewise polynomials between common knots, continuous in position.
@@ -18,17 +18,17 @@ const CONTINUITY_TOLERANCE: f64 = 1e-6;
 pub struct Trajectory {
     joints: Vec<String>,
     knots: Knots,
-    /// Segment by segment, within it joint by joint.
+    /// By segment, then by joint.
     coefficients: Vec<Coefficients>,
 }
 
 impl Trajectory {
-    /// The motion of these `joints` (names) with these `coefficients`, segment by segment and within it joint by joint,
-    /// between `knots` (s) that start at zero and increase.
+    /// The motion of these `joints` (names) with these `coefficients`, by segment and then by joint, between `knots`
+    /// (s) that start at zero and increase.
     ///
     /// # Errors
-    /// [`Error::InvalidTrajectory`] without joints or where one jumps at a knot, [`Error::WrongLength`],
-    /// [`Error::NotFinite`], [`Error::OutOfRange`] where the first knot is not zero, [`Error::NotIncreasing`].
+    /// [`Error::InvalidTrajectory`] without joints or if a joint jumps at a knot, [`Error::WrongLength`],
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] if the first knot is not zero, [`Error::NotIncreasing`].
     pub fn new(joints: Vec<String>, knots: Vec<f64>, coefficients: Vec<Coefficients>) -> Result<Self> {
         if joints.is_empty() {
             return Err(Error::InvalidTrajectory { problem: "it needs at least 1 joint".into() });
@@ -49,9 +49,9 @@ impl Trajectory {
         Ok(trajectory)
     }
 
-    /// The motion through `q` (rad or m; one row of all joints a time) at `times` (s) that start at zero and increase:
-    /// straight between samples, so that the velocity is constant there and jumps at them. With velocities `qd` it is
-    /// cubic, with accelerations `qdd` too it is quintic, and meets them at the samples.
+    /// The motion through `q` (rad or m, one row of all joints per time) at `times` (s) that start at zero and
+    /// increase. It is piecewise linear, so the velocity jumps at the samples; with velocities `qd` it is cubic, with
+    /// accelerations `qdd` too it is quintic, and meets them at the samples.
     ///
     /// # Errors
     /// As [`new`](Self::new); [`Error::InvalidTrajectory`] for accelerations without velocities.
@@ -94,32 +94,32 @@ impl Trajectory {
         &self.joints
     }
 
-    /// When the segments begin and the last one ends (s).
+    /// Times at which the segments begin, and the end of the last one (s).
     pub fn knots(&self) -> &[f64] {
         self.knots.times()
     }
 
-    /// The polynomials, segment by segment and within it joint by joint.
+    /// The polynomials, by segment and then by joint.
     pub fn coefficients(&self) -> &[Coefficients] {
         &self.coefficients
     }
 
-    /// The largest power of time that is in use.
+    /// The largest power of time with a nonzero coefficient.
     pub fn degree(&self) -> usize {
         let used = |coefficients: &Coefficients| coefficients.iter().rposition(|c| *c != 0.0).unwrap_or(0);
         self.coefficients.iter().map(used).max().unwrap_or(0)
     }
 
-    /// How long the motion lasts (s).
+    /// Duration of the motion (s).
     pub fn duration(&self) -> f64 {
         self.knots.duration()
     }
 
-    /// Writes position, velocity and acceleration of all joints (rad or m, and per s and s^2) at time `t` (s, clamped to
-    /// `[0, duration]`). At a knot they are those of the segment that begins.
+    /// Writes position, velocity and acceleration of all joints (rad or m, and per s and s^2) at time `t` (s, clamped
+    /// to `[0, duration]`). At a knot they are those of the next segment.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] for a slice without exactly one entry a joint.
+    /// [`Error::WrongLength`] for a slice whose length is not the number of joints.
     pub fn at(&self, t: f64, q: &mut [f64], qd: &mut [f64], qdd: &mut [f64]) -> Result<()> {
         let n = self.joints.len();
         if let Some(got) = [q.len(), qd.len(), qdd.len()].into_iter().find(|&length| length != n) {
@@ -139,21 +139,21 @@ impl Trajectory {
     }
 
     /// The exact largest acceleration of each joint within the segments (rad/s^2 or m/s^2). Jumps of the velocity at
-    /// knots, which would need an infinite one, are not in it.
+    /// knots are not included.
     pub fn max_acceleration(&self) -> Vec<f64> {
         self.largest(|position| derivative(&derivative(position)))
     }
 
-    /// The exact largest jerk of each joint within the segments (rad/s^3 or m/s^3). Jumps of the acceleration at knots,
-    /// which would need an infinite one, are not in it.
+    /// The exact largest jerk of each joint within the segments (rad/s^3 or m/s^3). Jumps of the acceleration at knots
+    /// are not included.
     pub fn max_jerk(&self) -> Vec<f64> {
         self.largest(|position| derivative(&derivative(&derivative(position))))
     }
 
-    /// The same motion `factor` times as slow.
+    /// The same motion, slower by `factor`.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] where `factor` is not positive and finite.
+    /// [`Error::OutOfRange`] unless `factor` is positive and finite.
     pub fn slowed(&self, factor: f64) -> Result<Self> {
         require_positive("factor", factor)?;
         let knots = self.knots().iter().map(|time| time * factor).collect();
@@ -180,10 +180,10 @@ impl Trajectory {
         ranges
     }
 
-    /// The times i `dt` (s) from 0 on, and the duration as the last one.
+    /// The times i `dt` (s) from 0 on, followed by the duration.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for `dt` not positive, or so small that there would be over 10 million ticks.
+    /// [`Error::OutOfRange`] for `dt` not positive, or so small that more than 10 million ticks would result.
     pub fn sample_times(&self, dt: f64) -> Result<Vec<f64>> {
         let steps = ticks(self.duration(), dt)?;
         Ok((0..steps).map(|i| i as f64 * dt).chain([self.duration()]).collect())
@@ -195,7 +195,7 @@ impl Trajectory {
         &self.coefficients[segment * n..(segment + 1) * n]
     }
 
-    /// For each joint the largest magnitude over all segments of what `quantity` makes of its position.
+    /// Returns for each joint the largest magnitude over all segments of the `quantity` derived from its position.
     fn largest(&self, quantity: impl Fn(&Coefficients) -> Short) -> Vec<f64> {
         let mut largest = vec![0.0_f64; self.joints.len()];
         for segment in 0..self.knots.segments() {
@@ -207,7 +207,7 @@ impl Trajectory {
         largest
     }
 
-    /// Err if a joint is not where the next segment takes it up.
+    /// Checks that every segment starts where the previous one ends.
     fn check_continuity(&self) -> Result<()> {
         for next in 1..self.knots.segments() {
             let span = self.knots.span(next - 1);

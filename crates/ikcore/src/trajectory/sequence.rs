@@ -1,17 +1,17 @@
-//! One motion after the other.
+//! Concatenation of motions.
 
 use super::{Trajectory, polynomial};
 use crate::error::{Error, Result};
 
-/// After a longer one (s) the times of what follows would lose digits that its motion needs.
+/// Longest pause (s); after a longer one, times would lack the precision that the next motion needs.
 const LONGEST_PAUSE: f64 = 1e6;
 
 impl Trajectory {
-    /// This motion, a rest of `pause` (s), and then `next`, which begins where this one ends.
+    /// Returns this motion, followed by a pause of `pause` (s) and by `next`, which must start where this one ends.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a pause below zero or above a million seconds, [`Error::InvalidTrajectory`] for a motion of other joints,
-    /// or one that begins elsewhere.
+    /// [`Error::OutOfRange`] for a pause below zero or above a million seconds, [`Error::InvalidTrajectory`] if `next`
+    /// has other joints or starts elsewhere.
     pub fn then(&self, next: &Self, pause: f64) -> Result<Self> {
         if !(0.0..=LONGEST_PAUSE).contains(&pause) {
             return Err(Error::out_of_range("pause", &format!("from 0 to {LONGEST_PAUSE} s"), pause));

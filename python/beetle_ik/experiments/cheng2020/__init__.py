@@ -12,15 +12,16 @@ from .tip_box import tip_box
 from .trends import trends
 
 _SUMMARY = """
-A beetle feels its way: it compares the error at the ends of two antennae and steps towards the smaller. Cheng et al.
-move redundant arms with it, without a Jacobian and without breaking a velocity limit that varies over time.
+A beetle compares the error at the ends of two antennae and steps towards the smaller. Cheng et al. move redundant arms
+this way, without a Jacobian and without violating velocity limits that vary in time.
 
-**The method works**, once it is read so that it can be run: both arms follow their circles and no limit is broken.
-**Its errors and its lead are another matter.** The published errors are the error band that was chosen, which the
-paper does not give. The lead over the swarms is how far a step is searched: swarms need several times the evaluations
-where they are drawn anew in all that the limit allows, less in a small box and the more of them the finer the
-accuracy, and about as many in a box that shrinks with the error as the beetle's antennae do. Where more than the size
-of the error is known, trackers need one to four evaluations a step for what takes the beetle hundreds.
+**The method works**, once the gaps in its description are filled: both arms follow their circles, and no limit is
+violated. **Its errors and its lead are another matter.** The published errors are about half the error band, which is
+chosen freely and which the paper does not give. The lead over the swarms depends on the box that each step searches. In
+all that the limit allows, swarms need several times the evaluations of the beetle. In a small fixed box they need
+fewer, but the more the finer the accuracy. In a box that shrinks with the error, as the beetle's antennae do, they need
+about as many as the beetle. Trackers that use more than the size of the error need one to four evaluations per step
+where the beetle needs hundreds.
 """
 
 

@@ -24,11 +24,11 @@ _INVERSE = "weighted pseudo-inverse"
 _GAIN = 5.0  # 1/s: the whole error within one step of 0.2 s
 
 _TEXT = """
-BAS and the swarms see a single number: how far the tip is. Three trackers that see more stand beside them here.
-`BroydenBAS` sees *where* the tip is, still without a model: it takes the difference of two measurements for what it
-is, a secant of the Jacobian, and keeps what it has learnt from step to step. The pseudo-inverse, which the paper sets
-out to replace, and the library's default know the model. With a model at hand, or a sensor that tells a direction,
-there is no reason to search at random.
+BAS and the swarms use a single number: the distance of the tip from its target. Three trackers that use more are
+compared with them here. `BroydenBAS` measures *where* the tip is, still without a model: it treats the difference of
+two measurements as a secant of the Jacobian, and keeps the estimate from step to step. The pseudo-inverse, which the
+paper sets out to replace, and the library's default know the model. With a model, or with a sensor that measures a
+direction, there is no reason to search at random.
 """
 
 
@@ -56,7 +56,7 @@ def accuracy(context: Context) -> Part:
         name="accuracy",
         title="What accuracy costs: iiwa 14, start on the circle",
         drawing=_draw(curves),
-        caption="Each point of a line is an error band, from 1 mm to 1 nm; below and to the left is better.",
+        caption="Each point of a line is an error band, from 1 mm to 1 nm; lower left is better.",
     )
     section = Section(TITLE, [_TEXT, figure, _table(curves)])
     return section, [pseudo_inverse_claim(curves[_BEETLE], curves[_INVERSE][0])]
@@ -66,16 +66,16 @@ def pseudo_inverse_claim(beetle: list[Point], inverse: Point) -> Claim:
     """The paper's reason to leave the Jacobian."""
     near = min(beetle, key=lambda point: abs(point.error - inverse.error))
     return Claim.judged(
-        "BAS saves computation that approaches based on the pseudo-inverse of the Jacobian need.",
+        "BAS saves the computation that methods based on the pseudo-inverse of the Jacobian need.",
         source="Abstract and section I",
-        rule="For the error of the pseudo-inverse BAS needs less time or fewer evaluations.",
+        rule="For the same error BAS needs less time or fewer evaluations than the pseudo-inverse.",
         measured="; ".join(
             f"{name}: {number(point.error, 2)} m with {number(point.evaluations, 3)} evaluations and "
             f"{number(1e6 * point.time, 2)} µs a step"
             for name, point in {_INVERSE: inverse, _BEETLE: near}.items()
         ),
         holds=near.time < inverse.time or near.evaluations < inverse.evaluations,
-        reason="Nor does the pseudo-inverse break the velocity limit here: it is held in the same box as BAS.",
+        reason="The pseudo-inverse keeps the velocity limit as well: it is solved in the same box as BAS.",
         section=TITLE,
     )
 

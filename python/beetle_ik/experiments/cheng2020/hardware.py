@@ -33,9 +33,9 @@ TITLE = "On an arm with servos"
 _CIRCULAR = 0.05  # of the radius: by how much the radius may vary
 
 _TEXT = """
-The paper sends the angles that BAS has resolved to a real iiwa, and reads a circle back from it. We have no iiwa and
-send them to one in MuJoCo: rods of 20 kg in all, moved by position servos that give way under gravity, a command every
-0.2 s.
+The paper sends the joint angles found by BAS to a real iiwa, and reads a circle back from it. We have no iiwa, and send
+them to a simulated one in MuJoCo: rods of 20 kg in total, moved by position servos that sag under gravity, with a
+command every 0.2 s.
 """
 
 

@@ -36,19 +36,18 @@ _BAND_SEEDS = 3
 _LATEST = 30  # steps until the error is in its band
 
 _TEXT = """
-The tip starts off the circle, so that there is an approach to see: {planar} m away for the planar arm, {iiwa} m for
-the iiwa. In each step the beetle explores the joint positions that the velocity limit of eq. (7) lets the arm reach
-from where it is; what it does not find within that box does not exist for it, and so no limit can be broken.
+The tip starts off the circle, so that there is an approach to see: {planar} m away for the planar arm, {iiwa} m for the
+iiwa. In each step the beetle explores only the joint positions that the arm can reach within the velocity limit of eq.
+(7), so no limit can be violated.
 
-Both arms run into the band and stay there. The mean error in it is {low} to {high} of the band, for bands of {bands} m
-alike: **the published 2 × 10⁻⁵ m is the error band that was chosen, not a property of the method.** The paper does not
-say what its band was; we set ours so that the mean error becomes the published one.
+Both arms enter the band and stay there. The mean error is {low} to {high} of the band, for bands of {bands} m alike:
+**the published 2 × 10⁻⁵ m follows from the error band that was chosen, and is not a property of the method.** The paper
+does not give its band; we set ours so that the mean error equals the published one.
 """
 _TEXT_VELOCITY = """
-The velocities are another matter. Each step ends wherever in the band the beetle happened to be, so the joints of the
-planar arm change their velocities by {beetle} rad/s (rms) from step to step. The circle does not ask for that: our
-model-based tracker follows it with joints that move at {model_speed} rad/s at most and change that by {model}
-rad/s from step to step.
+The velocities are rough. Each step ends wherever the beetle enters the band, so the joint velocities of the planar arm
+change by {beetle} rad/s (rms) from step to step. The circle does not require that: our model-based tracker follows it
+with joint velocities of at most {model_speed} rad/s, which change by {model} rad/s from step to step.
 """
 
 

@@ -30,16 +30,16 @@ _BEETLE_HOLDS = 6  # base and best of the pass, where it stands, direction, two 
 _A_MEMBER = {"GA": 2, "PSO": 3, "FA": 1, "QPSO": 2}
 
 _TEXT = """
-**Convergence.** The paper takes over a theorem: with step sizes that are chosen properly, BAS converges with
-probability 1. Its own step sizes are those of eq. (12) and (13), in proportion to the error. We send the iiwa from a
-random configuration to the position of the tip at another one, {count} times, within the joint limits. The table says
-how many targets are reached to 0.1 mm. {stuck}
+**Convergence.** The paper cites a theorem: with properly chosen step sizes, BAS converges with probability 1. The step
+sizes of the paper are those of eq. (12) and (13), in proportion to the error. We send the iiwa from a random
+configuration to the tip position of another one, {count} times, within the joint limits. The table shows how many
+targets are reached to 0.1 mm. {stuck}
 
-**Memory.** A beetle keeps the point it stands on, the best one, a direction and two antennae. The table counts the
-configurations that each method holds at once, in the settings that are the cheapest at 1 mm in the whole box.
+**Memory.** A beetle stores its position, the best one, a direction and two antennae. The table counts the
+configurations that each method stores at once, in the settings that are the cheapest at 1 mm in the whole box.
 """
 _STUCK = """
-Ten times as many passes reach hardly more of them: the others have run into joint limits or a fold, where all that lies
+Ten times as many passes reach hardly more of them: the others end at joint limits or folds, where every configuration
 within c₁ times the error is worse.
 """
 
@@ -114,11 +114,11 @@ def _reached_table(reached: list[Reached]) -> Table:
 def _memory_table(held: dict[str, int]) -> Table:
     return Table(
         name="memory",
-        title="Configurations held at once",
+        title="Configurations stored at once",
         columns=[Column(name="method"), Column(name="configurations"), Column(name="setting")],
         rows=[[name, count, repr(all_tuned()[WHOLE.name, PRECISION, name].setting)] for name, count in held.items()],
-        caption="Counted from the algorithms: GA holds parents and children, PSO positions, velocities and bests, QPSO "
-        "positions and bests, FA positions.",
+        caption="Counted from the algorithms: GA stores parents and children, PSO positions, velocities and bests, "
+        "QPSO positions and bests, FA positions.",
         folded=True,
         carried_over=COMMAND,
     )
@@ -141,7 +141,8 @@ def convergence_claim(reached: list[Reached]) -> Claim:
         rule=f"By eq. (12) and (13) every random target is reached to 0.1 mm within {_PASSES[-1]} passes.",
         measured="; ".join(f"{one.name}: {one.reached[-1]} of {one.count}" for one in reached),
         holds={one.name: one.reached[-1] == one.count for one in reached},
-        reason="Finitely many passes stand for the limit. Which step sizes are proper, the paper leaves to [38].",
+        reason="Finitely many passes stand for the limit; ten times fewer reach almost as many. The step sizes are the "
+        "paper's own; which ones are proper, it leaves to [38].",
         section=TITLE,
     )
 
@@ -151,7 +152,7 @@ def memory_claim(held: dict[str, int]) -> Claim:
     return Claim.judged(
         "BAS has smaller data scales than GA and PSO, and suits platforms with limited storage.",
         source="Section I, contribution 3",
-        rule="BAS holds fewer configurations at once than GA and than PSO.",
+        rule="BAS stores fewer configurations at once than GA and PSO.",
         measured=", ".join(f"{name} {count}" for name, count in held.items()),
         holds=held[BEETLE] < min(held["GA"], held["PSO"]),
         reading="Counted from the algorithms, populations as tuned for 1 mm in the whole box.",

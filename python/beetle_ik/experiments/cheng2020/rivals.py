@@ -38,24 +38,24 @@ _TESTS = 25  # as Table 2
 _TESTS_SHORT = 2
 
 _TEXT = """
-The paper gives five methods the same task, the iiwa's circle, and compares them twice. All of them search, in each
-step, the box that the velocity limit lets the arm reach, which at 2 rad/s and 0.2 s is 0.8 rad wide in each joint. A
-swarm is drawn anew in that box in every step, as a plain port of a swarm does; where the arm stands is one of its
-members. The arm starts on the circle.
+The paper gives five methods the same task, the iiwa's circle, and compares them twice. In each step all of them search
+the box of joint positions that the velocity limit allows, which at 2 rad/s and 0.2 s is 0.8 rad wide in each joint. In
+every step a swarm starts with a new random population in that box, as in a plain port; the present configuration is one
+of its members. The arm starts on the circle.
 
-The paper names no options of any method. Here all are tuned alike, the beetle included, once for the equal precision
-and once for the equal budget: {tried} settings each, drawn at random from fixed ranges, on one seed, the best
-{finalists} of them on {seeds}, which are used for nothing else. The {tests} tests below are on other seeds.
+The paper names no options of any method. Here all are tuned alike, the beetle included, once for equal precision and
+once for an equal budget: {tried} settings each, drawn at random from fixed ranges, run on one seed, and the best
+{finalists} of them on {seeds} seeds, which are used for nothing else. The {tests} tests below use other seeds.
 """
 _TEXT_PRECISION = """
-**The same precision, 1 mm.** Every method works in each step until it is within a millimetre of the target, and is
+**The same precision, 1 mm.** In each step every method searches until it is within a millimetre of the target, and is
 tuned to need few evaluations for that.
 """
 _TEXT_BUDGET = """
-**The same budget.** The paper gives each method about 15 s. We give each up to {budget} evaluations a step, which
-unlike seconds depend neither on the machine nor on who wrote the code, and tune each for a small error with them. A
-step is over before that if it beats the step before (line 16 of Algorithm 1), and only then: there is no error band
-here, and so the beetle's error is far below the published one, which *is* its band.
+**The same budget.** The paper gives each method about 15 s. We give each up to {budget} evaluations per step, which
+unlike seconds depend neither on the machine nor on the implementation, and tune each for a small error within that
+budget. A step ends earlier only if its error is below that of the step before (line 16 of Algorithm 1). There is no
+error band here, so the beetle's error is far below the published one, which follows from its band.
 """
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Drawing
 
-TITLE = "What the gap is made of"
+TITLE = "The lead depends on the search box"
 _SEEDS = 10
 _SEEDS_SHORT = 1
 _DRAWN = (WHOLE, TRUST, SCALED)
@@ -39,20 +39,20 @@ Costs: TypeAlias = dict[tuple[str, float, str], Spent]
 """By box, band (m) and method."""
 
 _TEXT = """
-Is it the beetle that makes the difference of Table 2? By eq. (12) its antennae reach c₁ times as far as the tip is from
-the target: **the beetle never looks at the rest of the box, and what it looks at shrinks with the error.** A swarm that
-is drawn anew in the whole box has to find that place first.
+Does the beetle itself explain Table 2? By eq. (12) its antennae are c₁ times as long as the distance from tip to
+target: **the beetle ignores the rest of the box, and the region it searches shrinks with the error.** A swarm that
+starts in the whole box has to find that region first.
 
 So all methods search three boxes, at three accuracies:
 
-- the *whole box*: all that the velocity limit lets the arm reach, 0.4 rad to either side of each joint;
-- a *trust box*: 0.02 rad to either side of where the arm stands, which is all that the circle asks for in a step;
-- a *box as long as the error*: drawn about the best configuration so far, its half width a constant (rad/m) times the
-  error, and drawn anew after a few generations. It gives a swarm what eq. (12) gives the beetle, and nothing else.
+- the *whole box*: all that the velocity limit allows, 0.4 rad to either side of each joint;
+- a *trust box*: 0.02 rad to either side of the present joint positions, all that the circle requires in a step;
+- a *box as long as the error*: centred on the best configuration so far, its half width a constant (rad/m) times the
+  error, and redrawn after a few generations. It gives a swarm what eq. (12) gives the beetle, and nothing else.
 
-For each box and accuracy each method is tuned alone, BAS included: {tried} settings each on one seed, the best
-{finalists} of them on {seeds}, which nothing else uses. The five-link arm is a fourth case: its velocity limit is so
-tight that the box of a step is small by itself.
+For each box and accuracy each method is tuned separately, BAS included: {tried} settings each on one seed, and the best
+{finalists} of them on {seeds} seeds that nothing else uses. The five-link arm is a fourth case: its velocity limit is
+so tight that the box of a step is small anyway.
 
 {finding}
 """
@@ -71,7 +71,7 @@ def search_box(context: Context, whole: dict[str, Spent]) -> Part:
         _TEXT.format(tried=TRIED, finalists=FINALISTS, seeds=len(SEEDS), finding=_finding(costs)),
         Figure(
             name="search_box",
-            title="Evaluations a step until every step is within the accuracy, by what is searched",
+            title="Evaluations per step until every step is within the accuracy, for each search box",
             drawing=_draw(costs),
             caption="Lower is cheaper. In the right panel all methods need about as many as the beetle.",
         ),
@@ -103,12 +103,12 @@ def _spans(costs: Costs, box: Box) -> str:
 
 def _finding(costs: Costs) -> str:
     return (
-        f"Over the evaluations of BAS, the four need {_spans(costs, WHOLE)} in the whole box; "
+        f"As multiples of the evaluations of BAS, the four need {_spans(costs, WHOLE)} in the whole box; "
         f"{_spans(costs, TRUST)} in the trust box; {_spans(costs, SCALED)} in a box as long as the error; and "
         f"{_span(over_beetle(costs, PLANAR, BANDS[0]))} on the five-link arm at 1 mm. **A small "
-        "box takes away most of the lead at 1 mm and little of it at 10 µm; a box that shrinks with the error takes it "
-        "away at all three.** So little is left of a swarm in it, a few random points a generation, that the box must "
-        "be what does the work. What is good about the beetle is eq. (12), and any search can have it."
+        "box removes most of the lead at 1 mm and little of it at 10 µm; a box that shrinks with the error removes it "
+        "at all three.** A swarm in such a box is little more than a few random points per generation, so the box must do "
+        "the work. The strength of the beetle is eq. (12), and all four rivals do about as well once they have it."
     )
 
 
@@ -136,7 +136,7 @@ def lead_claims(costs: Costs) -> list[Claim]:
                 for box in _DRAWN
                 for band in BANDS
             },
-            reason="The gap is that of the box, not of the beetle: it closes where the box shrinks with the error.",
+            reason="The lead comes from the box: it vanishes where the box shrinks with the error.",
             section=TITLE,
         ),
     ]

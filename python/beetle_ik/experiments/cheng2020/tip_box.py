@@ -30,10 +30,9 @@ _BOXES = {
 }
 
 _TEXT = """
-Where the room is narrow, the tip is to stay within pₘᵢₙ < p < pₘₐₓ, eq. (5). The paper says no more of it: Algorithm
-1 clips joints, not the tip. The library takes the box as a `region` of the task. The beetle looks for the point within
-that is nearest to the target, and what would still end a step outside is taken back. Nothing else changes: the same
-beetle, the same velocity limits.
+In confined spaces the tip has to stay within pₘᵢₙ < p < pₘₐₓ, eq. (5). The paper says no more about it: Algorithm 1
+clips joints, not the tip. The library takes the box as a `region` of the task. The beetle searches for the point of the
+box nearest to the target, and a step that would end outside is shortened. Beetle and velocity limits stay the same.
 """
 
 
@@ -81,7 +80,7 @@ def tip_box(context: Context) -> Part:
         name="equation_5",
         title="Eq. (5): circles that leave the box",
         drawing=_draw(boxed),
-        caption="Seen from above. The shade is forbidden; the tip follows its faces where the circle is beyond them.",
+        caption="Seen from above. The shade is forbidden; the tip slides along its faces where the circle enters it.",
     )
     beyond = max(Boxed(task, [_track(task, context.seed, kept=False)]).outside for task in (FIVE_LINK, IIWA))
     return Section(TITLE, [_TEXT, figure]), [region_claim(beyond), _check(boxed)]
@@ -99,10 +98,10 @@ def region_claim(beyond: float) -> Claim:
         "The end-effector stays within specific spaces, pₘᵢₙ < p(t) < pₘₐₓ.",
         source="Section II-B, eq. (5)",
         rule="By Algorithm 1 as printed the tip stays inside the box.",
-        measured=f"it leaves boxes of ours, which cut three sides off the circles, by {number(beyond, 2)} m",
+        measured=f"the tip leaves the boxes we chose, which cut three sides off the circles, by {number(beyond, 2)} m",
         holds=beyond <= 0.0,
         missing=not_given({"pₘᵢₙ and pₘₐₓ": PARAMETERS["pₘᵢₙ and pₘₐₓ"]}),
-        reason="A requirement: Algorithm 1 does not use it, and no experiment of the paper has it.",
+        reason="Eq. (5) is a requirement only: Algorithm 1 does not use it, and no experiment of the paper tests it.",
         section=TITLE,
     )
 

@@ -34,23 +34,23 @@ _SEEDS = 10
 _SEEDS_SHORT = 1
 
 _TEXT = """
-Three options shape a pass of the beetle: it makes n explorations, with antennae c₁ times as long as the error (in
-radians a metre, eq. (12)), and moves by c₂ antenna lengths (eq. (13)). Each is varied here with the others as set,
-for both readings of the walk.
+A pass of the beetle has three parameters: it makes n explorations, with antennae c₁ times as long as the error (in
+radians per metre, eq. (12)), and moves by c₂ antenna lengths (eq. (13)). Each is varied here while the others are
+fixed, for both readings of the walk.
 """
 _TEXT_N = """
-**More explorations.** To the letter of eq. (8), (9) and (11), where all explorations of a pass start from the same
-point (*star*), all three statements of the paper hold: the arm is in its band sooner, its velocities oscillate less,
-and it costs more. The original beetle (*chain*) is sooner in its band too, but oscillates *more* with larger n,
-because n steps of a random walk lead further away than one. This is what decided for *star* as our reading.
+**More explorations.** If all explorations of a pass start from the same point (*star*), as eq. (8), (9) and (11) say,
+all three statements of the paper hold: the arm enters its band sooner, its velocities oscillate less, and the cost is
+higher. The original beetle (*chain*) enters its band sooner too, but oscillates *more* with larger n, because n steps
+of a random walk lead farther than one. This is why *star* is our reading.
 """
 _TEXT_C1 = """
 **Longer antennae.** "Larger c₁: less computation, more oscillation" holds below an optimum, which among the values
-tried is {optima}. Above it the beetle mostly steps too far, and the cost rises again.
+tried is {optima}. Above it most steps are too long, and the cost rises again.
 """
 _TEXT_C2 = """
 **Longer steps.** c₂ behaves like c₁, since with c₁ fixed it only scales the step. In the chain walk only the product
-c₁c₂ matters: with it kept at {product}, c₁ of {lengths} costs the planar arm {costs} evaluations.
+c₁c₂ matters: with the product fixed at {product}, the planar arm needs {costs} evaluations for c₁ = {lengths}.
 """
 _LENGTHS = (0.1, 0.3, 1.0)  # c₁, with the product kept
 
@@ -184,7 +184,7 @@ def explorations_claim(found: Measurements) -> Claim:
             and many.evaluations.mean > few.evaluations.mean
             for name, (few, many) in ends.items()
         },
-        reason="Eq. (8) to (11) say *star*, step vii of Algorithm 1 says *chain*.",
+        reason="Eq. (8) to (11) describe *star*, step vii of Algorithm 1 *chain*.",
         section=TITLE,
     )
 
@@ -198,9 +198,9 @@ def length_claim(symbol: str, source: str, found: Measurements) -> Claim:
             if low in by_value and high in by_value:
                 changes[f"{walk}, {arm}, {low:g} to {high:g}"] = by_value[low], by_value[high]
     return Claim.judged(
-        f"A larger {symbol} decreases the computation and makes the joint velocity oscillate.",
+        f"A larger {symbol} reduces the computation and makes the joint velocity oscillate.",
         source=source,
-        rule="With the larger value there are fewer evaluations and there is more roughness.",
+        rule="The larger value needs fewer evaluations and gives more roughness.",
         measured="evaluations and roughness change "
         + "; ".join(
             f"{number(after.evaluations.mean / before.evaluations.mean, 2)} and "
@@ -265,7 +265,7 @@ def _runs(sweep: Sweep, values: tuple[float, ...]) -> Figure:
         for axes in panels[0, 1:]:
             axes.set_ylabel("")
         panels[joints // 2 + 1, 0].set_ylabel("joint velocity [rad/s]")
-    caption = "Five-link arm, star walk. Above: error, with its band dashed. Below: velocities, a strip a joint."
+    caption = "Five-link arm, star walk. Above: error, with its band dashed. Below: velocities, one strip per joint."
     return Figure(name=sweep.figure, title=f"{_number_of(sweep)}: {sweep.symbol}", drawing=figure, caption=caption)
 
 

@@ -9,12 +9,12 @@ from .singularities import singularities
 from .typos import typos
 
 _SUMMARY = """
-The seven motions come out **to the last iteration**: {counts}, with the printed angles and positions, once one hidden
-factor is put right: the learning rate and the threshold that the paper prints go with an error 20 times as large as
-its eq. (11). **What it says of Newton-Raphson is contradicted**: a correct one does not fail on these motions, it
-solves each in a handful of iterations, more accurately and in less time. APPS is a plain gradient descent. It needs no
-inverse, but it needs a start: from random ones the paper's learning rate reaches a third of random targets. With a rate
-taken from the gradients themselves it gets to most of them.
+The seven motions are reproduced **to the last iteration**: {counts}, with the printed angles and positions, after one
+correction: the printed learning rate and threshold belong to an error 20 times as large as that of eq. (11). **The
+comparison with Newton-Raphson is contradicted**: the textbook method does not fail on these motions. It solves each in
+a handful of iterations, more accurately and in less time. APPS is plain gradient descent. It needs no inverse, but it
+does need a good start: from random starts the paper's learning rate reaches a third of random targets. A rate taken
+from the gradients themselves reaches most of them.
 """
 
 
@@ -35,7 +35,7 @@ def run(context: Context) -> Report:
 
 EXPERIMENT = Experiment(
     name="yuan2016",
-    title="Seven motions of a KUKA, down the gradient to the last iteration",
+    title="Seven motions of a KUKA by gradient descent, to the last iteration",
     paper=(
         "P. Yuan et al., “Autonomous path planning solution for industrial robot manipulator using backpropagation "
         "algorithm”, *Advances in Mechanical Engineering*, 2016"

@@ -35,21 +35,21 @@ _POSITIONS = 1e-5  # m
 _MEAN_ERROR = 0.0115  # mm
 
 _TEXT = """
-The tip goes from its initial point through six target points and back. For each, APPS descends the gradient of
-E, half the sum of squared differences between the entries of the wanted matrix and the tip's (eq. 11), by steps of at
-most one degree a joint (eq. 20). The result R₁ is rounded to 0.01°, which gives R₂, where the robot stands and from
-where the next motion starts.
+The tip goes from its initial point through six target points and back. For each, APPS descends the gradient of E, half
+the sum of squared differences between the entries of the target matrix and the tip's (eq. 11), by steps of at most one
+degree per joint (eq. 20). The result R₁ is rounded to 0.01°, which gives R₂. The robot moves to R₂, and the next motion
+starts there.
 
 With the printed η = 0.01 and E₀ = 10⁻⁸ nothing agrees: no motion ends within the 1000 iterations allowed. **Everything
-agrees, to the last iteration, if the E that they belong to is 20 times that of eq. (11)**; in the scale of eq. (11),
-η = 0.2 and E₀ = 5 × 10⁻¹⁰, which is what `APPS.paper()` has. That one factor puts both numbers right; why it is
-there, the paper does not say. The dead zone of eq. (20) as printed (no step at all below one degree) cannot be meant
-either: its last case lacks the step.
+agrees, to the last iteration, if they belong to an E 20 times that of eq. (11)**; in the scale of eq. (11), that is η =
+0.2 and E₀ = 5 × 10⁻¹⁰, the values of `APPS.paper()`. One factor corrects both numbers; the paper does not explain it.
+The dead zone of eq. (20) as printed (no step at all below one degree) must be a misprint too: its last case lacks the
+step.
 """
 _TEXT_TABLES = """
-E is evaluated first, then the angles change, then that E is compared with E₀: so R₁ is one update better than the E
-that ended the search, and the count is that of updates. The fourth joint of the last motion passes 360° on its way and
-is brought back by eq. (12).
+E is evaluated first, then the angles change, then that E is compared with E₀. So R₁ is one update better than the E
+that ended the search, and iterations are updates. The fourth joint of the last motion passes 360° on its way and is
+brought back by eq. (12).
 """
 
 
@@ -86,7 +86,7 @@ def motions(runs: list[Motion]) -> Part:
                 name="figure_7",
                 title="Figure 7: mean absolute errors of the tip's position",
                 drawing=_draw_errors(errors),
-                caption="Rounding the angles to 0.01° costs up to ten times what APPS leaves over.",
+                caption="Rounding the angles to 0.01° adds up to ten times the error that APPS leaves.",
             ),
         ],
     )

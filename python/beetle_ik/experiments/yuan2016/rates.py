@@ -24,22 +24,23 @@ RATE = HIDDEN_FACTOR * LEARNING_RATE  # of the paper, in the scale of eq. (11)
 _DEGREE = float(np.radians(1.0))
 
 _TEXT = """
-The paper tried learning rates of 1, 0.5, 0.1 and 0.05 and settled on 0.01. Read in its own scale (20 times eq. 11)
-that choice is right: larger ones never come to rest, since the step of one degree is all that keeps them from
-flying apart. Read literally, on eq. (11), a rate of 0.01 is far too slow.
+The paper tried learning rates of 1, 0.5, 0.1 and 0.05 and settled on 0.01. In its own scale (20 times eq. 11) that
+choice is right: larger rates never settle, and only the step limit of one degree keeps them from diverging. Taken
+literally, on eq. (11), a rate of 0.01 is far too slow.
 
-Why η = 0.2 (in the scale of eq. 11) is the best: near its end a descent is stable while η times the largest eigenvalue
-of J'J is below 2. At the seven targets that eigenvalue is {low} to {high}, so that {bound} is the limit. **The rate is
-tuned to these seven targets, to within {margin} %.** Of targets anywhere in the robot's reach, {above} % have a larger
-eigenvalue than 10, and no descent at that rate can come to rest there.
+Why η = 0.2 (in the scale of eq. 11) is the best: close to the target, gradient descent is stable if η times the largest
+eigenvalue of J'J is below 2. At the seven targets that eigenvalue is {low} to {high}, so the limit for η is {bound}.
+**The rate is within {margin} % of the limit that these seven targets set.** For {above} % of targets anywhere in the
+robot's reach the eigenvalue is above 10, and descent at that rate cannot settle there.
 """
 _TEXT_REACH = """
-Starts and targets are drawn uniformly between the limits of Table 1. A search counts as converged where it comes within
-10⁻⁴ m and rad of its target, at whatever angles, and as solved where whole turns bring these within their limits.
+Starts and targets are drawn uniformly between the limits of Table 1. A search *converges* if it comes within 10⁻⁴ m and
+rad of its target with the joint limits switched off. It *solves* the target if it does so within the limits: APPS may
+pass them on the way and comes back by whole turns; the others stay inside.
 
 `learning_rate="auto"` takes the rate from the gradients before and after the last step (Barzilai and Borwein 1988): no
-rate has to be found, and none that is fixed comes near it. That is the descent that `APPS()` stands for in this
-library. For a single answer the library's default, Levenberg-Marquardt from many starts, remains the better choice.
+rate has to be found, and no fixed rate comes close to it. It is the default of `APPS()` in this library. For a single
+answer the library's default, Levenberg-Marquardt from many starts, remains the better choice.
 """
 
 
@@ -64,7 +65,7 @@ def rates(runs: list[Motion]) -> Part:
                 name="stability",
                 title="The steepest curvature of E, at the seven targets and at 1000 random ones",
                 drawing=_draw(eigenvalues, anywhere),
-                caption="To the right of the line a learning rate of 0.2 cannot come to rest.",
+                caption="To the right of the line a learning rate of 0.2 cannot settle.",
             ),
             Table(
                 name="learning_rates",
@@ -161,7 +162,7 @@ def reach(context: Context) -> Part:
                 name="reach",
                 title=f"Random targets reached within {BUDGET} iterations, of {count}",
                 drawing=_draw_shares(shares),
-                caption="From one random start each, where nothing else is said.",
+                caption="From one random start each, unless the label says otherwise.",
             ),
             _share_table(shares, late, count, patient),
         ],
@@ -197,7 +198,7 @@ def no_guess_claim(shares: dict[str, float]) -> Claim:
         rule=f"From random starts at least {_NEARLY_ALL:g} % of random targets converge within {BUDGET} iterations.",
         measured="; ".join(f"{name}: {number(share, 3)} %" for name, share in named.items()),
         holds={name: share >= _NEARLY_ALL for name, share in named.items()},
-        reason="True of the seven motions. Elsewhere their rate is too high, or the valley too flat.",
+        reason="True of the seven motions. Elsewhere their rate is too high, or the error too flat.",
         section=REACH,
     )
 
@@ -208,7 +209,7 @@ def _rate_check(by_budget: dict[int, dict[str, float]]) -> Check:
         budget: (of[_AUTO], max(share for name, share in of.items() if "η" in name)) for budget, of in by_budget.items()
     }
     return Check(
-        statement="A learning rate that need not be tuned does at least as well as the best fixed one.",
+        statement="The automatic learning rate does at least as well as the best fixed one.",
         rule="The automatic rate converges on at least as many random targets as each fixed rate.",
         measured="; ".join(
             f"{budget} iterations: {number(auto, 3)} % against {number(fixed, 3)} %"
@@ -237,7 +238,7 @@ def _draw_shares(shares: dict[str, list[float]]) -> Drawing:
     with drawing(4.6) as figure:
         axes = figure.subplots()
         place = np.arange(len(shares))[::-1]
-        for i, label in enumerate(("converged, at any angles", "solved, within the limits")):
+        for i, label in enumerate(("converged, without limits", "solved, within the limits")):
             values = [row[i] for row in shares.values()]
             bars = axes.barh(place + 0.2 * (1 - 2 * i), values, height=0.36, color=line(i)["color"], label=label)
             axes.bar_label(bars, fmt="%.0f", padding=3, fontsize=8)

@@ -20,13 +20,14 @@ if TYPE_CHECKING:
 TITLE = "Singularities"
 _RARE = 5.0  # %, of random configurations: what counts as near a singularity
 _AS_MANY = 5.0  # percentage points by which shares of targets may differ
+_EVERY = 2  # iterations between samples: the passage of a singularity is short
 _WRIST = 4  # row of the fifth joint, whose zero aligns the fourth with the sixth
 
 _TEXT = """
-The paper names the motions I-1 and 5-6 as singular. How near a configuration is to a singularity, the smallest singular
-value of its Jacobian says. Its 5th percentile over {count} random configurations is {rare}. On the way of APPS it falls
-to {first} in I-1, where the fifth joint passes zero and the wrist is stretched; in 5-6, where that joint stays near
-34°, to no less than {other}. Below the percentile come {near}.
+The paper calls the motions I-1 and 5-6 singular. We measure the distance from a singularity by the smallest singular
+value of the Jacobian. Its 5th percentile over {count} random configurations is {rare}. While APPS runs, it falls to
+{first} in I-1, where the fifth joint passes zero and the wrist is stretched; in 5-6, where that joint stays near 34°,
+it stays above {other}. It falls below the percentile in {near}.
 """
 
 
@@ -42,8 +43,7 @@ class Approach:
 
 def singularities(context: Context, runs: list[Motion]) -> Part:
     """The motions' ways, and searches that begin at a singularity."""
-    every = context.pick(full=2, short=20)
-    approaches = [_approach(run, every) for run in runs]
+    approaches = [_approach(run) for run in runs]
     count = context.pick(full=2000, short=200)
     random = ROBOT.random_configurations(count, seed=context.seed)
     rare = float(np.percentile([_smallest(q) for q in random], _RARE))
@@ -57,8 +57,8 @@ def singularities(context: Context, runs: list[Motion]) -> Part:
     )
     figure = Figure(
         name="singularities",
-        title="Smallest singular value of the Jacobian on the way of APPS",
-        drawing=_draw(approaches, rare, every),
+        title="Smallest singular value of the Jacobian while APPS runs",
+        drawing=_draw(approaches, rare),
         caption=f"Below the dashed line are {_RARE:g} % of random configurations.",
     )
     goals = ROBOT.fk(ROBOT.random_configurations(count, seed=context.seed + 1))
@@ -102,8 +102,8 @@ def start_claim(elsewhere: float, straight: float) -> Claim:
     )
 
 
-def _approach(run: Motion, every: int) -> Approach:
-    ends = range(0, run.solution.iterations + 1, every)
+def _approach(run: Motion) -> Approach:
+    ends = range(0, run.solution.iterations + 1, _EVERY)
     ways = [run.start, *(reach(run.goal, run.start, bik.APPS.paper(), budget=end).q for end in ends[1:])]
     return Approach(run.name, np.array([_smallest(q) for q in ways]), run.solution.success)
 
@@ -126,11 +126,11 @@ def _share(goals: Array, starts: Array) -> float:
     return 100.0 * float(np.mean(found.success))
 
 
-def _draw(approaches: list[Approach], rare: float, every: int) -> Drawing:
+def _draw(approaches: list[Approach], rare: float) -> Drawing:
     with drawing(3.2) as figure:
         axes = figure.subplots()
         for i, one in enumerate(approaches):
-            iterations = every * np.arange(len(one.smallest))
+            iterations = _EVERY * np.arange(len(one.smallest))
             axes.semilogy(iterations, one.smallest, label=MOTIONS[i], **line(i))
         axes.axhline(rare, color=VERMILION, linestyle="--", linewidth=1.0)
         axes.set(xlabel="iteration", ylabel="smallest singular value")

@@ -1,5 +1,5 @@
-//! Plans among obstacles: collision-free configurations for both ends, a collision-free path between them, and a timing whose
-//! whole motion is certified.
+//! Plans among obstacles: collision-free configurations for both ends, a collision-free path between them, and a
+//! certified timing of that path.
 
 use super::end_pair::EndPair;
 use super::line_timing::JointPolyline;

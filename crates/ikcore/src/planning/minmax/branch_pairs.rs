@@ -1,4 +1,5 @@
-//! Pairs over all branches of inverse kinematics of both ends, each at the whole turns nearest to the other end.
+//! Pairs of all inverse kinematics branches of both ends; joints are shifted by whole turns to be nearest to the other
+//! end.
 
 use super::end_pair::EndPair;
 use super::pair_search::PairSearch;
@@ -8,14 +9,14 @@ use crate::objective::{Bounds, Point};
 use crate::planning::Endpoint;
 use crate::solver::Monitor;
 
-/// Largest number of configurations of an end: all of them for a non-redundant arm, a sample for others.
+/// Maximum number of configurations of an end: all of them for a non-redundant arm, a sample for others.
 const BRANCHES: usize = 40;
 
 impl PairSearch<'_> {
-    /// The `count` quickest pairs of any configurations of both ends, the quickest first.
+    /// Returns the `count` quickest pairs of configurations of both ends, the quickest first.
     ///
     /// # Errors
-    /// None for ends that have a configuration.
+    /// None if both ends have a configuration.
     pub(super) fn branches(&mut self, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>> {
         let [starts, ends] = [self.configurations(0, monitor)?, self.configurations(1, monitor)?];
         let bounds = Bounds::from_ranges(self.limits.lower.iter().copied().zip(self.limits.upper.iter().copied()));

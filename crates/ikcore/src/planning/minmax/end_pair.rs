@@ -1,10 +1,10 @@
-//! Configurations of both ends of a motion.
+//! A pair of end configurations of a motion.
 
 use crate::error::{Error, Result};
 use crate::objective::Point;
 use crate::wording::number;
 
-/// Configurations of both ends, and the time of a quintic between them (s).
+/// Configurations of both ends, and the duration of a quintic between them (s).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct EndPair {
     pub start: Point,
@@ -12,7 +12,7 @@ pub(super) struct EndPair {
     pub duration: f64,
 }
 
-/// Pairs that differ by less are one (rad, m).
+/// Pairs that differ by less count as the same (rad, m).
 const SAME: f64 = 1e-3;
 
 impl EndPair {
@@ -21,7 +21,7 @@ impl EndPair {
         near(&self.start, &other.start) && near(&self.end, &other.end)
     }
 
-    /// Err unless the ends differ.
+    /// Checks that the ends differ.
     pub(super) fn require_motion(&self) -> Result<()> {
         let largest = self.start.iter().zip(&self.end).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         if largest > 0.0 {

@@ -1,8 +1,8 @@
-//! Moves both ends along the self-motion that their targets leave, so that the joint that takes longest takes less time.
+//! Moves both ends along the self-motion that their targets leave free, so that the slowest joint takes less time.
 //!
-//! The smallest largest displacement is found by Lawson's algorithm (1961): least squares over weighted displacements, in
-//! which joints with larger displacements gain weight until the largest ones are equal. Each round is also a Gauss-Newton
-//! step towards the targets.
+//! The minimum of the largest displacement is found by Lawson's algorithm (1961): least squares over weighted
+//! displacements, in which joints with larger displacements gain weight until the largest ones are equal. Each round is
+//! also a Gauss-Newton step towards the targets.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,15 +14,15 @@ use crate::robot::Robot;
 use crate::task::{Criterion, Target};
 
 const ROUNDS: usize = 20;
-/// No joint moves farther in one round (rad, m).
+/// Largest displacement of a joint in one round (rad, m).
 const LONGEST_STEP: f64 = 0.4;
-/// Damping of the steps, as a share of the sum of all weights. With it all tested motions of planar arms with 3 to 5 links reach
-/// the shortest duration; with a tenth or ten times as much, fewer do.
+/// Damping of the steps, relative to the sum of all weights. With this value, all tested motions of planar arms with 3
+/// to 5 links reach the shortest duration; with a tenth of it or ten times as much, fewer do.
 const DAMPING: f64 = 0.0125;
-/// The smallest weight, as a share of the sum.
+/// The smallest weight, relative to the sum.
 const SMALLEST_WEIGHT: f64 = 1e-3;
 
-/// Moves the ends of `pair` whose target is given; returns how many times kinematics were evaluated.
+/// Moves those ends of `pair` that are given by a target; returns the number of evaluations of the kinematics.
 pub(super) fn shorten(robot: &Robot, limits: &MotionLimits, free: [Option<&Target>; 2], pair: &mut EndPair) -> usize {
     let n = robot.dof();
     let free_ends: Vec<(usize, &Target)> = free.into_iter().enumerate().filter_map(|(i, t)| Some((i, t?))).collect();
@@ -56,8 +56,8 @@ pub(super) fn shorten(robot: &Robot, limits: &MotionLimits, free: [Option<&Targe
     ROUNDS * free_ends.len()
 }
 
-/// The step of all free ends that minimises the sum of w (scale (displacement + step of the end - step of the start))^2 while
-/// each target's residual vanishes to first order: the system of Lagrange multipliers.
+/// Returns the step of all free ends that minimises the sum of w (scale (displacement + step of the end - step of the
+/// start))^2 while the residual of each target vanishes to first order: the system of Lagrange multipliers.
 fn weighted_step(
     displacement: &[f64],
     scales: &[f64],
@@ -68,11 +68,11 @@ fn weighted_step(
     let n = displacement.len();
     let unknowns = n * free.len();
     let rows: Vec<(usize, usize)> = (0..free.len()).flat_map(|a| (0..ROWS).map(move |row| (a, row))).collect();
-    // Rows that no joint moves, such as z for an arm in the plane, constrain nothing.
+    // Rows that no joint moves, e.g. z for an arm in the plane, constrain nothing.
     let constrains = |(a, row): &(usize, usize)| linearizations[*a].columns[..n].iter().any(|c| c[*row] != 0.0);
     let rows: Vec<(usize, usize)> = rows.into_iter().filter(constrains).collect();
     if rows.len() >= unknowns {
-        return None; // nothing is left free
+        return None; // nothing is free
     }
     let size = unknowns + rows.len();
     let (mut matrix, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
@@ -91,7 +91,7 @@ fn weighted_step(
     for (index, (a, row)) in rows.into_iter().enumerate() {
         let index = unknowns + index;
         right[index] = -linearizations[a].residual[row];
-        // In a singular configuration not every row can be met.
+        // In a singular configuration not all rows can be met.
         matrix[(index, index)] = -1e-9;
         for j in 0..n {
             let entry = linearizations[a].columns[j][row];

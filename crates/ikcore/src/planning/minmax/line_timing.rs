@@ -4,16 +4,16 @@ use crate::error::Result;
 use crate::planning::MotionLimits;
 use crate::trajectory::{Coefficients, Trajectory, polynomial};
 
-/// Largest speed of a quintic from rest to rest, over displacement / duration.
+/// Largest speed of a quintic from rest to rest, relative to displacement / duration.
 const QUINTIC_SPEED: f64 = 15.0 / 8.0;
-/// Largest acceleration of it, over displacement / duration^2: 10 / sqrt(3).
+/// Largest acceleration of that quintic, relative to displacement / duration^2: 10 / sqrt(3).
 const QUINTIC_ACCELERATION: f64 = 5.773_502_691_896_258;
-/// Largest acceleration of a blend, over change of velocity / duration.
+/// Largest acceleration of a blend, relative to change of velocity / duration.
 const BLEND_ACCELERATION: f64 = 1.5;
-/// Durations are longer than the exact ones by this factor, so that rounding breaks no limit.
+/// Durations exceed the exact ones by this factor, so that rounding violates no limit.
 const CAUTION: f64 = 1.0 + 1e-12;
 
-/// Rounds in which blends and velocities are adjusted to each other.
+/// Maximum number of rounds in which blends and velocities are adjusted to each other.
 const ROUNDS: usize = 200;
 
 impl MotionLimits {
@@ -29,19 +29,19 @@ impl MotionLimits {
         displacement.enumerate().map(of_joint).fold(0.0, f64::max)
     }
 
-    /// How far a quintic can bring joint `j` (rad, m) in `duration` (s).
+    /// Returns how far a quintic can move joint `j` (rad, m) in `duration` (s).
     pub(super) fn quintic_reach(&self, j: usize, duration: f64) -> f64 {
         let by_speed = self.velocity[j] * duration / QUINTIC_SPEED;
         by_speed.min(self.acceleration[j] * duration * duration / QUINTIC_ACCELERATION)
     }
 }
 
-/// Points (n each) joined by straight lines in joint space, consecutive ones different.
+/// Points (n each) joined by straight lines in joint space; consecutive points differ.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct JointPolyline(pub Vec<Vec<f64>>);
 
 impl JointPolyline {
-    /// From rest to rest along each line by a quintic: exactly on the lines, at rest in every point.
+    /// Moves from rest to rest along each line by a quintic: exactly on the lines, stopping at every point.
     pub(super) fn with_stops(&self, limits: &MotionLimits) -> Result<Trajectory> {
         let (mut knots, mut coefficients) = (vec![0.0], vec![]);
         let mut time = 0.0;
@@ -55,11 +55,12 @@ impl JointPolyline {
         Trajectory::new(limits.joint_names(), knots, coefficients)
     }
 
-    /// At constant velocity along the lines, with smooth blends at the points; `shares[i]` in (0, 1] is how much of the
-    /// shorter line beside point i its blend may take. None where a joint has no velocity limit.
+    /// Moves at constant velocity along the lines, with smooth blends at the points. `shares[i]` in (0, 1] is the
+    /// fraction of the shorter adjacent line that the blend of point i may take. `None` if a joint has no velocity
+    /// limit.
     ///
-    /// In a blend the velocity goes from that of one line to that of the next with an acceleration of shape 6 s (1 - s):
-    /// continuous throughout, never beyond either velocity, and inside the triangle that the lines span.
+    /// In a blend the velocity changes from that of one line to that of the next with an acceleration of shape 6 s (1 -
+    /// s): continuous, never beyond either velocity, and inside the triangle that the lines span.
     pub(super) fn with_blends(&self, limits: &MotionLimits, shares: &[f64]) -> Option<Result<Trajectory>> {
         let mut lines: Vec<f64> = self.0.windows(2).map(|line| line_duration(line, limits)).collect();
         if lines.iter().any(|duration| !duration.is_finite() || *duration <= 0.0) {
@@ -77,11 +78,11 @@ impl JointPolyline {
                     BLEND_ACCELERATION * change.abs() / limits.acceleration[j]
                 });
                 let needed = CAUTION * needed.fold(0.0, f64::max);
-                // A blend from or to rest costs time: it is no longer than the acceleration limits need.
+                // A blend from or to rest costs time, so it is no longer than the acceleration limits require.
                 let at_end = before.is_none() || after.is_none();
                 *blend = if at_end && needed > 0.0 { needed.min(room) } else { room };
                 if needed > room * (1.0 + 1e-9) {
-                    // Twice as slow takes a quarter of the acceleration.
+                    // Half the speed takes a quarter of the acceleration.
                     let slower = (needed / room).sqrt().min(2.0) * CAUTION;
                     beside.for_each(|line| lines[line] *= slower);
                     settled = false;
@@ -94,7 +95,7 @@ impl JointPolyline {
         None
     }
 
-    /// Velocity of joint `j` on a line, zero where there is none.
+    /// Velocity of joint `j` on a line; zero if there is none.
     fn velocity(&self, line: Option<usize>, j: usize, durations: &[f64]) -> f64 {
         line.map_or(0.0, |line| (self.0[line + 1][j] - self.0[line][j]) / durations[line])
     }
@@ -138,11 +139,11 @@ fn line_duration(line: &[Vec<f64>], limits: &MotionLimits) -> f64 {
     if fastest > 0.0 {
         return fastest;
     }
-    // Without velocity limits the acceleration limits alone decide.
+    // Without velocity limits only the acceleration limits matter.
     0.5 * limits.quintic_duration((0..limits.dof()).map(|j| line[1][j] - line[0][j]))
 }
 
-/// From rest to rest over `displacement` in `h` (s).
+/// The quintic from rest to rest over `displacement` in `h` (s).
 fn quintic(start: f64, displacement: f64, h: f64) -> Coefficients {
     let over = |power: i32| displacement / h.powi(power);
     polynomial([start, 0.0, 0.0, 10.0 * over(3), -15.0 * over(4), 6.0 * over(5)])

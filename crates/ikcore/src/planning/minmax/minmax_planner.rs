@@ -1,4 +1,4 @@
-//! The planner: ends, then a straight line or a path around obstacles.
+//! The min-max planner: end configurations, then a straight line or a path around obstacles.
 
 use super::among_obstacles;
 use super::pair_search::PairSearch;
@@ -31,7 +31,7 @@ pub(crate) fn point_to_point(
     }
 }
 
-/// Err for a joint with neither a velocity nor an acceleration limit, which would take no time.
+/// Checks that every joint has a velocity or an acceleration limit; without one a motion would take no time.
 fn require_pace(robot: &Robot, limits: &MotionLimits) -> Result<()> {
     let unlimited = |j: &usize| limits.velocity[*j].is_infinite() && limits.acceleration[*j].is_infinite();
     match (0..robot.dof()).find(unlimited) {

@@ -1,16 +1,16 @@
-//! The planner that searches the ends' configurations first: those that lie nearest to each other in time, joined by a
-//! straight line in joint space, or by a path around obstacles.
+//! The min-max planner: searches for the end configurations that are nearest to each other in time, and joins them by a
+//! straight line in joint space or by a path around obstacles.
 //!
 //! | file | what |
 //! |---|---|
 //! | [`minmax_planner`] | the planner |
-//! | [`pair_search`] | pairs of configurations for start and end |
-//! | [`branch_pairs`] | the same from all solutions of inverse kinematics |
-//! | [`least_displacement`] | moves both ends along their self-motion, to the smallest maximum displacement |
-//! | [`straight_line_plan`] | straight lines between pairs, of which the best is taken |
+//! | [`pair_search`] | pairs of end configurations |
+//! | [`branch_pairs`] | pairs from all inverse kinematics solutions |
+//! | [`least_displacement`] | moves both ends along their self-motion to minimise the largest displacement |
+//! | [`straight_line_plan`] | the best of the straight lines between pairs |
 //! | [`line_timing`] | the quickest smooth timing of straight lines |
 //! | [`among_obstacles`] | a path around obstacles, its timing certified |
-//! | [`rrt_connect`] | two trees that grow towards each other, and shortcuts |
+//! | [`rrt_connect`] | RRT-Connect, and shortcuts |
 
 mod among_obstacles;
 mod branch_pairs;

@@ -1,4 +1,4 @@
-//! Search for pairs of end configurations that are near to each other in time.
+//! Search for pairs of end configurations that are near each other in time.
 
 use super::end_pair::EndPair;
 use super::least_displacement;
@@ -50,11 +50,11 @@ impl<'a> PairSearch<'a> {
         Ok(Self { robot, limits, ends, rng: rng::stream(seed, 0), evaluations: 0, stopwatch, seed, position_limits })
     }
 
-    /// Up to twice `count` pairs, the quickest first: half from random starts, half from the quickest pairs of branches, all
-    /// improved along the self-motion. A single one where both configurations are given.
+    /// Returns up to twice `count` pairs, the quickest first: half from random starts, half from the quickest pairs of
+    /// branches, all improved along the self-motion. One pair if both configurations are given.
     ///
     /// # Errors
-    /// [`Error::Unreachable`] for an end that no configuration was found for.
+    /// [`Error::Unreachable`] if no configuration was found for an end.
     pub(super) fn pairs(&mut self, count: usize, monitor: &mut dyn Monitor) -> Result<Vec<EndPair>> {
         let given = self.ends.iter().all(|end| matches!(end, Endpoint::Configuration(_)));
         let mut pairs: Vec<EndPair> = vec![];
@@ -63,8 +63,8 @@ impl<'a> PairSearch<'a> {
                 break;
             }
             let Some(first) = self.configuration(0, None, attempt, monitor)? else { continue };
-            // The second end is sought from the first, since the solution is then near most often. Where the first is given, only
-            // once: every attempt would find the same.
+            // The second end is solved from the first, so that the solution is usually near. If the first is given,
+            // only once: every attempt would find the same.
             let another = attempt == 0 || matches!(self.ends[0], Endpoint::Target(_));
             let near = another.then_some(&first[..]);
             let Some(second) = self.configuration(1, near, attempt, monitor)? else { continue };
@@ -85,10 +85,11 @@ impl<'a> PairSearch<'a> {
         Ok(pairs)
     }
 
-    /// Up to `count` pairs that `accept` takes, not improved, from up to `tries` random starts; the quickest first.
+    /// Returns up to `count` pairs accepted by `accept`, not improved, from up to `tries` random starts, the quickest
+    /// first.
     ///
     /// # Errors
-    /// None once [`pairs`](Self::pairs) has found some.
+    /// None if [`pairs`](Self::pairs) has found some.
     pub(super) fn random_pairs(
         &mut self,
         count: usize,
@@ -117,7 +118,7 @@ impl<'a> PairSearch<'a> {
         EndPair { start, end, duration }
     }
 
-    /// A configuration of an end, from `near` or a random start. The first attempt must find one.
+    /// Solves for a configuration of an end, from `near` or a random start. The first attempt must succeed.
     fn configuration(
         &mut self,
         end: usize,
@@ -159,7 +160,7 @@ impl<'a> PairSearch<'a> {
         ranges.map(|(lower, upper)| self.rng.uniform_in(lower, upper)).collect()
     }
 
-    /// The pair moved along its self-motion, or itself where that does not help.
+    /// Returns the pair moved along its self-motion, or unchanged if that does not help.
     fn improved(&mut self, pair: EndPair, monitor: &mut dyn Monitor) -> EndPair {
         let ends = self.ends;
         let free = ends.map(|end| match end {

@@ -1,5 +1,5 @@
-//! A collision-free path through joint space: two trees that grow towards each other (RRT-Connect, Kuffner and LaValle,
-//! ICRA 2000), every edge certified between its ends.
+//! RRT-Connect (Kuffner and LaValle, ICRA 2000): two trees grow towards each other until they form a collision-free
+//! path through joint space. Every edge is certified along its whole length.
 
 use super::line_timing::JointPolyline;
 use crate::obstacle::{Edge, Scene, Sweep};

@@ -1,4 +1,4 @@
-//! Plans without obstacles: straight lines between the pairs of configurations, of which the best is taken.
+//! Plans without obstacles: the best of the straight lines between pairs of configurations.
 
 use super::end_pair::EndPair;
 use super::line_timing::JointPolyline;
@@ -8,10 +8,10 @@ use crate::planning::{Cost, Improvement, MotionLimits, Plan};
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
-/// Pairs of configurations that are tried from random starts, and as many of the quickest branches.
+/// Number of pairs from random starts; as many come from the quickest branches.
 pub(super) const PAIRS: usize = 8;
 
-/// Straight from end to end.
+/// Plans the best straight motion between pairs.
 pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monitor: &mut dyn Monitor) -> Result<Plan> {
     let pairs = search.pairs(PAIRS, monitor)?;
     let mut best: Option<(f64, Trajectory)> = None;
@@ -44,7 +44,7 @@ pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monito
     })
 }
 
-/// The quicker of a quintic and of constant velocity between blends.
+/// Returns the quicker of a quintic and a motion at constant velocity between blends.
 pub(super) fn straight(pair: &EndPair, limits: &MotionLimits) -> Result<Trajectory> {
     pair.require_motion()?;
     let line = JointPolyline(vec![pair.start.to_vec(), pair.end.to_vec()]);
@@ -55,7 +55,7 @@ pub(super) fn straight(pair: &EndPair, limits: &MotionLimits) -> Result<Trajecto
     }
 }
 
-/// The error of a search that met no configuration for an end.
+/// The error of a search that found no configuration for an end.
 pub(super) fn no_pair() -> Error {
     Error::Unreachable { what: "end".into(), problem: "no configuration was found: try another seed".into() }
 }

@@ -1,12 +1,12 @@
-//! From a speed profile to joint motion.
+//! Joint motion from a speed profile.
 
 use super::joint_path::JointPath;
 use super::reachability::SpeedProfile;
 use crate::error::Result;
 use crate::trajectory::{Coefficients, Trajectory};
 
-/// The motion along `path` with this speed profile, exactly: on each segment s(t) = s_i + v t + w t^2 with v the speed
-/// at its beginning and 2 w its acceleration, and a cubic of that is a polynomial of degree 6 in t.
+/// Returns the exact motion along `path` with this speed profile. On each segment s(t) = s_i + v t + w t^2, with v the
+/// speed at its start and 2 w its acceleration; a cubic of that is a polynomial of degree 6 in t.
 pub(super) fn compose(path: &JointPath, profile: &SpeedProfile) -> Result<Trajectory> {
     let (joints, count) = (path.joints(), profile.segments.len());
     let mut times = Vec::with_capacity(count + 1);

@@ -1,15 +1,15 @@
-//! The derivatives of the path over one segment, as Bernstein coefficients: a polynomial stays between the smallest and
-//! the largest of its Bernstein coefficients, so that a bound on them is a bound at every point of the segment.
+//! The derivatives of the path over one segment, as Bernstein coefficients: a polynomial lies between the smallest and
+//! the largest of its Bernstein coefficients, so a bound on them holds at every point of the segment.
 
 use super::grid::Segment;
 use super::joint_path::JointPath;
 
-/// Of each joint, over one segment: the quadratic dq/ds and the linear d2q/ds2.
+/// Derivatives of each joint over one segment: the quadratic dq/ds and the linear d2q/ds2.
 #[derive(Debug)]
 pub(super) struct PathDerivatives {
-    /// Bernstein coefficients of dq/ds: at the beginning, between, at the end.
+    /// Bernstein coefficients of dq/ds: at the start, in the middle, at the end.
     pub first: [Vec<f64>; 3],
-    /// d2q/ds2 at the beginning and at the end.
+    /// d2q/ds2 at the start and at the end.
     pub second: [Vec<f64>; 2],
 }
 
@@ -18,7 +18,7 @@ impl PathDerivatives {
         Self { first: [(); 3].map(|()| vec![0.0; joints]), second: [(); 2].map(|()| vec![0.0; joints]) }
     }
 
-    /// The derivatives of `path` over `segment`.
+    /// Computes the derivatives of `path` over `segment`.
     pub(super) fn fill(&mut self, path: &JointPath, segment: &Segment) {
         let Segment { piece, from, length } = *segment;
         let [_, c1, c2, c3] = path.powers(piece);

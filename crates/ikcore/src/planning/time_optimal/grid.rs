@@ -1,23 +1,23 @@
-//! The path cut into segments, in each of which the acceleration along the path is constant.
+//! The path cut into segments with constant acceleration along the path.
 
 use super::joint_path::JointPath;
 use crate::error::{Error, Result};
 
-/// A stretch of one piece of the path.
+/// A part of one piece of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Segment {
     /// The piece.
     pub piece: usize,
-    /// Where in the piece it begins (path parameter).
+    /// Start within the piece (path parameter).
     pub from: f64,
-    /// How long it is (path parameter).
+    /// Length (path parameter).
     pub length: f64,
 }
 
-/// More grid points than this are taken for a mistake: a tenth of a second of work.
+/// More grid points count as a mistake; this many take a tenth of a second.
 pub(super) const MAX_GRIDPOINTS: usize = 200_000;
 
-/// Err for a grid too coarse to start and stop on, or too fine to be meant.
+/// Checks that a grid is not too coarse to start and stop on, nor too fine to be intended.
 ///
 /// # Errors
 /// [`Error::OutOfRange`].
@@ -28,15 +28,15 @@ pub(super) fn check_gridpoints(gridpoints: usize) -> Result<()> {
     Err(Error::out_of_range("gridpoints", &format!("from 3 to {MAX_GRIDPOINTS}"), gridpoints as f64))
 }
 
-/// Where the motion begins or ends at rest, a segment is halved so often at the most: at full acceleration the speed
-/// limit is soon reached, and on the segment to there the mean speed is half of it.
+/// Maximum number of times that a segment is halved where the motion starts or ends at rest: at full acceleration the
+/// speed limit is soon reached, and up to there the mean speed is half of it.
 const HALVINGS: usize = 5;
 
-/// At most one in this many of a piece's segments is spent on halvings.
+/// At most one in this many segments of a piece is used for halvings.
 const SHARE: usize = 4;
 
-/// Cuts the path into about `wanted` segments, so that no segment reaches over a break and a piece that begins or ends at
-/// rest has one to speed up and one to slow down. They are of equal length, except towards rest.
+/// Cuts the path into about `wanted` segments. No segment spans a break, and a piece that starts or ends at rest has
+/// one segment to accelerate and one to decelerate. They have equal length, except near rest.
 pub(super) fn cut(path: &JointPath, wanted: usize) -> Vec<Segment> {
     let last = path.pieces() - 1;
     let total = path.breaks()[last + 1] - path.breaks()[0];
@@ -45,7 +45,7 @@ pub(super) fn cut(path: &JointPath, wanted: usize) -> Vec<Segment> {
     for piece in 0..=last {
         let length = path.length(piece);
         let rests_after = piece == last || path.has_corner_after(piece);
-        // A little less than the quotient, lest rounding adds one to each piece.
+        // Slightly less than the quotient, so that rounding does not add one to each piece.
         let count = (wanted as f64 * length / total - 1e-6).ceil() as usize;
         let count = count.max(if rests_before || rests_after { 2 } else { 1 });
         let halvings = |rests: bool| if rests { HALVINGS.min(count / SHARE) } else { 0 };
@@ -55,7 +55,8 @@ pub(super) fn cut(path: &JointPath, wanted: usize) -> Vec<Segment> {
     segments
 }
 
-/// Cuts a piece into `count` segments, of which the first and the last are halved so often towards its ends.
+/// Cuts a piece into `count` segments; the first is halved `before` times and the last `after` times towards the ends
+/// of the piece.
 fn cut_piece(piece: usize, length: f64, count: usize, [before, after]: [usize; 2], segments: &mut Vec<Segment>) {
     let even = count - before - after;
     let step = length / even as f64;

@@ -1,9 +1,9 @@
 //! Jerk limits, by smoothing the fastest motion in time.
 //!
-//! The path parameter of the fastest motion is averaged over a moving window, which leaves the joints on the path and
-//! makes their jerk finite: the wider the window the smaller. The whole is then played as fast as all limits allow, and
-//! the window is the one that makes this shortest. So every limit holds, but this is a smoothed optimum, not the optimum
-//! under jerk limits.
+//! The path parameter of the fastest motion is averaged over a moving window. The joints stay on the path and their
+//! jerk becomes finite; the wider the window, the smaller the jerk. The result is then scaled in time to be as fast as
+//! all limits allow, and the window is chosen to minimise the duration. So every limit holds, but this is a smoothed
+//! optimum, not the optimum under jerk limits.
 
 use super::joint_path::JointPath;
 use super::reachability::SpeedProfile;
@@ -11,28 +11,28 @@ use super::timing_limits::TimingLimits;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
 
-/// The window as a share of the duration, narrowest and widest.
+/// Narrowest and widest window, relative to the duration.
 const WINDOWS: [f64; 2] = [1e-3, 2.0];
-/// Windows tried over that range, in geometric steps.
+/// Number of windows tried over that range, in geometric steps.
 const SCANNED: usize = 18;
-/// Cuts of the best one's neighbourhood after that; each leaves two thirds.
+/// Steps of the search around the best window after that; each keeps two thirds of the interval.
 const CUTS: usize = 10;
-/// Knots nearer to each other than this share of the duration are taken as one: a third derivative over less than that is
+/// Knots closer than this fraction of the duration are merged: a third derivative over a shorter span is dominated by
 /// rounding.
 const SMALLEST_SPAN: f64 = 3e-4;
-/// Knots at equal distances in time, besides those where something happens.
+/// Number of uniform knots, in addition to those where the jerk changes.
 const EVEN_KNOTS: usize = 500;
-/// Quintics that must be played slower than their knots show by more than this factor swing between them: nearer knots
-/// hold them, halved so often at the most.
+/// If quintics must be slowed down by more than this factor beyond the need at their knots, they oscillate between
+/// knots; then intervals between knots are halved, at most `HALVINGS` times.
 const FAITHFUL: f64 = 1.03;
 const HALVINGS: usize = 2;
-/// Share of a limit reserved for the rounding of polynomials.
+/// Fraction of a limit reserved for the rounding of polynomials.
 const MARGIN: f64 = 1e-9;
 
-/// The motion of `profile` along `path`, smoothed until it keeps the jerk limits `jerk` too.
+/// Returns the motion of `profile` along `path`, smoothed until it also keeps the jerk limits `jerk`.
 ///
 /// # Errors
-/// [`Error::UnsupportedLimit`] for a path whose curvature jumps.
+/// [`Error::UnsupportedLimit`] if the curvature of the path jumps.
 pub(super) fn smooth(
     path: &JointPath,
     profile: &SpeedProfile,
@@ -55,7 +55,7 @@ pub(super) fn smooth(
     Smoothed { path, clock: &clock, window }.trajectory(limits, jerk)
 }
 
-/// The window for which `played` is shortest, near enough.
+/// Returns the window with approximately the smallest duration `played`.
 fn shortest(played: impl Fn(f64) -> f64, duration: f64) -> f64 {
     let [narrowest, widest] = WINDOWS.map(f64::ln);
     let step = (widest - narrowest) / (SCANNED - 1) as f64;
@@ -74,11 +74,11 @@ fn shortest(played: impl Fn(f64) -> f64, duration: f64) -> f64 {
     window(0.5 * (lower + upper))
 }
 
-/// The path parameter s over time, with its integral; it rests before and after.
+/// The path parameter s over time, with its integral; s is constant before and after.
 struct Clock {
     times: Vec<f64>,
-    /// s, its rate, half its acceleration, and the integral of s from the beginning: at the beginning of each segment,
-    /// and at the end of the last.
+    /// s, its rate, half its acceleration, and the integral of s from the start: at the start of each segment, and at
+    /// the end of the last.
     states: Vec<[f64; 4]>,
 }
 
@@ -102,7 +102,7 @@ impl Clock {
         self.times[self.times.len() - 1]
     }
 
-    /// The integral of s, s, its rate, and its acceleration at `t`, of the segment that begins there.
+    /// Returns the integral of s, s, its rate, and its acceleration at `t`; at a knot, those of the next segment.
     fn at(&self, t: f64) -> [f64; 4] {
         if t < 0.0 {
             let s = self.states[0][0];
@@ -129,8 +129,8 @@ impl Smoothed<'_> {
         [0, 1, 2, 3].map(|i| (now[i] - before[i]) / self.window)
     }
 
-    /// When the parameter's jerk changes, where the clock's acceleration does, now and a window ago; and times in between,
-    /// because one segment may pass much of the path.
+    /// Times at which the jerk of the parameter changes (where the clock's acceleration changes, now or a window ago),
+    /// and times in between, because one segment may cover much of the path.
     fn knots(&self) -> Vec<f64> {
         let times = &self.clock.times;
         let evenly = (0..EVEN_KNOTS).map(|i| (self.clock.duration() + self.window) * i as f64 / EVEN_KNOTS as f64);
@@ -139,13 +139,13 @@ impl Smoothed<'_> {
         knots.sort_by(f64::total_cmp);
         let end = knots[knots.len() - 1];
         knots.dedup_by(|later, earlier| *later - *earlier < SMALLEST_SPAN * end);
-        // The end itself stays, whatever lies close before it.
+        // The end itself stays, even if another knot is close before it.
         knots.pop();
         knots.push(end);
         knots
     }
 
-    /// How much slower the motion must be played to keep all limits, as far as its knots show; below 1 for faster.
+    /// Factor by which the motion must be slowed down to keep all limits at its knots; below 1 it can be faster.
     fn stretch(&self, limits: &TimingLimits, jerk: &[f64]) -> f64 {
         let mut largest = 0.0_f64;
         for t in self.knots() {
@@ -165,7 +165,7 @@ impl Smoothed<'_> {
         largest
     }
 
-    /// The motion as quintics, as fast as their exact extremes allow.
+    /// Returns the motion as quintics, as fast as their exact extremes allow.
     fn trajectory(&self, limits: &TimingLimits, jerk: &[f64]) -> Result<Trajectory> {
         let expected = self.stretch(limits, jerk);
         let mut knots = self.knots();
@@ -180,7 +180,7 @@ impl Smoothed<'_> {
         played.slowed(stretch * (1.0 + MARGIN))
     }
 
-    /// The quintics between `knots`, and how much slower they must be played.
+    /// Returns the quintics between `knots`, and the factor by which they must be slowed down.
     fn interpolated(&self, knots: &[f64], limits: &TimingLimits, jerk: &[f64]) -> Result<(Trajectory, f64)> {
         let n = jerk.len();
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| Vec::with_capacity(knots.len() * n));
@@ -210,8 +210,8 @@ fn with_midpoints(knots: &[f64]) -> Vec<f64> {
     finer
 }
 
-/// How much slower a motion with these derivatives must be played to keep their limits: the k-th falls with the k-th
-/// power of time.
+/// Factor by which a motion with these derivatives must be slowed down to keep their limits: the k-th derivative scales
+/// with the k-th power of time.
 fn scale([velocity, acceleration, jerk]: [f64; 3], [v, a, j]: [f64; 3]) -> f64 {
     let ratio = |value: f64, limit: f64| if value == 0.0 { 0.0 } else { value.abs() / limit };
     ratio(velocity, v).max(ratio(acceleration, a).sqrt()).max(ratio(jerk, j).cbrt())

@@ -3,23 +3,23 @@
 use crate::error::{Error, Result, require_finite};
 use crate::math::polynomial::{derivative, roots};
 
-/// Powers of a cubic.
+/// Number of coefficients of a cubic.
 pub(super) const POWERS: usize = 4;
 
-/// How far a derivative may differ on both sides of a break before it counts as a jump (relative to its size there).
+/// Largest difference of a derivative on both sides of a break before it counts as a jump (relative to its size there).
 const JUMP_TOLERANCE: f64 = 1e-9;
 
-/// Slope, relative to the path's largest, below which the path counts as having no direction: rounding leaves that much.
+/// Slope, relative to the largest of the path, below which it counts as zero: rounding error.
 const VANISHING: f64 = 1e-12;
 
-/// A continuous path of all joints: piece by piece a cubic q(s) in the path parameter s.
+/// A continuous path of all joints: piecewise cubics q(s) in the path parameter s.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointPath {
     joints: Vec<String>,
-    /// Where the pieces begin and the last one ends.
+    /// Path parameters of the starts of all pieces, and of the end of the last.
     breaks: Vec<f64>,
-    /// Of s since the piece began: piece by piece, within it power by power, within that joint by joint, because a grid
-    /// point asks for one power of all joints.
+    /// Coefficients of powers of s since the start of the piece: by piece, then by power, then by joint, because a grid
+    /// point needs one power of all joints.
     coefficients: Vec<f64>,
 }
 
@@ -31,7 +31,7 @@ pub(super) enum PathEnd {
 }
 
 impl PathEnd {
-    /// As messages and options call it.
+    /// Name in messages and options.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Start => "start",
@@ -41,12 +41,12 @@ impl PathEnd {
 }
 
 impl JointPath {
-    /// A path of pieces that were checked before.
+    /// A path of pieces that were already checked.
     pub(super) fn from_parts(joints: Vec<String>, breaks: Vec<f64>, coefficients: Vec<f64>) -> Self {
         Self { joints, breaks, coefficients }
     }
 
-    /// One path after the other, each of which begins where the one before it ends; at least one.
+    /// Concatenates paths, each of which starts where the previous one ends; at least one.
     pub(in crate::planning) fn joined(paths: impl IntoIterator<Item = Self>) -> Option<Self> {
         paths.into_iter().reduce(|mut all, next| {
             all.breaks.extend(&next.breaks[1..]);
@@ -60,7 +60,7 @@ impl JointPath {
         &self.joints
     }
 
-    /// The path parameter where the pieces begin and the last one ends.
+    /// Path parameters of the starts of all pieces, and of the end of the last.
     pub fn breaks(&self) -> &[f64] {
         &self.breaks
     }
@@ -70,12 +70,12 @@ impl JointPath {
         self.breaks.len() - 1
     }
 
-    /// How far the parameter goes in a piece.
+    /// Length of a piece in the path parameter.
     pub fn length(&self, piece: usize) -> f64 {
         self.breaks[piece + 1] - self.breaks[piece]
     }
 
-    /// Coefficients of all joints in a piece: those of 1, s, s^2 and s^3.
+    /// Coefficients of all joints in a piece, for the powers 1, s, s^2 and s^3.
     #[inline]
     pub(super) fn powers(&self, piece: usize) -> [&[f64]; POWERS] {
         let n = self.joints.len();
@@ -83,7 +83,7 @@ impl JointPath {
         [0, 1, 2, 3].map(|power| &of_piece[power * n..(power + 1) * n])
     }
 
-    /// Position and its first and second derivative by the path parameter of one joint, `from` after a piece began.
+    /// Position of one joint and its first and second derivative by the path parameter, at `from` within a piece.
     pub(super) fn joint_at(&self, piece: usize, from: f64, joint: usize) -> [f64; 3] {
         let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);
         [
@@ -101,13 +101,13 @@ impl JointPath {
         }
     }
 
-    /// The piece of the path parameter `s`, clamped to the path, and how far it lies in it.
+    /// The piece that contains the path parameter `s`, clamped to the path, and the parameter within it.
     pub(super) fn locate(&self, s: f64) -> (usize, f64) {
         let piece = self.breaks.partition_point(|start| *start <= s).saturating_sub(1).min(self.pieces() - 1);
         (piece, s.clamp(self.breaks[0], self.breaks[self.pieces()]) - self.breaks[piece])
     }
 
-    /// The piece at an end of the path, and how far in it the end lies.
+    /// The piece at an end of the path, and the parameter of the end within it.
     fn place_of(&self, end: PathEnd) -> (usize, f64) {
         match end {
             PathEnd::Start => (0, 0.0),
@@ -115,13 +115,13 @@ impl JointPath {
         }
     }
 
-    /// Euclidean length of dq/ds at an end of the path.
+    /// Euclidean norm of dq/ds at an end of the path.
     pub(super) fn slope(&self, end: PathEnd) -> f64 {
         let (piece, from) = self.place_of(end);
         (0..self.joints.len()).map(|joint| self.joint_at(piece, from, joint)[1].powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Whether dq/ds vanishes at an end of the path, as that of a clamped spline does.
+    /// Whether dq/ds vanishes at an end of the path, e.g. for a clamped spline.
     pub(super) fn has_no_direction(&self, end: PathEnd) -> bool {
         let (piece, _) = self.place_of(end);
         let chord = (0..self.joints.len())
@@ -136,7 +136,7 @@ impl JointPath {
         self.jumps_after(piece, 1)
     }
 
-    /// Whether the second derivative jumps there: the jerk would be infinite.
+    /// Whether the second derivative jumps between this piece and the next: the jerk would be infinite.
     pub(super) fn has_curvature_jump_after(&self, piece: usize) -> bool {
         self.has_corner_after(piece) || self.jumps_after(piece, 2)
     }
@@ -146,15 +146,15 @@ impl JointPath {
         for joint in 0..self.joints.len() {
             let [before, after] = [self.joint_at(piece, end, joint), self.joint_at(piece + 1, 0.0, joint)];
             jump = jump.max((after[order] - before[order]).abs());
-            // What rounding leaves of the second derivative is in proportion to the first.
+            // The rounding error of the second derivative is proportional to the first.
             let scale = |at: &[f64; 3]| at[1].abs() / end.powi(order as i32 - 1) + at[order].abs();
             size = size.max(scale(&before)).max(scale(&after));
         }
         jump > JUMP_TOLERANCE * size
     }
 
-    /// By how much a joint leaves this range (rad, m), summed over the pieces: by their Bezier points, which hold the curve
-    /// between them and are quicker to find than its extremes.
+    /// Excess of a joint over this range (rad, m), summed over the pieces, from their Bezier points: these enclose the
+    /// curve and are quicker to compute than its extremes.
     pub(in crate::planning) fn excess(&self, joint: usize, lower: f64, upper: f64) -> f64 {
         let of_piece = |piece: usize| {
             let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);
@@ -182,8 +182,8 @@ impl JointPath {
     }
 }
 
-/// Err unless these are waypoints that a path can join: at least two rows of one finite position a joint, no row like
-/// the one before. Returns their number.
+/// Checks that a path can join these waypoints: at least two rows, one finite position per joint, no row equal to the
+/// previous one. Returns the number of rows.
 pub(super) fn check_waypoints(joints: &[String], waypoints: &[f64]) -> Result<usize> {
     let n = joints.len();
     if n == 0 {

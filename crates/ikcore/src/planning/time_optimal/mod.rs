@@ -1,9 +1,9 @@
-//! The fastest timing of a joint path within velocity and acceleration limits, which hold at every point of it.
+//! The fastest timing of a joint path within velocity and acceleration limits, which hold at every point of the path.
 //!
 //! | file | what |
 //! |---|---|
 //! | `timing` | [`time_optimal`]: the call and its options |
-//! | `joint_path` | [`JointPath`]: where the joints go, cubics in a path parameter |
+//! | `joint_path` | [`JointPath`]: joint positions as cubics in a path parameter |
 //! | `spline`, `polyline` | paths through waypoints |
 //! | `timing_limits` | [`TimingLimits`] |
 //! | `grid` | the path cut into segments |
@@ -11,9 +11,9 @@
 //! | `velocity_curve` | the velocity limits |
 //! | `strips` | the acceleration limits |
 //! | `reachability` | the fastest speed profile on a grid |
-//! | `refine` | a grid that is fine where it matters |
+//! | `refine` | adaptive refinement of the grid |
 //! | `compose` | speed profile to trajectory |
-//! | `jerk` | the same, smoothed to keep jerk limits |
+//! | `jerk` | smoothing that keeps jerk limits |
 
 mod compose;
 mod derivatives;

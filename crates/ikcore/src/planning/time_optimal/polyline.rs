@@ -1,15 +1,15 @@
-//! Straight lines between waypoints, their corners rounded by parabolas.
+//! Straight lines between waypoints, with corners rounded by parabolas.
 
 use super::joint_path::{JointPath, check_waypoints};
 use crate::error::{Error, Result};
 
 impl JointPath {
-    /// Straight lines through `waypoints` (rad or m; one row of all joints a point), with each corner cut from `blend`
-    /// before it to `blend` after it (Euclidean distance in joint space; at most half of a line) by a parabola, which
-    /// passes the corner at `blend` / 2 at the most. With `blend` zero the joints stop at each corner.
+    /// Straight lines through `waypoints` (rad or m, one row of all joints per point). Each corner is replaced by a
+    /// parabola from `blend` before it to `blend` after it (Euclidean distance in joint space; at most half of a line),
+    /// which passes the corner at a distance of at most `blend` / 2. With `blend` zero the joints stop at each corner.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::InvalidPath`] where a waypoint repeats the one before it,
+    /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::InvalidPath`] if a waypoint repeats the previous one,
     /// [`Error::OutOfRange`] for `blend`.
     pub fn polyline(joints: Vec<String>, waypoints: &[f64], blend: f64) -> Result<Self> {
         let rows = check_waypoints(&joints, waypoints)?;
@@ -43,7 +43,7 @@ struct Leg {
 }
 
 impl Leg {
-    /// From its two ends, one after the other.
+    /// From its two ends, stored consecutively.
     fn new(ends: &[f64]) -> Self {
         let (start, end) = ends.split_at(ends.len() / 2);
         let difference: Vec<f64> = end.iter().zip(start).map(|(end, start)| end - start).collect();
@@ -56,7 +56,7 @@ impl Leg {
     }
 }
 
-/// The path so far; its parameter is the length of the polyline.
+/// The path under construction; its parameter is the length of the polyline.
 struct Pieces {
     breaks: Vec<f64>,
     coefficients: Vec<f64>,

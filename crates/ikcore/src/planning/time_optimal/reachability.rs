@@ -1,9 +1,9 @@
 //! The fastest speed profile along a path, by reachability analysis: Pham and Pham, "A new approach to time-optimal path
 //! parameterization based on reachability analysis", IEEE Transactions on Robotics 34 (2018), Algorithm 1.
 //!
-//! Their linear programs have two variables and strips for constraints. Here each is solved by Newton's method on the
-//! width of the interval that the strips leave for u, which is concave and piecewise linear in x: it converges from
-//! outside in a few steps, exactly.
+//! The linear programs of the paper have two variables and strips as constraints. Here each is solved by Newton's
+//! method on the width of the interval that the strips leave for u, which is concave and piecewise linear in x: it
+//! converges from outside in a few steps, exactly.
 
 use super::derivatives::PathDerivatives;
 use super::grid::Segment;
@@ -13,10 +13,10 @@ use super::timing_limits::TimingLimits;
 use super::velocity_curve::{UNLIMITED, maximum_velocity_curve};
 use crate::error::{Error, Result};
 
-/// The smallest and the largest squared path speed that is allowed at a point.
+/// Smallest and largest admissible squared path speed at a point.
 pub(super) type Range = [f64; 2];
 
-/// x = (ds/dt)^2 at the ends of all segments, linear in s in between: constant acceleration along the path.
+/// x = (ds/dt)^2 at the ends of all segments, linear in s between them: constant acceleration along the path.
 #[derive(Debug)]
 pub(super) struct SpeedProfile {
     pub segments: Vec<Segment>,
@@ -24,10 +24,10 @@ pub(super) struct SpeedProfile {
 }
 
 impl SpeedProfile {
-    /// The fastest profile on these `segments` that begins and ends in these ranges.
+    /// Computes the fastest profile on these `segments` that starts and ends in these ranges.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] where the speeds at the ends cannot be had.
+    /// [`Error::Infeasible`] if the speeds at the ends are not possible.
     pub(super) fn fastest(
         path: &JointPath,
         limits: &TimingLimits,
@@ -43,13 +43,13 @@ impl SpeedProfile {
         Ok(Self { segments, squared_speeds })
     }
 
-    /// How long each segment takes (s): its length over its mean speed, the speed being linear in time.
+    /// Duration of each segment (s): its length over its mean speed, since the speed is linear in time.
     pub(super) fn spans(&self) -> impl Iterator<Item = f64> + '_ {
         let speeds = self.squared_speeds.windows(2).map(|pair| pair[0].sqrt() + pair[1].sqrt());
         self.segments.iter().zip(speeds).map(|(segment, speeds)| 2.0 * segment.length / speeds)
     }
 
-    /// How long the motion takes (s).
+    /// Duration of the motion (s).
     pub(super) fn duration(&self) -> f64 {
         self.spans().sum()
     }
@@ -64,7 +64,7 @@ struct Pass<'a> {
 }
 
 impl Pass<'_> {
-    /// Segment `i`, with its constraints at hand.
+    /// Returns segment `i`, and computes its constraints.
     fn enter(&mut self, i: usize) -> Segment {
         let segment = self.segments[i];
         self.derivatives.fill(self.path, &segment);
@@ -87,7 +87,7 @@ impl Pass<'_> {
             sets[i + 1][0] = lowest.max(launch);
             let next = Coupling::new(sets[i + 1], segment.length);
             let highest = sets[i][1].min(self.strips.largest_x);
-            // The next point may be passed so slowly that it is reached from rest.
+            // The next point may be passed so slowly that it can be reached from rest.
             let lowest = if next.set[0] <= launch { Some(0.0) } else { self.boundary(0.0, &next) };
             sets[i] = match (lowest, self.boundary(highest, &next)) {
                 (Some(lowest), Some(highest)) if lowest <= highest => [lowest, highest],
@@ -97,7 +97,7 @@ impl Pass<'_> {
         Ok(sets)
     }
 
-    /// The fastest way: at each grid point the largest acceleration that stays controllable.
+    /// The forward pass: at each grid point the largest acceleration that stays controllable.
     fn forward(&mut self, sets: &[Range], start: Range) -> Result<Vec<f64>> {
         let mut x = start[1].min(sets[0][1]);
         if x < start[0] {
@@ -118,7 +118,7 @@ impl Pass<'_> {
         Ok(xs)
     }
 
-    /// The nearest x to `from` for which some acceleration is feasible; None where there is none on that side.
+    /// Returns the nearest x to `from` with a feasible acceleration; `None` if there is none on that side.
     fn boundary(&self, from: f64, next: &Coupling) -> Option<f64> {
         let mut x = from.min(UNLIMITED);
         loop {
@@ -126,7 +126,7 @@ impl Pass<'_> {
             if lower.at(x) <= upper.at(x) {
                 return Some(x);
             }
-            // Where the two lines cross: further out nothing is feasible.
+            // The intersection of the two lines: beyond it nothing is feasible.
             let crossing = (upper.offset - lower.offset) / (upper.slope - lower.slope);
             let inward = if from > 0.0 { crossing < x } else { crossing > x };
             if !inward || crossing < 0.0 {
@@ -138,14 +138,14 @@ impl Pass<'_> {
     }
 }
 
-/// Two grid points at rest in a row would never be left. So each is passed with at least this share of the x that a
-/// launch from the one before would give; on a fine grid that is as good as nothing.
+/// The motion could never leave two consecutive grid points at rest. So each point is passed with at least this
+/// fraction of the x that a launch from the previous one would give, which is negligible on a fine grid.
 const LAUNCH_SHARE: f64 = 0.1;
 
 /// Relative tolerance for intersecting lines.
 const ROUNDING: f64 = 1e-12;
 
-/// x at the next grid point, x + 2 u length, must be in its set.
+/// The constraint that x at the next grid point, x + 2 u length, is in its set.
 struct Coupling {
     set: Range,
     upper: Line,

@@ -1,17 +1,17 @@
-//! A grid that is fine where it matters.
+//! Adaptive refinement of the grid.
 
 use super::grid::{MAX_GRIDPOINTS, Segment};
 use super::reachability::SpeedProfile;
 use crate::error::Result;
 
-/// Refined until halving segments saves no more than this share of the duration. The error falls with their length, so
-/// that about as much remains.
+/// The grid is refined until halving segments saves no more than this fraction of the duration. The error is
+/// proportional to their length, so about as much remains.
 const CONVERGED: f64 = 5e-4;
 
-/// A segment is halved again where halving it saved more than this share of what it may contribute.
+/// A segment is halved again if halving it saved more than this fraction of its share of the allowed error.
 const WORTHWHILE: f64 = 0.2;
 
-/// The fastest profile on a grid that begins with `segments` and is halved where halving saves time.
+/// Returns the fastest profile on a grid that starts with `segments` and is halved wherever that saves time.
 pub(super) fn refine(
     segments: Vec<Segment>,
     fastest: impl Fn(Vec<Segment>) -> Result<SpeedProfile>,
@@ -33,7 +33,7 @@ pub(super) fn refine(
     }
 }
 
-/// The segments, those marked cut in two.
+/// Returns the segments, with the marked ones cut in two.
 fn halved(segments: &[Segment], halve: &[bool]) -> Vec<Segment> {
     let mut finer = Vec::with_capacity(2 * segments.len());
     for (segment, halve) in segments.iter().zip(halve) {
@@ -48,7 +48,7 @@ fn halved(segments: &[Segment], halve: &[bool]) -> Vec<Segment> {
     finer
 }
 
-/// Which of the finer segments to halve next: those that came out of a halving which saved more than `threshold` (s).
+/// Returns which of the finer segments to halve next: those from a halving that saved more than `threshold` (s).
 fn worthwhile(coarse: &SpeedProfile, halve: &[bool], finer: &SpeedProfile, threshold: f64) -> Vec<bool> {
     let mut spans = finer.spans();
     let mut next = Vec::with_capacity(finer.segments.len());

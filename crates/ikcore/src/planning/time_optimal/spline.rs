@@ -1,4 +1,4 @@
-//! Cubic splines: the smoothest curve through waypoints.
+//! Cubic splines through waypoints.
 
 use std::str::FromStr;
 
@@ -20,11 +20,11 @@ impl FromStr for SplineEnds {
 }
 
 impl JointPath {
-    /// The cubic spline of `joints` (names) through `waypoints` (rad or m; one row of all joints a point) at the path
-    /// parameters `knots`; None: uniform in \[0, 1\].
+    /// The cubic spline of `joints` (names) through `waypoints` (rad or m, one row of all joints per point) at the path
+    /// parameters `knots`. `None` means uniform in \[0, 1\].
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::InvalidPath`] where a waypoint repeats the one before it,
+    /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::InvalidPath`] if a waypoint repeats the previous one,
     /// [`Error::NotIncreasing`] for knots.
     pub fn spline(joints: Vec<String>, waypoints: &[f64], knots: Option<&[f64]>, ends: SplineEnds) -> Result<Self> {
         let rows = check_waypoints(&joints, waypoints)?;

@@ -1,7 +1,8 @@
-//! The acceleration limits over one segment, in the plane of x = (ds/dt)^2 at its beginning and u = d2s/dt2 on it.
+//! The acceleration limits over one segment, in the plane of x = (ds/dt)^2 at its start and u = d2s/dt2 on it.
 //!
 //! Each limit is a strip |a u + b x| <= c. For a given x the strips leave an interval of u, between the lowest of their
-//! upper lines and the highest of their lower lines; both are broken lines, convex towards each other.
+//! upper lines and the highest of their lower lines. Both envelopes are piecewise linear; the interval between them is
+//! convex.
 
 use super::derivatives::PathDerivatives;
 use super::timing_limits::TimingLimits;
@@ -20,18 +21,18 @@ impl Line {
     }
 }
 
-/// Each strip by its upper line. Its lower one is parallel and has the negative offset.
+/// Strips, each given by its upper line. The lower line is parallel and has the negative offset.
 #[derive(Debug, Default)]
 pub(super) struct Strips {
     offsets: Vec<f64>,
     slopes: Vec<f64>,
-    /// The bound on x of those strips that do not bound u.
+    /// The bound on x from strips that do not bound u.
     pub largest_x: f64,
-    /// The largest u from a standing start.
+    /// The largest u from rest.
     pub launch: f64,
 }
 
-/// A coefficient of u below this share of the largest counts as zero: its line would be so steep that it is mostly
+/// A coefficient of u below this fraction of the largest counts as zero: its line would be so steep that it is mostly
 /// rounding, and it hardly bounds u.
 const NEGLIGIBLE: f64 = 1e-9;
 
@@ -45,10 +46,10 @@ impl Strips {
         }
     }
 
-    /// The strips of a segment with these `derivatives` of the path and of this `length`.
+    /// Computes the strips of a segment with these `derivatives` of the path and this `length`.
     ///
-    /// On it d2q/dt2 = q'(s) u + q''(s) x(s), with x(s) = x + 2 u (s - s_i), is a quadratic in s. Bounds on its three
-    /// Bernstein coefficients bound it at every point, not at the grid points alone.
+    /// On the segment d2q/dt2 = q'(s) u + q''(s) x(s), with x(s) = x + 2 u (s - s_i), is a quadratic in s. Bounds on
+    /// its three Bernstein coefficients bound it at every point, not only at grid points.
     pub(super) fn fill(&mut self, derivatives: &PathDerivatives, length: f64, limits: &TimingLimits) {
         let n = limits.acceleration.len();
         let [d0, d1, d2] = derivatives.first.each_ref().map(|row| &row[..n]);

@@ -1,4 +1,4 @@
-//! The call: grid, speed profile, trajectory.
+//! The call `time_optimal`: grid, speed profile, trajectory.
 
 use super::compose::compose;
 use super::grid::{check_gridpoints, cut};
@@ -10,25 +10,25 @@ use super::timing_limits::TimingLimits;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
 
-/// How to time a path. The default is rest to rest on a grid chosen by refinement.
+/// Options of [`time_optimal`]. The default is from rest to rest on an adaptively refined grid.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TimingOptions {
-    /// Points at which the acceleration along the path may change, at least one for each piece of the path; None refines
+    /// Points at which the acceleration along the path may change, at least one per piece of the path. `None` refines
     /// the grid until it makes no difference.
     pub gridpoints: Option<usize>,
-    /// Euclidean length of the joint velocity at the beginning (rad/s, m/s).
+    /// Euclidean norm of the joint velocity at the start (rad/s, m/s).
     pub start_speed: f64,
-    /// The same at the end.
+    /// Euclidean norm of the joint velocity at the end (rad/s, m/s).
     pub end_speed: f64,
 }
 
-/// Segments to begin refining with.
+/// Number of segments before refinement.
 const FIRST_SEGMENTS: usize = 100;
 
-/// Segments where the result is smoothed: that takes more from the speed than a coarse grid.
+/// Number of segments if the result is smoothed: smoothing costs more speed than a coarse grid.
 const SEGMENTS_TO_SMOOTH: usize = 300;
 
-/// The fastest motion along `path` within `limits`.
+/// Returns the fastest motion along `path` within `limits`.
 ///
 /// # Errors
 /// [`Error::Infeasible`] for a path that leaves the position limits, a joint that must move but may not, or speeds at the
@@ -38,10 +38,10 @@ pub fn time_optimal(path: &JointPath, limits: &TimingLimits, options: &TimingOpt
     time(path, limits, options)
 }
 
-/// [`time_optimal`] for callers that see to the position limits themselves.
+/// [`time_optimal`] without the check of position limits.
 ///
 /// # Errors
-/// The same, except for position limits.
+/// As [`time_optimal`], except for position limits.
 pub(crate) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOptions) -> Result<Trajectory> {
     let ends =
         [end_range(path, options.start_speed, PathEnd::Start)?, end_range(path, options.end_speed, PathEnd::End)?];
@@ -65,18 +65,18 @@ pub(crate) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOpti
     }
 }
 
-/// Duration (s) of the fastest motion from rest to rest on a grid of about `segments` segments: quick, for comparing many
-/// paths. Position limits are left to the caller.
+/// Returns the duration (s) of the fastest motion from rest to rest on a grid of about `segments` segments: a quick
+/// estimate to compare many paths. Position limits are left to the caller.
 ///
 /// # Errors
-/// None in practice: from rest to rest there is always a way.
+/// None in practice: a motion from rest to rest always exists.
 pub(crate) fn coarse_duration(path: &JointPath, limits: &TimingLimits, segments: usize) -> Result<f64> {
     let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
     SpeedProfile::fastest(path, limits, cut(path, segments), ends).map(|profile| profile.duration())
 }
 
-/// The range of squared path speeds that give a joint speed at an end. Where dq/ds vanishes the joints are at rest at any
-/// path speed.
+/// Returns the range of squared path speeds for a joint speed at an end. If dq/ds vanishes, the joints are at rest at
+/// any path speed.
 fn end_range(path: &JointPath, speed: f64, end: PathEnd) -> Result<Range> {
     let name = end.name();
     if !(speed >= 0.0 && speed.is_finite()) {

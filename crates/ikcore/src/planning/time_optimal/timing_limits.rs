@@ -1,27 +1,27 @@
-//! The limits that a timing keeps.
+//! Limits of a timing.
 
 use super::joint_path::JointPath;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 
-/// Constant limits of each joint (n,). Only positions are a matter of the path alone.
+/// Constant limits of each joint (n,). Position limits are not included: they depend on the path alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimingLimits {
     lower: Vec<f64>,
     upper: Vec<f64>,
-    /// Velocity (rad/s, m/s); infinite where there is no limit.
+    /// Velocity (rad/s, m/s); infinite without a limit.
     pub(super) velocity: Vec<f64>,
     /// Acceleration (rad/s^2, m/s^2), finite.
     pub(super) acceleration: Vec<f64>,
-    /// Jerk (rad/s^3, m/s^3); None where no joint has a limit.
+    /// Jerk (rad/s^3, m/s^3); `None` if no joint has a limit.
     pub(super) jerk: Option<Vec<f64>>,
 }
 
 impl TimingLimits {
-    /// The constant ones among `limits`; `method` is named in errors.
+    /// The timing limits of `limits`, which must be constant; `method` is named in errors.
     ///
     /// # Errors
-    /// [`Error::UnsupportedLimit`] for limits that vary in time, and for joints without an acceleration limit;
+    /// [`Error::UnsupportedLimit`] for limits that vary over time and for joints without an acceleration limit;
     /// [`Error::NegativeLimit`], [`Error::EmptyRange`].
     pub fn new(limits: &Limits, method: &str) -> Result<Self> {
         limits.validate(0.0, 0)?;
@@ -49,8 +49,8 @@ impl TimingLimits {
         })
     }
 
-    /// Err unless these are limits for the joints of `path`, which lies within the position limits, and joints that the
-    /// path moves may move.
+    /// Checks that these limits fit the joints of `path`, that the path is within the position limits, and that no
+    /// joint that must move is locked.
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::Infeasible`] names the joint.

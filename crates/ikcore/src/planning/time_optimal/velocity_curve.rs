@@ -1,4 +1,4 @@
-//! How fast the velocity limits let the path be followed: the maximum velocity curve.
+//! The maximum velocity curve: the path speed that the velocity limits allow.
 
 use super::derivatives::PathDerivatives;
 use super::grid::Segment;
@@ -6,15 +6,15 @@ use super::joint_path::JointPath;
 use super::timing_limits::TimingLimits;
 use crate::math::polynomial::quadratic_roots;
 
-/// Stands for "as fast as you like", and leaves room to calculate.
+/// Represents no bound; finite, to leave room for arithmetic.
 pub(super) const UNLIMITED: f64 = 1e100;
 
-/// From one grid point to the next the bound may grow by this factor at most. Where all joints turn back at once dq/ds is
+/// Largest factor by which the bound may grow between neighbouring grid points. If all joints reverse at once, dq/ds is
 /// zero and the bound infinite, and a line from a finite to an infinite bound bounds nothing.
 const LARGEST_GROWTH: f64 = 4.0;
 
-/// Bounds on the squared path speed x = (ds/dt)^2 at the ends of all segments, such that a motion which keeps them, with
-/// x linear in s in between, keeps the velocity limits at every point: |dq/ds| sqrt(x) <= v.
+/// Returns bounds on the squared path speed x = (ds/dt)^2 at the ends of all segments, such that a motion within them,
+/// with x linear in s between them, keeps the velocity limits at every point: |dq/ds| sqrt(x) <= v.
 pub(super) fn maximum_velocity_curve(
     path: &JointPath,
     limits: &TimingLimits,
@@ -36,7 +36,7 @@ pub(super) fn maximum_velocity_curve(
     curve
 }
 
-/// min over the joints of (v / q')^2; zero at corners.
+/// Returns the minimum over the joints of (v / q')^2; zero at corners.
 fn at_grid_points(
     path: &JointPath,
     limits: &TimingLimits,
@@ -71,12 +71,13 @@ fn tame_poles(curve: &mut [f64]) {
     }
 }
 
-/// The largest bound that may stand beside this one; a corner's zero says nothing about its neighbours.
+/// Largest bound of a neighbour of this bound; the zero of a corner does not limit its neighbours.
 fn growth(bound: f64) -> f64 {
     if bound == 0.0 { UNLIMITED } else { LARGEST_GROWTH * bound }
 }
 
-/// By how much the chord x(s) from `left` to `right` must be lowered to keep the velocity limits in between.
+/// Returns the factor by which the chord x(s) from `left` to `right` must be lowered to keep the velocity limits
+/// between grid points.
 fn chord_factor(derivatives: &PathDerivatives, limits: &TimingLimits, left: f64, right: f64) -> f64 {
     let m = (0.5 * (left + right)).sqrt();
     if m == 0.0 || m >= UNLIMITED.sqrt() {
@@ -86,8 +87,9 @@ fn chord_factor(derivatives: &PathDerivatives, limits: &TimingLimits, left: f64,
     let [d0, d1, d2] = &derivatives.first;
     let mut excess = 1.0_f64;
     for (j, limit) in limits.velocity.iter().enumerate() {
-        // sqrt(x) lies below its tangent at any m^2, sqrt(x) <= (x / m + m) / 2, which is linear in s as x is; so the
-        // speed of a joint lies below a cubic, and that below its Bernstein coefficients. Few joints come near.
+        // sqrt(x) lies below its tangent at any m^2, sqrt(x) <= (x / m + m) / 2, which is linear in s like x; so the
+        // speed of a joint lies below a cubic, and the cubic below its Bernstein coefficients. Few joints come near
+        // their limit, so the exact maximum is rarely needed.
         let inner = [(2.0 * d1[j] * g0 + d0[j] * g1) / 3.0, (d2[j] * g0 + 2.0 * d1[j] * g1) / 3.0];
         let bound = inner[0].abs().max(inner[1].abs()).max((d0[j] * g0).abs()).max((d2[j] * g1).abs());
         if bound * bound > excess * limit * limit {
@@ -97,9 +99,10 @@ fn chord_factor(derivatives: &PathDerivatives, limits: &TimingLimits, left: f64,
     1.0 / excess
 }
 
-/// The largest q'(s)^2 x(s) between the ends of a segment, for q' with these Bernstein coefficients and x linear.
+/// Returns the largest q'(s)^2 x(s) between the ends of a segment, for q' with these Bernstein coefficients and x
+/// linear.
 ///
-/// Its derivative vanishes where q' = 0, or where 2 q'' x + q' x' = 0, a quadratic.
+/// The derivative vanishes if q' = 0 or 2 q'' x + q' x' = 0, a quadratic.
 fn fastest([d0, d1, d2]: [f64; 3], [left, right]: [f64; 2]) -> f64 {
     let (slope, curvature) = (2.0 * (d1 - d0), d0 - 2.0 * d1 + d2);
     let rise = right - left;

@@ -1,4 +1,4 @@
-//! Splines of the joints through waypoints on a path: through enough of them that the tip keeps to the path in between.
+//! Joint splines through waypoints on a path, dense enough that the tip stays on the path between them.
 
 use super::projection::project;
 use crate::error::Result;
@@ -14,21 +14,22 @@ use crate::robot::Robot;
 pub(super) struct JointWaypoints {
     /// Path parameters, from 0 to 1.
     pub knots: Vec<f64>,
-    /// The joint positions at each knot, row after row.
+    /// Joint positions at each knot, row after row.
     pub rows: Vec<f64>,
 }
 
 /// Behaviour of the joints at the corners of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Corners {
-    /// One spline leads through them: it rounds each corner, the less the denser its knots are.
+    /// One spline passes through them: it rounds each corner, less with denser knots.
     Passed,
-    /// A spline ends and the next begins at each corner: the arm stops there, and keeps to the path as well as elsewhere.
+    /// A spline ends at each corner and the next one begins: the arm stops there, and follows the path as closely as
+    /// elsewhere.
     Stopped,
 }
 
 impl Corners {
-    /// The alternatives for a path.
+    /// The alternatives for this path.
     pub(super) fn on(tip_path: &TipPath) -> &'static [Self] {
         match tip_path.corners().next() {
             None => &[Self::Passed],
@@ -48,27 +49,27 @@ pub(super) struct Interpolation<'a> {
     pub corners: Corners,
 }
 
-/// An interval is halved where the tip deviates by more than this share of the accuracy.
+/// An interval is halved if the tip deviates by more than this fraction of the accuracy.
 const ENOUGH: f64 = 0.8;
 
 /// Samples inside each interval.
 const SAMPLES: usize = 7;
 
-/// How often an interval may be halved: to a four-thousandth of its length.
+/// Maximum number of halvings of an interval: to 1/4096 of its length.
 const HALVINGS: usize = 12;
 
-/// No more knots than this are added.
+/// Maximum number of knots added.
 const MOST_KNOTS: usize = 2000;
 
 impl Interpolation<'_> {
-    /// The joint path through these waypoints, over the path parameter.
+    /// Returns the joint path through these waypoints, over the path parameter.
     ///
     /// # Errors
-    /// None in practice: waypoints that differ make a spline.
+    /// None in practice: waypoints that differ define a spline.
     pub(super) fn path(&self, waypoints: &JointWaypoints) -> Result<JointPath> {
         let n = self.robot.dof();
         let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
-        // Natural ends, without curvature, would be less accurate.
+        // Natural ends, i.e. zero curvature, would be less accurate.
         let spline = |from: usize, to: usize| {
             let rows = &waypoints.rows[from * n..(to + 1) * n];
             JointPath::spline(names.clone(), rows, Some(&waypoints.knots[from..=to]), SplineEnds::NotAKnot)
@@ -84,7 +85,8 @@ impl Interpolation<'_> {
         JointPath::joined(stretches).map_or_else(|| spline(0, last), Ok)
     }
 
-    /// The waypoints with knots added until the tip is within `accuracy` (m, rad) of the path, or until more bring nothing.
+    /// Returns the waypoints with knots added until the tip is within `accuracy` (m, rad) of the path, or until more
+    /// knots do not help.
     ///
     /// # Errors
     /// None in practice, as for [`path`](Self::path).
@@ -98,7 +100,7 @@ impl Interpolation<'_> {
             };
             let is_coarse = |i: &usize| {
                 let [from, to] = [waypoints.knots[*i], waypoints.knots[*i + 1]];
-                // A given start may itself be off the path.
+                // A given start may be off the path.
                 deviation.between(from, to, SAMPLES) > ENOUGH * accuracy + deviation.at(from)
             };
             let coarse: Vec<usize> = (0..waypoints.knots.len() - 1).filter(is_coarse).collect();
@@ -114,7 +116,8 @@ impl Interpolation<'_> {
         Ok(waypoints)
     }
 
-    /// The waypoints with a knot in the middle of each of these intervals, where the path can be reached there.
+    /// Returns the waypoints with a knot added in the middle of each of these intervals, if the path can be reached
+    /// there.
     fn halved(&self, waypoints: &JointWaypoints, intervals: &[usize], path: &JointPath) -> JointWaypoints {
         let n = self.robot.dof();
         let bounds = Bounds::from_ranges(self.robot.joints().iter().map(|joint| (joint.lower, joint.upper)));

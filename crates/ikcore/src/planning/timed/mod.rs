@@ -1,17 +1,17 @@
-//! Along a path as fast as the limits allow: the arm's redundancy and the timing found together.
+//! Planning along a path as fast as the limits allow: redundancy and timing in one search.
 //!
-//! An outer search chooses the posture in which the arm passes each point of the path, by a few numbers for the whole motion.
-//! For the joint path that follows from them, the fastest timing is found exactly and at little cost. So the search space is
+//! An outer search chooses the posture of the arm at each point of the path, by a few parameters for the whole motion.
+//! For the resulting joint path, the fastest timing is computed exactly and at little cost. So the search space is
 //! small, and every limit is kept.
 //!
 //! | file | what |
 //! |---|---|
 //! | `timed_planner` | the planner |
-//! | `redundant_motion` | configurations along the path, and the freedom to choose them |
-//! | `null_space` | directions that move the joints and leave the tip where it is |
+//! | `redundant_motion` | configurations along the path, and their free offsets |
+//! | `null_space` | joint motions that leave the tip in place |
 //! | `projection` | the nearest configuration that reaches a target |
-//! | `interpolation` | splines through configurations, fine enough to keep to the path |
-//! | `timed_cost` | the duration as a function of the choice |
+//! | `interpolation` | splines through configurations, dense enough to stay on the path |
+//! | `timed_cost` | the duration as a function of the offsets |
 
 mod interpolation;
 mod null_space;

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-/// Singular values below this share of the largest count as zero: a joint motion that leaves the tip where it is.
+/// Singular values below this fraction of the largest count as zero.
 const NULL: f64 = 1e-6;
 
 /// Returns an orthonormal basis of the Jacobian's null space.
@@ -15,8 +15,8 @@ pub(super) fn null_space(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
     eigen.eigenvectors.select_columns(&null)
 }
 
-/// A basis of the space of `null` near `before`, with `count` columns: where a singularity adds a direction, it is left
-/// out.
+/// Returns a basis of the space of `null` that is aligned with `before`, with `count` columns: if a singularity adds a
+/// direction, it is left out.
 pub(super) fn turned(null: &DMatrix<f64>, before: &DMatrix<f64>, count: usize) -> DMatrix<f64> {
     let shadow = null * (null.transpose() * before);
     let mut basis = DMatrix::zeros(before.nrows(), count);
@@ -27,7 +27,8 @@ pub(super) fn turned(null: &DMatrix<f64>, before: &DMatrix<f64>, count: usize) -
             column -= basis.column(other) * along;
         }
         let length = column.norm();
-        // A direction that has no shadow is kept as it was: the projection brings it back onto the path.
+        // A direction without a projection is kept unchanged: the projection of the configuration brings it back onto
+        // the path.
         let kept = if length > NULL { column / length } else { before.column(k).into_owned() };
         basis.set_column(k, &kept);
     }

@@ -7,16 +7,16 @@ use crate::problem::Problem;
 use crate::robot::Robot;
 use crate::task::{Target, Tolerance};
 
-/// Steps of the projection at the most; it converges quadratically.
+/// Maximum number of steps; the projection converges quadratically.
 const STEPS: usize = 12;
 
-/// A target counts as met at this squared distance (m^2, rad^2), far below what limits or accuracy can show.
+/// A target counts as met at this squared distance (m^2, rad^2), far below the accuracy of limits and paths.
 const MET: f64 = 1e-16;
 
-/// Damping over squared error, as in the library's own Levenberg-Marquardt.
+/// Damping relative to squared error, as in the library's Levenberg-Marquardt.
 const DAMPING: f64 = 0.05;
 
-/// Brings `q` onto the target, to a nearby solution; returns by how much that is missed (m, rad), 0 where it is met.
+/// Moves `q` onto the target, to a nearby solution. Returns the remaining error (m, rad); 0 if the target is met.
 pub(super) fn project(
     robot: &Robot,
     target: &Target,

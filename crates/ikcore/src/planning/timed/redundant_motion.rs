@@ -1,8 +1,8 @@
-//! The configurations in which an arm passes the points of a path, and the free offsets along its self-motion.
+//! Configurations of an arm along a path, and free offsets along its self-motion.
 //!
-//! A nominal motion follows the path with the least joint motion from point to point. At a few nodes along it, offsets in
-//! the null space of the task's Jacobian are free; between nodes they follow natural splines. The nominal configurations
-//! with their offsets are then brought back onto the points by damped least squares: the nearest solutions.
+//! A nominal motion follows the path with the least joint motion from point to point. At a few nodes along it, offsets
+//! in the null space of the task Jacobian are free; natural splines interpolate them. The nominal configurations plus
+//! offsets are then projected back onto the points by damped least squares.
 
 use nalgebra::DMatrix;
 
@@ -20,17 +20,17 @@ use crate::robot::Robot;
 use crate::task::{Target, Tolerance};
 use crate::wording::number;
 
-/// Nodes of the offsets along the path: the published planner's number of knots.
+/// Nodes of the offsets along the path: as many as the published planner has knots.
 pub(super) const NODES: usize = 5;
 
-/// Intervals between the points that the nominal motion passes, corners apart: half the published planner's.
+/// Intervals between the points of the nominal motion, apart from corners: half of the published planner's.
 const INTERVALS: usize = 25;
 
 /// Starts tried for the nominal motion.
 const STARTS: usize = 16;
 
-/// Joints move by this much (rad, m) at the most from one point to the next of the nominal motion; more is a jump to
-/// another branch.
+/// Largest motion of a joint (rad, m) from one point of the nominal motion to the next; more is a jump to another
+/// branch.
 const JUMP: f64 = 1.5;
 
 /// The arm on its path.
@@ -41,11 +41,11 @@ pub(super) struct RedundantMotion<'a> {
     /// Targets of the tip at the nominal motion's knots.
     targets: Vec<Target>,
     nominal: JointWaypoints,
-    /// Directions of the self-motion at each node: a column each.
+    /// Directions of the self-motion at each node, one per column.
     bases: Vec<DMatrix<f64>>,
-    /// Weight of each node's offset at each point: point by point, node by node.
+    /// Weight of each node's offset at each point: by point, then by node.
     weights: Vec<f64>,
-    /// Whether the first configuration is given, and stays as it is.
+    /// Whether the first configuration is given, and remains unchanged.
     starts_as_given: bool,
     linearization: Linearization,
 }
@@ -54,7 +54,7 @@ impl<'a> RedundantMotion<'a> {
     /// The arm on `path`.
     ///
     /// # Errors
-    /// [`Error::Unreachable`] names the first place that no motion from any start reached.
+    /// [`Error::Unreachable`] names the first point that no motion from any start reached.
     pub(super) fn new(robot: &'a Robot, tip_path: &'a TipPath, start: Option<&[f64]>, seed: u64) -> Result<Self> {
         let joints = robot.joints();
         let knots = tip_path.knots(INTERVALS);
@@ -82,7 +82,7 @@ impl<'a> RedundantMotion<'a> {
         &self.nominal
     }
 
-    /// Takes another nominal motion on the same path.
+    /// Replaces the nominal motion by another one on the same path.
     pub(super) fn take(&mut self, nominal: JointWaypoints) {
         self.targets = nominal.knots.iter().map(|knot| self.tip_path.target(*knot)).collect();
         self.weights = node_weights(&nominal.knots);
@@ -100,7 +100,7 @@ impl<'a> RedundantMotion<'a> {
         self.targets.len()
     }
 
-    /// How many numbers are free at each node.
+    /// Number of free parameters at each node.
     pub(super) fn freedom(&self) -> usize {
         self.bases[0].ncols()
     }
@@ -110,8 +110,8 @@ impl<'a> RedundantMotion<'a> {
         self.starts_as_given
     }
 
-    /// Writes the configurations at all points for the offsets `z` (node by node; rad, m along the self-motion) into
-    /// `waypoints`; returns by how much points are missed, summed (m, rad).
+    /// Writes the configurations at all points for the offsets `z` (by node; rad, m along the self-motion) into
+    /// `waypoints`; returns the total distance to the points (m, rad).
     pub(super) fn place(&mut self, z: &[f64], waypoints: &mut [f64]) -> f64 {
         let n = self.dof();
         let freedom = self.freedom();
@@ -126,7 +126,7 @@ impl<'a> RedundantMotion<'a> {
                     q.iter_mut().zip(basis.column(k).iter()).for_each(|(q, b)| *q += weight * z * b);
                 }
             }
-            // What the point before had to be moved by, this one needs about as much.
+            // The projection of the previous point is a good guess for this one.
             let mut from = [0.0; MAX_DOF];
             from[..n].copy_from_slice(q);
             q.iter_mut().zip(&correction).for_each(|(q, c)| *q += c);
@@ -182,7 +182,7 @@ impl<'a> RedundantMotion<'a> {
         Error::Unreachable { what: self.tip_path.place(self.nominal.knots[lost.point]), problem }
     }
 
-    /// From `start` along all points, each from the one before.
+    /// Follows all points from `start`, each from the previous one.
     fn follow(&mut self, start: &[f64]) -> Result<Vec<f64>, Lost> {
         let n = self.dof();
         let mut nominal = vec![0.0; self.points() * n];
@@ -203,7 +203,7 @@ impl<'a> RedundantMotion<'a> {
         Ok(nominal)
     }
 
-    /// The null space of the task's Jacobian at each node, each basis turned towards the one before.
+    /// Returns the null space of the task Jacobian at each node, each basis aligned with the previous one.
     fn self_motions(&mut self) -> Vec<DMatrix<f64>> {
         let n = self.dof();
         let mut bases: Vec<DMatrix<f64>> = Vec::with_capacity(NODES);
@@ -224,7 +224,7 @@ impl<'a> RedundantMotion<'a> {
     }
 }
 
-/// Where a nominal motion ended (its knot), and how far it missed the point (m, rad).
+/// Knot at which a nominal motion ended, and its distance to the point (m, rad).
 struct Lost {
     point: usize,
     missed: f64,
@@ -236,12 +236,12 @@ impl Lost {
     }
 }
 
-/// Sum over the joints of how far each goes.
+/// Total travel of all joints.
 pub(super) fn travel(waypoints: &[f64], n: usize) -> f64 {
     (n..waypoints.len()).map(|i| (waypoints[i] - waypoints[i - n]).abs()).sum()
 }
 
-/// The splines through a unit offset at each node, at every knot.
+/// Values at every knot of the splines through a unit offset at each node.
 fn node_weights(knots: &[f64]) -> Vec<f64> {
     let spline = CubicSpline::natural((0..NODES).map(|node| node as f64 / (NODES - 1) as f64).collect());
     let mut weights = vec![0.0; knots.len() * NODES];

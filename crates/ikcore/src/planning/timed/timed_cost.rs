@@ -1,4 +1,4 @@
-//! The cost of the postures along a path.
+//! Cost of the postures along a path.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -13,29 +13,29 @@ use crate::planning::{Cost, JointPath, MotionLimits, TimingLimits};
 /// The duration, or the joint travel, of the motion along a path, as a function of the offsets along the self-motion at
 /// its nodes.
 pub(super) struct TimedCost<'a> {
-    /// The configurations that the arm may choose from.
+    /// The configurations to choose from.
     pub motion: RedundantMotion<'a>,
-    /// The splines through those chosen.
+    /// The splines through the chosen configurations.
     pub interpolation: Interpolation<'a>,
     /// Limits that the motion keeps.
     pub limits: &'a MotionLimits,
-    /// The same for its timing.
+    /// Limits of the timing.
     pub timing_limits: &'a TimingLimits,
     /// Quantity to minimise.
     pub objective: Cost,
-    /// How far the tip may be from the path (m, rad).
+    /// Allowed deviation of the tip from the path (m, rad).
     pub accuracy: f64,
-    /// A large value of the cost, by which penalties are scaled.
+    /// A large value of the cost, which scales penalties.
     pub scale: f64,
 }
 
-/// How far the offsets may go to either side (rad, m).
+/// Largest offset to either side (rad, m).
 const REACH: f64 = FRAC_PI_2;
 
-/// Segments of the timing in each piece of the spline while searching: enough to rank postures.
+/// Segments of the timing per piece of the spline during the search: enough to rank postures.
 const SEGMENTS_A_PIECE: usize = 2;
 
-/// The search keeps this share of its range between a joint and its limits: the knots that the spline is given afterwards
+/// The search keeps joints this fraction of their range away from their limits: knots added to the spline afterwards
 /// may move it by as much.
 const MARGIN: f64 = 5e-4;
 
@@ -43,7 +43,7 @@ const MARGIN: f64 = 5e-4;
 const BROKEN: f64 = 10.0;
 
 impl TimedCost<'_> {
-    /// The range of the offsets; None where the arm has no choice.
+    /// Returns the range of the offsets; `None` if the arm is not redundant.
     pub(super) fn bounds(&self) -> Option<Bounds> {
         let freedom = self.motion.freedom();
         let free = if self.motion.starts_as_given() { freedom } else { 0 };
@@ -51,7 +51,8 @@ impl TimedCost<'_> {
         (freedom > 0).then(|| Bounds::from_ranges((0..NODES * freedom).map(reach)))
     }
 
-    /// The joint positions for these offsets, at the nominal motion's knots, and by how much they miss the path (m, rad).
+    /// Returns the joint positions for these offsets, at the knots of the nominal motion, and their total distance to
+    /// the path (m, rad).
     pub(super) fn waypoints(&mut self, z: &[f64]) -> (JointWaypoints, f64) {
         let knots = self.motion.nominal().knots.clone();
         let mut waypoints = JointWaypoints { rows: vec![0.0; knots.len() * self.motion.dof()], knots };
@@ -73,7 +74,7 @@ impl TimedCost<'_> {
         Ok(cost + BROKEN * self.scale * (self.deviation(&waypoints, &path) + self.outside(&path)))
     }
 
-    /// By how much joints come nearer to their limits than the margin, summed (rad, m).
+    /// Returns by how much joints are nearer to their limits than the margin, summed (rad, m).
     fn outside(&self, path: &JointPath) -> f64 {
         let excess = |j: usize| {
             let (lower, upper) = self.limits.finite_range(j);
@@ -83,7 +84,8 @@ impl TimedCost<'_> {
         (0..self.motion.dof()).map(excess).sum()
     }
 
-    /// By how much the tip exceeds the accuracy in the middle between knots, as multiples of it, summed.
+    /// Returns by how much the tip exceeds the accuracy in the middle between knots, relative to the accuracy and
+    /// summed.
     fn deviation(&self, waypoints: &JointWaypoints, path: &JointPath) -> f64 {
         let Interpolation { robot, tip_path, .. } = self.interpolation;
         let tip = TipDeviation { robot, tip_path, configurations: |share: f64, q: &mut [f64]| path.position(share, q) };
@@ -97,7 +99,7 @@ impl Objective for TimedCost<'_> {
         NODES * self.motion.freedom()
     }
 
-    /// Never solved: there is no duration that a search could stop at.
+    /// Never solved: no duration is small enough to stop at.
     fn evaluate(&mut self, z: &[f64]) -> Score {
         Score { value: self.value(z).unwrap_or(f64::INFINITY), solved: false }
     }

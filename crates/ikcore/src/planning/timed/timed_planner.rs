@@ -17,16 +17,16 @@ use crate::wording::number;
 
 const METHOD: &str = "method=\"timed\"";
 
-/// Evaluations of the search; more of them shorten the motion by less than a hundredth.
+/// Evaluations of the search; more shorten the motion by less than 1 %.
 const EVALUATIONS: usize = 2000;
 
-/// Members of a generation of the search.
+/// Population size of the search.
 const POPULATION: usize = 30;
 
-/// Allowed distance of the tip from the path, as a share of its extent.
+/// Allowed distance of the tip from the path, relative to the extent of the path.
 const ACCURACY: f64 = 1e-3;
 
-/// Segments of the timing in each piece of the spline when the alternatives at corners are compared.
+/// Segments of the timing per piece of the spline when the alternatives at corners are compared.
 const SEGMENTS_A_PIECE: usize = 4;
 
 /// Plans along a path.
@@ -42,7 +42,7 @@ pub(crate) fn along_path(
     let stopwatch = Stopwatch::start();
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     let timing_limits = timing_limits_of(robot, options.limits.as_ref())?;
-    // Points sampled from a curve determine it no better than to their coarseness.
+    // The accuracy of a sampled curve is limited by the distance of its points.
     let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * tip_path.extent() + tip_path.coarseness());
     require_positive("accuracy", accuracy)?;
     if let Some(q) = options.start_within(robot, &limits)? {
@@ -63,7 +63,8 @@ pub(crate) fn along_path(
     plan(cost, options, stopwatch, monitor)
 }
 
-/// Decides whether the arm stops at corners, by what is quicker on the nominal motion, and gives that motion the knots it needs.
+/// Decides whether the arm stops at corners, depending on which nominal motion is faster, and adds the knots that
+/// motion needs.
 fn choose_corners<'a>(
     motion: &mut RedundantMotion<'_>,
     robot: &'a Robot,
@@ -127,7 +128,7 @@ fn plan(
     })
 }
 
-/// The search; None for an arm without a choice.
+/// Runs the search; `None` if the arm is not redundant.
 fn search(cost: &mut TimedCost<'_>, options: &AlongPathOptions, monitor: &mut dyn Monitor) -> Result<Option<Found>> {
     let Some(bounds) = cost.bounds() else { return Ok(None) };
     let schedule = Schedule::of(POPULATION);
@@ -140,7 +141,7 @@ fn search(cost: &mut TimedCost<'_>, options: &AlongPathOptions, monitor: &mut dy
     search.run(cost, &bounds, monitor).map(Some)
 }
 
-/// Err unless `q` has the tip at the beginning of the path, as near as it must be all along.
+/// Checks that at `q` the tip is at the start of the path, within `accuracy`.
 fn require_on_path(robot: &Robot, q: &[f64], tip_path: &TipPath, accuracy: f64) -> Result<()> {
     let distance = tip_path.distance(robot.tip_position(q), 0.0, 0.0);
     if distance <= accuracy {

@@ -3,21 +3,21 @@
 use super::TipPath;
 use super::segment_geometry::turn;
 
-/// A change of direction by more than this (rad) within a short part of the path is a corner, by less a bend.
+/// A change of direction above this (rad) within a short part of the path is a corner; below it, a bend.
 const CORNER: f64 = 0.5;
 
-/// Half the length of that part, as a share of the path. It holds one corner at most, and is long enough that noise in
-/// measured points does not pass for one.
+/// Half the length of that part, relative to the path. It contains one corner at most, and is long enough that noise in
+/// measured points does not count as one.
 const NEAR: f64 = 0.005;
 
 impl TipPath {
-    /// Rows at which the direction changes more than anywhere near, and by enough for a corner.
+    /// Rows at which the direction changes more than at all rows nearby, and enough for a corner.
     pub(super) fn sharpest_turns(&self) -> Vec<usize> {
         let shares = &self.shares;
         let turn_at = |row: usize| {
             turn(self.position(shares[row] - NEAR), self.positions[row], self.position(shares[row] + NEAR))
         };
-        // Nearer to the ends of the path its direction cannot be told from noise.
+        // Nearer to the ends of the path, changes of direction cannot be distinguished from noise.
         let inner = (1..shares.len() - 1).filter(|row| NEAR <= shares[*row] && shares[*row] <= 1.0 - NEAR);
         let turns = inner.map(|row| (row, turn_at(row)));
         let sharp: Vec<(usize, f64)> = turns.filter(|(_, turn)| *turn > CORNER).collect();

@@ -2,8 +2,8 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `tip_curve` | [`TipPath`]: straight segments from place to place |
-//! | `sampling` | the same of a path in time |
+//! | `tip_curve` | [`TipPath`]: straight segments from point to point |
+//! | `sampling` | the curve of a timed path |
 //! | `corners` | where its direction jumps |
 //! | `segment_geometry` | angles and distances of single segments |
 //! | `repetition` | points that must differ |

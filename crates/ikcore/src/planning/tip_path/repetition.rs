@@ -1,9 +1,9 @@
-//! Points that repeat the one before them.
+//! Repeated points.
 
 use crate::error::{Error, Result};
 use crate::path::Waypoints;
 
-/// Err where a point repeats the one before it: a spline needs points that differ.
+/// Checks that no point repeats the previous one: a spline needs points that differ.
 ///
 /// # Errors
 /// [`Error::InvalidPath`].

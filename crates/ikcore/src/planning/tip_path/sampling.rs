@@ -1,4 +1,4 @@
-//! A path in time as a curve: the times at which it is sampled.
+//! Timed paths as curves: the times at which they are sampled.
 
 use nalgebra::Matrix3;
 
@@ -7,14 +7,14 @@ use super::tip_curve::PAUSE;
 use crate::error::Result;
 use crate::path::{Path, Waypoints};
 
-/// Intervals of equal time in which a [`Path`] is sampled: on a circle their chords err by 5e-6 of the radius.
+/// Number of equal time intervals for sampling a [`Path`]; on a circle the error of their chords is 5e-6 of the radius.
 const INTERVALS: usize = 1000;
 
-/// Intervals of equal time between the points that the published planner passes.
+/// Number of equal time intervals between the points that the published planner passes.
 const POINTS: usize = 50;
 
 impl TipPath {
-    /// Along `path`, finely sampled.
+    /// The curve of `path`, finely sampled.
     ///
     /// # Errors
     /// As [`sampled`](Self::sampled).
@@ -25,7 +25,7 @@ impl TipPath {
         Self::sampled(times, positions, rotations)
     }
 
-    /// The times (s) at which a path of this `duration` is sampled, those of its `corners` among them.
+    /// Times (s) at which a path of this `duration` is sampled, including its `corners`.
     pub fn times(duration: f64, corners: &[f64]) -> Vec<f64> {
         let even = (0..=INTERVALS).map(|i| duration * (i as f64 / INTERVALS as f64));
         let inside = corners.iter().copied().filter(|t| 0.0 < *t && *t < duration);
@@ -35,10 +35,10 @@ impl TipPath {
         times
     }
 
-    /// Through a path's `positions` (m) and rotations at its [`times`](Self::times). Pauses are left out.
+    /// The curve through `positions` (m) and rotations of a path at its [`times`](Self::times). Pauses are left out.
     ///
     /// # Errors
-    /// [`Error::InvalidPath`](crate::Error::InvalidPath) for a path that stays in one place; those of [`Waypoints::new`].
+    /// [`Error::InvalidPath`](crate::Error::InvalidPath) for a path without extent; those of [`Waypoints::new`].
     pub fn sampled(times: Vec<f64>, positions: Vec<[f64; 3]>, rotations: Option<Vec<Matrix3<f64>>>) -> Result<Self> {
         let waypoints = Waypoints::new(positions, rotations)?;
         let last = times.len() - 1;

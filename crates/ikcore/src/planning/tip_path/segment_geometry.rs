@@ -3,7 +3,7 @@
 use crate::math::so3::{cross, norm};
 use crate::math::vector::{distance, dot};
 
-/// By how much (rad) the direction changes at the middle one of three positions; 0 where there is no direction.
+/// Change of direction (rad) at the middle one of three positions; 0 without a direction.
 pub(super) fn turn(before: [f64; 3], here: [f64; 3], after: [f64; 3]) -> f64 {
     let (u, v) = (between(before, here), between(here, after));
     norm(&cross(&u, &v)).atan2(dot(&u, &v))

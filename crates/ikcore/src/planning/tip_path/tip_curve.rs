@@ -1,4 +1,4 @@
-//! Straight segments from place to place, and what is asked of them.
+//! The curve that the tip follows.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
@@ -11,11 +11,10 @@ use crate::path::Waypoints;
 use crate::task::Target;
 use crate::wording::number;
 
-/// The curve that the tip is to follow: straight segments between positions, with a rotation about a fixed axis on each where
+/// The curve that the tip follows: straight segments between positions, with a rotation about a fixed axis on each if
 /// orientations are given.
 ///
-/// A place on it is named by its path parameter, its share of the whole length from 0 to 1, for which a radian of rotation
-/// counts as a metre.
+/// Its path parameter is the fraction of the whole length, from 0 to 1; a radian of rotation counts as a metre.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TipPath {
     pub(super) shares: Vec<f64>,
@@ -23,27 +22,28 @@ pub struct TipPath {
     rotations: Option<Vec<UnitQuaternion<f64>>>,
     /// Rows at which the direction jumps.
     corners: Vec<usize>,
-    /// When each row of a timed path is passed (s); None for given points, which messages number.
+    /// Time of each row of a timed path (s); `None` for given points, which messages number instead.
     times: Option<Vec<f64>>,
     points: Waypoints,
     /// Path parameters of those points.
     point_shares: Vec<f64>,
 }
 
-/// A path pauses where it advances by less than this share of its length.
+/// A path pauses if it advances by less than this fraction of its length.
 pub(super) const PAUSE: f64 = 1e-9;
 
 impl TipPath {
-    /// Straight from point to point.
+    /// Straight segments from point to point.
     ///
     /// # Errors
-    /// [`Error::InvalidPath`] where a point repeats the one before it.
+    /// [`Error::InvalidPath`] if a point repeats the previous one.
     pub fn through(points: &Waypoints) -> Result<Self> {
         refuse_repetition(points)?;
         Self::from_rows(points, &(0..points.len()).collect::<Vec<_>>(), None)
     }
 
-    /// The curve through all `waypoints`, which passes those at the rows `points` as given; `times` (s) for a path in time.
+    /// The curve through all `waypoints`; the published planner passes those at the rows `points`. `times` (s) for a
+    /// timed path.
     pub(super) fn from_rows(waypoints: &Waypoints, points: &[usize], times: Option<&[f64]>) -> Result<Self> {
         let rows = 0..waypoints.len();
         let quaternion = |r: Matrix3<f64>| UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(r));
@@ -65,7 +65,7 @@ impl TipPath {
                 travelled
             })
             .collect();
-        // The last one is 1 whatever the rounding.
+        // The last one is exactly 1, regardless of rounding.
         let share = |i: usize| shares[i] / travelled;
         let kept: Vec<usize> = rows.filter(|i| *i == 0 || steps[*i] > PAUSE * way).collect();
         let positions: Vec<[f64; 3]> = kept.iter().map(|i| waypoints.position(*i)).collect();
@@ -83,22 +83,22 @@ impl TipPath {
         Ok(Self { corners: tip_path.sharpest_turns(), ..tip_path })
     }
 
-    /// The points that the published planner passes: those given, or 51 at equal times.
+    /// The points that the published planner passes: the given ones, or 51 at equal times.
     pub fn points(&self) -> &Waypoints {
         &self.points
     }
 
-    /// Their path parameters.
+    /// Path parameters of [`points`](Self::points).
     pub fn point_shares(&self) -> &[f64] {
         &self.point_shares
     }
 
-    /// The ends of its straight segments (m).
+    /// End points of the straight segments (m).
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }
 
-    /// The longest edge of the box that holds it (m); of a turn on the spot, its angle (rad).
+    /// Longest edge of the bounding box (m); for a rotation in place, its angle (rad).
     pub fn extent(&self) -> f64 {
         let along = |k: usize| {
             let values = self.positions.iter().map(|p| p[k]);
@@ -112,7 +112,7 @@ impl TipPath {
         self.rotations.as_ref().map_or(0.0, |rows| rows.windows(2).map(|pair| pair[0].angle_to(&pair[1])).sum())
     }
 
-    /// By how much (m) the segments may leave the curve that was sampled: the rise of a circular arc with their lengths and
+    /// Estimated distance (m) of the segments from the sampled curve: the rise of a circular arc with their lengths and
     /// angles.
     pub fn coarseness(&self) -> f64 {
         let smooth = |row: &usize| self.corners.binary_search(row).is_err();
@@ -124,13 +124,13 @@ impl TipPath {
         (1..self.positions.len() - 1).filter(smooth).map(rise).fold(0.0, f64::max)
     }
 
-    /// Path parameters at which its direction jumps.
+    /// Path parameters at which the direction jumps.
     pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
         self.corners.iter().map(|row| self.shares[*row])
     }
 
-    /// Path parameters from 0 to 1, all corners among them, the others about 1 / `intervals` apart, at rows where rows are dense
-    /// enough.
+    /// Path parameters from 0 to 1 that include all corners; the others are about 1 / `intervals` apart, at rows where
+    /// rows are dense enough.
     pub fn knots(&self, intervals: usize) -> Vec<f64> {
         let spacing = 1.0 / intervals as f64;
         let (mut knots, mut fixed) = (vec![0.0], true);
@@ -141,7 +141,7 @@ impl TipPath {
                 continue;
             }
             if since < 0.5 * spacing && !fixed {
-                knots.pop(); // too near to a knot that is needed
+                knots.pop(); // too near to a required knot
             }
             let from = knots[knots.len() - 1];
             let count = ((share - from) / spacing).round().max(1.0) as usize;
@@ -179,7 +179,7 @@ impl TipPath {
         segments.map(|ends| distance_to_segment(position, ends[0], ends[1])).fold(f64::INFINITY, f64::min)
     }
 
-    /// The place at this path parameter, in words.
+    /// The point at this path parameter, in words for messages.
     pub fn place(&self, share: f64) -> String {
         let (row, part) = self.locate(share);
         match &self.times {
@@ -193,7 +193,7 @@ impl TipPath {
         }
     }
 
-    /// The row at which the segment of this path parameter begins, and the share of the segment before it.
+    /// Returns the row at which the segment with this path parameter starts, and the fraction of the segment before it.
     fn locate(&self, share: f64) -> (usize, f64) {
         let row = self.shares.partition_point(|start| *start <= share).clamp(1, self.shares.len() - 1) - 1;
         let [from, to] = [self.shares[row], self.shares[row + 1]];

@@ -1,4 +1,4 @@
-//! The collisions of a motion: tested at samples by the search, certified for the plan.
+//! Collisions of a motion: tested at samples during the search, certified for the plan.
 
 use crate::error::Result;
 use crate::obstacle::{Obstacle, Scene, Shape, Sweep};
@@ -14,11 +14,11 @@ use crate::trajectory::Trajectory;
 pub(super) struct CollisionTest<'a> {
     scene: Scene<'a>,
     margin: f64,
-    /// For a planar arm of lines among ellipses: the exact test of section 4, several times quicker than distances.
+    /// For a planar arm of lines among ellipses: the exact test of section 4, several times faster than distances.
     flat: Option<(PlanarArm, Vec<UnitDisc>)>,
 }
 
-/// An ellipse, as the map that makes it the unit disc.
+/// An ellipse, given by the map onto the unit disc.
 #[derive(Debug, Clone, Copy)]
 struct UnitDisc {
     center: [f64; 2],
@@ -27,12 +27,12 @@ struct UnitDisc {
     semi_axes: [f64; 2],
 }
 
-/// Distance that the search adds to the margin, as a share of the arm's length, because the arm may come nearer between two samples.
-/// Without it 9 to 20 of 20 plans graze an obstacle that their samples miss.
+/// Distance that the search adds to the margin, relative to the length of the arm, because the arm may come closer
+/// between two samples. Without it, 9 to 20 of 20 plans graze an obstacle that their samples miss.
 const ALLOWANCE: f64 = 0.005;
 
 impl<'a> CollisionTest<'a> {
-    /// The constraint of the planner's `options` for `robot`, or for its `lines` where it has no other shape.
+    /// The constraint of the planner's `options` for `robot`, or for its `lines` if it has no shape.
     ///
     /// # Errors
     /// [`Error::NoCapsules`](crate::Error::NoCapsules), [`Error::InvalidObstacle`](crate::Error::InvalidObstacle),
@@ -49,7 +49,7 @@ impl<'a> CollisionTest<'a> {
         Ok(Self { scene, margin, flat })
     }
 
-    /// Err for a configuration that is too near to something; `what` names it.
+    /// Checks that a configuration keeps the margin; `what` names it in the error.
     ///
     /// # Errors
     /// [`Error::InCollision`](crate::Error::InCollision).
@@ -57,7 +57,8 @@ impl<'a> CollisionTest<'a> {
         refuse_collision(what, &self.scene, q, self.margin)
     }
 
-    /// How many links touch something at `q`, or whether any does: g_3 of eq. (15) for one moment.
+    /// Number of contacts between links and ellipses at `q`; for other shapes 1 if there is any contact: g_3 of eq.
+    /// (15) at one instant.
     pub(super) fn touching(&self, q: &[f64]) -> f64 {
         let Some((arm, discs)) = &self.flat else {
             return if self.scene.is_clear(q, self.margin) { 0.0 } else { 1.0 };
@@ -72,8 +73,8 @@ impl<'a> CollisionTest<'a> {
         touching
     }
 
-    /// The smallest distance (m) on all of the motion, proven between samples too, and what it breaks; None where nothing
-    /// can touch.
+    /// Returns the smallest distance (m) over the whole motion, certified between samples too, and its violation;
+    /// `None` if nothing can touch.
     pub(super) fn clearance(&self, trajectory: &Trajectory) -> Option<(f64, Option<Violation>)> {
         let near = Sweep::new(&self.scene).smallest(&TimedMotion(trajectory), [0.0, trajectory.duration()])?;
         let distance = near.contact.distance;
@@ -99,7 +100,7 @@ impl UnitDisc {
         [(cosine * x + sine * y) / self.semi_axes[0], (cosine * y - sine * x) / self.semi_axes[1]]
     }
 
-    /// Whether the segment from `a` to `b` meets the ellipse: exactly, since the map keeps lines straight.
+    /// Whether the segment from `a` to `b` intersects the ellipse; exact, since the map keeps lines straight.
     fn meets(&self, a: [f64; 2], b: [f64; 2]) -> bool {
         let (a, b) = (self.map(a), self.map(b));
         let along = [b[0] - a[0], b[1] - a[1]];

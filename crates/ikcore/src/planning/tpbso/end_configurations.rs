@@ -1,4 +1,4 @@
-//! The configurations in which a motion may start or end, as a function of parameters that a search is free to choose.
+//! Configurations of an end of a motion, as a function of the parameters that a search chooses.
 
 use std::f64::consts::PI;
 
@@ -15,35 +15,37 @@ use crate::task::Target;
 /// The configurations of one end.
 #[derive(Debug, Clone)]
 pub(super) enum EndConfigurations {
-    /// A single one.
+    /// A single configuration.
     Fixed(Vec<f64>),
     /// A planar arm: the absolute orientations phi of the links from the third on are free.
     Planar {
         /// The arm.
         arm: PlanarArm,
-        /// Where its tip is to be.
+        /// The target of its tip.
         place: PlanarTarget,
-        /// Which way it bends.
+        /// Its elbow.
         elbow: Elbow,
     },
-    /// Any arm: one of these, found by inverse kinematics and ordered so that similar ones are neighbours.
+    /// Any arm: one of these configurations, found by inverse kinematics and ordered so that similar ones are
+    /// neighbours.
     OneOf(Vec<Vec<f64>>),
 }
 
 /// Random starts of the inverse kinematics that fills [`EndConfigurations::OneOf`].
 const STARTS: usize = 48;
 
-/// Failed starts after which a target counts as out of reach; each of them is itself a multi-start search.
+/// Failed starts after which a target counts as out of reach; each is itself a multi-start search.
 const FUTILE_STARTS: usize = 3;
 
 /// Solutions nearer to each other than this in every joint count as one (rad or m).
 const DISTINCT: f64 = 1e-3;
 
 impl EndConfigurations {
-    /// Those of `end`; `what` names it.
+    /// The configurations of `end`; `what` names it in errors.
     ///
     /// # Errors
-    /// [`Error::OutsideLimits`] for a configuration beyond its limits, [`Error::Unreachable`] for a target out of reach.
+    /// [`Error::OutsideLimits`] for a configuration outside its limits, [`Error::Unreachable`] for a target out of
+    /// reach.
     pub(super) fn new(
         what: &str,
         end: &Endpoint,
@@ -89,7 +91,7 @@ impl EndConfigurations {
     /// Writes the configuration of these parameters.
     ///
     /// # Errors
-    /// The cosine of eq. (1), which no angle has, where the parameters of a planar arm allow no solution.
+    /// The infeasible cosine of eq. (1), if a planar arm has no solution for these parameters.
     pub(super) fn configuration(&self, parameters: &[f64], q: &mut [f64]) -> Result<(), f64> {
         match self {
             Self::Fixed(fixed) => q.copy_from_slice(fixed),
@@ -111,14 +113,14 @@ impl EndConfigurations {
     }
 }
 
-/// The closed form, where there is one.
+/// Returns the planar arm and its target if the closed form applies.
 fn planar(robot: &Robot, target: &Target) -> Option<(PlanarArm, PlanarTarget)> {
     let arm = PlanarArm::of(robot)?;
     let place = arm.planar_target(target)?;
     (arm.dof() >= ELBOW_LINKS + usize::from(place.orientation.is_some())).then_some((arm, place))
 }
 
-/// Distinct solutions for `target`, each followed by the nearest of those not yet listed.
+/// Returns distinct solutions for `target`, each followed by the nearest of the remaining ones.
 fn solutions(
     what: &str,
     target: &Target,
@@ -167,7 +169,7 @@ fn chained(mut rest: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     chain
 }
 
-/// The largest difference of a joint (rad or m).
+/// Largest joint difference (rad or m).
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }

@@ -3,12 +3,12 @@
 //!
 //! | file | paper |
 //! |---|---|
-//! | [`via_point_planner`] | the planner from end to end |
+//! | [`via_point_planner`] | the point-to-point planner |
 //! | [`path_planner`] | the planner along a path |
-//! | [`published_settings`] | the search of both |
+//! | [`published_settings`] | the search settings of both planners |
 //! | [`rest_segment`] | the segments of eq. (3)-(6), their extremes in closed form |
-//! | [`end_configurations`] | the redundancy at the ends; any robot by inverse kinematics |
-//! | [`via_point_cost`] | the decision vector and cost from end to end, eq. (8)-(18) |
+//! | [`end_configurations`] | the redundancy at the ends; other robots by inverse kinematics |
+//! | [`via_point_cost`] | the decision vector and cost from point to point, eq. (8)-(18) |
 //! | [`collision_constraint`] | obstacles, eq. (14) and (18) |
 //! | [`redundancy`] | the free orientations along a path, eq. (7) |
 //! | [`path_cost`] | the decision vector and cost along a path, eq. (19)-(25) |

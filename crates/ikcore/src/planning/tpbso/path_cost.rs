@@ -13,20 +13,20 @@ use crate::planning::tip_path::TipPath;
 use crate::robot::Robot;
 use crate::trajectory::{Trajectory, polynomial};
 
-/// The spline goes through every second point; those between measure its accuracy.
+/// The spline passes every second point; the others measure its accuracy.
 const STRIDE: usize = 2;
 
-/// The shortest duration allowed, over the time that the slowest joint takes through its range.
+/// Shortest duration, relative to the time of the slowest joint through its range.
 const SHORTEST: f64 = 0.025;
 
-/// The longest duration allowed, over the same time ...
+/// Longest duration, relative to the same time ...
 const LONGEST: f64 = 5.0;
 
-/// ... or, where that is longer, as on a path that takes joints through their range more than once, over the duration with all
-/// free orientations in the middle of their ranges.
+/// ... or, if longer (e.g. on a path that takes joints through their range more than once), relative to the duration
+/// with all free orientations in the middle of their ranges.
 const LONGEST_OVER_MIDDLE: f64 = 1.5;
 
-/// The cost F of eq. (25), as a function of \[x_phi (5 a free link), T\].
+/// The cost F of eq. (25), as a function of \[x_phi (5 per free link), T\].
 #[derive(Debug, Clone)]
 pub(super) struct PathCost<'a> {
     robot: &'a Robot,
@@ -38,11 +38,11 @@ pub(super) struct PathCost<'a> {
     scale: f64,
     start: Option<&'a [f64]>,
     motion: Motion,
-    /// Of the splines through x_phi.
+    /// Second derivatives of the splines through x_phi.
     node_curvatures: Vec<f64>,
 }
 
-/// Splines of all joints over the path from 0 to 1: joint by joint, knot by knot.
+/// Splines of all joints over the path from 0 to 1: by joint, then by knot.
 #[derive(Debug, Clone)]
 struct Motion {
     values: Vec<f64>,
@@ -50,8 +50,8 @@ struct Motion {
 }
 
 impl<'a> PathCost<'a> {
-    /// The cost of motions of `robot`, a planar arm, along `redundancy`'s path, with the tip within `accuracy` (m) of the
-    /// points that its splines do not pass.
+    /// The cost of motions of `robot`, a planar arm, along the path of `redundancy`, with the tip within `accuracy` (m)
+    /// of the points that the splines skip.
     pub(super) fn new(
         robot: &'a Robot,
         limits: &'a MotionLimits,
@@ -96,7 +96,7 @@ impl<'a> PathCost<'a> {
         Ok(Bounds::from_ranges(ranges.into_iter()))
     }
 
-    /// The shortest duration (s) with these free orientations; 0 where a point has no configuration.
+    /// The shortest duration (s) with these free orientations; 0 if a point has no configuration.
     fn least_duration(&mut self, nodes: &[f64]) -> f64 {
         if self.place_knots(nodes).is_err() {
             return 0.0;
@@ -108,7 +108,7 @@ impl<'a> PathCost<'a> {
         (0..self.robot.dof()).map(of_joint).fold(0.0, f64::max)
     }
 
-    /// The motion of decision vector `x`; None where a point has no configuration.
+    /// The motion of decision vector `x`; `None` if a point has no configuration.
     pub(super) fn trajectory(&mut self, x: &[f64]) -> Option<Result<Trajectory>> {
         let (nodes, duration) = (&x[..x.len() - 1], x[x.len() - 1]);
         self.place_knots(nodes).ok()?;
@@ -124,7 +124,8 @@ impl<'a> PathCost<'a> {
         Some(Trajectory::new(self.limits.joint_names(), knots, coefficients))
     }
 
-    /// The free orientations of decision vector `x` at every point of the path; those without are left out.
+    /// The free orientations of decision vector `x` at every point of the path; points without a configuration are left
+    /// out.
     pub(super) fn orientations(&mut self, x: &[f64]) -> Vec<Orientations> {
         let nodes = &x[..x.len() - 1];
         self.redundancy.curvatures(nodes, &mut self.node_curvatures);
@@ -136,7 +137,7 @@ impl<'a> PathCost<'a> {
     /// The largest deviations of the tip from `tip_path` in the motion of the last [`trajectory`](Self::trajectory), at its points and
     /// between them.
     pub(super) fn deviation(&self, tip_path: &TipPath) -> LargestDeviation {
-        // Points at equal times need not lie at equal distances.
+        // Points at equal times are not necessarily at equal distances.
         let shares = tip_path.point_shares();
         let last = shares.len() - 1;
         let configurations = |share: f64, q: &mut [f64]| {
@@ -148,16 +149,17 @@ impl<'a> PathCost<'a> {
         TipDeviation { robot: self.robot, tip_path, configurations }.largest(&knots)
     }
 
-    /// Distances (m) of the tip from the points that the splines do not pass: the skipped point of each stride.
+    /// Distances (m) of the tip from the points that the splines skip: one per stride.
     fn distances(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let last = self.redundancy.points() - 1;
         (0..=last).filter(move |i| i % STRIDE != 0 && *i != last).map(move |i| (i, self.distance(i)))
     }
 
-    /// Puts the arm at every knot, each joint by whole turns nearest to the knot before, and runs splines through.
+    /// Computes the configuration at every knot, shifts each joint by whole turns to be nearest to the previous knot,
+    /// and fits splines.
     ///
     /// # Errors
-    /// How much the cosines of eq. (1) exceed 1, in all.
+    /// Total excess of the cosines of eq. (1) over 1.
     fn place_knots(&mut self, nodes: &[f64]) -> Result<(), f64> {
         let (n, knots, last) = (self.robot.dof(), self.spline.knots().len(), self.redundancy.points() - 1);
         self.redundancy.curvatures(nodes, &mut self.node_curvatures);
@@ -197,7 +199,7 @@ impl<'a> PathCost<'a> {
         self.spline.piece(i, &self.motion.values[of_joint.clone()], &self.motion.curvatures[of_joint])
     }
 
-    /// F of eq. (25), with the weights that it is printed without: else error could be traded for time.
+    /// F of eq. (25), with weights that the printed equation lacks; without them, error could be traded for time.
     fn value(&mut self, x: &[f64]) -> f64 {
         let (nodes, duration) = (&x[..x.len() - 1], x[x.len() - 1]);
         if let Err(excess) = self.place_knots(nodes) {
@@ -217,7 +219,8 @@ impl<'a> PathCost<'a> {
         cost + BROKEN_LIMIT * self.scale * (broken + missed)
     }
 
-    /// Travel (where it counts), largest speed and acceleration over the path from 0 to 1, and how far the joint leaves its limits.
+    /// Travel (if it is the objective), largest speed and acceleration over the path from 0 to 1, and the excess over
+    /// the position limits.
     fn joint_extremes(&self, j: usize) -> (f64, f64, f64, f64) {
         let (mut travel, mut speed, mut acceleration, mut outside) = (0.0, 0.0_f64, 0.0_f64, f64::NEG_INFINITY);
         let [lower, upper] = [self.limits.lower[j], self.limits.upper[j]];
@@ -239,7 +242,7 @@ impl<'a> PathCost<'a> {
         (travel, speed, acceleration, outside)
     }
 
-    /// Joint positions after a share `u` of the time.
+    /// Writes the joint positions at the fraction `u` of the duration.
     fn place(&self, u: f64, q: &mut [f64]) {
         let knots = self.spline.knots().len();
         let joints = self.motion.values.chunks_exact(knots).zip(self.motion.curvatures.chunks_exact(knots));
@@ -248,7 +251,7 @@ impl<'a> PathCost<'a> {
         }
     }
 
-    /// Distance of the tip from point `i` of the path when it is due there: eq. (24).
+    /// Distance of the tip from point `i` of the path at its time: eq. (24).
     fn distance(&self, i: usize) -> f64 {
         let u = i as f64 / (self.redundancy.points() - 1) as f64;
         let knot = i / STRIDE;
@@ -267,7 +270,7 @@ impl Objective for PathCost<'_> {
         NODES * self.redundancy.links() + 1
     }
 
-    /// Never solved: there is no cost that a search could stop at.
+    /// Never solved: no cost is small enough to stop at.
     fn evaluate(&mut self, x: &[f64]) -> Score {
         Score { value: self.value(x), solved: false }
     }

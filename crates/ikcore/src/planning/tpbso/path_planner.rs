@@ -54,8 +54,8 @@ pub(crate) fn along_path(
     })
 }
 
-/// Allowed distance from the path, as a share of the path's extent: what the published planner needs for a pentagram with
-/// every second of 50 points.
+/// Allowed distance from the path, relative to the extent of the path: the published planner needs this much for a
+/// pentagram with every second of 50 points.
 const ACCURACY: f64 = 0.04;
 
 fn not_planar(robot: &Robot) -> Error {

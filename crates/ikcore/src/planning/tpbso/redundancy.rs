@@ -11,7 +11,7 @@ use crate::planning::planar_arm::{ELBOW_LINKS, Elbow, Orientation, Orientations,
 use crate::task::Target;
 use crate::wording::number;
 
-/// Numbers in \[0, 1\] by which the path of each free orientation is given: the paper's x_phi.
+/// Nodes in \[0, 1\] that define each free orientation along the path: the paper's x_phi.
 pub(super) const NODES: usize = 5;
 
 /// A planar arm along the points of a path.
@@ -24,10 +24,10 @@ pub(super) struct Redundancy {
 }
 
 impl Redundancy {
-    /// The choices of `arm` along `path`.
+    /// The free orientations of `arm` along `path`.
     ///
     /// # Errors
-    /// [`Error::Unreachable`] for a point beside the arm's plane or out of its reach, or a path of poses for an arm of two
+    /// [`Error::Unreachable`] for a point outside the plane or reach of the arm, or a path of poses for an arm of two
     /// links.
     pub(super) fn new(arm: PlanarArm, path: &Waypoints, elbow: Elbow) -> Result<Self> {
         let nodes = CubicSpline::natural((0..NODES).map(|i| i as f64 / (NODES - 1) as f64).collect());
@@ -35,7 +35,7 @@ impl Redundancy {
         Ok(Self { arm, elbow, places, nodes })
     }
 
-    /// Where the tip is to be at point `i` of the path.
+    /// The target of the tip at point `i` of the path.
     pub(super) fn place(&self, i: usize) -> &PlanarTarget {
         &self.places[i]
     }
@@ -50,11 +50,11 @@ impl Redundancy {
         self.arm.dof() - ELBOW_LINKS - usize::from(self.places[0].orientation.is_some())
     }
 
-    /// Writes the joint angles at point `i`, wrapped, where `x` holds [`NODES`] numbers for each free link, from the tip
-    /// down, and `curvatures` their splines' second derivatives; returns the free orientations.
+    /// Writes the joint angles at point `i`, wrapped; returns the free orientations. `x` holds [`NODES`] values per
+    /// free link, from the last link inwards, `curvatures` the second derivatives of their splines.
     ///
     /// # Errors
-    /// The cosine of eq. (1) where there is no configuration.
+    /// The infeasible cosine of eq. (1), if there is no configuration.
     pub(super) fn configuration(
         &self,
         i: usize,
@@ -73,7 +73,7 @@ impl Redundancy {
         let mut free = Orientations::new();
         let u = i as f64 / (self.places.len() - 1) as f64;
         for (values, curvatures) in x.chunks_exact(NODES).zip(curvatures.chunks_exact(NODES)) {
-            // Clamped: between its nodes the spline may leave what its nodes keep to.
+            // Clamped: between its nodes the spline may leave [0, 1].
             let share = self.nodes.at(u, values, curvatures).clamp(0.0, 1.0);
             let (middle, half) = self.arm.orientation_range(position, link).ok_or(OUT_OF_REACH)?;
             let value = middle - half + 2.0 * half * share; // eq. (7)
@@ -87,10 +87,11 @@ impl Redundancy {
         Ok(free)
     }
 
-    /// The share x_phi of each free link, from the tip down, at the path's first point in configuration `q`.
+    /// The value x_phi of each free link, from the last one inwards, at the first point of the path in configuration
+    /// `q`.
     ///
     /// # Errors
-    /// [`Error::InvalidPath`] where the tip is elsewhere at `q`.
+    /// [`Error::InvalidPath`] if the tip is elsewhere at `q`.
     pub(super) fn shares_of(&self, q: &[f64]) -> Result<Vec<f64>> {
         let PlanarTarget { mut position, orientation } = self.places[0];
         let tip = self.arm.corners(q).last().unwrap_or(position);
@@ -128,10 +129,10 @@ impl Redundancy {
     }
 }
 
-/// How far a given start may be from the path (m, rad).
+/// Tolerance for a given start on the path (m, rad).
 const START_TOLERANCE: f64 = 1e-6;
 
-/// Stands for a cosine where not even its triangle exists.
+/// Replaces the cosine if the triangle does not exist.
 const OUT_OF_REACH: f64 = 2.0;
 
 fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<PlanarTarget> {
@@ -152,7 +153,7 @@ fn place(arm: &PlanarArm, path: &Waypoints, i: usize) -> Result<PlanarTarget> {
     }
 }
 
-/// `angle` by whole turns nearest to `other`.
+/// `angle` shifted by whole turns to be nearest to `other`.
 pub(super) fn nearest_turn(angle: f64, other: f64) -> f64 {
     angle + TAU * ((other - angle) / TAU).round()
 }

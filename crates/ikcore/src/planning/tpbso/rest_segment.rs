@@ -1,15 +1,15 @@
-//! A joint's motion from rest to a via point, or from a via point to rest.
+//! The motion of a joint from rest to a via point, or from a via point to rest.
 
 use smallvec::SmallVec;
 
 use crate::math::polynomial::quadratic_roots;
 use crate::trajectory::{Coefficients, polynomial};
 
-/// A motion that is at rest at one end, with its position there and the time s (s) since then, or until then:
+/// A motion that is at rest at one end, in terms of the position there and the time s (s) since then or until then:
 /// theta = rest + s^3 (c\[0\] + c\[1\] s + c\[2\] s^2).
 ///
-/// Velocity and acceleration vanish at the rest, so that what is left of them is quadratic: all extremes in closed form,
-/// where the paper looks at samples.
+/// Velocity and acceleration vanish at rest, so their remaining factors are quadratic and all extremes have a closed
+/// form; the paper samples them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RestSegment {
     rest: f64,
@@ -17,16 +17,16 @@ pub(super) struct RestSegment {
     duration: f64,
 }
 
-/// Position and velocity of a joint where the two segments meet.
+/// Position and velocity of a joint at the via point, where the two segments meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ViaPoint {
     /// theta_m (rad or m).
     pub position: f64,
-    /// Its rate (rad/s or m/s).
+    /// Rate of theta_m (rad/s or m/s).
     pub velocity: f64,
 }
 
-/// The largest values in a segment, and its part of the travel.
+/// Extremes of a segment, and its part of the travel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extremes {
     /// Largest speed (rad/s or m/s).
@@ -49,12 +49,13 @@ impl RestSegment {
         Self { rest: start, c: [a3, a4, 0.0], duration: t1 }
     }
 
-    /// The acceleration with which a segment that left rest arrives at its via point.
+    /// Acceleration at the via point of a segment that started at rest.
     pub(super) fn final_acceleration(&self) -> f64 {
         self.acceleration(self.duration)
     }
 
-    /// From `via`, passed with this `acceleration`, to rest at `end` in `t2` (s): eq. (5) and (6), in the time left.
+    /// From `via`, passed with this `acceleration`, to rest at `end` in `t2` (s): eq. (5) and (6), with s as the time
+    /// to the end.
     pub(super) fn arriving(via: ViaPoint, acceleration: f64, end: f64, t2: f64) -> Self {
         let [_, _, _, a3, a4, a5] = quintic(via, acceleration, end, t2);
         let c3 = -(a3 + 4.0 * a4 * t2 + 10.0 * a5 * t2 * t2);
@@ -62,7 +63,7 @@ impl RestSegment {
         Self { rest: end, c: [c3, c4, -a5], duration: t2 }
     }
 
-    /// No motion, to be overwritten.
+    /// No motion: a placeholder to be overwritten.
     pub(super) const STILL: Self = Self { rest: 0.0, c: [0.0; 3], duration: 0.0 };
 
     /// Position at s.

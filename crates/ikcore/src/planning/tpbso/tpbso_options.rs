@@ -4,21 +4,21 @@ use crate::error::{Error, Result};
 use crate::planning::planar_arm::Elbow;
 use crate::solver::{AnySolver, DerivativeFree};
 
-/// Trajectory planning by beetle swarm optimisation (Wang et al. 2019). The default is as published.
+/// Trajectory planning by beetle swarm optimisation (Wang et al. 2019). The defaults are the published settings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tpbso {
-    /// Which way a planar arm bends at the start and at the end. Given joint angles decide for themselves; along a path
-    /// both must be the same.
+    /// Elbow of a planar arm at the start and at the end. Given joint angles determine their own; along a path both
+    /// must be the same.
     pub elbows: [Elbow; 2],
-    /// The search; None: the published beetle swarm.
+    /// The solver. `None` means the published beetle swarm.
     pub solver: Option<AnySolver<DerivativeFree>>,
 }
 
 impl Tpbso {
-    /// The one elbow that the arm keeps along a path.
+    /// The elbow of the arm along a path.
     ///
     /// # Errors
-    /// [`Error::Contradiction`] where start and end differ.
+    /// [`Error::Contradiction`] if start and end differ.
     pub(super) fn elbow_along_path(&self) -> Result<Elbow> {
         let [start, end] = self.elbows;
         if start == end {

@@ -1,4 +1,4 @@
-//! From end to end through a via point: the decision vector of Wang et al. (2019), section III-A, and its cost.
+//! Point-to-point motion through a via point: the decision vector of Wang et al. (2019), section III-A, and its cost.
 
 use super::collision_constraint::CollisionTest;
 use super::end_configurations::EndConfigurations;
@@ -15,10 +15,10 @@ use crate::trajectory::{Trajectory, polynomial};
 /// Samples of each segment, at which the tip and collisions are evaluated.
 const SAMPLES: usize = 50;
 
-/// The shortest duration of a segment, over the time that the slowest joint takes through its range.
+/// Shortest duration of a segment, relative to the time of the slowest joint through its range.
 const SHORTEST: f64 = 0.05;
 
-/// The longest, over the same time.
+/// Longest duration, relative to the same time.
 const LONGEST: f64 = 4.0;
 
 /// The cost F of eq. (15), as a function of \[theta_m (n), its rate (n), phi_s, phi_f, t1, t2\].
@@ -33,7 +33,7 @@ pub(super) struct ViaPointCost<'a> {
     collisions: Option<&'a CollisionTest<'a>>,
 }
 
-/// A decision vector, taken apart.
+/// The parts of a decision vector.
 struct Decision<'x> {
     position: &'x [f64],
     velocity: &'x [f64],
@@ -43,7 +43,7 @@ struct Decision<'x> {
     t2: f64,
 }
 
-/// The ends' configurations; the first n entries are in use.
+/// Configurations of both ends; the first n entries are in use.
 type Ends = [[f64; MAX_DOF]; 2];
 
 impl<'a> ViaPointCost<'a> {
@@ -69,7 +69,7 @@ impl<'a> ViaPointCost<'a> {
         Bounds::from_ranges(positions.chain(velocities).chain(redundancy).chain(times))
     }
 
-    /// The motion of decision vector `x`; None where an end has no configuration.
+    /// The motion of decision vector `x`; `None` if an end has no configuration.
     pub(super) fn trajectory(&self, x: &[f64]) -> Option<Result<Trajectory>> {
         let decision = self.take_apart(x);
         let [start, end] = self.ends(&decision).ok()?;
@@ -94,8 +94,8 @@ impl<'a> ViaPointCost<'a> {
         Decision { position, velocity, start, end, t1: times[0], t2: times[1] }
     }
 
-    /// The ends' configurations, or max(|k_s|, 1) + max(|k_f|, 1): eq. (13) read with |k|, since below -1 there is no
-    /// angle either; and a term cannot be lowered by the other's sign.
+    /// Returns the configurations of both ends, or max(|k_s|, 1) + max(|k_f|, 1): eq. (13) read with |k|, since below
+    /// -1 there is no angle either, and so that one term cannot lower the other by its sign.
     fn ends(&self, decision: &Decision<'_>) -> Result<Ends, f64> {
         let n = self.robot.dof();
         let mut ends = [[0.0; MAX_DOF]; 2];
@@ -140,9 +140,9 @@ impl<'a> ViaPointCost<'a> {
         cost + BROKEN_LIMIT * self.scale * broken
     }
 
-    /// g_1 and g_2 of eq. (15), by the exact extremes and as shares of the limits: an extreme that breaks its limit counts
-    /// in full, not by its excess alone, which a search would trade for cost. Position limits, which the paper has not,
-    /// likewise.
+    /// g_1 and g_2 of eq. (15), from the exact extremes relative to the limits. An extreme that violates its limit
+    /// counts in full, not only its excess, which a search would trade for cost. Position limits, which the paper does
+    /// not have, count likewise.
     fn broken(&self, j: usize, extremes: &Extremes) -> f64 {
         let share = |value: f64, limit: f64| if value > limit { value / limit } else { 0.0 };
         let (lower, upper) = (self.limits.lower[j], self.limits.upper[j]);
@@ -192,7 +192,7 @@ impl Objective for ViaPointCost<'_> {
         2 * self.robot.dof() + self.start.dimension() + self.end.dimension() + 2
     }
 
-    /// Never solved: there is no cost that a search could stop at.
+    /// Never solved: no cost is small enough to stop at.
     fn evaluate(&mut self, x: &[f64]) -> Score {
         Score { value: self.value(x), solved: false }
     }

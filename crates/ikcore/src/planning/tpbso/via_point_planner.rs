@@ -1,4 +1,4 @@
-//! The planner from end to end.
+//! The point-to-point planner.
 
 use super::collision_constraint::CollisionTest;
 use super::end_configurations::EndConfigurations;
@@ -13,7 +13,7 @@ use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::solver::Stopwatch;
 
-/// Plans from end to end.
+/// Plans a motion from point to point.
 pub(crate) fn point_to_point(
     robot: &Robot,
     [start, end]: [&Endpoint; 2],

@@ -1,11 +1,12 @@
 //! [`BroydenBas`] as a controller: the Jacobian estimate is carried along the path.
 //!
-//! A sensor may be noisy, and now and then wrong altogether, so a step that came out quite otherwise than predicted is sent
-//! again before it is believed. If the second measurement agrees with the first, the Jacobian is to blame: it learns, and if
-//! that does not help antennae are put out again. If it agrees with the prediction, the first was an outlier. If it
-//! agrees with neither, this is noise, and how much: nothing is learned from steps below it, and the tick ends there. From
-//! other steps only that is learned which noise does not explain, and an error that it explains is no reason to put out
-//! antennae. How noisy the sensor is to begin with, three measurements of the start tell.
+//! A sensor is noisy, and some measurements are outliers. So a measurement that differs strongly from the prediction is
+//! repeated before it is used. If the second measurement agrees with the first, the Jacobian is wrong: it is updated
+//! and, if that does not help, antennae are put out again. If the second measurement agrees with the prediction, the
+//! first was an outlier. If it agrees with neither, the difference is noise and gives its level: steps below that level
+//! do not update the Jacobian, and the tick ends there. Larger steps update the Jacobian only by the change above the
+//! noise level, and an error below that level does not put out antennae. The initial noise level comes from three
+//! measurements of the start.
 
 use super::control_tick::{ControlTick, TickProgress};
 use super::noise::Noise;
@@ -18,13 +19,14 @@ use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
 use crate::task::Tolerance;
 use crate::tracking::tip_pose::TipPose;
 
-/// A measurement that misses the prediction by more than this share of the predicted motion is sent for again.
+/// A measurement is repeated if it misses the prediction by more than this fraction of the predicted motion.
 const SURPRISING: f64 = 1.0;
 
-/// An error below this many noise levels cannot be told from noise: another step would follow the noise.
+/// An error below this multiple of the noise level is indistinguishable from noise: another step would follow the
+/// noise.
 const NEAR_ENOUGH: f64 = 1.25;
 
-/// Steps in a row that came no nearer, before antennae are put out again: they shake the tool.
+/// Consecutive steps without improvement before antennae are put out again; antennae shake the tool.
 const FAILED_STEPS: usize = 2;
 
 /// State of the controller between measurements.
@@ -33,22 +35,22 @@ pub(super) struct BroydenBasState {
     options: BroydenBas,
     tolerance: Tolerance,
     jacobian: Secant,
-    /// The accepted configuration, and what was measured there.
+    /// Accepted configuration, and the tip measured there.
     q: Point,
     tip: TipPose,
-    /// The last command, and what it was for.
+    /// Last command, and its purpose.
     sent: Point,
     purpose: Purpose,
     /// Purpose of the next command.
     next: Purpose,
     damping: f64,
-    /// Steps in a row that left more than half of the error, and steps in a row that came no nearer at all.
+    /// Consecutive steps that left more than half of the error, and consecutive steps without improvement.
     slow: usize,
     failed: usize,
-    /// No step was accepted since antennae were out.
+    /// No step was accepted since the antennae were last put out.
     fresh: bool,
     noise: Noise,
-    /// How often the last command is still to be sent, for a sensor that is late.
+    /// How many more times the last command is sent, for a sensor with delay.
     due: usize,
     /// Measurements in this tick.
     measurements: usize,
@@ -57,15 +59,15 @@ pub(super) struct BroydenBasState {
 /// Purpose of a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
-    /// To measure at the start again, which was at `first` before, and then at `second`.
+    /// Measure at the start again: `first` and `second` are the earlier measurements.
     Repeat { first: TipPose, second: Option<TipPose> },
-    /// To measure at the accepted configuration, before antennae are put out.
+    /// Measure at the accepted configuration, before antennae are put out.
     Stand,
-    /// To put out the antenna of a joint. As a plan: of this one or, where it has no room, of the next that has.
+    /// Put out the antenna of a joint. As `next`: of this joint or, if it has no room, of the next joint that has.
     Antenna { joint: usize },
-    /// To come nearer.
+    /// Step towards the target.
     Step,
-    /// The same step again, because this measurement surprised.
+    /// Repeat the step, because the measurement `first` missed the prediction.
     Again { first: TipPose },
 }
 
@@ -125,7 +127,7 @@ impl BroydenBasState {
         };
     }
 
-    /// A limit may close in on the accepted configuration: then the arm has to be measured where it may stand.
+    /// A limit may have closed in on the accepted configuration: clips it to the box, and has it measured again.
     fn return_to_box(&mut self, tick: ControlTick<'_>) {
         if !tick.bounds.contains(&self.q) {
             tick.bounds.clip(&mut self.q);
@@ -133,7 +135,7 @@ impl BroydenBasState {
         }
     }
 
-    /// The first antenna, from `joint` on, that has room; the first step where none has.
+    /// Puts out the first antenna, from `joint` on, that has room; takes the first step if none has.
     fn put_out_antenna(&mut self, joint: usize, tick: ControlTick<'_>) -> Purpose {
         let (lower, upper) = (tick.bounds.lower(), tick.bounds.upper());
         for j in joint..self.q.len() {
@@ -158,7 +160,7 @@ impl BroydenBasState {
         self.jacobian.step(&residual, self.damping(), &self.q, bounds, &mut self.sent);
     }
 
-    /// What noise has left of a column in the dark must not be taken for a way to move.
+    /// Adds damping for noise, so that the noise in a small column is not taken for a direction of motion.
     fn damping(&self) -> f64 {
         let doubt = self.noise.level() / self.options.antenna_length;
         if doubt == 0.0 {
@@ -179,7 +181,7 @@ impl BroydenBasState {
         TickProgress::GoOn
     }
 
-    /// The answer to the last command was `tip`.
+    /// Processes the measurement `tip` of the last command.
     fn learn(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
         let verdict = match self.purpose {
             Purpose::Repeat { first, second: None } => {
@@ -206,7 +208,7 @@ impl BroydenBasState {
         if arrived { TickProgress::TickOver } else { verdict }
     }
 
-    /// Where the start is, and how noisy the sensor: one of the three measurements may be an outlier.
+    /// Estimates tip and noise level at the start from three measurements, one of which may be an outlier.
     fn know_start(&mut self, measurements: [TipPose; 3]) {
         self.tip = TipPose::median(measurements);
         self.noise.note_three(measurements);
@@ -221,7 +223,7 @@ impl BroydenBasState {
         }
     }
 
-    /// A step was measured at `tip`, and if it was sent again, at `first` before.
+    /// Processes the measurement of a step; `first` is the measurement before, if the step was repeated.
     fn believe(&mut self, tick: ControlTick<'_>, tip: &TipPose, first: Option<&TipPose>) -> TickProgress {
         let Self { q, sent, jacobian, .. } = self;
         let dq = || sent.iter().zip(q.iter()).map(|(to, from)| to - from);
@@ -249,7 +251,8 @@ impl BroydenBasState {
         self.judge(tick, tip, noisy)
     }
 
-    /// Keeps a step that came nearer; else does something about it, unless noise hides what.
+    /// Accepts a step that reduced the error. Otherwise raises the damping or puts out antennae, unless the cause is
+    /// noise.
     fn judge(&mut self, tick: ControlTick<'_>, tip: &TipPose, noisy: bool) -> TickProgress {
         let (before, after) = (self.tip.squared_error(tick.target), tip.squared_error(tick.target));
         if after < before {
@@ -269,7 +272,7 @@ impl BroydenBasState {
         }
         self.failed += 1;
         if !self.fresh {
-            // The first failure has taught the Jacobian something, and may have been noise.
+            // The first failure has updated the Jacobian, and may have been noise.
             if self.failed >= FAILED_STEPS {
                 self.next = Purpose::Stand;
             }
@@ -279,7 +282,7 @@ impl BroydenBasState {
         if self.damping <= LARGEST_DAMPING {
             return TickProgress::GoOn;
         }
-        // Nothing more to gain in this tick; the next one starts as carefully as this one did.
+        // No more improvement in this tick; the next one starts with the same damping as this one.
         self.damping = FIRST_DAMPING;
         TickProgress::TickOver
     }

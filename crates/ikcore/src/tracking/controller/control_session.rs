@@ -1,4 +1,5 @@
-//! A controller in use on an arm that the caller moves: clock, limits, and whether a command or a measurement is due.
+//! A controller in use on an arm that the caller moves: clock, limits, and whether a command or a measurement comes
+//! next.
 
 use super::control_tick::{ControlTick, TickProgress};
 use super::controller_choice::{Controller, RunningController};
@@ -13,10 +14,10 @@ use crate::tracking::record::Accepted;
 use crate::tracking::step::Step;
 use crate::tracking::tip_pose::TipPose;
 
-/// A controller in use. [`command`](Self::command) returns where to send the arm, [`observe`](Self::observe) takes the
-/// position measured there; a tick ends when the controller needs no further measurement.
+/// A controller in use. [`command`](Self::command) returns the next command for the arm, [`observe`](Self::observe)
+/// takes the position measured there. A tick ends when the controller needs no further measurement.
 ///
-/// The first command is the start itself: it only measures where the tip is, and time does not advance.
+/// The first command is the start itself: it only measures the tip position there, and time does not advance.
 #[derive(Debug)]
 pub struct ControlSession {
     running: RunningController,
@@ -24,40 +25,40 @@ pub struct ControlSession {
     tolerance: Tolerance,
     dt: f64,
     ticks: usize,
-    /// The configuration accepted at the tick's start: the middle of its box.
+    /// The configuration accepted at the start of the tick: the centre of its box.
     q: Point,
-    /// The one accepted at the start of the tick before.
+    /// The configuration accepted at the start of the previous tick.
     before: Point,
     tick_box: TickBox,
     inside_limits: bool,
     stage: Stage,
     /// Target of the last command. The first one decides whether all are positions or poses.
     target: TipPose,
-    /// Error at the end of the tick before: the length of the residual (m, rad).
+    /// Error at the end of the previous tick: the length of the residual (m, rad).
     last_error: f64,
     /// Measurements since the tick began.
     measurements: usize,
     rng: LazyRng,
 }
 
-/// Whether a command or a measurement is due.
+/// Whether a command or a measurement comes next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
-    /// Nothing was measured yet.
+    /// No measurement yet.
     Start,
-    /// At the beginning of a tick.
+    /// At the start of a tick.
     Ready,
-    /// In a tick that goes on.
+    /// Within a tick.
     Within,
-    /// A command was given; its measurement is due.
+    /// A command was sent; its measurement comes next.
     Sent { first: bool },
 }
 
 impl ControlSession {
-    /// A session at rest in `start` (n,) at t = 0, with ticks of `dt` (s). `tolerance` is the error band.
+    /// A session at rest at `start` (n,) at t = 0, with ticks of `dt` (s). `tolerance` is the error band.
     ///
     /// # Errors
-    /// Any [`Error`] for wrong input: options, a start outside its limits, limits that no controller keeps.
+    /// Any [`Error`] for wrong input: options, a start outside its limits, limits that no controller supports.
     pub fn new(
         controller: &Controller,
         start: &[f64],
@@ -127,17 +128,18 @@ impl ControlSession {
         &self.tick_box.velocity
     }
 
-    /// The command that the last tick stands for (n,): the one at which its position was measured.
+    /// The command (n,) at which the position of the last tick was measured.
     pub fn measured_command(&self) -> &[f64] {
         self.running.measured().0
     }
 
-    /// Where to send the arm (n,), so that its tip comes to `target`, a position (m) or a pose, by the end of the tick; within the limits, and
-    /// within what the velocity limits let the configuration accepted at the tick's start reach.
+    /// Returns the next command (n,), which is to bring the tip to `target`, a position (m) or a pose, by the end of the
+    /// tick. It is within the limits, and within the range that the velocity limits allow from the configuration accepted
+    /// at the start of the tick.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for the target, [`Error::Contradiction`] for a pose after positions or a position after poses,
-    /// [`Error::OutOfTurn`] while a measurement is due.
+    /// [`Error::OutOfTurn`] if a measurement is due.
     pub fn command(&mut self, target: impl Into<TipPose>) -> Result<&[f64]> {
         let target = target.into();
         target.require_finite("target")?;
@@ -167,12 +169,12 @@ impl ControlSession {
         Ok(self.running.sent())
     }
 
-    /// The tip was at `position` (m), or at a pose, at the last command. Returns what became of the tick; None where it goes
-    /// on. The orientation of a pose is ignored where the target is a position.
+    /// Takes the position (m) or the pose measured at the last command. Returns the result of the tick, or `None` if the
+    /// tick continues. If the target is a position, the orientation of a pose is ignored.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] for the measurement, [`Error::Contradiction`] for a position where the target is a pose,
-    /// [`Error::OutOfTurn`] where no measurement is due.
+    /// [`Error::NotFinite`] for the measurement, [`Error::Contradiction`] for a position if the target is a pose,
+    /// [`Error::OutOfTurn`] if no measurement is due.
     pub fn observe(&mut self, position: impl Into<TipPose>) -> Result<Option<Step>> {
         let Stage::Sent { first } = self.stage else {
             let remedy = "there is no command to answer; call command(target) first".into();
@@ -226,8 +228,8 @@ impl ControlSession {
         Accepted { q: &self.q, tick_box: &self.tick_box }
     }
 
-    /// By how much (rad, m) the last command broke a limit at its worst, with the joint and where it was sent; None where it
-    /// broke none: the tick's box is within the limits, unless they cannot be kept.
+    /// Returns the largest excess (rad, m) of the last command over a limit, its joint and the joint's command; `None`
+    /// if there is no excess. The box of the tick is within the limits, unless the limits cannot be kept.
     pub(in crate::tracking) fn excess(&self) -> Option<(f64, usize, f64)> {
         let TickBox { bounds, velocity, floor, ceiling, .. } = &self.tick_box;
         let sent = self.running.sent();

@@ -1,12 +1,12 @@
-//! One tick, as a controller sees it.
+//! The tick of a controller: input, and whether it continues.
 
 use crate::objective::Bounds;
 use crate::tracking::tip_pose::TipPose;
 
-/// A tick, as a controller sees it.
+/// The input of a controller for a tick.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ControlTick<'a> {
-    /// Target of the tip at its end.
+    /// Target of the tip at the end of the tick.
     pub target: &'a TipPose,
     /// Box of the commands.
     pub bounds: &'a Bounds,
@@ -15,7 +15,7 @@ pub(super) struct ControlTick<'a> {
 /// Whether a tick goes on after a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TickProgress {
-    /// It has another command for this tick.
+    /// The controller has another command for this tick.
     GoOn,
     /// The tick is over.
     TickOver,

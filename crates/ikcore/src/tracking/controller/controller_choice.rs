@@ -47,7 +47,7 @@ impl Controller {
     }
 }
 
-/// A controller at work, with what it remembers.
+/// A controller in use, with its state.
 #[derive(Debug)]
 pub(super) enum RunningController {
     BroydenBas(Box<BroydenBasState>),
@@ -55,7 +55,7 @@ pub(super) enum RunningController {
 }
 
 impl RunningController {
-    /// Makes up its mind about the next command.
+    /// Chooses the next command.
     pub(super) fn choose_command(&mut self, tick: ControlTick<'_>, rng: &mut LazyRng) {
         match self {
             Self::BroydenBas(memory) => memory.choose_command(tick),
@@ -63,7 +63,7 @@ impl RunningController {
         }
     }
 
-    /// The last command; the start before there was one.
+    /// The last command; the start if there was none yet.
     pub(super) fn sent(&self) -> &[f64] {
         match self {
             Self::BroydenBas(memory) => memory.sent(),
@@ -71,7 +71,7 @@ impl RunningController {
         }
     }
 
-    /// Where the tip was at the last command.
+    /// Takes the tip measured at the last command.
     pub(super) fn observe(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
         match self {
             Self::BroydenBas(memory) => memory.observe(tick, tip),
@@ -79,7 +79,7 @@ impl RunningController {
         }
     }
 
-    /// Where the tip was at the start, before the first tick.
+    /// Takes the tip measured at the start, before the first tick.
     pub(super) fn begin(&mut self, target: &TipPose, tip: &TipPose) {
         match self {
             Self::BroydenBas(memory) => memory.begin(tip),
@@ -95,7 +95,7 @@ impl RunningController {
         }
     }
 
-    /// The command that the tick stands for, and what was measured there.
+    /// The command at which the tip of the tick was measured, and that measurement.
     pub(super) fn measured(&self) -> (&[f64], &TipPose) {
         match self {
             Self::BroydenBas(memory) => memory.measured(),

@@ -1,13 +1,13 @@
-//! Controllers: what moves an arm that it has no model of. A controller sees the target, the box of the tick and what was
-//! measured, and nothing else.
+//! Controllers move an arm without a model of it. A controller sees only the target, the box of the tick and the
+//! measurements.
 //!
 //! | file | controller | measurements a tick | when to use it |
 //! |---|---|---|---|
-//! | `broyden_bas` | a Jacobian from antenna differences, kept up to date by every step | 1 to a few | the choice, where a tick leaves time to measure more than once, or a step a tick will do |
-//! | `znnbas` | a random antenna a tick and the sign of what it brought (Khan et al. 2022) | exactly 1 | to repeat the paper; it learns nothing, needs a fast clock, and its antennae shake the tool |
+//! | `broyden_bas` | a Jacobian from antenna differences, updated by every step | 1 to a few | the default; if a tick has time for more than one measurement, or one step a tick is enough |
+//! | `znnbas` | a random antenna each tick and the sign of the measured change (Khan et al. 2022) | exactly 1 | to reproduce the paper; it learns nothing, needs a fast clock, and its antennae shake the tool |
 //!
-//! `controller_choice` holds the choice of controller and the controller in use, `control_session` runs one tick by tick,
-//! `control_tick` is what a controller is given, `noise` estimates that of the sensor.
+//! `controller_choice` lists the controllers and holds the one in use, `control_session` runs it tick by tick,
+//! `control_tick` is the input of a controller, `noise` estimates the noise of the sensor.
 
 mod broyden_bas;
 mod control_session;

@@ -3,14 +3,15 @@
 use crate::math::vector::median;
 use crate::tracking::tip_pose::TipPose;
 
-/// Distances up to this many noise levels may be noise alone.
+/// Distances up to this multiple of the noise level may be noise alone.
 const EXPLAINED: f64 = 3.0;
 
-/// The root mean square distance of two measurements, over the mean one of the nearest two of three; noise is Gaussian.
+/// Ratio, for Gaussian noise, of the root mean square distance of two measurements to the mean distance of the nearest
+/// two of three.
 const TWO_OVER_NEAREST_OF_THREE: f64 = 1.62;
 
-/// How far apart two measurements of the same command lie (m): the median of the last three that could tell, so that an
-/// outlier counts for nothing.
+/// Distance between two measurements of the same command (m): the median of the last three pairs, so that one outlier
+/// has no effect.
 #[derive(Debug, Default)]
 pub(super) struct Noise {
     repeats: [f64; 3],
@@ -19,7 +20,7 @@ pub(super) struct Noise {
 }
 
 impl Noise {
-    /// Two measurements of one command were `repeat` apart (m).
+    /// Takes the distance between two measurements of one command (m).
     pub(super) fn note(&mut self, repeat: f64) {
         self.repeats[self.noted % 3] = repeat;
         self.noted += 1;
@@ -27,24 +28,24 @@ impl Noise {
         self.level = median(a, b, c) * std::f64::consts::FRAC_1_SQRT_2;
     }
 
-    /// Three measurements of one command (m). One of them may be an outlier, so the nearest two count.
+    /// Takes three measurements of one command. One of them may be an outlier, so the nearest two count.
     pub(super) fn note_three(&mut self, [a, b, c]: [TipPose; 3]) {
         let nearest = a.distance(&b).min(b.distance(&c)).min(a.distance(&c));
         (0..2).for_each(|_| self.note(TWO_OVER_NEAREST_OF_THREE * nearest));
     }
 
-    /// The noise of one measurement (m), root mean square; zero until there is evidence.
+    /// The noise of one measurement (m), root mean square; zero until it was measured.
     pub(super) fn level(&self) -> f64 {
         self.level
     }
 
-    /// Whether a motion or an error of this size (m) may be nothing but noise.
+    /// Whether a motion or an error of this size (m) may be noise alone.
     pub(super) fn explains(&self, size: f64) -> bool {
         size < EXPLAINED * self.level
     }
 
-    /// How much to learn from a prediction that missed by `miss` (m): the part of it that noise does not explain. Learning all
-    /// carries the noise of every measurement into the Jacobian, until the steps go astray.
+    /// Fraction of the update to apply after a prediction missed by `miss` (m): the part above the noise level. The
+    /// whole update would carry the noise of every measurement into the Jacobian until the steps go astray.
     pub(super) fn share(&self, miss: f64) -> f64 {
         (1.0 - (EXPLAINED * self.level / miss).powi(2)).max(0.0)
     }

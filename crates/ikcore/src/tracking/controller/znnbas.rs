@@ -1,30 +1,31 @@
 //! Zeroing neural network with beetle antennae search (Khan et al. 2022), in discrete time.
 //!
-//! In every tick the arm is sent to theta' = beta(theta + lambda b) (eq. 10) with a fresh random b, the error h there is
-//! measured (eq. 12) and compared with that of a delay before (eq. 13), and theta moves by the sign of the change
-//! (eq. 14, 15). Equations 13 to 15 write h(theta'(t) - alpha) for h(theta'(t - alpha)); the gain of the listing, -10, is that
-//! of a block that takes in the minus of eq. 14: put into eq. 14 as printed it diverges. The delay of 10 is one of ticks:
-//! 10 seconds do not converge.
+//! In every tick the arm is sent to theta' = beta(theta + lambda b) (eq. 10) with a new random b, the error h is
+//! measured there (eq. 12) and compared with the error a delay before (eq. 13), and theta moves by the sign of the
+//! change (eq. 14, 15). Equations 13 to 15 write h(theta'(t) - alpha) for h(theta'(t - alpha)). The gain of -10 in the
+//! listing already includes the minus sign of eq. 14; inserted into eq. 14 as printed, it diverges. The delay of 10 is
+//! in ticks: 10 seconds do not converge.
 //!
-//! theta is the state of an integrator: the arm never stands there, but at theta', a random antenna away.
+//! theta is the state of an integrator. The arm never is at theta, but at theta', a random antenna away.
 //!
-//! The proof of Theorem 1 describes another algorithm, which keeps theta' where h fell and else goes back to theta and waits.
-//! It is here as [`UpdateRule::Improving`]: the theorem holds for it, while the target stands still.
+//! The proof of Theorem 1 describes another algorithm, which moves to theta' if h fell there, and otherwise returns to
+//! theta and waits. It is implemented as [`UpdateRule::Improving`]; the theorem holds for it while the target does not
+//! move.
 
 use crate::error::{Error, Result, require_positive};
 use crate::wording::words;
 
-/// A longer memory than this is a mistake, and might not fit.
+/// A longer memory is a mistake, and might not fit.
 const MOST_TICKS: usize = 100_000;
 
-/// The length of the antennae, lambda of eq. (10).
+/// Length of the antennae, lambda of eq. (10).
 #[derive(Debug, Clone, PartialEq)]
 pub enum Antenna {
     /// The same at all times (rad): one number, or one per joint.
     Constant(Vec<f64>),
-    /// c1 sqrt(h), eq. (16) (rad per m), up to half a radian.
+    /// c1 sqrt(h), eq. (16), at most half a radian.
     Adaptive {
-        /// See the variant.
+        /// c1 of eq. (16) (rad per m).
         c1: f64,
     },
 }
@@ -32,9 +33,9 @@ pub enum Antenna {
 /// The measurement that a new one is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Delay {
-    /// The one `delay_steps` ticks before: eq. (13).
+    /// The measurement `delay_steps` ticks before: eq. (13).
     Sliding,
-    /// One renewed every `delay_steps` ticks: lines 17 to 20 of Algorithm 1.
+    /// A measurement renewed every `delay_steps` ticks: lines 17 to 20 of Algorithm 1.
     Held,
 }
 
@@ -45,8 +46,8 @@ words!("delay": Delay { Sliding => "sliding", Held => "held" });
 pub enum UpdateRule {
     /// In every tick: eq. (15).
     Always,
-    /// To theta' where that is nearer to the target of now than theta is, else not at all: the proof of Theorem 1. Gain and
-    /// delay have no part in it.
+    /// To theta' if it is nearer to the current target than theta; otherwise theta stays: the proof of Theorem 1. Gain
+    /// and delay are not used.
     Improving,
 }
 
@@ -55,7 +56,7 @@ words!("accept": UpdateRule { Always => "always", Improving => "improving" });
 /// ZNNBAS.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Znnbas {
-    /// k of eq. (14) (1/s), positive to converge. A gain times dt above 0.3 overshoots.
+    /// k of eq. (14) (1/s), positive to converge. Above gain dt = 0.3 it overshoots.
     pub gain: f64,
     /// Delay of the sensor in ticks: a measurement belongs to the command and target of that many ticks before.
     pub sensor_delay: usize,
@@ -84,7 +85,7 @@ impl Default for Znnbas {
 }
 
 impl Znnbas {
-    /// The constants of Algorithm 1 in the paper.
+    /// The constants of Algorithm 1 of the paper.
     pub fn published() -> Self {
         Self { gain: 10.0, antenna: Antenna::Constant(vec![0.1]), delay_steps: 10, ..Self::default() }
     }
@@ -92,7 +93,8 @@ impl Znnbas {
     /// Checks the options, for an arm of `n` joints.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] names the option and its range; [`Error::WrongLength`] for antennae of another arm.
+    /// [`Error::OutOfRange`] names the option and its range; [`Error::WrongLength`] if the number of antenna lengths
+    /// does not match.
     pub fn validate(&self, n: usize) -> Result<()> {
         self.validate_numbers()?;
         match &self.antenna {
@@ -104,7 +106,7 @@ impl Znnbas {
         }
     }
 
-    /// The same, where the arm is not known yet.
+    /// Checks the options that do not depend on the arm.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] names the option and its range.

@@ -1,4 +1,4 @@
-//! ZNNBAS at work: Algorithm 1, tick by tick.
+//! ZNNBAS in use: Algorithm 1, tick by tick.
 
 use super::control_tick::{ControlTick, TickProgress};
 use super::znnbas::{Antenna, Delay, UpdateRule, Znnbas};
@@ -20,9 +20,9 @@ pub(super) struct ZnnbasState {
     accept: UpdateRule,
     /// theta, the state of the integrator.
     theta: Point,
-    /// Where the tip was at the last theta that was measured.
+    /// The tip at the last measured theta.
     standing: TipPose,
-    /// theta', where the arm was sent.
+    /// theta', the last command.
     sent: Point,
     /// The last measurement, its command, and h.
     tip: TipPose,
@@ -32,7 +32,7 @@ pub(super) struct ZnnbasState {
     past: Past,
 }
 
-/// Commands that a late sensor has not answered yet, with their targets; a ring buffer.
+/// Ring buffer of the commands, with their targets, that a sensor with delay has not measured yet.
 #[derive(Debug)]
 struct OnTheWay {
     sent: Vec<f64>,
@@ -40,7 +40,7 @@ struct OnTheWay {
     ticks: usize,
 }
 
-/// The measurements of the last `delay_steps` ticks, a ring buffer.
+/// Ring buffer of the measurements of the last `delay_steps` ticks.
 #[derive(Debug)]
 struct Past {
     sent: Vec<f64>,
@@ -73,7 +73,7 @@ impl ZnnbasState {
 
     pub(super) fn begin(&mut self, target: &TipPose, tip: &TipPose) {
         (self.tip, self.standing, self.value) = (*tip, *tip, tip.squared_error(target));
-        // Until the first answer comes, the arm stands at the start.
+        // Until the first measurement arrives, the arm is at the start.
         self.on_the_way.targets.fill(*target);
     }
 
@@ -142,7 +142,7 @@ impl ZnnbasState {
 }
 
 impl OnTheWay {
-    /// Takes in the newest command with its target, and gives the one that is answered now.
+    /// Stores the newest command with its target, and returns those that the sensor measures now.
     fn swap(&mut self, command: &mut [f64], target: TipPose) -> TipPose {
         if self.targets.is_empty() {
             return target;
@@ -155,7 +155,7 @@ impl OnTheWay {
 }
 
 impl Past {
-    /// The slot of `delay` ticks before, which is that of now too.
+    /// The slot of `delay` ticks before, which the current tick overwrites.
     fn slot(&self) -> usize {
         self.ticks % self.values.len()
     }

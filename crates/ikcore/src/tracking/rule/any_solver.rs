@@ -1,4 +1,4 @@
-//! Any solver as a tick rule: begun anew from the accepted configuration, in the box of the tick.
+//! Any solver as a tick rule: started at the accepted configuration, in the box of the tick.
 
 use super::tick::{Tick, TickResult};
 use crate::objective::Differentiable;
@@ -8,7 +8,7 @@ use crate::task::{Criterion, Outside};
 
 pub(super) fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> TickResult {
     let Tick { robot, target, criterion, tick_box, last_value, rng, monitor, .. } = tick;
-    // The arm begins inside its region: nothing outside need be looked at.
+    // The arm starts inside its region, so points outside need not be considered.
     let kept = Criterion { outside: Outside::Infinite, ..*criterion };
     let mut problem = Problem::new(robot, target, kept);
     let objective: &mut dyn Differentiable = &mut problem;
@@ -25,15 +25,15 @@ pub(super) fn advance(solver: &AnySolver, q: &[f64], tick: Tick<'_>) -> TickResu
     }
 }
 
-/// When a tick's search ends short of its band. Some solvers end by their own rule, the others by
-/// their budget.
+/// When the search of a tick ends without reaching the band. Some solvers end by their own rule, the others by their
+/// budget.
 fn stop(solver: &AnySolver, last_value: Option<f64>) -> Stop {
     let standard = Stop::default();
     Stop {
-        // Line 16 of Algorithm 1: a random search may go on to the next tick once it beats the last one.
+        // Line 16 of Algorithm 1: a random search may end the tick once it beats the previous one.
         value_below: if solver.settles_for_improvement() { last_value } else { None },
         max_evaluations: if solver.ends_by_itself() { usize::MAX } else { standard.max_evaluations },
-        // Lines 5 to 15 come before line 16: an arm that waited until it is out of its band would move in jerks.
+        // Lines 5 to 15 come before line 16: an arm that waits until it is out of its band would move in jerks.
         min_iterations: 1,
         ..standard
     }

@@ -1,9 +1,11 @@
-//! The approach to a target that is farther away than a tick reaches: all joints move in proportion to their displacements.
+//! The approach to a target that is farther away than one tick can reach: all joints move in proportion to their
+//! displacements.
 //!
-//! The step that lowers the error most within the box of a tick drives every joint to its limit, and back in the next tick where
-//! that lowers the error more. So the displacement to the target is computed without that box, between the position limits, and
-//! a tick covers the largest share of it that every joint's limits allow. Where accelerations are limited, every joint can also
-//! still stop before its displacement ends. A target that moves is caught up with on top of its own motion.
+//! The step that lowers the error most within the box of a tick drives every joint to its limit, and back in the next
+//! tick if that lowers the error more. So the displacement to the target is computed within the position limits only,
+//! without the box, and a tick covers the largest fraction of it that the limits of all joints allow. With acceleration
+//! limits, every joint can also still stop before its displacement ends. A moving target is followed by its own motion
+//! plus a fraction of the remaining displacement.
 
 use super::tick::Tick;
 use crate::kinematics::Columns;
@@ -13,29 +15,30 @@ use crate::objective::{Linearization, Point};
 use crate::solver::LevenbergMarquardt;
 use crate::task::Target;
 
-/// A target is slow where following it takes no more than this share of any velocity limit.
+/// A target is slow if following it takes no more than this fraction of any velocity limit.
 const SLOW: f64 = 0.5;
 
-/// A target that is not slow counts as near where a tick covers this share of the displacement to it: the step that brings the
-/// tip nearest in this tick is then better than an approach that never ends.
+/// A target that is not slow counts as near if a tick covers this fraction of the displacement to it. The step that
+/// brings the tip nearest in this tick is then better than an approach that never ends.
 const NEAR: f64 = 0.5;
 
-/// The displacement of the joints to a target that the arm is behind (n,) (rad, m).
+/// The displacement of the joints to a target that the arm lags behind (n,) (rad, m).
 pub(super) struct Approach {
-    /// Displacement that the joints still have to catch up.
+    /// Remaining displacement to the target at the start of the tick.
     catch_up: Point,
     /// Displacement that follows the target's own motion.
     keep_up: Point,
-    /// The target is far where the tick can cover less than this share of the displacement.
+    /// The target is far if the tick covers less than this fraction of the displacement.
     far_below: f64,
-    /// The largest share of `catch_up` that the tick's box allows.
+    /// The largest fraction of `catch_up` that the box of the tick allows.
     within_reach: f64,
-    /// The largest share after which every joint can still stop in time.
+    /// The largest fraction after which every joint can still stop in time.
     within_braking: f64,
 }
 
 impl Approach {
-    /// The approach from `q`. Tip and Jacobian are those at `near`, the configuration of the tick's box that is nearest to `q`.
+    /// The approach from `q`. `tip` and `columns` are those at `near`, the configuration nearest to `q` in the box of
+    /// the tick.
     pub(super) fn new(q: &[f64], near: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Self {
         let to = |target: &Target| -> Point {
             let end = destination(target, near, tip, columns, tick);
@@ -48,7 +51,7 @@ impl Approach {
             keep_up.iter().zip(tick.velocity_limit).all(|(step, limit)| step.abs() <= share * limit * tick.dt)
         };
         let far_below = if takes(SLOW) { 1.0 } else { NEAR };
-        // A target that outruns the arm has jumped, as far as the arm can tell.
+        // A target faster than the arm is treated like a jump.
         if !takes(1.0) {
             catch_up = whole;
             keep_up.fill(0.0);
@@ -63,7 +66,7 @@ impl Approach {
         for (j, (catch_up, keep_up)) in self.catch_up.iter().zip(&self.keep_up).enumerate() {
             let end = if *catch_up > 0.0 { upper[j] } else { lower[j] };
             let reach = (end - q[j] - keep_up) / catch_up;
-            // A joint that still goes the other way turns round as fast as it may, and holds up no other.
+            // A joint that still moves the other way reverses as fast as it may, and does not hold up the others.
             if reach > 0.0 {
                 self.within_reach = self.within_reach.min(reach);
             }
@@ -75,12 +78,12 @@ impl Approach {
         }
     }
 
-    /// Whether the target is so far away that joints are better moved in proportion.
+    /// Whether the target is far, so that the joints should move in proportion.
     pub(super) fn is_far(&self) -> bool {
         self.within_reach < self.far_below
     }
 
-    /// Whether an arm that went straight to the target could not stop there.
+    /// Whether an arm that moved straight to the target could not stop there.
     pub(super) fn needs_braking(&self) -> bool {
         self.within_braking < 1.0
     }
@@ -95,8 +98,8 @@ impl Approach {
     }
 }
 
-/// Where the `target`, linearised at `q`, is met between the position limits; damped as a descent from `q` would be, since far
-/// away the linearisation gives little more than a direction.
+/// Returns the configuration within the position limits that meets the `target`, linearised at `q`. Damped like a
+/// descent from `q`, since far from the target the linearisation gives little more than a direction.
 fn destination(target: &Target, q: &[f64], tip: &Frame, columns: &Columns, tick: &Tick<'_>) -> Point {
     let n = q.len();
     let mut at = Linearization { columns: *columns, ..Linearization::default() };

@@ -1,10 +1,10 @@
-//! The model-based rule: Gauss-Newton in the box, with the Jacobian of the middle of the tick.
+//! The model-based rule: Gauss-Newton in the box, with the Jacobian at the middle of the tick.
 //!
-//! A step by the Jacobian of the tick's beginning leaves an error of second order. The Jacobian of its middle,
-//! extrapolated from the last two ticks as (3 J_k - J_{k-1}) / 2, leaves one of third order, so that a single evaluation a
-//! tick reaches micrometres. Joint velocities are not extrapolated: on a redundant arm that would keep null-space motion
-//! alive. Where a step does not lower the error, the box or a singularity is in the way: Levenberg-Marquardt, which only
-//! ever lowers it, takes over for the tick.
+//! A step with the Jacobian at the start of the tick leaves an error of second order. The Jacobian at the middle,
+//! extrapolated from the last two ticks as (3 J_k - J_{k-1}) / 2, leaves one of third order, so that a single
+//! evaluation a tick reaches micrometres. Joint velocities are not extrapolated: on a redundant arm that would sustain
+//! null-space motion. If a step does not lower the error, because of the box or a singularity, Levenberg-Marquardt
+//! solves the tick; it never raises the error.
 
 use super::approach::Approach;
 use super::tick::{Tick, TickResult};
@@ -20,16 +20,16 @@ use crate::robot::Robot;
 use crate::solver::{Evaluator, LevenbergMarquardt, Status, Stop, run};
 use crate::task::Assessment;
 
-/// Steps by the model in one tick; they converge quadratically, so that more would not help.
+/// Maximum number of model steps in a tick; they converge quadratically, so more would not help.
 const MOST_STEPS: usize = 10;
 
 /// State of the rule between ticks. Boxed, so that passing a Jacobian on copies a pointer.
 #[derive(Debug, Default)]
 pub(crate) struct MidStepState {
-    /// At the accepted configuration, once there was a tick.
+    /// At the accepted configuration; known after the first tick.
     begin: Box<Kinematics>,
     begin_known: bool,
-    /// At the one before, if the arm has moved since.
+    /// At the configuration before, if the arm has moved since.
     before: Box<Kinematics>,
     before_known: bool,
     here: Box<Kinematics>,
@@ -37,14 +37,14 @@ pub(crate) struct MidStepState {
     linearization: Box<Linearization>,
 }
 
-/// The linear model of a step: tip and Jacobian from which it is made.
+/// The linear model of a step: where its tip and Jacobian are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Model {
-    /// Both at the beginning of the tick.
+    /// Both at the start of the tick.
     Begin,
-    /// The tip at the beginning, the Jacobian extrapolated to the middle of the tick.
+    /// The tip at the start, the Jacobian extrapolated to the middle of the tick.
     MidTick,
-    /// Both where the last step has led.
+    /// Both at the result of the last step.
     Here,
 }
 
@@ -63,7 +63,7 @@ impl Default for Kinematics {
 }
 
 impl Kinematics {
-    /// Goes to `q`; tip and Jacobian stay behind until they are updated.
+    /// Sets `q`; tip and Jacobian are outdated until `update`.
     fn place(&mut self, q: &[f64]) {
         self.q.clear();
         self.q.extend_from_slice(q);
@@ -78,7 +78,7 @@ pub(super) fn advance(memory: &mut MidStepState, q: &[f64], mut tick: Tick<'_>) 
     let mut found = TickResult::at(q);
     tick.tick_box.clip(&mut found.q);
     if !memory.begin_known || *found.q != *q {
-        // The first tick, or one that has to begin elsewhere because q is outside its limits.
+        // The first tick, or one that starts elsewhere because q is outside its limits.
         memory.begin.place(&found.q);
         memory.begin.update(tick.robot);
         memory.before_known = false;
@@ -100,13 +100,13 @@ pub(super) fn advance(memory: &mut MidStepState, q: &[f64], mut tick: Tick<'_>) 
 }
 
 impl MidStepState {
-    /// Drops what is known: the arm is not where the last tick ended.
+    /// Drops the kinematics of the last tick, because the arm is not where it ended.
     pub(crate) fn forget(&mut self) {
         (self.begin_known, self.before_known) = (false, false);
     }
 
-    /// A step that takes the joints down the gradient of the goals as far as the target leaves them free, and then steps by the
-    /// model until the tip is in the band. Whether it got there; if not, `found` is left as it was.
+    /// Takes one step along the negative gradient of the goals, as far as the target leaves the joints free, then model
+    /// steps until the tip is in the band. Returns whether it got there; if not, `found` keeps its configuration.
     fn towards_goals(&mut self, found: &mut TickResult, tick: &mut Tick<'_>) -> bool {
         if tick.goals.is_empty() {
             return false;
@@ -129,11 +129,11 @@ impl MidStepState {
         found.is_solved() && found.iterations > 0
     }
 
-    /// Steps by the model while they lower the error; whether one did.
+    /// Takes model steps while they lower the error; returns whether one did.
     fn gauss_newton(&mut self, found: &mut TickResult, tick: &Tick<'_>) -> bool {
         let mut moved = false;
         let mut model = self.first_model();
-        // One step at least: an arm that waited until it is out of its band would move in jerks.
+        // At least one step: an arm that waits until it is out of its band would move in jerks.
         while found.iterations == 0 || (found.iterations < MOST_STEPS && !found.is_solved()) {
             model = match (self.lowers(found, tick, model), model) {
                 (true, _) => Model::Here,
@@ -145,12 +145,12 @@ impl MidStepState {
         moved
     }
 
-    /// The best model that is known at the beginning of a tick.
+    /// The best model available at the start of a tick.
     fn first_model(&self) -> Model {
         if self.before_known { Model::MidTick } else { Model::Begin }
     }
 
-    /// One step from where `found` is. It is kept if it lowers the error; whether it did.
+    /// Takes one step from `found`, and keeps it if it lowers the error; returns whether it does.
     fn lowers(&mut self, found: &mut TickResult, tick: &Tick<'_>, model: Model) -> bool {
         self.step(found, tick, model, None);
         let assessment = tick.target.assess_tip(&self.trial.tip, tick.criterion);
@@ -161,14 +161,14 @@ impl MidStepState {
         lower
     }
 
-    /// Brings `found` to the trial, which was assessed.
+    /// Moves `found` to the assessed trial.
     fn accept_trial(&mut self, found: &mut TickResult, assessment: Assessment) {
         std::mem::swap(&mut self.here, &mut self.trial);
         found.q.copy_from_slice(&self.here.q);
         (found.assessment, found.position) = (assessment, self.here.tip.origin);
     }
 
-    /// A trial from where `found` is: where the target is met by the `model`, with the joints that it leaves free as near as
+    /// Sets the trial to the configuration that meets the target by the `model`, with the free joints as near as
     /// possible to `preferred`.
     fn step(&mut self, found: &mut TickResult, tick: &Tick<'_>, model: Model, preferred: Option<&[f64]>) {
         let n = found.q.len();
@@ -197,7 +197,7 @@ impl MidStepState {
         found.iterations += 1;
     }
 
-    /// The approach to a target that the arm has not caught up with, where it has to brake in time to stop there.
+    /// The approach to a target that the arm lags behind, if it must brake in time to stop there.
     fn approach_with_braking(&self, q: &[f64], near: &[f64], tick: &Tick<'_>) -> Option<Approach> {
         let limited = tick.limits.field(Field::Acceleration).is_some();
         if !limited || tick.motion().begin.assess_tip(&self.begin.tip, tick.criterion).score.solved {
@@ -210,8 +210,8 @@ impl MidStepState {
         Approach::new(q, near, &self.begin.tip, &self.begin.columns, tick)
     }
 
-    /// One tick from `q` towards a target that is far, or before which the arm has to brake. Whether the target is such a one,
-    /// and the tick brought the arm nearer.
+    /// Approaches a target that is far, or before which the arm must brake. Returns false if the target is neither, or
+    /// if the tick would not bring the arm nearer.
     fn follow_approach(
         &mut self,
         braking: Option<Approach>,
@@ -233,7 +233,7 @@ impl MidStepState {
         approach.advance(&mut self.trial.q, tick);
         self.trial.update(tick.robot);
         let assessment = tick.target.assess_tip(&self.trial.tip, tick.criterion);
-        // An arm that has to brake may be carried away from its target.
+        // An arm that must brake may move away from its target.
         let accepted = must_brake || assessment.score.value < value_at_rest;
         if accepted {
             self.accept_trial(found, assessment);
@@ -243,7 +243,7 @@ impl MidStepState {
         accepted
     }
 
-    /// Lowers the error as far as possible where the model's steps cannot.
+    /// Lowers the error as far as possible when model steps cannot.
     fn levenberg_marquardt(&mut self, found: &mut TickResult, tick: Tick<'_>) {
         let mut problem = Problem::new(tick.robot, tick.target, *tick.criterion);
         let objective: &mut dyn Differentiable = &mut problem;
@@ -259,7 +259,7 @@ impl MidStepState {
         found.interrupted = status == Status::Interrupted;
     }
 
-    /// Hands the kinematics at the end of this tick on to the beginning of the next.
+    /// Passes the kinematics at the end of this tick to the start of the next.
     fn hand_on(&mut self, moved: bool) {
         if moved {
             std::mem::swap(&mut self.before, &mut self.begin);

@@ -1,11 +1,11 @@
-//! Tick rules: what moves a modelled arm by one tick inside a given box.
+//! Tick rules move a modelled arm by one tick inside a given box.
 //!
 //! | file | what |
 //! |---|---|
 //! | `tick_rule` | [`TickRule`]: the choice of rule, and the rule in use |
-//! | `tick` | what a rule is given for a tick, and what it returns |
+//! | `tick` | input and result of a rule |
 //! | `mid_step` | the model-based rule, the default |
-//! | `approach` | how that rule approaches a target farther away than a tick reaches |
+//! | `approach` | how that rule approaches a target that one tick cannot reach |
 //! | `weighted_pseudo_inverse` | resolved-rate control |
 //! | `any_solver` | any solver, started at the accepted configuration |
 

@@ -1,4 +1,4 @@
-//! One tick: what a rule is given, and what it returns.
+//! Input and result of a rule for one tick.
 
 use crate::limits::Limits;
 use crate::math::Frame;
@@ -8,36 +8,36 @@ use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::task::{Assessment, Criterion, Goals, SquaredError, Target, TargetMotion, Twist};
 
-/// One tick, as a rule sees it.
+/// The input of a rule for one tick.
 pub(in crate::tracking) struct Tick<'a> {
     pub robot: &'a Robot,
     pub target: &'a Target,
     pub criterion: &'a Criterion,
     /// Goals in the null space of the target.
     pub goals: &'a mut Goals,
-    /// The velocity of the target at the end of the tick (m/s), if it is known.
+    /// Velocity of the target at the end of the tick (m/s), if known.
     pub velocity: Option<[f64; 3]>,
-    /// The target and its velocity at the end of the tick before, if there was one.
+    /// Target and its velocity at the end of the previous tick, if there was one.
     pub before: Option<&'a (Target, Option<[f64; 3]>)>,
-    /// When the tick begins (s).
+    /// Start of the tick (s).
     pub time: f64,
     /// Length of the tick (s).
     pub dt: f64,
-    /// The limits that the tick's box comes from.
+    /// The limits that the box of the tick comes from.
     pub limits: &'a Limits,
     /// The velocity limits of the tick (n,) (rad/s, m/s).
     pub velocity_limit: &'a [f64],
-    /// Where the tick may end.
+    /// The box of joint positions at the end of the tick.
     pub tick_box: &'a Bounds,
-    /// The value accepted in the tick before, if any.
+    /// The value accepted in the previous tick, if any.
     pub last_value: Option<f64>,
     pub rng: &'a mut LazyRng,
     pub monitor: &'a mut dyn Monitor,
 }
 
 impl Tick<'_> {
-    /// How the target moves during the tick. Where nothing is known of the tick before, it has moved with its velocity, or
-    /// stood still.
+    /// Motion of the target during the tick. Without a previous tick, the target has moved with its velocity or, if
+    /// that is unknown, stood still.
     pub(super) fn motion(&self) -> TargetMotion {
         let Self { target: end, dt, velocity, .. } = *self;
         match (self.before, velocity) {
@@ -54,12 +54,12 @@ impl Tick<'_> {
     }
 }
 
-/// Where a rule ends the tick, and what it took to get there.
+/// The configuration at the end of a tick, and the work spent on it.
 #[derive(Debug, Clone)]
 pub(in crate::tracking) struct TickResult {
     pub q: Point,
     pub assessment: Assessment,
-    /// Position of the tip there (m).
+    /// Tip position at `q` (m).
     pub position: [f64; 3],
     pub evaluations: usize,
     pub iterations: usize,
@@ -68,7 +68,7 @@ pub(in crate::tracking) struct TickResult {
 }
 
 impl TickResult {
-    /// At `q`, with nothing known of it yet.
+    /// A result at `q`, not assessed yet.
     pub(super) fn at(q: &[f64]) -> Self {
         let score = Score { value: f64::INFINITY, solved: false };
         let assessment = Assessment { score, error: SquaredError { position: None, rotation: None } };
@@ -76,7 +76,7 @@ impl TickResult {
         Self { q, assessment, position, evaluations: 0, iterations: 0, interrupted: false }
     }
 
-    /// Takes over the tip at `q`.
+    /// Sets assessment and position from the tip at `q`.
     pub(crate) fn set_tip(&mut self, tip: &Frame, target: &Target, criterion: &Criterion) {
         (self.assessment, self.position) = (target.assess_tip(tip, criterion), tip.origin);
     }

@@ -11,16 +11,16 @@ use crate::solver::AnySolver;
 /// The rule that runs in every tick.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum TickRule {
-    /// Steps by the model: one evaluation of kinematics and Jacobian is enough for most ticks.
+    /// Model steps: one evaluation of kinematics and Jacobian is enough for most ticks.
     #[default]
     MidStep,
-    /// A solver, begun anew from the accepted configuration.
+    /// A solver, started at the accepted configuration in every tick.
     Solver(AnySolver),
     /// Velocities by the weighted pseudo-inverse of the Jacobian.
     WeightedPseudoInverse(WeightedPseudoInverse),
 }
 
-/// A rule at work, with what it remembers from tick to tick.
+/// A rule in use, with its state between ticks.
 #[derive(Debug)]
 pub(in crate::tracking) enum RunningRule {
     MidStep(MidStepState),
@@ -41,7 +41,7 @@ impl TickRule {
         }
     }
 
-    /// Checks them for `robot` and ticks of `dt` (s).
+    /// Checks the options for `robot` and ticks of `dt` (s).
     pub(in crate::tracking) fn validate_for(&self, robot: &Robot, dt: f64) -> Result<()> {
         match self {
             Self::MidStep | Self::Solver(_) => Ok(()),
@@ -49,12 +49,12 @@ impl TickRule {
         }
     }
 
-    /// Whether goals beside the path are served.
+    /// Whether the rule supports goals.
     pub(in crate::tracking) fn serves_goals(&self) -> bool {
         !matches!(self, Self::Solver(_))
     }
 
-    /// Whether the velocity of the target makes a difference.
+    /// Whether the rule uses the velocity of the target.
     pub fn uses_velocities(&self) -> bool {
         matches!(self, Self::WeightedPseudoInverse(_))
     }
@@ -71,14 +71,14 @@ impl TickRule {
 }
 
 impl RunningRule {
-    /// Drops what is remembered of the last tick: the arm is not where the rule left it.
+    /// Drops the state of the last tick, because the arm is not where the rule left it.
     pub(crate) fn forget(&mut self) {
         if let Self::MidStep(memory) = self {
             memory.forget();
         }
     }
 
-    /// Ends one tick that begins at `q`.
+    /// Runs one tick from `q`.
     pub(crate) fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> TickResult {
         match self {
             Self::MidStep(memory) => mid_step::advance(memory, q, tick),

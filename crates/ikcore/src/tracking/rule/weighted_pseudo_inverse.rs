@@ -1,11 +1,13 @@
-//! Resolved motion rate: joint velocities from the velocity of the target by the weighted pseudo-inverse of the Jacobian,
-//! as in "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", eq. (8) to (14), mended:
+//! Resolved motion rate: joint velocities from the velocity of the target by the weighted pseudo-inverse of the
+//! Jacobian, as in "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", eq. (8) to (14),
+//! corrected:
 //!
 //! q' = Jw+ (x' + K (x - f(q))) + (I - Jw+ J) q0',  Jw+ = W^-1 J' (J W^-1 J')^-1,  W_i = 1 / (vU_i - vL_i)^2,
 //!
-//! with q0' down the gradient of the goals (eq. 13 lacks the minus sign), or towards a posture that moves. The paper has
-//! no K; without it errors add up. Its q' is the point of the tick's box nearest to q0' in the norm of W that moves the tip
-//! as wanted: joints at a limit leave their share to the others, which the plain formula does not.
+//! with q0' along the negative gradient of the goals (eq. 13 lacks the minus sign), or towards a posture trajectory.
+//! The paper has no K; without it errors accumulate. Of the points in the box of the tick that move the tip as
+//! required, we take the one nearest to q0' in the norm of W: other joints take over the motion of a joint at a limit,
+//! which the plain formula does not.
 
 use std::sync::Arc;
 
@@ -22,10 +24,10 @@ use crate::wording::words;
 /// How velocities become configurations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Integrator {
-    /// The velocity at the tick's beginning: an error of second order a tick.
+    /// The velocity at the start of the tick: an error of second order a tick.
     #[default]
     Euler,
-    /// The classical method of Runge and Kutta: four evaluations, an error of fifth order a tick.
+    /// The classical Runge-Kutta method: four evaluations, an error of fifth order a tick.
     RungeKutta4,
 }
 
@@ -34,19 +36,19 @@ words!("integrator": Integrator { Euler => "euler", RungeKutta4 => "rk4" });
 /// The options of the rule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeightedPseudoInverse {
-    /// K (1/s): the share of the error that is taken back per second. None: half of it in every tick.
+    /// K (1/s): the fraction of the error that is corrected per second. `None` means half of it in every tick.
     pub gain: Option<f64>,
     /// How velocities become configurations.
     pub integrator: Integrator,
-    /// W (n,), positive: the cost of each joint's squared velocity. None: eq. (11), from the velocity limits of the tick;
-    /// joints without one count as fast as the fastest with one.
+    /// W (n,), positive: the cost of each joint's squared velocity. `None` means eq. (11), from the velocity limits of
+    /// the tick; joints without a limit count like the fastest joint that has one.
     pub weights: Option<Vec<f64>>,
-    /// Where the joints should be, as far as the target leaves them free.
+    /// Preferred configuration over time, followed in the null space of the target.
     pub posture: Option<Arc<Trajectory>>,
-    /// The share of the distance from that posture that is taken back per second (1/s).
+    /// The fraction of the distance from that posture that is corrected per second (1/s).
     pub posture_gain: f64,
-    /// Damping over the squared size of the weighted Jacobian; 0 is the pseudo-inverse itself, which near a singular
-    /// posture asks for all the speed that there is.
+    /// Damping relative to the squared norm of the weighted Jacobian. 0 gives the plain pseudo-inverse, which near a
+    /// singularity demands the highest speeds that the limits allow.
     pub damping: f64,
 }
 
@@ -63,11 +65,11 @@ impl Default for WeightedPseudoInverse {
     }
 }
 
-/// Share of the error that is taken back in a tick where no gain is given.
+/// Fraction of the error that is corrected in a tick if no gain is given.
 const SHARE_A_TICK: f64 = 0.5;
 
 impl WeightedPseudoInverse {
-    /// Checks the options that need no robot.
+    /// Checks the options that do not depend on the robot.
     pub(super) fn validate(&self) -> Result<()> {
         for (what, value) in
             [("gain", self.gain.unwrap_or(0.0)), ("posture_gain", self.posture_gain), ("damping", self.damping)]
@@ -81,7 +83,7 @@ impl WeightedPseudoInverse {
         weights.iter().enumerate().try_for_each(|(i, weight)| require_positive(&format!("weights[{i}]"), *weight))
     }
 
-    /// Checks them for a robot and ticks of `dt` (s).
+    /// Checks the options for a robot and ticks of `dt` (s).
     pub(super) fn validate_for(&self, robot: &Robot, dt: f64) -> Result<()> {
         let posture_gain = if self.posture.is_some() { self.posture_gain } else { 0.0 };
         for (what, gain) in [("gain", self.gain.unwrap_or(0.0)), ("posture_gain", posture_gain)] {
@@ -105,11 +107,11 @@ impl WeightedPseudoInverse {
     }
 }
 
-/// Scratch of a tick; nothing is kept from tick to tick.
+/// Scratch of a tick; holds no state between ticks.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
     linearization: Box<Linearization>,
-    /// Of the target a little later and a little earlier.
+    /// Linearisations of the target one tick later and one earlier.
     neighbours: [Box<Linearization>; 2],
 }
 
@@ -146,7 +148,8 @@ pub(super) fn advance(
     found
 }
 
-/// dt q' at the configuration `from` after a `share` of the tick that begins at `q`, such that q + dt q' is in the box.
+/// Returns dt q' at the configuration `from`, at the fraction `share` of the tick that starts at `q`, such that q + dt
+/// q' is in the box.
 fn displacement(
     rule: &WeightedPseudoInverse,
     scratch: &mut Scratch,
@@ -160,7 +163,7 @@ fn displacement(
     let null_space_step = null_space_step(rule, from, share, tick);
     let Linearization { columns, residual } = &mut *scratch.linearization;
     let columns = &mut columns[..q.len()];
-    // In units in which the norm of W is the length: y = W^(1/2) q.
+    // Scaled so that the norm of W becomes the Euclidean norm: y = W^(1/2) q.
     let units = units(rule, tick.velocity_limit);
     for (column, unit) in columns.iter_mut().zip(&units) {
         column.iter_mut().for_each(|entry| *entry *= unit);
@@ -189,15 +192,16 @@ struct ScaledEquations<'a> {
     upper: Point,
 }
 
-/// Shares of the null-space step that are tried, one after the other, until the equations are met.
+/// Fractions of the null-space step that are tried in turn until the equations are met.
 const NULL_SPACE_SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0];
 
-/// The equations count as met where this share of the residual is left.
+/// The equations count as met if at most this fraction of the residual remains.
 const MET: f64 = 1e-9;
 
 impl ScaledEquations<'_> {
-    /// The y' nearest to y + `step` that meets the equations. A smaller share of the step is taken where it would drive joints to
-    /// their bounds that the tip needs; where no share meets the equations, the one with the smallest residual.
+    /// Returns the y' nearest to y + `step` that meets the equations. If the step would drive joints that the tip needs
+    /// to their bounds, a smaller fraction of it is taken; if no fraction meets the equations, the one with the
+    /// smallest residual.
     fn solve(&self, step: &[f64]) -> Point {
         let enough = MET * norm(&self.residual);
         let mut best = (f64::INFINITY, Point::new());
@@ -213,7 +217,7 @@ impl ScaledEquations<'_> {
         best.1
     }
 
-    /// The y' nearest to y + share * `step`, and the residual that it leaves.
+    /// Returns the y' nearest to y + share * `step`, and its residual.
     fn nearest_to(&self, step: &[f64], share: f64) -> (f64, Point) {
         let bounds = self.lower.iter().zip(&self.upper);
         let moved = self.y.iter().zip(step).zip(bounds);
@@ -236,7 +240,8 @@ impl ScaledEquations<'_> {
     }
 }
 
-/// Residual and Jacobian at `from` into the scratch; how the residual changes per second by the target's own motion.
+/// Writes residual and Jacobian at `from` to the scratch; returns the rate of change of the residual by the target's
+/// own motion (1/s).
 fn linearize(scratch: &mut Scratch, from: &[f64], share: f64, tick: &Tick<'_>) -> [f64; 6] {
     let (target, twist) = tick.motion().at(share);
     let n = from.len();
@@ -250,7 +255,7 @@ fn linearize(scratch: &mut Scratch, from: &[f64], share: f64, tick: &Tick<'_>) -
     std::array::from_fn(|i| (later.residual[i] - earlier.residual[i]) / (2.0 * tick.dt))
 }
 
-/// dt q0': what the joints would do if no tip had to be anywhere.
+/// Returns dt q0', the motion of the joints if the tip were free.
 fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], share: f64, tick: &mut Tick<'_>) -> Point {
     let n = from.len();
     let mut step = Point::from_elem(0.0, n);
@@ -260,7 +265,7 @@ fn null_space_step(rule: &WeightedPseudoInverse, from: &[f64], share: f64, tick:
     }
     if let Some(posture) = &rule.posture {
         let (mut q, mut qd, mut qdd) = ([0.0; MAX_DOF], [0.0; MAX_DOF], [0.0; MAX_DOF]);
-        // Lengths were checked; a trajectory that is over stands still.
+        // Lengths were checked; after its end the posture trajectory stands still.
         let time = tick.time + share * tick.dt;
         let known = posture.at(time, &mut q[..n], &mut qd[..n], &mut qdd[..n]);
         if known.is_ok() && time <= posture.duration() {
@@ -280,7 +285,7 @@ fn units(rule: &WeightedPseudoInverse, velocity_limit: &[f64]) -> Point {
     }
     let fastest = velocity_limit.iter().copied().filter(|limit| limit.is_finite()).fold(0.0, f64::max);
     let unit = |limit: &f64| if *limit > 0.0 && limit.is_finite() { limit / fastest } else { 1.0 };
-    // A joint that may not move at all is held by the box, whatever its unit.
+    // A joint that may not move at all is held by the box, whatever its scale.
     velocity_limit.iter().map(unit).collect()
 }
 
