@@ -45,8 +45,8 @@ class MujocoPlant:
         mass: mass of the arm (kg), distributed over the links by length.
         gravity: gravity, downwards (m/s^2).
         noise: standard deviation of the measured position on each axis (m).
-        rotation_noise: standard deviation of the measured orientation about each axis (rad); 0 measures it exactly. None:
-            the sensor measures positions only.
+        rotation_noise: standard deviation of the measured orientation about each axis (rad); 0 measures it exactly.
+            None: the sensor measures positions only.
         seed: seed of the noise.
 
     Raises:
@@ -198,7 +198,9 @@ class MujocoPlant:
         for q in self.robot.random_configurations(2, seed=1):
             self._data.qpos[:] = q
             self._mujoco.mj_kinematics(self._model, self._data)
-            if not np.allclose(np.column_stack([self.orientation, self.tip]), self.robot.fk(q)[:3], rtol=0.0, atol=_SAME):
+            if not np.allclose(
+                np.column_stack([self.orientation, self.tip]), self.robot.fk(q)[:3], rtol=0.0, atol=_SAME
+            ):
                 raise InvalidInputError(f"robot '{self.robot.name}' has mimic joints, which cannot be simulated")
         self.reset(np.clip(np.zeros(self.robot.dof), self.robot.lower, self.robot.upper))
 

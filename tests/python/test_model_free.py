@@ -245,16 +245,16 @@ def answered(target: Any, measured: Any) -> bik.ControlSession:
         (
             lambda: track(path=CIRCLE.with_orientation(np.eye(3))),
             bik.InvalidInputError,
-            "the plant returned a position (3,), but the path has orientations: return a pose (4, 4), or give a path of "
-            "positions alone",
+            "the plant returned a position (3,), but the path has orientations: return a pose (4, 4), or give a path "
+            "of positions alone",
         ),
         (
-            lambda: track(lambda q: np.zeros((3, 4)), CIRCLE.with_orientation(np.eye(3))),
+            lambda: track(lambda _: np.zeros((3, 4)), CIRCLE.with_orientation(np.eye(3))),
             bik.InvalidInputError,
             "the plant returned shape (3, 4), not a pose (4, 4)",
         ),
         (
-            lambda: track(lambda q: np.diag([1.0, np.nan, 1.0, 1.0]), CIRCLE.with_orientation(np.eye(3))),
+            lambda: track(lambda _: np.diag([1.0, np.nan, 1.0, 1.0]), CIRCLE.with_orientation(np.eye(3))),
             bik.InvalidInputError,
             "the plant returned an invalid pose: it must be finite, but entry (1, 1) is NaN",
         ),

@@ -11,7 +11,7 @@ use ikcore::solver::{BroydenBas, Status, Unattended};
 use ikcore::task::Tolerance;
 use ikcore::tracking::{
     Antenna, ControlSession, Controller, Fault, FunctionPlant, KinematicPlant, ModelFreeOptions, ModelFreeRecord,
-    Plant, Znnbas, track_model_free,
+    Plant, TipPose, Znnbas, track_model_free,
 };
 
 const SEEDS: u64 = 20;
@@ -201,10 +201,10 @@ struct Guarded {
 }
 
 impl Plant for Guarded {
-    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault> {
+    fn measure(&mut self, command: &[f64]) -> Result<TipPose, Fault> {
         self.limits.require_inside("command", 0.0, command).map_err(|error| Fault(error.to_string()))?;
         self.sent.extend_from_slice(command);
-        Ok(self.arm.tip_position(command))
+        Ok(self.arm.tip_position(command).into())
     }
 }
 
@@ -261,16 +261,16 @@ fn a_limit_that_closes_in_is_followed_and_told() {
 /// Answers so many times, then fails in one way or another.
 struct Failing {
     left: usize,
-    failure: fn() -> Result<[f64; 3], Fault>,
+    failure: fn() -> Result<TipPose, Fault>,
 }
 
 impl Plant for Failing {
-    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault> {
+    fn measure(&mut self, command: &[f64]) -> Result<TipPose, Fault> {
         if self.left == 0 {
             return (self.failure)();
         }
         self.left -= 1;
-        Ok(robot("iiwa14").tip_position(command))
+        Ok(robot("iiwa14").tip_position(command).into())
     }
 }
 
@@ -285,7 +285,7 @@ fn a_plant_that_fails_ends_the_run_with_what_was_recorded() {
     let record = run(41, || Err(Fault("raised ValueError: no".into()))).unwrap();
     assert_eq!((record.track.status, record.track.rows()), (Status::PlantFailed, 41));
     assert_eq!(record.message(), "the plant raised ValueError: no at t = 8.2 s; the 41 rows before are recorded");
-    let record = run(3, || Ok([0.0, f64::NAN, 0.0])).unwrap();
+    let record = run(3, || Ok([0.0, f64::NAN, 0.0].into())).unwrap();
     let expected = "the plant returned a position that is not finite: [0.0, NaN, 0.0] at t = 0.6 s; the 3 rows before are recorded";
     assert_eq!(record.message(), expected);
     let at_once = message(run(0, || Err(Fault("raised ValueError: no".into()))));
