@@ -486,6 +486,9 @@ class BroydenBAS:
     used, which makes the controller robust against noise and outliers of the sensor. As a solver, in `solve` and `track`,
     it suits problems with cheap residuals and no Jacobian; `LevenbergMarquardt` needs fewer evaluations.
 
+    With poses, the residual has six rows, the distance (m) and the rotation vector (rad): a radian counts as much as a metre,
+    also for the noise of the sensor.
+
     Defaults: `BroydenBAS(antenna_length=0.01, max_evaluations_per_step=20, sensor_delay=0)`.
 
     Args:
@@ -2473,6 +2476,8 @@ class ZNNBAS:
     with the speed of the target (about 3.5 v / (gain c1)), and its antennae shake the tool. `BroydenBAS` is better by orders
     of magnitude in all three respects.
 
+    With poses, h is the squared distance (m^2) plus the squared angle (rad^2): a radian counts as much as a metre.
+
     Args:
         gain: k of eq. (14) (1/s), positive. The paper's listing has -10, the gain of a block that includes the minus sign of
             eq. (14); here a negative gain is allowed, and diverges. gain * dt should not exceed 0.3.
@@ -2548,12 +2553,13 @@ class ControlSession:
     """
 
     def command(self, target: _Pose) -> _Array:
-        """Returns the next command (n,) (rad, m), which moves the tip towards `target`, a position (3,) (m) or a pose (4, 4), for the end of the tick. It is
-        inside the limits, and the velocity limits allow it from the last accepted configuration.
+        """Returns the next command (n,) (rad, m), which moves the tip towards `target` for the end of the tick: a position (3,)
+        (m), or a pose (4, 4) if the first target was one. It is inside the limits, and the velocity limits allow it from the
+        last accepted configuration.
         """
     def observe(self, position: _Pose) -> Step | None:
-        """Takes the `position` (3,) (m) or the pose (4, 4) of the tip measured at the last command; a pose if the targets are
-        poses. Returns a `Step` if the tick has ended, else None.
+        """Takes the `position` (3,) (m) or the pose (4, 4) of the tip, measured at the last command; it must be a pose if the
+        targets are poses. Returns a `Step` if the tick has ended, else None.
         """
     @property
     def q(self) -> _Array:

@@ -198,9 +198,8 @@ class MujocoPlant:
         for q in self.robot.random_configurations(2, seed=1):
             self._data.qpos[:] = q
             self._mujoco.mj_kinematics(self._model, self._data)
-            if not np.allclose(
-                np.column_stack([self.orientation, self.tip]), self.robot.fk(q)[:3], rtol=0.0, atol=_SAME
-            ):
+            simulated = np.column_stack([self.orientation, self.tip])
+            if not np.allclose(simulated, self.robot.fk(q)[:3], rtol=0.0, atol=_SAME):
                 raise InvalidInputError(f"robot '{self.robot.name}' has mimic joints, which cannot be simulated")
         self.reset(np.clip(np.zeros(self.robot.dof), self.robot.lower, self.robot.upper))
 
