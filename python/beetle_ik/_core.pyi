@@ -27,7 +27,7 @@ _LimitIn: TypeAlias = ArrayLike | Sinusoid | Callable[[float], ArrayLike]
 _LimitOut: TypeAlias = float | _Array | Sinusoid | Callable[[float], ArrayLike] | None
 _Motion: TypeAlias = Literal["pose", "position", "rotation"]
 _Goals: TypeAlias = Goal | Iterable[Goal] | None
-_Plant: TypeAlias = KinematicPlant | Callable[[_Array], ArrayLike] | _Mover
+_Plant: TypeAlias = KinematicPlant | Callable[[_Array], _Pose] | _Mover
 _Several: TypeAlias = slice | Sequence[int] | Sequence[bool] | NDArray[np.integer] | NDArray[np.bool_]  # as numpy picks
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
@@ -491,6 +491,9 @@ class BroydenBAS:
     used, which makes the controller robust against noise and outliers of the sensor. As a solver, in `solve` and `track`,
     it suits problems with cheap residuals and no Jacobian; `LevenbergMarquardt` needs fewer evaluations.
 
+    With poses, the residual has six rows, the distance (m) and the rotation vector (rad): a radian counts as much as a metre,
+    also for the noise of the sensor.
+
     Defaults: `BroydenBAS(antenna_length=0.01, max_evaluations_per_step=20, sensor_delay=0)`.
 
     Args:
@@ -520,6 +523,7 @@ class BroydenBAS:
         dt: float,
         limits: Limits | None = None,
         position_tolerance: float = 1e-9,
+        rotation_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession:
         """Starts a `ControlSession` at `start` (n,) and t = 0, for your own loop."""
@@ -1868,7 +1872,7 @@ class TrackResult:
         """Distances between tip and reference (k,) (m)."""
     @property
     def rotation_error(self) -> _Array:
-        """Angles to the reference orientations (k,) (rad); NaN if the task leaves the orientation free."""
+        """Angles to the reference orientations (k,) (rad); NaN if the orientation is left free."""
     @property
     def position_tolerance(self) -> float:
         """The error band (m)."""
@@ -2356,22 +2360,27 @@ def track_model_free(
     controller: BroydenBAS | ZNNBAS | None = None,
     limits: Limits | None = None,
     position_tolerance: float = 1e-9,
+    rotation_tolerance: float = 1e-9,
     seed: int = 0,
     progress: _Progress = None,
 ) -> ModelFreeResult:
     """Follows a path without a model: the controller commands joint positions and measures the tip.
 
+    If the path has orientations, the controller follows these too, and the plant must measure poses. A radian of error counts
+    as much as a metre. If the path has none, the orientation is free, whatever the plant measures.
+
     Args:
-        plant: a callable that takes q (n,) and returns the tip position (3,) (m); an object with such a method `move`; or a
-            `KinematicPlant`, which runs without Python in the loop. If the plant raises an exception or returns anything
+        plant: a callable that takes q (n,) and returns the tip position (3,) (m) or its pose (4, 4); an object with such a method
+            `move`; or a `KinematicPlant`, which runs without Python in the loop. If the plant raises an exception or returns anything
             else, the run ends with the record so far; on the first measurement, the exception propagates.
-        path: reference positions over time.
+        path: reference positions, or poses, over time.
         start: (n,), configuration at t = 0 (rad, m).
         dt: time step (s). If it does not divide the path's duration, the last step ends after it, at the path's end.
         controller: `BroydenBAS` or `ZNNBAS`; None: `BroydenBAS()`.
         limits: lower, upper and velocity limits, kept by all commands, including probes: each is reachable from the
             configuration accepted at the start of its step. None means unlimited.
         position_tolerance: error band (m).
+        rotation_tolerance: error band of orientations (rad).
         seed: seed of the controller's random draws; the same seed gives the same bits.
         progress: True shows a progress bar; a callable is called with (done, total).
 
@@ -2434,8 +2443,14 @@ class ModelFreeResult:
     def position_error(self) -> _Array:
         """Distances between tip and reference (k,) (m)."""
     @property
+    def rotation_error(self) -> _Array:
+        """Angles to the reference orientations (k,) (rad); NaN if the orientation is left free."""
+    @property
     def position_tolerance(self) -> float:
         """The error band (m)."""
+    @property
+    def rotation_tolerance(self) -> float:
+        """The error band of orientations (rad)."""
     @property
     def step_status(self) -> NDArray[np.uint8]:
         """Status of each step (k,), values of `Status`: SOLVED inside the band, IMPROVED nearer than in the previous step,
@@ -2465,6 +2480,8 @@ class ZNNBAS:
     It serves to reproduce the paper, and for plants that respond within a millisecond. It learns nothing, its error grows
     with the speed of the target (about 3.5 v / (gain c1)), and its antennae shake the tool. `BroydenBAS` is better by orders
     of magnitude in all three respects.
+
+    With poses, h is the squared distance (m^2) plus the squared angle (rad^2): a radian counts as much as a metre.
 
     Args:
         gain: k of eq. (14) (1/s), positive. The paper's listing has -10, the gain of a block that includes the minus sign of
@@ -2520,6 +2537,7 @@ class ZNNBAS:
         dt: float,
         limits: Limits | None = None,
         position_tolerance: float = 1e-9,
+        rotation_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession:
         """Starts a `ControlSession` at `start` (n,) and t = 0, for your own loop."""
@@ -2539,13 +2557,14 @@ class ControlSession:
     `BroydenBAS` when the error is in its band or max_evaluations_per_step are made.
     """
 
-    def command(self, target: ArrayLike) -> _Array:
-        """Returns the next command (n,) (rad, m), which moves the tip towards `target` (3,) (m) for the end of the tick. It is
-        inside the limits, and the velocity limits allow it from the last accepted configuration.
+    def command(self, target: _Pose) -> _Array:
+        """Returns the next command (n,) (rad, m), which moves the tip towards `target` for the end of the tick: a position (3,)
+        (m), or a pose (4, 4) if the first target was one. It is inside the limits, and the velocity limits allow it from the
+        last accepted configuration.
         """
-    def observe(self, position: ArrayLike) -> Step | None:
-        """Takes the `position` (3,) (m) of the tip measured at the last command. Returns a `Step` if the tick has ended, else
-        None.
+    def observe(self, position: _Pose) -> Step | None:
+        """Takes the `position` (3,) (m) or the pose (4, 4) of the tip, measured at the last command; it must be a pose if the
+        targets are poses. Returns a `Step` if the tick has ended, else None.
         """
     @property
     def q(self) -> _Array:
@@ -2567,22 +2586,31 @@ class KinematicPlant:
 
     Args:
         robot: the arm as built.
-        noise: standard deviation of the sensor on each axis (m).
+        noise: standard deviation of the measured position on each axis (m).
+        rotation_noise: standard deviation of the measured orientation about each axis (rad); 0 measures it exactly. None: the
+            sensor measures positions only.
         seed: seed of the noise. Each run of `track_model_free` restarts the noise.
     """
 
-    def __new__(cls, robot: Robot, *, noise: float = 0.0, seed: int = 0) -> KinematicPlant: ...
+    def __new__(
+        cls, robot: Robot, *, noise: float = 0.0, rotation_noise: float | None = None, seed: int = 0
+    ) -> KinematicPlant: ...
     @property
     def robot(self) -> Robot:
         """The arm as built."""
     @property
     def noise(self) -> float:
-        """Standard deviation of the sensor on each axis (m)."""
+        """Standard deviation of the measured position on each axis (m)."""
+    @property
+    def rotation_noise(self) -> float | None:
+        """Standard deviation of the measured orientation about each axis (rad); None if only the position is measured."""
     @property
     def seed(self) -> int:
         """Seed of the noise."""
     def move(self, q: ArrayLike) -> _Array:
-        """Moves the arm to q (n,) (rad, m), and returns the measured position of its tip (3,) (m)."""
+        """Moves the arm to q (n,) (rad, m), and returns what the sensor measures: the position of the tip (3,) (m), or its
+        pose (4, 4).
+        """
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- trajectories -------------------------------------------------------------------------------

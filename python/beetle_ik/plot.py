@@ -85,16 +85,20 @@ def track(result: TrackResult) -> Figure:
 
 
 def model_free(result: ModelFreeResult) -> Figure:
-    """Draws a path tracked without a model: tip and target in space, error, joint positions, measurements."""
+    """Draws a path tracked without a model: tip and target in space, errors, joint positions, measurements."""
     require("result", result, _core.ModelFreeResult)
     names = [f"joint {j + 1}" for j in range(result.q.shape[1])]
+    oriented = bool(np.isfinite(result.rotation_error).any())
+    rows = 4 if oriented else 3
     with style():
-        figure = _new_figure(13.0, 3 * _ROW_HEIGHT + 0.3)
+        figure = _new_figure(13.0, rows * _ROW_HEIGHT + 0.3)
         steps = f"{counted(len(result) - 1, 'step')} of {result.time[1]:g} s" if len(result) > 1 else "no step"
         figure.suptitle(f"without a model, {steps}")
-        grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.25])
+        grid = figure.add_gridspec(rows, 2, width_ratios=[1.0, 1.25])
         _draw_space(figure.add_subplot(grid[:, 0], projection="3d"), result)
-        error, joints, measurements = (figure.add_subplot(grid[row, 1]) for row in range(3))
+        if oriented:
+            _draw_rotation_error(figure.add_subplot(grid[1, 1]), result)
+        error, joints, measurements = (figure.add_subplot(grid[row, 1]) for row in (0, rows - 2, rows - 1))
         _draw_error(error, result.time, result.position_error, result.position_tolerance)
         error.set_ylabel("measured error [m]")
         _draw_joints(joints, result.time, result.q, names)
@@ -194,7 +198,7 @@ def _draw_position_error(axes: Axes, result: TrackResult) -> None:
     axes.set_ylabel("position error [m]")
 
 
-def _draw_rotation_error(axes: Axes, result: TrackResult) -> None:
+def _draw_rotation_error(axes: Axes, result: TrackResult | ModelFreeResult) -> None:
     _draw_error(axes, result.time, result.rotation_error, result.rotation_tolerance)
     axes.set_ylabel("rotation error [rad]")
 

@@ -19,7 +19,7 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 
 import numpy as np
 
-from ._core import InvalidInputError, Robot
+from ._core import InvalidInputError, Robot, pose
 from ._needs import library
 
 if TYPE_CHECKING:
@@ -44,7 +44,9 @@ class MujocoPlant:
         stiffness: stiffness of the servos (N m/rad, N/m).
         mass: mass of the arm (kg), distributed over the links by length.
         gravity: gravity, downwards (m/s^2).
-        noise: standard deviation of the sensor on each axis (m).
+        noise: standard deviation of the measured position on each axis (m).
+        rotation_noise: standard deviation of the measured orientation about each axis (rad); 0 measures it exactly.
+            None: the sensor measures positions only.
         seed: seed of the noise.
 
     Raises:
@@ -61,21 +63,25 @@ class MujocoPlant:
         mass: float = 20.0,
         gravity: float = 9.81,
         noise: float = 0.0,
+        rotation_noise: float | None = None,
         seed: int = 0,
     ) -> None:
         """Starts at rest at zero, or at the limit nearest to it."""
         for name, value in (("dt", dt), ("stiffness", stiffness), ("mass", mass)):
             if not (np.isfinite(value) and value > 0.0):
                 raise InvalidInputError(f"{name} must be positive and finite, got {value}")
-        if not (np.isfinite(noise) and noise >= 0.0):
-            raise InvalidInputError(f"noise must be zero or more and finite, got {noise}")
+        for name, value in (("noise", noise), ("rotation_noise", rotation_noise or 0.0)):
+            if not (np.isfinite(value) and value >= 0.0):
+                raise InvalidInputError(f"{name} must be zero or more and finite, got {value}")
         self._mujoco = _mujoco()
         self.robot = robot
         self.dt = dt
         self.noise = noise
+        self.rotation_noise = rotation_noise
         self._random = np.random.default_rng(seed)
         self._model = self._mujoco.MjModel.from_xml_string(_description(robot, stiffness, mass, gravity))
         self._data = self._mujoco.MjData(self._model)
+        self._tool = robot.fk(np.zeros(robot.dof))[:3, :3]  # simulated frames are parallel to the base at zero
         self._check()
 
     @classmethod
@@ -101,15 +107,24 @@ class MujocoPlant:
         self._run(2.0)
 
     def move(self, q: ArrayLike) -> NDArray[np.float64]:
-        """Commands the servos to `q` (n,), waits for `dt`, and returns the measured tip position (3,) (m)."""
+        """Commands the servos to `q` (n,), waits for `dt`, and measures the tip: position (3,) (m) or pose (4, 4)."""
         self._data.ctrl[:] = self._command(q)
         self._run(self.dt)
-        return self.tip + self.noise * self._random.standard_normal(3)
+        position = self.tip + self.noise * self._random.standard_normal(3)
+        if self.rotation_noise is None:
+            return position
+        turn = pose((0.0, 0.0, 0.0), rotvec=self.rotation_noise * self._random.standard_normal(3))[:3, :3]
+        return pose(position, matrix=turn @ self.orientation)
 
     @property
     def tip(self) -> NDArray[np.float64]:
         """Position of the tip (3,) (m), without noise."""
         return np.array(self._data.site_xpos[0])
+
+    @property
+    def orientation(self) -> NDArray[np.float64]:
+        """Rotation matrix of the tip (3, 3), without noise."""
+        return np.array(self._data.site_xmat[0]).reshape(3, 3) @ self._tool
 
     @property
     def q(self) -> NDArray[np.float64]:
@@ -183,7 +198,8 @@ class MujocoPlant:
         for q in self.robot.random_configurations(2, seed=1):
             self._data.qpos[:] = q
             self._mujoco.mj_kinematics(self._model, self._data)
-            if not np.allclose(self.tip, self.robot.fk(q)[:3, 3], rtol=0.0, atol=_SAME):
+            simulated = np.column_stack([self.orientation, self.tip])
+            if not np.allclose(simulated, self.robot.fk(q)[:3], rtol=0.0, atol=_SAME):
                 raise InvalidInputError(f"robot '{self.robot.name}' has mimic joints, which cannot be simulated")
         self.reset(np.clip(np.zeros(self.robot.dof), self.robot.lower, self.robot.upper))
 

@@ -134,7 +134,11 @@ def broken() -> Array:
         (lambda: None, "the plant returned None, not a position (3,)"),
         (lambda: "here", "the plant returned 'here', not a position (3,)"),
         (lambda: np.zeros(2), "the plant returned shape (2,), not a position (3,)"),
-        (lambda: np.eye(4), "the plant returned shape (4, 4), not a position (3,)"),
+        (lambda: np.eye(5), "the plant returned shape (5, 5), not a position (3,)"),
+        (
+            lambda: np.diag([1.0, 1.0, 2.0, 1.0]),
+            "the plant returned an invalid pose: it is not a rigid transform: R'R differs from the identity by 3.000e0",
+        ),
         (lambda: (0.0, np.nan, 0.0), "the plant returned a position that is not finite: [0.0, NaN, 0.0]"),
     ],
 )
@@ -156,6 +160,14 @@ def interrupted() -> Array:
 def test_an_interrupt_in_the_plant_comes_out() -> None:
     with pytest.raises(KeyboardInterrupt):
         track(after(30, interrupted))
+
+
+def answered(target: Any, measured: Any) -> bik.ControlSession:
+    """A session after its first measurement."""
+    session = bik.BroydenBAS().session(ON_CIRCLE, dt=0.1)
+    session.command(target)
+    session.observe(measured)
+    return session
 
 
 @pytest.mark.parametrize(
@@ -233,7 +245,53 @@ def test_an_interrupt_in_the_plant_comes_out() -> None:
         (
             lambda: track(path=CIRCLE.with_orientation(np.eye(3))),
             bik.InvalidInputError,
-            "path: it has orientations, which track_model_free does not follow; give positions alone",
+            "the plant returned a position (3,), but the path has orientations: return a pose (4, 4), or give a path "
+            "of positions alone",
+        ),
+        (
+            lambda: track(lambda _: np.zeros((3, 4)), CIRCLE.with_orientation(np.eye(3))),
+            bik.InvalidInputError,
+            "the plant returned shape (3, 4), not a pose (4, 4)",
+        ),
+        (
+            lambda: track(lambda _: np.diag([1.0, np.nan, 1.0, 1.0]), CIRCLE.with_orientation(np.eye(3))),
+            bik.InvalidInputError,
+            "the plant returned an invalid pose: it must be finite, but entry (1, 1) is NaN",
+        ),
+        (
+            lambda: track(rotation_tolerance=0.0),
+            bik.InvalidInputError,
+            "rotation_tolerance must be positive and finite, got 0",
+        ),
+        (
+            lambda: bik.KinematicPlant(IIWA, rotation_noise=-1.0),
+            bik.InvalidInputError,
+            "rotation_noise must be zero or more and finite, got -1",
+        ),
+        (
+            lambda: bik.BroydenBAS().session(ON_CIRCLE, dt=0.1).command(np.diag([1.0, 1.0, 2.0, 1.0])),
+            bik.InvalidInputError,
+            "target is not a rigid transform: R'R differs from the identity by 3.000e0",
+        ),
+        (
+            lambda: bik.BroydenBAS().session(ON_CIRCLE, dt=0.1).command(np.zeros((3, 4))),
+            bik.InvalidInputError,
+            "target: expected a position (3,) or a pose (4, 4), got shape (3, 4)",
+        ),
+        (
+            lambda: answered(np.eye(4), (0.0, 0.0, 0.0)),
+            bik.InvalidInputError,
+            "position: expected a pose (4, 4), like the target, got a position (3,)",
+        ),
+        (
+            lambda: answered(np.eye(4), np.eye(4)).command((0.0, 0.0, 0.0)),
+            bik.InvalidInputError,
+            "target: expected a pose (4, 4), as before, got a position (3,)",
+        ),
+        (
+            lambda: answered((0.0, 0.0, 0.0), np.eye(4)).command(np.eye(4)),
+            bik.InvalidInputError,
+            "target: expected a position (3,), as before, got a pose (4, 4)",
         ),
         (
             lambda: bik.KinematicPlant(IIWA, noise=-1.0),
@@ -287,6 +345,90 @@ def test_broyden_solves_and_tracks() -> None:
     many = bik.MultiStart(bik.BroydenBAS())
     assert many.solver == bik.BroydenBAS()
     assert bik.solve(IIWA, (0.4, 0.3, 0.8), solver=many).success
+
+
+BUILT = IIWA.with_errors(length=0.02, angle=np.radians(2.0), seed=4)
+TURNED = SHORT.with_orientation(BUILT.fk(ON_CIRCLE)[:3, :3])
+"""The circle with the orientation that the arm as built begins with."""
+
+
+@pytest.mark.parametrize("plant", [bik.KinematicPlant(BUILT, rotation_noise=0.0), BUILT.fk])
+def test_poses_are_tracked_by_an_arm_built_wrong(plant: Any) -> None:
+    result = track(plant, TURNED, dt=0.02, position_tolerance=1e-7, rotation_tolerance=1e-7)
+    assert result.success, result.message
+    assert result.message.startswith("in the band of 1.000e-7 m and 1.000e-7 rad from t = 0.02 s on; ")
+    assert result.rotation_tolerance == 1e-7
+    late = slice(20, None)
+    assert result.rotation_error[late].max() <= 1e-7
+    tips = BUILT.fk(result.q)[late]
+    np.testing.assert_allclose(tips[:, :3, 3], result.reference[late], atol=1e-7)
+    np.testing.assert_allclose(tips[:, :3, :3] - TURNED.pose(0.0)[:3, :3], 0.0, atol=2e-7)
+
+
+def test_znnbas_reduces_both_errors_as_far_as_it_can() -> None:
+    path = CIRCLE.with_orientation(BUILT.fk(ON_CIRCLE)[:3, :3])
+    plant = bik.KinematicPlant(BUILT, rotation_noise=0.0)
+    free, held = (track(plant, p, dt=1e-3, controller=bik.ZNNBAS(), seed=1) for p in (CIRCLE, path))
+    late = slice(len(held) // 2, None)
+    turned = [angle(BUILT.fk(result.q[late]), BUILT.fk(ON_CIRCLE)).max() for result in (free, held)]
+    assert turned[1] < 0.1 < turned[0]
+    assert held.position_error[late].max() < 0.05
+    assert np.isnan(free.rotation_error).all()
+
+
+def angle(poses: Array, pose: Array) -> Array:
+    trace = (poses[:, :3, :3] * pose[:3, :3]).sum(axis=(1, 2))
+    return np.asarray(np.arccos(np.clip(0.5 * (trace - 1.0), -1.0, 1.0)))
+
+
+@pytest.mark.parametrize("controller", [bik.BroydenBAS(), bik.ZNNBAS()])
+def test_a_measured_orientation_that_is_not_asked_for_is_ignored(controller: bik.BroydenBAS | bik.ZNNBAS) -> None:
+    with_pose, without = (
+        track(plant, SHORT, controller=controller)
+        for plant in (bik.KinematicPlant(IIWA, rotation_noise=0.0), lambda q: IIWA.fk(q)[:3, 3])
+    )
+    np.testing.assert_allclose(with_pose.q, without.q, atol=1e-9)
+    assert np.isnan(with_pose.rotation_error).all()
+    assert " rad" not in with_pose.message
+
+
+@pytest.mark.parametrize("controller", [bik.BroydenBAS(), bik.ZNNBAS()])
+def test_a_session_takes_poses(controller: bik.BroydenBAS | bik.ZNNBAS) -> None:
+    result = track(BUILT.fk, TURNED, controller=controller, seed=7)
+    session = controller.session(ON_CIRCLE, dt=0.2, seed=7)
+    for row, time in enumerate(result.time):
+        step = None
+        while step is None:
+            step = session.observe(BUILT.fk(session.command(TURNED.pose(time))))
+        np.testing.assert_allclose(step.q, result.q[row], atol=1e-12)
+        assert step.rotation_error == pytest.approx(result.rotation_error[row], abs=1e-12)
+
+
+def test_noise_turns_the_measured_orientation() -> None:
+    plant = bik.KinematicPlant(IIWA, noise=1e-3, rotation_noise=0.01, seed=2)
+    still = np.array([plant.move(ON_CIRCLE) for _ in range(2000)])
+    np.testing.assert_allclose(np.sqrt((angle(still, IIWA.fk(ON_CIRCLE)) ** 2).mean()), 0.01 * np.sqrt(3.0), rtol=0.1)
+    np.testing.assert_allclose((still[:, :3, 3] - tip(ON_CIRCLE)).std(), 1e-3, rtol=0.1)
+    assert pickle.loads(pickle.dumps(plant)) == plant
+    assert plant != bik.KinematicPlant(IIWA, noise=1e-3, seed=2)
+    assert repr(plant) == "<KinematicPlant of 'iiwa14': noise=0.001, rotation_noise=0.01, seed=2>"
+
+
+def test_noise_of_a_sensor_of_poses_is_not_much_more_than_passed_on() -> None:
+    plant = bik.KinematicPlant(BUILT, noise=1e-4, rotation_noise=1e-4, seed=2)
+    result = track(plant, TURNED, dt=0.02, seed=1)
+    tips, late = BUILT.fk(result.q), slice(20, None)
+    off = np.linalg.norm(tips[late, :3, 3] - result.reference[late], axis=1)
+    turned = angle(tips[late], TURNED.pose(0.0))
+    assert np.sqrt((off**2).mean()) < 6e-4
+    assert np.sqrt((turned**2).mean()) < 6e-4
+
+
+def test_a_run_with_orientations_is_drawn() -> None:
+    labels = [axes.get_ylabel() for axes in track(BUILT.fk, TURNED).plot().axes]
+    assert sorted(labels) == sorted(
+        ["y [m]", "measured error [m]", "rotation error [rad]", "joint position [rad, m]", "measurements per step"]
+    )
 
 
 def test_a_run_is_drawn() -> None:

@@ -258,6 +258,8 @@ AT_STATE, WHERE_SENT = "h(θ), 40 to 50 s [m²]", "h(θ′), where the arm is [m
 OFF, CIRCLE = "joints off, last round [rad]", "circle [mm]"
 ZNNBAS_OFF, BROYDEN_OFF = "ZNNBAS, eq. (16) [mm]", "BroydenBAS [mm]"
 NOISY_OFF = "ZNNBAS, eq. (16), k = 100 [mm]"
+FREE_OFF, FREE_TURNED = "orientation free: off [mm]", "orientation free: turned [mrad]"
+HELD_OFF, HELD_TURNED = "orientation held: off [mm]", "orientation held: turned [mrad]"
 
 
 def in_method(row: int) -> Callable[[Rows], list[float]]:
@@ -266,6 +268,10 @@ def in_method(row: int) -> Callable[[Rows], list[float]]:
 
 def after_ten_rounds(row: int) -> Callable[[Rows], list[float]]:
     return cells((row, OFF))
+
+
+def held(row: int) -> Callable[[Rows], list[float]]:
+    return cells((row, HELD_OFF), (row, HELD_TURNED))
 
 
 KHAN_QUOTES = [
@@ -295,6 +301,12 @@ KHAN_QUOTES = [
                lambda table: [1.0, float(table[3][BROYDEN_OFF]), 16, float(table[3][NOISY_OFF])]),
     khan_quote("with 3 mm it is 16.8 mm off, ZNNBAS 14.0 mm", "sensor_errors",
                lambda table: [3.0, float(table[4][BROYDEN_OFF]), float(table[4][NOISY_OFF])]),
+    khan_quote("is 1.9e-6 mm and 3.2e-6 mrad off", "orientation", held(2)),
+    khan_quote("is 21 mm and 13 mrad off", "orientation", held(1)),
+    khan_quote("free 1.7 mm, and its tool turns by 142 mrad", "orientation", cells((1, FREE_OFF), (1, FREE_TURNED))),
+    khan_quote("it is 87 mm and 155 mrad off", "orientation", held(0)),
+    khan_quote("is 0.27 mm and 0.24 mrad off", "orientation", held(3)),
+    khan_quote("it is 26 mm and 4.5 mrad off", "orientation", held(4)),
     khan_quote("stays within 2.5 mm", "servos", cells((3, ZNNBAS_OFF))),
     khan_quote("0.14 mm there, 0.0003 mm at 50 ms", "servos",
                cells((2, BROYDEN_OFF), (4, BROYDEN_OFF), (4, "tick [ms]"))),

@@ -111,3 +111,20 @@ def test_a_picture_is_drawn_without_a_screen() -> None:
     drawn = plant.picture(width=160, height=120, target=[[0.0, 0.4, 1.0]])
     assert bare.shape == (120, 160, 3)
     assert (bare != drawn).any()
+
+
+@pytest.mark.usefixtures("mujoco")
+def test_the_simulated_sensor_measures_poses_by_an_option() -> None:
+    plant = MujocoPlant(IIWA, gravity=0.0, rotation_noise=0.0)
+    plant.reset(ON_CIRCLE)
+    np.testing.assert_allclose(plant.move(ON_CIRCLE), IIWA.fk(ON_CIRCLE), atol=1e-6)
+    heavy = MujocoPlant(IIWA, dt=0.05, rotation_noise=0.0)
+    heavy.reset(ON_CIRCLE)
+    path = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=20.0).with_orientation(IIWA.fk(ON_CIRCLE)[:3, :3])
+    controller = bik.BroydenBAS(max_evaluations_per_step=1)
+    result = bik.track_model_free(heavy, path, ON_CIRCLE, dt=heavy.dt, controller=controller)
+    assert result.position_error[200:].max() < 2e-4
+    assert result.rotation_error[200:].max() < 4e-4
+    with pytest.raises(bik.InvalidInputError) as raised:
+        MujocoPlant(IIWA, rotation_noise=-1.0)
+    assert str(raised.value) == "rotation_noise must be zero or more and finite, got -1.0"

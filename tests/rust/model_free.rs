@@ -8,9 +8,10 @@ use ikcore::path::{Circle, Path, Plane, Reference};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{BroydenBas, Status, Unattended};
+use ikcore::task::Tolerance;
 use ikcore::tracking::{
     Antenna, ControlSession, Controller, Fault, FunctionPlant, KinematicPlant, ModelFreeOptions, ModelFreeRecord,
-    Plant, Znnbas, track_model_free,
+    Plant, TipPose, Znnbas, track_model_free,
 };
 
 const SEEDS: u64 = 20;
@@ -163,7 +164,11 @@ fn a_late_sensor_costs_measurements_and_no_accuracy() {
     let plane = Plane::xy([0.3, 0.3, 1.0]).unwrap();
     let fine = Path::new(Circle::new(plane, 0.2, 30.0).unwrap()).sample(1e-3).unwrap();
     let znnbas = Znnbas { sensor_delay: 20, ..Znnbas::default() };
-    let options = ModelFreeOptions { controller: Controller::Znnbas(znnbas), tolerance: 0.02, ..options(0) };
+    let options = ModelFreeOptions {
+        controller: Controller::Znnbas(znnbas),
+        tolerance: Tolerance { position: 0.02, rotation: 0.02 },
+        ..options(0)
+    };
     let record = track_model_free(&mut late_plant(20), &fine, &ON_CIRCLE, &options, &mut Unattended).unwrap();
     assert_eq!(record.track.status, Status::Solved, "{}", record.message());
 }
@@ -196,10 +201,10 @@ struct Guarded {
 }
 
 impl Plant for Guarded {
-    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault> {
+    fn measure(&mut self, command: &[f64]) -> Result<TipPose, Fault> {
         self.limits.require_inside("command", 0.0, command).map_err(|error| Fault(error.to_string()))?;
         self.sent.extend_from_slice(command);
-        Ok(self.arm.tip_position(command))
+        Ok(self.arm.tip_position(command).into())
     }
 }
 
@@ -256,16 +261,16 @@ fn a_limit_that_closes_in_is_followed_and_told() {
 /// Answers so many times, then fails in one way or another.
 struct Failing {
     left: usize,
-    failure: fn() -> Result<[f64; 3], Fault>,
+    failure: fn() -> Result<TipPose, Fault>,
 }
 
 impl Plant for Failing {
-    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault> {
+    fn measure(&mut self, command: &[f64]) -> Result<TipPose, Fault> {
         if self.left == 0 {
             return (self.failure)();
         }
         self.left -= 1;
-        Ok(robot("iiwa14").tip_position(command))
+        Ok(robot("iiwa14").tip_position(command).into())
     }
 }
 
@@ -280,7 +285,7 @@ fn a_plant_that_fails_ends_the_run_with_what_was_recorded() {
     let record = run(41, || Err(Fault("raised ValueError: no".into()))).unwrap();
     assert_eq!((record.track.status, record.track.rows()), (Status::PlantFailed, 41));
     assert_eq!(record.message(), "the plant raised ValueError: no at t = 8.2 s; the 41 rows before are recorded");
-    let record = run(3, || Ok([0.0, f64::NAN, 0.0])).unwrap();
+    let record = run(3, || Ok([0.0, f64::NAN, 0.0].into())).unwrap();
     let expected = "the plant returned a position that is not finite: [0.0, NaN, 0.0] at t = 0.6 s; the 3 rows before are recorded";
     assert_eq!(record.message(), expected);
     let at_once = message(run(0, || Err(Fault("raised ValueError: no".into()))));
@@ -305,7 +310,7 @@ fn a_session_gives_the_same_commands_as_the_run() {
         let options = ModelFreeOptions { controller: controller.clone(), ..options(3) };
         let record = on_circle(&mut exact_plant(), &options);
         let limits = options.limits.clone().unwrap();
-        let mut session = ControlSession::new(&controller, &ON_CIRCLE, 0.2, limits, 1e-9, 3).unwrap();
+        let mut session = ControlSession::new(&controller, &ON_CIRCLE, 0.2, limits, options.tolerance, 3).unwrap();
         for i in 0..=150 {
             let step = loop {
                 let command = session.command(record.track.reference[i]).unwrap().to_vec();
@@ -319,10 +324,59 @@ fn a_session_gives_the_same_commands_as_the_run() {
     }
 }
 
+/// The circle, the tip turned as at the start.
+fn turned_circle(arm: &Robot) -> Reference {
+    let circle = Path::new(Circle::new(Plane::xy([0.3, 0.3, 1.0]).unwrap(), 0.2, 30.0).unwrap());
+    let rotation = *arm.fk(&ON_CIRCLE).unwrap().rotation.matrix();
+    circle.with_orientation(rotation).unwrap().sample(0.2).unwrap()
+}
+
+#[test]
+fn broyden_tracks_poses_with_a_wrong_model() {
+    for seed in 0..SEEDS {
+        let wrong = wrong_arm(seed);
+        let tolerance = Tolerance { position: 1e-6, rotation: 1e-6 };
+        let options = ModelFreeOptions { tolerance, limits: None, ..options(0) };
+        let mut plant = KinematicPlant::new(wrong.clone(), 0.0, 0).unwrap().with_orientation(0.0).unwrap();
+        let reference = turned_circle(&wrong);
+        let record = track_model_free(&mut plant, &reference, &ON_CIRCLE, &options, &mut Unattended).unwrap();
+        assert_eq!(record.track.status, Status::Solved, "seed {seed}: {}", record.message());
+        assert!(record.track.evaluations() <= 700, "seed {seed}: {}", record.track.evaluations());
+        for i in 1..record.track.rows() {
+            let tip = wrong.fk(&record.track.q[7 * i..][..7]).unwrap();
+            let turned = (tip.rotation.matrix() - reference.rotation(i).unwrap()).norm() / 2_f64.sqrt();
+            assert!(true_error(&wrong, &record, i) <= 1e-6 && turned <= 1.1e-6, "seed {seed}, row {i}: {turned:.1e}");
+        }
+    }
+}
+
+#[test]
+fn targets_are_positions_or_poses_throughout() {
+    let pose = robot("iiwa14").fk(&ON_CIRCLE).unwrap();
+    let start = || {
+        let limits = Limits::none_for(2);
+        ControlSession::new(&Controller::default(), &[0.0; 2], 0.1, limits, Tolerance::default(), 0).unwrap()
+    };
+    let mut session = start();
+    session.command(&pose).unwrap();
+    let problem = "position: expected a pose (4, 4), like the target, got a position (3,)";
+    assert_eq!(message(session.observe([0.0; 3])), problem);
+    let step = session.observe(&pose).unwrap().unwrap();
+    assert_eq!((step.error.position, step.error.rotation), (0.0, 0.0), "the turn is not lost by a mistake");
+    let problem = "target: expected a pose (4, 4), as before, got a position (3,)";
+    assert_eq!(message(session.command([0.0; 3])), problem);
+    let mut session = start();
+    session.command([0.0; 3]).unwrap();
+    assert!(session.observe(&pose).unwrap().unwrap().error.rotation.is_nan(), "the orientation is free");
+    let problem = "target: expected a position (3,), as before, got a pose (4, 4)";
+    assert_eq!(message(session.command(&pose)), problem);
+}
+
 #[test]
 fn turns_are_kept() {
     let mut session =
-        ControlSession::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none_for(2), 1e-6, 0).unwrap();
+        ControlSession::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none_for(2), Tolerance::default(), 0)
+            .unwrap();
     let early = "observe: there is no command to answer; call command(target) first";
     assert_eq!(message(session.observe([0.0; 3])), early);
     session.command([1.0, 0.0, 0.0]).unwrap();

@@ -7,37 +7,36 @@ use super::vector::squared_size;
 /// Shorter steps measure only rounding.
 const SHORTEST: f64 = 1e-12;
 
-/// An estimate of dr/dx for `R` entries of r, by columns.
+/// An estimate of dr/dx, by columns.
 #[derive(Debug, Clone)]
-pub struct Secant<const R: usize = ROWS> {
-    /// Rows beyond `R` are zero.
+pub struct Secant {
     columns: [[f64; ROWS]; MAX_DOF],
 }
 
-impl<const R: usize> Default for Secant<R> {
+impl Default for Secant {
     fn default() -> Self {
         Self { columns: [[0.0; ROWS]; MAX_DOF] }
     }
 }
 
-impl<const R: usize> Secant<R> {
+impl Secant {
     /// Sets column `j` from one antenna: x_j moved by `length`, and r changed by `difference`.
-    pub fn set_column(&mut self, j: usize, length: f64, difference: &[f64; R]) {
-        self.columns[j][..R].copy_from_slice(&difference.map(|change| change / length));
+    pub fn set_column(&mut self, j: usize, length: f64, difference: &[f64; ROWS]) {
+        self.columns[j] = difference.map(|change| change / length);
     }
 
     /// The predicted change of r by a step dx: J dx.
-    pub fn predict(&self, dx: impl Iterator<Item = f64>) -> [f64; R] {
-        let mut sum = [0.0; R];
+    pub fn predict(&self, dx: impl Iterator<Item = f64>) -> [f64; ROWS] {
+        let mut sum = [0.0; ROWS];
         for (column, dx) in self.columns.iter().zip(dx) {
-            (0..R).for_each(|k| sum[k] += column[k] * dx);
+            (0..ROWS).for_each(|k| sum[k] += column[k] * dx);
         }
         sum
     }
 
     /// Updates J after a step `dx` that changed r by `surprise` more than predicted: J + share surprise dx' / |dx|^2,
     /// the least change of J that explains it (Broyden 1965, eq. 4.5), or a fraction `share` of it if r is noisy.
-    pub fn learn(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; R], share: f64) {
+    pub fn learn(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; ROWS], share: f64) {
         let squared: f64 = dx.clone().map(|dx| dx * dx).sum();
         if squared < SHORTEST * SHORTEST {
             return;
@@ -45,7 +44,7 @@ impl<const R: usize> Secant<R> {
         let scale = share / squared;
         for (column, dx) in self.columns.iter_mut().zip(dx) {
             let weight = scale * dx;
-            (0..R).for_each(|k| column[k] += weight * surprise[k]);
+            (0..ROWS).for_each(|k| column[k] += weight * surprise[k]);
         }
     }
 
@@ -55,11 +54,9 @@ impl<const R: usize> Secant<R> {
     }
 
     /// Writes into `out` the bounded step from `x`; `damping` is relative to the squared size of the Jacobian.
-    pub fn step(&self, residual: &[f64; R], damping: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
-        let mut rows = [0.0; ROWS];
-        rows[..R].copy_from_slice(residual);
+    pub fn step(&self, residual: &[f64; ROWS], damping: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
         let lambda = damping * self.size(x.len());
-        BoxStep { columns: &self.columns, residual: &rows, lambda, x, lower, upper }.write(out);
+        BoxStep { columns: &self.columns, residual, lambda, x, lower, upper }.write(out);
     }
 }
 

@@ -34,3 +34,9 @@ pub fn squared_size<const R: usize>(columns: &[[f64; R]]) -> f64 {
     }
     rows.iter().sum()
 }
+
+/// The middle one of three.
+#[inline]
+pub fn median(a: f64, b: f64, c: f64) -> f64 {
+    a.max(b).min(a.min(b).max(c))
+}

@@ -23,6 +23,12 @@ impl Default for Tolerance {
 }
 
 impl Tolerance {
+    /// The same, but nowhere less than `least` (m, rad).
+    #[inline]
+    pub fn at_least(&self, least: f64) -> Self {
+        Self { position: self.position.max(least), rotation: self.rotation.max(least) }
+    }
+
     /// Checks that both are positive.
     ///
     /// # Errors
@@ -68,6 +74,15 @@ pub struct TipError {
     pub position: f64,
     /// Geodesic angle (rad).
     pub rotation: f64,
+}
+
+impl TipError {
+    /// Whether both errors, as far as they are asked for, are within `tolerance`.
+    #[inline]
+    pub fn within(&self, tolerance: &Tolerance) -> bool {
+        let is_within = |error: f64, largest: f64| error.is_nan() || error <= largest;
+        is_within(self.position, tolerance.position) && is_within(self.rotation, tolerance.rotation)
+    }
 }
 
 impl From<SquaredError> for TipError {

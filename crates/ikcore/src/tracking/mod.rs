@@ -25,6 +25,7 @@ mod record;
 mod rule;
 mod session;
 mod step;
+mod tip_pose;
 mod track;
 mod track_options;
 
@@ -35,5 +36,6 @@ pub use record::Record;
 pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
 pub use session::Session;
 pub use step::Step;
+pub use tip_pose::TipPose;
 pub use track::track;
 pub use track_options::TrackOptions;

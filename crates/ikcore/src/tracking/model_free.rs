@@ -6,13 +6,14 @@ use super::controller::{ControlSession, Controller};
 use super::plant::{Fault, Plant, check};
 use super::record::Record;
 use super::step::Step;
+use super::tip_pose::TipPose;
 use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
 use crate::path::Reference;
 use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status};
-use crate::task::Tolerance;
-use crate::wording::{number, time};
+use crate::task::{TipError, Tolerance};
+use crate::wording::time;
 
 /// Options of [`track_model_free`].
 #[derive(Debug, Clone)]
@@ -21,15 +22,20 @@ pub struct ModelFreeOptions {
     pub controller: Controller,
     /// Limits on every command, probes included. `None` means unlimited.
     pub limits: Option<Limits>,
-    /// The error band (m).
-    pub tolerance: f64,
+    /// The error band.
+    pub tolerance: Tolerance,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 
 impl Default for ModelFreeOptions {
     fn default() -> Self {
-        Self { controller: Controller::default(), limits: None, tolerance: 1e-9, seed: 0 }
+        Self {
+            controller: Controller::default(),
+            limits: None,
+            tolerance: Tolerance { position: 1e-9, rotation: 1e-9 },
+            seed: 0,
+        }
     }
 }
 
@@ -60,13 +66,13 @@ pub fn track_model_free(
 ) -> Result<ModelFreeRecord> {
     let stopwatch = Stopwatch::start();
     let ticks = reference.len() - 1;
-    check_call(reference, options)?;
+    check_delay(&options.controller, ticks)?;
     let limits = options.limits.clone().unwrap_or_else(|| Limits::none_for(start.len()));
     limits.validate(reference.dt(), ticks)?;
     let ModelFreeOptions { controller, tolerance, seed, .. } = options;
     let mut session = ControlSession::new(controller, start, reference.dt(), limits.clone(), *tolerance, *seed)?;
-    let band = Tolerance { position: *tolerance, rotation: f64::INFINITY };
-    let track = Record::new(start.len(), reference.len(), limits, LimitAt::Interval, band.into(), reference.dt());
+    let track =
+        Record::new(start.len(), reference.len(), limits, LimitAt::Interval, (*tolerance).into(), reference.dt());
     let command = Vec::with_capacity(reference.len() * start.len());
     let mut record = ModelFreeRecord { track, command, fault: None };
     let mut interrupted = false;
@@ -77,7 +83,8 @@ pub fn track_model_free(
                 break;
             }
         }
-        match tick(plant, &mut session, reference.position(i), &mut record.track)? {
+        let target = reference.pose(i).map_or_else(|| reference.position(i).into(), |pose| TipPose::from(&pose));
+        match tick(plant, &mut session, target, &mut record.track)? {
             Ok(step) => record.push(&session, reference.position(i), &step),
             Err(fault) if i == 0 => return Err(Error::PlantFailed { problem: fault.0 }),
             Err(fault) => {
@@ -91,13 +98,8 @@ pub fn track_model_free(
     Ok(record)
 }
 
-fn check_call(reference: &Reference, options: &ModelFreeOptions) -> Result<()> {
-    let ticks = reference.len() - 1;
-    if reference.rotation(0).is_some() {
-        let problem = "it has orientations, which track_model_free does not follow; give positions alone".into();
-        return Err(Error::InvalidPath { problem });
-    }
-    match &options.controller {
+fn check_delay(controller: &Controller, ticks: usize) -> Result<()> {
+    match controller {
         Controller::Znnbas(znnbas) if znnbas.delay_steps >= ticks => {
             let requirement = format!("less than the {ticks} steps of the run");
             Err(Error::out_of_range("delay_steps", &requirement, znnbas.delay_steps as f64))
@@ -110,18 +112,18 @@ fn check_call(reference: &Reference, options: &ModelFreeOptions) -> Result<()> {
 fn tick(
     plant: &mut dyn Plant,
     session: &mut ControlSession,
-    target: [f64; 3],
+    target: TipPose,
     track: &mut Record,
 ) -> Result<Result<Step, Fault>> {
     loop {
-        let measured = plant.measure(session.command(target)?).and_then(check);
+        let measured = plant.measure(session.command(target)?).and_then(|tip| check(tip, &target));
         if let Some((excess, joint, sent)) = session.excess() {
             track.note_excess(excess, joint, sent, session.time() + session.dt());
         }
         match measured {
             Err(fault) => return Ok(Err(fault)),
-            Ok(position) => {
-                if let Some(step) = session.observe(position)? {
+            Ok(tip) => {
+                if let Some(step) = session.observe(tip)? {
                     return Ok(Ok(step));
                 }
             }
@@ -144,8 +146,7 @@ impl ModelFreeRecord {
 
     /// Root mean square of the measured error over the second half of the rows (m).
     pub fn settled_error(&self) -> f64 {
-        let errors = &self.track.position_error[self.track.position_error.len() / 2..];
-        (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
+        settled(&self.track.position_error)
     }
 
     /// Returns a sentence: what happened, and what to try.
@@ -159,11 +160,17 @@ impl ModelFreeRecord {
         match self.track.status {
             Status::Solved | Status::Interrupted => message,
             _ => format!(
-                "{message}. Over the second half the error was {} m (root mean square): a position_tolerance below what the \
+                "{message}. Over the second half the error was {} (root mean square): a position_tolerance below what the \
                  sensor and the controller can keep is never met, and of a late sensor the controller must be told by \
                  sensor_delay",
-                number(self.settled_error())
+                TipError { position: self.settled_error(), rotation: settled(&self.track.rotation_error) }
             ),
         }
     }
+}
+
+/// Root mean square over the second half of the rows.
+fn settled(errors: &[f64]) -> f64 {
+    let late = &errors[errors.len() / 2..];
+    (late.iter().map(|error| error * error).sum::<f64>() / late.len() as f64).sqrt()
 }

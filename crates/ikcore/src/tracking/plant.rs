@@ -2,17 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result, require_finite};
+use super::tip_pose::TipPose;
+use crate::error::{Error, Result};
+use crate::math::so3::rotated;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 
 /// An arm and its sensor, as a controller sees them.
 pub trait Plant {
-    /// Sends the arm to `command` (n,) (rad, m) and returns the measured position of its tip (m).
+    /// Sends the arm to `command` (n,) (rad, m) and returns the measured tip: its position (m) or its pose.
     ///
     /// # Errors
     /// [`Fault`] ends the run; the rows recorded so far are kept.
-    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault>;
+    fn measure(&mut self, command: &[f64]) -> Result<TipPose, Fault>;
 
     /// Ticks between two polls of the monitor: one, unless measurements are almost free.
     fn ticks_between_looks(&self) -> usize {
@@ -28,9 +30,9 @@ pub struct Fault(pub String);
 #[derive(Debug)]
 pub struct FunctionPlant<F>(pub F);
 
-impl<F: FnMut(&[f64]) -> [f64; 3]> Plant for FunctionPlant<F> {
-    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault> {
-        Ok(self.0(command))
+impl<F: FnMut(&[f64]) -> T, T: Into<TipPose>> Plant for FunctionPlant<F> {
+    fn measure(&mut self, command: &[f64]) -> Result<TipPose, Fault> {
+        Ok(self.0(command).into())
     }
 }
 
@@ -40,6 +42,7 @@ impl<F: FnMut(&[f64]) -> [f64; 3]> Plant for FunctionPlant<F> {
 pub struct KinematicPlant {
     robot: Robot,
     noise: f64,
+    rotation_noise: Option<f64>,
     rng: LazyRng,
 }
 
@@ -49,11 +52,19 @@ impl KinematicPlant {
     /// # Errors
     /// [`Error::OutOfRange`] for noise that is negative or not finite.
     pub fn new(robot: Robot, noise: f64, seed: u64) -> Result<Self> {
-        if !(noise.is_finite() && noise >= 0.0) {
-            return Err(Error::out_of_range("noise", "zero or more and finite", noise));
-        }
+        require_noise("noise", noise)?;
         // The controller uses stream 0 of the same seed.
-        Ok(Self { robot, noise, rng: rng::stream(seed, 1) })
+        Ok(Self { robot, noise, rotation_noise: None, rng: rng::stream(seed, 1) })
+    }
+
+    /// The same plant with a sensor that measures poses, with noise of this standard deviation (rad) about each axis of the
+    /// base.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for noise that is negative or not finite.
+    pub fn with_orientation(self, rotation_noise: f64) -> Result<Self> {
+        require_noise("rotation_noise", rotation_noise)?;
+        Ok(Self { rotation_noise: Some(rotation_noise), ..self })
     }
 
     /// The simulated robot.
@@ -65,18 +76,43 @@ impl KinematicPlant {
     pub fn noise(&self) -> f64 {
         self.noise
     }
+
+    /// Standard deviation of the measured orientation about each axis (rad); None: only the position is measured.
+    pub fn rotation_noise(&self) -> Option<f64> {
+        self.rotation_noise
+    }
+
+    /// Gaussian noise on three axes.
+    fn draw(&mut self, deviation: f64) -> [f64; 3] {
+        let ([x, y], [z, _]) = (self.rng.normal_pair(), self.rng.normal_pair());
+        [x, y, z].map(|draw| deviation * draw)
+    }
+
+    /// `position` (m) as the sensor measures it.
+    #[inline]
+    fn noisy(&mut self, position: [f64; 3]) -> [f64; 3] {
+        if self.noise == 0.0 {
+            return position;
+        }
+        let noise = self.draw(self.noise);
+        std::array::from_fn(|k| position[k] + noise[k])
+    }
 }
 
 impl Plant for KinematicPlant {
     #[inline]
-    fn measure(&mut self, command: &[f64]) -> Result<[f64; 3], Fault> {
-        let position = self.robot.tip_position(command);
-        if self.noise == 0.0 {
-            return Ok(position);
+    fn measure(&mut self, command: &[f64]) -> Result<TipPose, Fault> {
+        let Some(rotation_noise) = self.rotation_noise else {
+            let position = self.robot.tip_position(command);
+            return Ok(self.noisy(position).into());
+        };
+        let mut tip = self.robot.tip(command);
+        tip.origin = self.noisy(tip.origin);
+        if rotation_noise > 0.0 {
+            let turn = self.draw(rotation_noise);
+            tip.axes = tip.axes.map(|axis| rotated(&axis, &turn));
         }
-        let ([x, y], [z, _]) = (self.rng.normal_pair(), self.rng.normal_pair());
-        let noise = [x, y, z].map(|draw| self.noise * draw);
-        Ok(std::array::from_fn(|k| position[k] + noise[k]))
+        Ok(tip.into())
     }
 
     fn ticks_between_looks(&self) -> usize {
@@ -84,10 +120,21 @@ impl Plant for KinematicPlant {
     }
 }
 
-/// Checks that a measured position is finite.
-pub(super) fn check(position: [f64; 3]) -> Result<[f64; 3], Fault> {
-    match require_finite("the position", &position, |k| format!("entry {k}")) {
-        Ok(()) => Ok(position),
-        Err(_) => Err(Fault(format!("returned a position that is not finite: {position:?}"))),
+/// Checks that a measurement is finite, and returns as much of it as `target` asks for.
+pub(super) fn check(tip: TipPose, target: &TipPose) -> Result<TipPose, Fault> {
+    if tip.require_finite("tip").is_err() {
+        let what = if tip.is_oriented() { "pose" } else { "position" };
+        return Err(Fault(format!("returned a {what} that is not finite: {:?}", tip.position())));
     }
+    tip.as_asked_by(target).ok_or_else(|| {
+        let remedy = "return a pose (4, 4), or give a path of positions alone";
+        Fault(format!("returned a position (3,), but the path has orientations: {remedy}"))
+    })
+}
+
+fn require_noise(what: &str, noise: f64) -> Result<()> {
+    if noise.is_finite() && noise >= 0.0 {
+        return Ok(());
+    }
+    Err(Error::out_of_range(what, "zero or more and finite", noise))
 }

@@ -16,6 +16,9 @@ use crate::options::options;
 /// used, which makes the controller robust against noise and outliers of the sensor. As a solver, in `solve` and `track`,
 /// it suits problems with cheap residuals and no Jacobian; `LevenbergMarquardt` needs fewer evaluations.
 ///
+/// With poses, the residual has six rows, the distance (m) and the rotation vector (rad): a radian counts as much as a metre,
+/// also for the noise of the sensor.
+///
 /// Defaults: `BroydenBAS(antenna_length=0.01, max_evaluations_per_step=20, sensor_delay=0)`.
 ///
 /// Args:

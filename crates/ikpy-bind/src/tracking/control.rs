@@ -3,15 +3,16 @@
 use std::sync::Mutex;
 
 use ikcore::solver::Stopwatch;
+use ikcore::task::Tolerance;
 use ikcore::tracking::ControlSession;
-use ikcore::tracking::Controller;
-use numpy::PyArray1;
+use ikcore::tracking::{Controller, TipPose};
+use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use super::session::in_progress;
 use super::step::PyStep;
 use super::znnbas::PyZnnbas;
-use crate::convert::{copied, count, counted, point, summary, vector};
+use crate::convert::{array, copied, count, counted, rigid_rows, shape_text, summary, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::solver::PyBroydenBas;
@@ -41,17 +42,18 @@ in_progress!(PyControlSession, ControlSession);
 
 #[pymethods]
 impl PyControlSession {
-    /// Returns the next command (n,) (rad, m), which moves the tip towards `target` (3,) (m) for the end of the tick. It is
-    /// inside the limits, and the velocity limits allow it from the last accepted configuration.
+    /// Returns the next command (n,) (rad, m), which moves the tip towards `target` for the end of the tick: a position (3,)
+    /// (m), or a pose (4, 4) if the first target was one. It is inside the limits, and the velocity limits allow it from the
+    /// last accepted configuration.
     fn command<'py>(&self, py: Python<'py>, target: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let target = point("target", target)?;
+        let target = tip_pose("target", target)?;
         Ok(copied(py, self.session().command(target).map_err(raise)?))
     }
 
-    /// Takes the `position` (3,) (m) of the tip measured at the last command. Returns a `Step` if the tick has ended, else
-    /// None.
+    /// Takes the `position` (3,) (m) or the pose (4, 4) of the tip, measured at the last command; it must be a pose if the
+    /// targets are poses. Returns a `Step` if the tick has ended, else None.
     fn observe(&self, py: Python<'_>, position: &Bound<'_, PyAny>) -> PyResult<Option<PyStep>> {
-        let position = point("position", position)?;
+        let position = tip_pose("position", position)?;
         let (watch, mut session) = (Stopwatch::start(), self.session());
         let step = session.observe(position).map_err(raise)?;
         Ok(step.map(|step| {
@@ -73,15 +75,28 @@ impl PyControlSession {
         start: &Bound<'_, PyAny>,
         dt: f64,
         limits: Option<&PyLimits>,
-        position_tolerance: f64,
+        tolerance: Tolerance,
         seed: i128,
     ) -> PyResult<Self> {
         let py = start.py();
         let start = vector("start", start)?;
         limits.map_or(Ok(()), |limits| limits.require_no_functions("session", "track_model_free"))?;
         let (in_force, limits) = limits_without_robot(py, limits, start.len(), &Sampling::once())?;
-        let session = ControlSession::new(controller, &start, dt, limits, position_tolerance, count("seed", seed)?);
+        let session = ControlSession::new(controller, &start, dt, limits, tolerance, count("seed", seed)?);
         Ok(Self { session: Mutex::new(session.map_err(raise)?), limits: in_force })
+    }
+}
+
+/// Reads a position or a pose.
+pub fn tip_pose(what: &str, value: &Bound<'_, PyAny>) -> PyResult<TipPose> {
+    let numbers = array(what, value)?;
+    match (numbers.shape(), numbers.as_slice()?) {
+        ([3], &[x, y, z]) => Ok([x, y, z].into()),
+        ([4, 4], rows) => Ok(TipPose::from(&rigid_rows(what, rows)?)),
+        (shape, _) => {
+            let got = shape_text(shape);
+            Err(invalid(format!("{what}: expected a position (3,) or a pose (4, 4), got shape {got}")))
+        }
     }
 }
 
@@ -103,16 +118,18 @@ macro_rules! session {
         #[pymethods]
         impl $class {
             /// Starts a `ControlSession` at `start` (n,) and t = 0, for your own loop.
-            #[pyo3(signature = (start, *, dt, limits=None, position_tolerance=1e-9, seed=0))]
+            #[pyo3(signature = (start, *, dt, limits=None, position_tolerance=1e-9, rotation_tolerance=1e-9, seed=0))]
             fn session(
                 &self,
                 start: &Bound<'_, PyAny>,
                 dt: f64,
                 limits: Option<&PyLimits>,
                 position_tolerance: f64,
+                rotation_tolerance: f64,
                 seed: i128,
             ) -> PyResult<PyControlSession> {
-                PyControlSession::new(&self.controller(), start, dt, limits, position_tolerance, seed)
+                let tolerance = Tolerance { position: position_tolerance, rotation: rotation_tolerance };
+                PyControlSession::new(&self.controller(), start, dt, limits, tolerance, seed)
             }
         }
     };

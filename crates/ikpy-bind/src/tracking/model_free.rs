@@ -2,6 +2,7 @@
 
 use ikcore::path::Reference;
 use ikcore::stored::{from_bytes, to_bytes};
+use ikcore::task::Tolerance;
 use ikcore::tracking::{self, ModelFreeOptions, ModelFreeRecord};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::exceptions::PyBaseException;
@@ -117,17 +118,21 @@ impl PyModelFreeResult {
 
 /// Follows a path without a model: the controller commands joint positions and measures the tip.
 ///
+/// If the path has orientations, the controller follows these too, and the plant must measure poses. A radian of error counts
+/// as much as a metre. If the path has none, the orientation is free, whatever the plant measures.
+///
 /// Args:
-///     plant: a callable that takes q (n,) and returns the tip position (3,) (m); an object with such a method `move`; or a
-///         `KinematicPlant`, which runs without Python in the loop. If the plant raises an exception or returns anything
+///     plant: a callable that takes q (n,) and returns the tip position (3,) (m) or its pose (4, 4); an object with such a method
+///         `move`; or a `KinematicPlant`, which runs without Python in the loop. If the plant raises an exception or returns anything
 ///         else, the run ends with the record so far; on the first measurement, the exception propagates.
-///     path: reference positions over time.
+///     path: reference positions, or poses, over time.
 ///     start: (n,), configuration at t = 0 (rad, m).
 ///     dt: time step (s). If it does not divide the path's duration, the last step ends after it, at the path's end.
 ///     controller: `BroydenBAS` or `ZNNBAS`; None: `BroydenBAS()`.
 ///     limits: lower, upper and velocity limits, kept by all commands, including probes: each is reachable from the
 ///         configuration accepted at the start of its step. None means unlimited.
 ///     position_tolerance: error band (m).
+///     rotation_tolerance: error band of orientations (rad).
 ///     seed: seed of the controller's random draws; the same seed gives the same bits.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
@@ -139,7 +144,8 @@ impl PyModelFreeResult {
 ///     LimitError: a start outside the limits, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, which no controller keeps.
 #[pyfunction]
-#[pyo3(signature = (plant, path, start, *, dt, controller=None, limits=None, position_tolerance=1e-9, seed=0, progress=None))]
+#[pyo3(signature = (plant, path, start, *, dt, controller=None, limits=None, position_tolerance=1e-9,
+                    rotation_tolerance=1e-9, seed=0, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn track_model_free(
     py: Python<'_>,
@@ -150,6 +156,7 @@ pub fn track_model_free(
     controller: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     position_tolerance: f64,
+    rotation_tolerance: f64,
     seed: i128,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyModelFreeResult> {
@@ -160,7 +167,7 @@ pub fn track_model_free(
     let options = ModelFreeOptions {
         controller: self::controller(controller)?,
         limits: Some(limits),
-        tolerance: position_tolerance,
+        tolerance: Tolerance { position: position_tolerance, rotation: rotation_tolerance },
         seed: count("seed", seed)?,
     };
     let (core, exception) =
@@ -182,7 +189,7 @@ fn run(
         let record = plant.py().detach(|| tracking::track_model_free(&mut fresh, reference, start, options, watcher));
         return Ok((record.map_err(raise)?, None));
     }
-    let mut plant = PythonPlant::new(plant)?;
+    let mut plant = PythonPlant::new(plant, reference.rotation(0).is_some())?;
     let record = tracking::track_model_free(&mut plant, reference, start, options, watcher);
     if let Some(interrupt) = plant.take_interrupt() {
         return Err(interrupt);

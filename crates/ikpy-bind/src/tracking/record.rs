@@ -14,6 +14,7 @@ pub struct Columns {
     pub position: Py<PyArrayDyn<f64>>,
     pub reference: Py<PyArrayDyn<f64>>,
     pub position_error: Py<PyArray1<f64>>,
+    pub rotation_error: Py<PyArray1<f64>>,
     pub step_status: Py<PyArray1<u8>>,
     pub step_evaluations: Py<PyArray1<i64>>,
 }
@@ -28,6 +29,7 @@ impl Columns {
             position: table(py, record.position.as_flattened().to_vec(), &[k, 3])?.unbind(),
             reference: table(py, record.reference.as_flattened().to_vec(), &[k, 3])?.unbind(),
             position_error: row(py, record.position_error.clone()).unbind(),
+            rotation_error: row(py, record.rotation_error.clone()).unbind(),
             step_status: row(py, record.step_status.iter().map(|status| *status as u8).collect()).unbind(),
             step_evaluations: counts(py, &record.step_evaluations),
         })
@@ -87,11 +89,24 @@ macro_rules! record {
                 self.columns.position_error.bind(py)
             }
 
+            /// Angles to the reference orientations (k,) (rad); NaN if the orientation is left free.
+            #[getter]
+            fn rotation_error<'py>(&self, py: Python<'py>) -> &Bound<'py, PyArray1<f64>> {
+                self.columns.rotation_error.bind(py)
+            }
+
             /// The error band (m).
             #[getter]
             fn position_tolerance(&self) -> f64 {
                 let $result = self;
                 $record.criterion.tolerance.position
+            }
+
+            /// The error band of orientations (rad).
+            #[getter]
+            fn rotation_tolerance(&self) -> f64 {
+                let $result = self;
+                $record.criterion.tolerance.rotation
             }
 
             /// Status of each step (k,), values of `Status`: SOLVED inside the band, IMPROVED nearer than in the previous step,

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use super::arguments::{TrackArguments, tick_rule};
 use super::record::{Columns, counts, record};
-use crate::convert::{row, table, vector};
+use crate::convert::{table, vector};
 use crate::error::raise;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
@@ -28,9 +28,6 @@ pub struct PyTrackResult {
     /// Velocity limits in force in each tick (k, n); NaN in row 0, inf for none.
     #[pyo3(get)]
     velocity_limit: Py<PyArrayDyn<f64>>,
-    /// Angles to the reference orientations (k,) (rad); NaN if the task leaves the orientation free.
-    #[pyo3(get)]
-    rotation_error: Py<PyArray1<f64>>,
     /// Iterations in each step (k,): passes of BAS, steps of Levenberg-Marquardt.
     #[pyo3(get)]
     step_iterations: Py<PyArray1<i64>>,
@@ -71,12 +68,6 @@ outcome! {
 
 #[pymethods]
 impl PyTrackResult {
-    /// The error band of orientations (rad).
-    #[getter]
-    fn rotation_tolerance(&self) -> f64 {
-        self.core.criterion.tolerance.rotation
-    }
-
     /// Smallest margin between a joint speed and its limit (rad/s, m/s); inf without limits.
     #[getter]
     fn limit_margin(&self) -> f64 {
@@ -119,7 +110,6 @@ impl PyTrackResult {
         Ok(Self {
             columns: Columns::new(py, &core)?,
             velocity_limit: table(py, core.velocity_limit(), &[core.rows(), core.dof])?.unbind(),
-            rotation_error: row(py, core.rotation_error.clone()).unbind(),
             step_iterations: counts(py, &core.step_iterations),
             robot,
             limits,

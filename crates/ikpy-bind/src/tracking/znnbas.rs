@@ -17,6 +17,8 @@ use crate::options::{NewArguments, keywords};
 /// with the speed of the target (about 3.5 v / (gain c1)), and its antennae shake the tool. `BroydenBAS` is better by orders
 /// of magnitude in all three respects.
 ///
+/// With poses, h is the squared distance (m^2) plus the squared angle (rad^2): a radian counts as much as a metre.
+///
 /// Args:
 ///     gain: k of eq. (14) (1/s), positive. The paper's listing has -10, the gain of a block that includes the minus sign of
 ///         eq. (14); here a negative gain is allowed, and diverges. gain * dt should not exceed 0.3.

@@ -5,6 +5,7 @@ from ..experiment import Context, Experiment
 from .antennae import antennae
 from .constants import constants
 from .figures import figures
+from .orientation import orientation
 from .other_methods import other_methods
 from .repetition import repetition
 from .sensor import sensor
@@ -33,7 +34,8 @@ ZNNBAS needs long ticks, eq. (16) and a slow path.
 def run(context: Context) -> Report:
     """Run all of it."""
     parts = [
-        part(context) for part in (figures, antennae, constants, theorem, other_methods, repetition, sensor, servo_arm)
+        part(context)
+        for part in (figures, antennae, constants, theorem, other_methods, repetition, sensor, orientation, servo_arm)
     ]
     return Report.of(_SUMMARY, parts)
 

@@ -9,13 +9,15 @@
 //! measurements of the start.
 
 use super::control_tick::{ControlTick, TickProgress};
-use super::noise::{Noise, median};
+use super::noise::Noise;
 use crate::math::box_step::LEAST_DAMPING;
 use crate::math::secant::{Secant, antenna};
-use crate::math::vector::{distance, norm, squared_distance};
+use crate::math::vector::norm;
 use crate::objective::Point;
 use crate::solver::BroydenBas;
 use crate::solver::broyden_bas::{FIRST_DAMPING, LARGEST_DAMPING, SLOW_STEPS};
+use crate::task::Tolerance;
+use crate::tracking::tip_pose::TipPose;
 
 /// A measurement is repeated if it misses the prediction by more than this fraction of the predicted motion.
 const SURPRISING: f64 = 1.0;
@@ -31,11 +33,11 @@ const FAILED_STEPS: usize = 2;
 #[derive(Debug)]
 pub(super) struct BroydenBasState {
     options: BroydenBas,
-    tolerance: f64,
-    jacobian: Secant<3>,
-    /// Accepted configuration, and the position measured there (m).
+    tolerance: Tolerance,
+    jacobian: Secant,
+    /// Accepted configuration, and the tip measured there.
     q: Point,
-    position: [f64; 3],
+    tip: TipPose,
     /// Last command, and its purpose.
     sent: Point,
     purpose: Purpose,
@@ -57,26 +59,26 @@ pub(super) struct BroydenBasState {
 /// Purpose of a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
-    /// Measure at the start again: `first` and `second` are the earlier measurements (m).
-    Repeat { first: [f64; 3], second: Option<[f64; 3]> },
+    /// Measure at the start again: `first` and `second` are the earlier measurements.
+    Repeat { first: TipPose, second: Option<TipPose> },
     /// Measure at the accepted configuration, before antennae are put out.
     Stand,
     /// Put out the antenna of a joint. As `next`: of this joint or, if it has no room, of the next joint that has.
     Antenna { joint: usize },
     /// Step towards the target.
     Step,
-    /// Repeat the step, because the measurement `first` (m) missed the prediction.
-    Again { first: [f64; 3] },
+    /// Repeat the step, because the measurement `first` missed the prediction.
+    Again { first: TipPose },
 }
 
 impl BroydenBasState {
-    pub(super) fn new(options: BroydenBas, start: &[f64], tolerance: f64) -> Box<Self> {
+    pub(super) fn new(options: BroydenBas, start: &[f64], tolerance: Tolerance) -> Box<Self> {
         Box::new(Self {
             options,
             tolerance,
             jacobian: Secant::default(),
             q: start.into(),
-            position: [f64::NAN; 3],
+            tip: TipPose::UNKNOWN,
             sent: start.into(),
             purpose: Purpose::Stand,
             next: Purpose::Antenna { joint: 0 },
@@ -90,17 +92,17 @@ impl BroydenBasState {
         })
     }
 
-    pub(super) fn begin(&mut self, position: [f64; 3]) {
-        self.position = position;
-        self.next = Purpose::Repeat { first: position, second: None };
+    pub(super) fn begin(&mut self, tip: &TipPose) {
+        self.tip = *tip;
+        self.next = Purpose::Repeat { first: *tip, second: None };
     }
 
     pub(super) fn accepted(&self) -> &[f64] {
         &self.q
     }
 
-    pub(super) fn measured(&self) -> (&[f64], [f64; 3]) {
-        (&self.q, self.position)
+    pub(super) fn measured(&self) -> (&[f64], &TipPose) {
+        (&self.q, &self.tip)
     }
 
     pub(super) fn sent(&self) -> &[f64] {
@@ -153,7 +155,7 @@ impl BroydenBasState {
     }
 
     fn step(&mut self, tick: ControlTick<'_>) {
-        let residual = difference(self.position, tick.target);
+        let residual = self.tip.residual(tick.target);
         let bounds = [tick.bounds.lower(), tick.bounds.upper()];
         self.jacobian.step(&residual, self.damping(), &self.q, bounds, &mut self.sent);
     }
@@ -167,11 +169,11 @@ impl BroydenBasState {
         self.damping + doubt * doubt / self.jacobian.size(self.q.len()).max(f64::MIN_POSITIVE)
     }
 
-    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
+    pub(super) fn observe(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
         self.measurements += 1;
         let spent = self.measurements >= self.options.max_evaluations_per_step;
         self.due -= 1;
-        let verdict = if self.due == 0 { self.learn(tick, position) } else { TickProgress::GoOn };
+        let verdict = if self.due == 0 { self.learn(tick, tip) } else { TickProgress::GoOn };
         if spent || verdict == TickProgress::TickOver {
             self.measurements = 0;
             return TickProgress::TickOver;
@@ -179,42 +181,42 @@ impl BroydenBasState {
         TickProgress::GoOn
     }
 
-    /// Processes the measurement `position` of the last command.
-    fn learn(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
+    /// Processes the measurement `tip` of the last command.
+    fn learn(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
         let verdict = match self.purpose {
             Purpose::Repeat { first, second: None } => {
-                self.next = Purpose::Repeat { first, second: Some(position) };
+                self.next = Purpose::Repeat { first, second: Some(*tip) };
                 TickProgress::GoOn
             }
             Purpose::Repeat { first, second: Some(second) } => {
-                self.know_start([first, second, position]);
+                self.know_start([first, second, *tip]);
                 TickProgress::GoOn
             }
             Purpose::Stand => {
-                (self.position, self.next) = (position, Purpose::Antenna { joint: 0 });
+                (self.tip, self.next) = (*tip, Purpose::Antenna { joint: 0 });
                 TickProgress::GoOn
             }
             Purpose::Antenna { joint } => {
-                self.feel(joint, position);
+                self.feel(joint, tip);
                 TickProgress::GoOn
             }
-            Purpose::Step => self.believe(tick, position, None),
-            Purpose::Again { first } => self.believe(tick, position, Some(first)),
+            Purpose::Step => self.believe(tick, tip, None),
+            Purpose::Again { first } => self.believe(tick, tip, Some(&first)),
         };
-        let near_enough = self.tolerance.max(NEAR_ENOUGH * self.noise.level());
-        let arrived = self.next == Purpose::Step && distance(&self.position, &tick.target) <= near_enough;
+        let near_enough = self.tolerance.at_least(NEAR_ENOUGH * self.noise.level());
+        let arrived = self.next == Purpose::Step && self.tip.error(tick.target).within(&near_enough);
         if arrived { TickProgress::TickOver } else { verdict }
     }
 
-    /// Estimates position and noise level at the start from three measurements, one of which may be an outlier.
-    fn know_start(&mut self, [a, b, c]: [[f64; 3]; 3]) {
-        self.position = std::array::from_fn(|k| median(a[k], b[k], c[k]));
-        self.noise.note_three([a, b, c]);
+    /// Estimates tip and noise level at the start from three measurements, one of which may be an outlier.
+    fn know_start(&mut self, measurements: [TipPose; 3]) {
+        self.tip = TipPose::median(measurements);
+        self.noise.note_three(measurements);
         self.next = Purpose::Antenna { joint: 0 };
     }
 
-    fn feel(&mut self, joint: usize, position: [f64; 3]) {
-        self.jacobian.set_column(joint, self.sent[joint] - self.q[joint], &difference(position, self.position));
+    fn feel(&mut self, joint: usize, tip: &TipPose) {
+        self.jacobian.set_column(joint, self.sent[joint] - self.q[joint], &tip.residual(&self.tip));
         self.next = Purpose::Antenna { joint: joint + 1 };
         if joint + 1 == self.q.len() {
             self.antennae_are_out();
@@ -222,22 +224,23 @@ impl BroydenBasState {
     }
 
     /// Processes the measurement of a step; `first` is the measurement before, if the step was repeated.
-    fn believe(&mut self, tick: ControlTick<'_>, position: [f64; 3], first: Option<[f64; 3]>) -> TickProgress {
+    fn believe(&mut self, tick: ControlTick<'_>, tip: &TipPose, first: Option<&TipPose>) -> TickProgress {
         let Self { q, sent, jacobian, .. } = self;
         let dq = || sent.iter().zip(q.iter()).map(|(to, from)| to - from);
         let predicted = jacobian.predict(dq());
-        let surprise = difference(difference(position, self.position), predicted);
+        let seen = tip.residual(&self.tip);
+        let surprise = std::array::from_fn(|k| seen[k] - predicted[k]);
         let (motion, miss) = (norm(&predicted), norm(&surprise));
         let surprising = miss > SURPRISING * motion;
         self.next = Purpose::Step;
         let mut noisy = self.noise.explains(motion);
         match first {
             None if surprising && !noisy => {
-                self.next = Purpose::Again { first: position };
+                self.next = Purpose::Again { first: *tip };
                 return TickProgress::GoOn;
             }
-            Some(first) if surprising && distance(&position, &first) > 0.5 * miss => {
-                self.noise.note(distance(&position, &first));
+            Some(first) if surprising && tip.distance(first) > 0.5 * miss => {
+                self.noise.note(tip.distance(first));
                 noisy = true;
             }
             _ => {}
@@ -245,17 +248,16 @@ impl BroydenBasState {
         if !noisy {
             jacobian.learn(dq(), &surprise, self.noise.share(miss));
         }
-        self.judge(tick, position, noisy)
+        self.judge(tick, tip, noisy)
     }
 
     /// Accepts a step that reduced the error. Otherwise raises the damping or puts out antennae, unless the cause is
     /// noise.
-    fn judge(&mut self, tick: ControlTick<'_>, position: [f64; 3], noisy: bool) -> TickProgress {
-        let squared_error = |position: [f64; 3]| squared_distance(&position, &tick.target);
-        let (before, after) = (squared_error(self.position), squared_error(position));
+    fn judge(&mut self, tick: ControlTick<'_>, tip: &TipPose, noisy: bool) -> TickProgress {
+        let (before, after) = (self.tip.squared_error(tick.target), tip.squared_error(tick.target));
         if after < before {
             self.q.copy_from_slice(&self.sent);
-            self.position = position;
+            self.tip = *tip;
             self.damping = (self.damping * 0.1).max(LEAST_DAMPING);
             (self.fresh, self.failed) = (false, 0);
             let slow = after > 0.25 * before && !noisy && !self.noise.explains(after.sqrt());
@@ -284,9 +286,4 @@ impl BroydenBasState {
         self.damping = FIRST_DAMPING;
         TickProgress::TickOver
     }
-}
-
-/// a - b.
-fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| a[k] - b[k])
 }

@@ -6,13 +6,13 @@ use super::controller_choice::{Controller, RunningController};
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::math::MAX_DOF;
-use crate::math::vector::distance;
 use crate::objective::Point;
 use crate::rng::{self, LazyRng};
 use crate::solver::Status;
-use crate::task::TipError;
+use crate::task::Tolerance;
 use crate::tracking::record::Accepted;
 use crate::tracking::step::Step;
+use crate::tracking::tip_pose::TipPose;
 
 /// A controller in use. [`command`](Self::command) returns the next command for the arm, [`observe`](Self::observe)
 /// takes the position measured there. A tick ends when the controller needs no further measurement.
@@ -22,7 +22,7 @@ use crate::tracking::step::Step;
 pub struct ControlSession {
     running: RunningController,
     limits: Limits,
-    tolerance: f64,
+    tolerance: Tolerance,
     dt: f64,
     ticks: usize,
     /// The configuration accepted at the start of the tick: the centre of its box.
@@ -32,7 +32,9 @@ pub struct ControlSession {
     tick_box: TickBox,
     inside_limits: bool,
     stage: Stage,
-    /// Error at the end of the previous tick (m).
+    /// Target of the last command. The first one decides whether all are positions or poses.
+    target: TipPose,
+    /// Error at the end of the previous tick: the length of the residual (m, rad).
     last_error: f64,
     /// Measurements since the tick began.
     measurements: usize,
@@ -49,11 +51,11 @@ enum Stage {
     /// Within a tick.
     Within,
     /// A command was sent; its measurement comes next.
-    Sent { target: [f64; 3], first: bool },
+    Sent { first: bool },
 }
 
 impl ControlSession {
-    /// A session at rest at `start` (n,) at t = 0, with ticks of `dt` (s). `tolerance` is the error band (m).
+    /// A session at rest at `start` (n,) at t = 0, with ticks of `dt` (s). `tolerance` is the error band.
     ///
     /// # Errors
     /// Any [`Error`] for wrong input: options, a start outside its limits, limits that no controller supports.
@@ -62,11 +64,12 @@ impl ControlSession {
         start: &[f64],
         dt: f64,
         limits: Limits,
-        tolerance: f64,
+        tolerance: Tolerance,
         seed: u64,
     ) -> Result<Self> {
         require_positive("dt", dt)?;
-        require_positive("position_tolerance", tolerance)?;
+        require_positive("position_tolerance", tolerance.position)?;
+        require_positive("rotation_tolerance", tolerance.rotation)?;
         if start.is_empty() || start.len() > MAX_DOF {
             let expected = format!("1 to {MAX_DOF} joints");
             return Err(Error::WrongLength { what: "start".into(), expected, got: start.len() });
@@ -88,6 +91,7 @@ impl ControlSession {
             before: start.into(),
             inside_limits: true,
             stage: Stage::Start,
+            target: TipPose::UNKNOWN,
             last_error: f64::INFINITY,
             measurements: 0,
             rng: rng::stream(seed, 0),
@@ -129,20 +133,26 @@ impl ControlSession {
         self.running.measured().0
     }
 
-    /// Returns the next command (n,), which is to bring the tip to `target` (m) by the end of the tick. It is within
-    /// the limits, and within the range that the velocity limits allow from the configuration accepted at the start of
-    /// the tick.
+    /// Returns the next command (n,), which is to bring the tip to `target`, a position (m) or a pose, by the end of the
+    /// tick. It is within the limits, and within the range that the velocity limits allow from the configuration accepted
+    /// at the start of the tick.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] for the target, [`Error::OutOfTurn`] if a measurement is due.
-    pub fn command(&mut self, target: [f64; 3]) -> Result<&[f64]> {
-        require_finite("target", &target, |k| format!("entry {k}"))?;
+    /// [`Error::NotFinite`] for the target, [`Error::Contradiction`] for a pose after positions or a position after poses,
+    /// [`Error::OutOfTurn`] if a measurement is due.
+    pub fn command(&mut self, target: impl Into<TipPose>) -> Result<&[f64]> {
+        let target = target.into();
+        target.require_finite("target")?;
         let first = match self.stage {
             Stage::Sent { .. } => {
                 let remedy = "the last command is not answered yet; call observe(position) first".into();
                 return Err(Error::OutOfTurn { call: "command".into(), remedy });
             }
             Stage::Start => true,
+            _ if target.is_oriented() != self.target.is_oriented() => {
+                let problem = format!("target: expected {}, as before, got {}", self.target.kind(), target.kind());
+                return Err(Error::Contradiction { problem });
+            }
             Stage::Ready => {
                 let ends = [self.time(), (self.ticks + 1) as f64 * self.dt];
                 self.inside_limits = self.limits.narrow(&self.q, ends, self.dt, LimitAt::Interval, &mut self.tick_box);
@@ -150,54 +160,61 @@ impl ControlSession {
             }
             Stage::Within => false,
         };
+        self.target = target;
         if !first {
-            let tick = ControlTick { target, bounds: &self.tick_box.bounds };
+            let tick = ControlTick { target: &self.target, bounds: &self.tick_box.bounds };
             self.running.choose_command(tick, &mut self.rng);
         }
-        self.stage = Stage::Sent { target, first };
+        self.stage = Stage::Sent { first };
         Ok(self.running.sent())
     }
 
-    /// Takes the position (m) measured at the last command. Returns the result of the tick, or `None` if the tick
-    /// continues.
+    /// Takes the position (m) or the pose measured at the last command. Returns the result of the tick, or `None` if the
+    /// tick continues. If the target is a position, the orientation of a pose is ignored.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] for the position, [`Error::OutOfTurn`] if no measurement is due.
-    pub fn observe(&mut self, position: [f64; 3]) -> Result<Option<Step>> {
-        let Stage::Sent { target, first } = self.stage else {
+    /// [`Error::NotFinite`] for the measurement, [`Error::Contradiction`] for a position if the target is a pose,
+    /// [`Error::OutOfTurn`] if no measurement is due.
+    pub fn observe(&mut self, position: impl Into<TipPose>) -> Result<Option<Step>> {
+        let Stage::Sent { first } = self.stage else {
             let remedy = "there is no command to answer; call command(target) first".into();
             return Err(Error::OutOfTurn { call: "observe".into(), remedy });
         };
-        require_finite("position", &position, |k| format!("entry {k}"))?;
+        let tip = position.into();
+        tip.require_finite("position")?;
+        let Some(tip) = tip.as_asked_by(&self.target) else {
+            let problem = "position: expected a pose (4, 4), like the target, got a position (3,)".into();
+            return Err(Error::Contradiction { problem });
+        };
         self.measurements += 1;
         if first {
-            self.running.begin(target, position);
-            return Ok(Some(self.end_tick(target)));
+            self.running.begin(&self.target, &tip);
+            return Ok(Some(self.end_tick()));
         }
-        let tick = ControlTick { target, bounds: &self.tick_box.bounds };
-        if self.running.observe(tick, position) == TickProgress::GoOn {
+        let tick = ControlTick { target: &self.target, bounds: &self.tick_box.bounds };
+        if self.running.observe(tick, &tip) == TickProgress::GoOn {
             self.stage = Stage::Within;
             return Ok(None);
         }
         self.before.copy_from_slice(&self.q);
         self.q.copy_from_slice(self.running.accepted());
         self.ticks += 1;
-        Ok(Some(self.end_tick(target)))
+        Ok(Some(self.end_tick()))
     }
 
-    fn end_tick(&mut self, target: [f64; 3]) -> Step {
-        let position = self.running.measured().1;
-        let error = distance(&target, &position);
-        let status = match error {
-            error if error <= self.tolerance => Status::Solved,
-            error if error < self.last_error => Status::Improved,
+    fn end_tick(&mut self) -> Step {
+        let tip = self.running.measured().1;
+        let (error, distance, position) = (tip.error(&self.target), tip.distance(&self.target), tip.position());
+        let status = match distance {
+            _ if error.within(&self.tolerance) => Status::Solved,
+            distance if distance < self.last_error => Status::Improved,
             _ => Status::Capped,
         };
         let evaluations = std::mem::take(&mut self.measurements);
-        (self.stage, self.last_error) = (Stage::Ready, error);
+        (self.stage, self.last_error) = (Stage::Ready, distance);
         Step {
             status,
-            error: TipError { position: error, rotation: f64::NAN },
+            error,
             position,
             evaluations,
             iterations: evaluations,

@@ -1,12 +1,13 @@
 //! The tick of a controller: input, and whether it continues.
 
 use crate::objective::Bounds;
+use crate::tracking::tip_pose::TipPose;
 
 /// The input of a controller for a tick.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ControlTick<'a> {
-    /// Target of the tip at the end of the tick (m).
-    pub target: [f64; 3],
+    /// Target of the tip at the end of the tick.
+    pub target: &'a TipPose,
     /// Box of the commands.
     pub bounds: &'a Bounds,
 }

@@ -7,6 +7,8 @@ use super::znnbas_state::ZnnbasState;
 use crate::error::Result;
 use crate::rng::LazyRng;
 use crate::solver::BroydenBas;
+use crate::task::Tolerance;
+use crate::tracking::tip_pose::TipPose;
 
 /// A controller and its options.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +37,7 @@ impl Controller {
         }
     }
 
-    pub(super) fn start(&self, start: &[f64], dt: f64, tolerance: f64) -> RunningController {
+    pub(super) fn start(&self, start: &[f64], dt: f64, tolerance: Tolerance) -> RunningController {
         match self {
             Self::BroydenBas(broyden) => {
                 RunningController::BroydenBas(BroydenBasState::new(*broyden, start, tolerance))
@@ -69,19 +71,19 @@ impl RunningController {
         }
     }
 
-    /// Takes the tip position measured at the last command (m).
-    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
+    /// Takes the tip measured at the last command.
+    pub(super) fn observe(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
         match self {
-            Self::BroydenBas(memory) => memory.observe(tick, position),
-            Self::Znnbas(memory) => memory.observe(tick, position),
+            Self::BroydenBas(memory) => memory.observe(tick, tip),
+            Self::Znnbas(memory) => memory.observe(tick, tip),
         }
     }
 
-    /// Takes the tip position measured at the start, before the first tick (m).
-    pub(super) fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {
+    /// Takes the tip measured at the start, before the first tick.
+    pub(super) fn begin(&mut self, target: &TipPose, tip: &TipPose) {
         match self {
-            Self::BroydenBas(memory) => memory.begin(position),
-            Self::Znnbas(memory) => memory.begin(target, position),
+            Self::BroydenBas(memory) => memory.begin(tip),
+            Self::Znnbas(memory) => memory.begin(target, tip),
         }
     }
 
@@ -93,8 +95,8 @@ impl RunningController {
         }
     }
 
-    /// The command at which the position of the tick was measured, and that position (m).
-    pub(super) fn measured(&self) -> (&[f64], [f64; 3]) {
+    /// The command at which the tip of the tick was measured, and that measurement.
+    pub(super) fn measured(&self) -> (&[f64], &TipPose) {
         match self {
             Self::BroydenBas(memory) => memory.measured(),
             Self::Znnbas(memory) => memory.measured(),

@@ -1,6 +1,7 @@
 //! Noise level of a sensor, estimated from repeated measurements.
 
-use crate::math::vector::distance;
+use crate::math::vector::median;
+use crate::tracking::tip_pose::TipPose;
 
 /// Distances up to this multiple of the noise level may be noise alone.
 const EXPLAINED: f64 = 3.0;
@@ -27,9 +28,9 @@ impl Noise {
         self.level = median(a, b, c) * std::f64::consts::FRAC_1_SQRT_2;
     }
 
-    /// Takes three measurements of one command (m). One of them may be an outlier, so the nearest two count.
-    pub(super) fn note_three(&mut self, [a, b, c]: [[f64; 3]; 3]) {
-        let nearest = distance(&a, &b).min(distance(&b, &c)).min(distance(&a, &c));
+    /// Takes three measurements of one command. One of them may be an outlier, so the nearest two count.
+    pub(super) fn note_three(&mut self, [a, b, c]: [TipPose; 3]) {
+        let nearest = a.distance(&b).min(b.distance(&c)).min(a.distance(&c));
         (0..2).for_each(|_| self.note(TWO_OVER_NEAREST_OF_THREE * nearest));
     }
 
@@ -48,9 +49,4 @@ impl Noise {
     pub(super) fn share(&self, miss: f64) -> f64 {
         (1.0 - (EXPLAINED * self.level / miss).powi(2)).max(0.0)
     }
-}
-
-/// The middle one of three.
-pub(super) fn median(a: f64, b: f64, c: f64) -> f64 {
-    a.max(b).min(a.min(b).max(c))
 }

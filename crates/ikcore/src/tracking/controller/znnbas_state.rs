@@ -3,9 +3,9 @@
 use super::control_tick::{ControlTick, TickProgress};
 use super::znnbas::{Antenna, Delay, UpdateRule, Znnbas};
 use crate::math::comparison::sign;
-use crate::math::vector::squared_distance;
 use crate::objective::Point;
 use crate::rng::LazyRng;
+use crate::tracking::tip_pose::TipPose;
 
 /// The longest adaptive antenna (rad).
 const LONGEST: f64 = 0.5;
@@ -20,12 +20,12 @@ pub(super) struct ZnnbasState {
     accept: UpdateRule,
     /// theta, the state of the integrator.
     theta: Point,
-    /// Tip position at the last measured theta (m).
-    standing: [f64; 3],
+    /// The tip at the last measured theta.
+    standing: TipPose,
     /// theta', the last command.
     sent: Point,
-    /// The last measurement: position, its command, and h.
-    position: [f64; 3],
+    /// The last measurement, its command, and h.
+    tip: TipPose,
     answered: Point,
     value: f64,
     on_the_way: OnTheWay,
@@ -36,7 +36,7 @@ pub(super) struct ZnnbasState {
 #[derive(Debug)]
 struct OnTheWay {
     sent: Vec<f64>,
-    targets: Vec<[f64; 3]>,
+    targets: Vec<TipPose>,
     ticks: usize,
 }
 
@@ -57,32 +57,32 @@ impl ZnnbasState {
             delay: options.delay,
             accept: options.accept,
             theta: start.into(),
-            standing: [f64::NAN; 3],
+            standing: TipPose::UNKNOWN,
             sent: start.into(),
-            position: [f64::NAN; 3],
+            tip: TipPose::UNKNOWN,
             answered: start.into(),
             value: f64::INFINITY,
             on_the_way: OnTheWay {
                 sent: start.repeat(options.sensor_delay),
-                targets: vec![[f64::NAN; 3]; options.sensor_delay],
+                targets: vec![TipPose::UNKNOWN; options.sensor_delay],
                 ticks: 0,
             },
             past: Past { sent: vec![0.0; delay * n], values: vec![0.0; delay], ticks: 0 },
         })
     }
 
-    pub(super) fn begin(&mut self, target: [f64; 3], position: [f64; 3]) {
-        (self.position, self.standing, self.value) = (position, position, squared_distance(&target, &position));
+    pub(super) fn begin(&mut self, target: &TipPose, tip: &TipPose) {
+        (self.tip, self.standing, self.value) = (*tip, *tip, tip.squared_error(target));
         // Until the first measurement arrives, the arm is at the start.
-        self.on_the_way.targets.fill(target);
+        self.on_the_way.targets.fill(*target);
     }
 
     pub(super) fn accepted(&self) -> &[f64] {
         &self.theta
     }
 
-    pub(super) fn measured(&self) -> (&[f64], [f64; 3]) {
-        (&self.answered, self.position)
+    pub(super) fn measured(&self) -> (&[f64], &TipPose) {
+        (&self.answered, &self.tip)
     }
 
     pub(super) fn sent(&self) -> &[f64] {
@@ -94,7 +94,7 @@ impl ZnnbasState {
         rng.symmetric(sent); // b, line 14
         let error = match self.accept {
             UpdateRule::Always => self.value,
-            UpdateRule::Improving => squared_distance(&tick.target, &self.standing),
+            UpdateRule::Improving => self.standing.squared_error(tick.target),
         };
         let lengths = match antenna {
             Antenna::Constant(lengths) => &lengths[..],
@@ -106,18 +106,16 @@ impl ZnnbasState {
         tick.bounds.clip(sent); // (11)
     }
 
-    pub(super) fn observe(&mut self, tick: ControlTick<'_>, position: [f64; 3]) -> TickProgress {
-        self.position = position;
+    pub(super) fn observe(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
+        self.tip = *tip;
         self.answered.copy_from_slice(&self.sent);
-        let target = self.on_the_way.swap(&mut self.answered, tick.target);
-        self.value = squared_distance(&target, &position); // h of (12)
+        let target = self.on_the_way.swap(&mut self.answered, *tick.target);
+        self.value = tip.squared_error(&target); // h of (12)
         match self.accept {
             UpdateRule::Always => self.move_theta(),
-            UpdateRule::Improving
-                if squared_distance(&tick.target, &position) < squared_distance(&tick.target, &self.standing) =>
-            {
+            UpdateRule::Improving if tip.squared_error(tick.target) < self.standing.squared_error(tick.target) => {
                 self.theta.copy_from_slice(&self.answered);
-                self.standing = position;
+                self.standing = *tip;
             }
             UpdateRule::Improving => {}
         }
@@ -145,7 +143,7 @@ impl ZnnbasState {
 
 impl OnTheWay {
     /// Stores the newest command with its target, and returns those that the sensor measures now.
-    fn swap(&mut self, command: &mut [f64], target: [f64; 3]) -> [f64; 3] {
+    fn swap(&mut self, command: &mut [f64], target: TipPose) -> TipPose {
         if self.targets.is_empty() {
             return target;
         }
