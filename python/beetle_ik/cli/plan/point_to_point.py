@@ -41,7 +41,7 @@ _ELLIPSE_NUMBERS = 5
 
 Place = Annotated[str | None, typer.Option(metavar="X,Y,Z", help="Position of the tip in m.")]
 Configuration = Annotated[
-    str | None, typer.Option(metavar="Q1,Q2,...", help="Joint positions, instead of a position of the tip.")
+    str | None, typer.Option(metavar="Q1,Q2,...", help="Joint positions instead of a tip position.")
 ]
 
 

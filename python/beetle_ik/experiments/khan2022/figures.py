@@ -40,21 +40,20 @@ _STEADY = 0.01  # m
 _REACHED = 1e-3  # m
 
 _TEXT = """
-All runs start in the home position, with the arm erect, and make exactly one measurement a tick: 50,000 in 50 s at 1
-ms. Two errors have to be told apart. The controller sends the arm to θ′ = θ + λb, a random antenna away from its state
-θ, and measures there; the arm never stands at θ. Constants are those of Algorithm 1: λ = 0.1, k = 10, α = 10 ticks.
+All runs start in the home position, with the arm erect, and make exactly one measurement per tick: 50,000 in 50 s at 1
+ms. Two errors have to be distinguished. The controller sends the arm to θ′ = θ + λb, a random antenna away from its
+state θ, and measures there; the arm is never at θ. Constants are those of Algorithm 1: λ = 0.1, k = 10, α = 10 ticks.
 """
 _TEXT_LIMITS = """
 **The M cannot be drawn within the limits of the arm.** Its vertex (0.1, 0.2, 0.5) is {vertex} m out of reach, and the
 first stroke, which takes the first 12.5 s, passes a point {worst} m out of reach: with joints 4 and 6 within 120
-degrees the tool comes no nearer to the shoulder. A run that brings the error on the M below 10⁻³ m² in under ten
+degrees the tool cannot come closer to the shoulder. A run that brings the error on the M below 10⁻³ m² in under ten
 seconds cannot have kept the limits of eq. (7).
 """
 _TEXT_STAR = """
-Nor is the star a star as printed. Eq. (20) multiplies its terms by a_y, b_y, a_z and b_z; with a = (0, 1, 0) and b =
-(0, 0, 1) two of the four vanish, and what is left is the Lissajous curve on the left. We take the hypotrochoid that
-must be meant. R, r and d are not stated: we use 0.10, 0.06 and 0.10 m without limits, and 0.04, 0.024 and 0.04 m
-within them.
+The star as printed is not a star either. Eq. (20) multiplies its terms by a_y, b_y, a_z and b_z; with a = (0, 1, 0) and
+b = (0, 0, 1) two of the four vanish, which leaves the Lissajous curve on the left. We use the hypotrochoid that must be
+meant. R, r and d are not stated: we use 0.10, 0.06 and 0.10 m without limits, and 0.04, 0.024 and 0.04 m within them.
 """
 
 

@@ -43,10 +43,10 @@ _SPEEDS = (12.5, 5.0, 2.5)  # s, of the M
 _SHORTER = 0.2  # of the command's step, at a tenth of the tick, if it moved continuously
 
 _TEXT = """
-The paper sets ZNNBAS against the pseudo-inverse of the Jacobian and against the dual neural network, without running
-either. We did, on the circle of Cheng et al., the M and the star. All begin on the path. The pseudo-inverse and the
-network know the model and act every 10 ms; the network is that of Zhang, Wang and Xia 2003, reference 18 of the paper,
-which keeps joint limits. ZNNBAS and `BroydenBAS` measure one position every millisecond.
+The paper compares ZNNBAS with the pseudo-inverse of the Jacobian and the dual neural network, without running either.
+We ran them on the circle of Cheng et al., the M and the star. All start on the path. The pseudo-inverse and the network
+use the model and act every 10 ms; the network is that of Zhang, Wang and Xia 2003, reference 18 of the paper, which
+keeps joint limits. ZNNBAS and `BroydenBAS` measure one position every millisecond.
 """
 
 Joints: TypeAlias = tuple[Array, Array]

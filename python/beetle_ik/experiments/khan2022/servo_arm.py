@@ -33,17 +33,17 @@ _FOLLOWED = 5e-3  # m
 _SETTLED = 21  # ticks of the replay
 
 _TEXT = """
-**Built wrong.** We build the iiwa with its third link 2 cm longer than in the drawing and its joints off by 2 degrees
-in turn. Angles that were computed with the model of the drawing miss the circle by centimetres. ZNNBAS, which has no
-model, follows the circle on either arm as well as on the other.
+**Built wrong.** We build the iiwa with its third link 2 cm longer than drawn and with joint offsets of 2 degrees in
+alternating directions. Joint angles computed with the model of the drawing miss the circle by centimetres. ZNNBAS,
+which has no model, follows the circle equally well on both arms.
 
-**Servos.** In MuJoCo the iiwa has rods of 20 kg in all and position servos that give way under gravity and need about
-50 ms to arrive. The paper's controller cannot run on it as printed: an antenna of 0.1 rad a millisecond, the servos
-never get there, and the measured error belongs to another configuration than the one it is compared by. What ZNNBAS
-needs is ticks near the servos' time constant, an antenna that shrinks with the error, eq. (16), the largest gain that
-is stable (k times the tick 0.3, c₁ = 1), and a slow path: its error grows with the distance that the target moves in a
-tick. On a circle of 150 s it is then within millimetres. Shorter ticks measure an arm that has not arrived, longer
-ones let the target run ahead. `BroydenBAS` needs 10 ms or more, and is more exact from there on.
+**Servos.** In MuJoCo the iiwa consists of rods of 20 kg in total and position servos that sag under gravity and need
+about 50 ms to settle. The paper's controller does not work on it as printed: with an antenna of 0.1 rad every
+millisecond the servos never arrive, and the measured error belongs to a different configuration from the commanded one.
+ZNNBAS needs ticks near the servos' time constant, an antenna that shrinks with the error, eq. (16), the largest stable
+gain (k times the tick 0.3, c₁ = 1), and a slow path: its error grows with the distance that the target moves per tick.
+On a circle of 150 s it then stays within millimetres. Shorter ticks measure an arm that has not arrived; longer ones
+let the target run ahead. `BroydenBAS` needs ticks of 10 ms or more, and is more accurate there.
 """
 
 

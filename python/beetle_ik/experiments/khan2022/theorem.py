@@ -25,17 +25,18 @@ _ROUND = 25.0  # s, of the circle that a long run repeats
 _ZERO = 1e-10  # m^2
 
 _TEXT = """
-Theorem 1 has the objective decrease monotonically: the algorithm “will only update the joint-state … if the objective
-function value decreases”, and “otherwise it will bring the manipulator back to its previous joint-state”. That is not
-what eq. (14) and (15) do, which move in every tick, by the sign of the change. We ran both: `accept="always"` is the
-equations, `accept="improving"` the algorithm of the proof, which stays at an antenna that is nearer and else goes
-back. It needs neither gain nor delay.
+Theorem 1 says that the objective decreases monotonically: the algorithm “will only update the joint-state … if the
+objective function value decreases”, and “otherwise it will bring the manipulator back to its previous joint-state”. Eq.
+(14) and (15) do not do that: they move in every tick, in a direction that depends on the sign of the change. We ran
+both: `accept="always"` is the equations, `accept="improving"` the algorithm of the proof, which stays at an antenna if
+it is better and goes back otherwise. It needs neither gain nor delay.
 
-With a target that stands still the proof is right about its own algorithm, and wrong about the published one. With a
-target that moves neither decreases monotonically, since the target itself can move away.
+For a fixed target the proof is correct for its own algorithm, and wrong for the published one. For a moving target
+neither decreases monotonically, since the target itself can move away.
 
-Definition 2 has the tool approach the reference as time goes to infinity. With a constant antenna it cannot: the arm
-is sent λ away for ever. Runs four times as long as the paper's end as far off as they were after a quarter.
+Definition 2 says that the tool approaches the reference as time goes to infinity. With a constant antenna it cannot:
+the arm is always sent λ away. Runs four times as long as the paper's end with the error that they had after a quarter
+of the time.
 """
 
 
