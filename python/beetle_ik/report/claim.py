@@ -52,7 +52,7 @@ Readings: TypeAlias = Mapping[str, bool]
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """A statement of a paper beside what came out. Made by `Claim.judged`."""
+    """A statement of a paper beside the measured result. Made by `Claim.judged`."""
 
     statement: str
     """What the paper says, in our words or, in quotes, in its own."""
@@ -135,7 +135,7 @@ class Claim:
 
     @property
     def notes(self) -> list[str]:
-        """What stands below the measured values: readings, missing quantities, the reason."""
+        """The lines below the measured values: readings, missing quantities, the reason."""
         notes = [f"Reading: {self.reading}"] if self.reading else []
         if isinstance(self.holds, Mapping):
             for words, met in ((_HOLDS, True), (_FAILS, False)):

@@ -105,7 +105,7 @@ def figures(context: Context) -> Part:
             name="figure_2",
             title="Figure 2: the M without limits, printed constants",
             drawing=draw_run(found[_M].first, IIWA),
-            caption="The arm at θ, from home (pale) to the end. Blue is the tool at θ, where the arm never stands; "
+            caption="The arm at θ, from home (pale) to the end. Blue is the tool at θ, where the arm never is; "
             f"sky-blue the commanded tool, which is {_centimetres(found[_M])} cm (rms) off the path.",
         ),
         _TEXT_LIMITS.format(vertex=number(vertex), worst=number(worst)),
@@ -113,7 +113,7 @@ def figures(context: Context) -> Part:
             name="figure_2_limits",
             title="The same within the position limits of the arm",
             drawing=draw_run(found[_M_LIMITED].first, IIWA),
-            caption="Until the second stroke leads away from the shoulder, the error cannot go to zero.",
+            caption="The error cannot reach zero until the second stroke leads away from the shoulder.",
         ),
         _TEXT_STAR,
         Figure(
@@ -177,11 +177,11 @@ def letter_arrival(arrivals: Mapping[str, float]) -> Claim:
     return Claim.judged(
         "On the M the objective approaches zero in less than 10 s.",
         source="Section 4.1, Figures 2(d) and 2(e)",
-        rule="h(θ) falls below the value that is taken for zero in less than 10 s (median of the runs).",
+        rule="h(θ) falls below the threshold that counts as zero in less than 10 s (median of the runs).",
         measured=_listed(arrivals),
         holds={name: time < 10.0 for name, time in arrivals.items()},
-        reason="The paper states limits, eq. (7), but part of the first stroke is out of reach within them; what "
-        "counts as zero it does not say.",
+        reason="The paper states limits, eq. (7), but part of the first stroke is out of reach within them. It "
+        "does not say what counts as zero.",
         section=TITLE,
     )
 
@@ -201,8 +201,8 @@ def letter_error(mean: float, least: float, sent_mean: float) -> Claim:
             "least h(θ)": least <= 1e-5,
             "order of h(θ)": mean < 1e-4,
         },
-        reason="Which of them the figure shows is not said, and our copy lacks it. A tenfold gain brings the mean to "
-        "10⁻⁵, with either antenna: see the next section.",
+        reason="The paper does not say which of them the figure shows, and our copy lacks the figure. A tenfold gain "
+        "brings the mean to 10⁻⁵, with either antenna: see the next section.",
         section=TITLE,
     )
 
@@ -212,11 +212,11 @@ def star_arrival(arrivals: Mapping[str, float]) -> Claim:
     return Claim.judged(
         "On the star the objective approaches zero in less than 3 s.",
         source="Section 4.1, Figures 3(d) and 3(e)",
-        rule="h(θ) falls below the value that is taken for zero in less than 3 s (median of the runs).",
+        rule="h(θ) falls below the threshold that counts as zero in less than 3 s (median of the runs).",
         measured=_listed(arrivals),
         holds={name: time < 3.0 for name, time in arrivals.items()},
-        reason="The time step is not stated. R, r and d are not either, but hardly matter: the way from home is the "
-        "same.",
+        reason="The time step is not stated. R, r and d are not stated either, but hardly matter: most of the time "
+        "is the approach from home.",
         section=TITLE,
     )
 
@@ -230,7 +230,7 @@ def traced(statement: str, source: str, errors: Mapping[str, float], height: flo
         measured=", ".join(f"{name} {number(100 * error)} cm" for name, error in errors.items())
         + f"; height {number(100 * height)} cm",
         holds={name: error <= _TRACED * height for name, error in errors.items()},
-        reason="The arm never stands at θ. Which of the two the figures show is not said.",
+        reason="The arm is never at θ. The paper does not say which of the two the figures show.",
         section=TITLE,
     )
 
@@ -241,11 +241,11 @@ def no_spikes(error: float, speed: float, fastest: float) -> Claim:
         "It optimises “without showing any spikes of noise or undesirable behavior of manipulator”.",
         source="Section 4.1",
         rule=f"From 40 to 50 s the commanded tool is within {number(100 * _STEADY, 1)} cm of the M (rms), and the "
-        "commands ask no more than the arm's fastest joint can do (rms speed of a joint).",
-        measured=f"{number(100 * error)} cm; {number(speed)} rad/s, where the fastest joint does {number(fastest)}",
+        "commands need no more speed than the arm's fastest joint has (rms over the joints).",
+        measured=f"{number(100 * error)} cm; {number(speed)} rad/s, where the fastest joint reaches {number(fastest)}",
         holds=error <= _STEADY and speed <= fastest,
         reason="Every command is a random antenna away from the state whose error is reported: λ = 0.1 rad moves the "
-        "tool by centimetres a millisecond.",
+        "tool by centimetres every millisecond.",
         section=TITLE,
     )
 

@@ -109,7 +109,7 @@ def adds_up(open_loop: Array, fed_back: Array) -> Claim:
 def closes(drift: float, rounds: int) -> Check:
     """Joint difference by BroydenBAS after so many rounds (rad)."""
     return Check(
-        statement="`BroydenBAS` repeats its joints, without being told to.",
+        statement="`BroydenBAS` repeats its joint motion without a criterion for it.",
         rule=f"After {rounds} rounds no joint is {number(_CLOSED, 1)} rad from where it began.",
         measured=f"{number(drift)} rad",
         holds=drift < _CLOSED,

@@ -17,7 +17,7 @@ from .settings import DT, IIWA, ON_CIRCLE, PUBLISHED, Array, Run, circle, rms
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
-TITLE = "An arm built wrong, and an arm with servos"
+TITLE = "An arm that differs from its drawing, and an arm with servos"
 _DURATION = 150.0  # s, of the circle, for ZNNBAS on servos
 _PRINTED = 5.0  # s, of the circle with the printed constants
 _REPLAYED = 30.0  # s
@@ -33,7 +33,7 @@ _FOLLOWED = 5e-3  # m
 _SETTLED = 21  # ticks of the replay
 
 _TEXT = """
-**Built wrong.** We build the iiwa with its third link 2 cm longer than drawn and with joint offsets of 2 degrees in
+**A wrong model.** We build the iiwa with its third link 2 cm longer than drawn and with joint offsets of 2 degrees in
 alternating directions. Joint angles computed with the model of the drawing miss the circle by centimetres. ZNNBAS,
 which has no model, follows the circle equally well on both arms.
 
@@ -91,7 +91,7 @@ def immune(errors: Mapping[str, float]) -> Claim:
     return Claim.judged(
         "Errors of the model harm methods in open loop; the controller without a model does not depend on it.",
         source="Abstract, section 1",
-        rule=f"On the arm built wrong the model's angles miss by over {number(100 * _MISSED, 1)} cm, and ZNNBAS is at "
+        rule=f"On the arm as built the model's angles miss by over {number(100 * _MISSED, 1)} cm, and ZNNBAS is at "
         f"most {_ALIKE:g} times as far off as on the arm as drawn (rms, θ).",
         measured=f"model {number(100 * replayed)} cm; ZNNBAS {number(100 * wrong)} cm, on the arm as drawn "
         f"{number(100 * drawn)} cm",

@@ -70,7 +70,7 @@ def theorem(context: Context) -> Part:
             _TEXT,
             Figure(
                 name="theorem_1_still",
-                title="The objective while the target stands still",
+                title="The objective for a fixed target",
                 drawing=_draw({name: run.point for name, run in runs.items()}),
                 caption="From home to the middle of the M, printed antenna; the first second on the right.",
             ),
@@ -117,13 +117,12 @@ def monotone(rising: Mapping[str, float]) -> Claim:
 def goes_back(share: float) -> Claim:
     """Share of the ticks with a rise at which the state moved all the same (%)."""
     return Claim.judged(
-        "The joint state is updated only where the objective decreases; else the arm is brought back.",
+        "The joint state is updated only if the objective decreases; otherwise the arm is brought back.",
         source="Proof of Theorem 1",
-        rule="By eq. (14) and (15) θ stands still in each tick whose measured h is larger than that of α before.",
-        measured=f"θ moves in {number(share)} % of them, while the target stands still",
+        rule="By eq. (14) and (15) θ does not move in a tick whose measured h is larger than the one α ticks before.",
+        measured=f"θ moves in {number(share)} % of these ticks, with a fixed target",
         holds=share == 0.0,
-        reason="The sign function turns the step around; it does not leave it out. The proof describes another "
-        "algorithm than the one that is given.",
+        reason="The sign function reverses the step; it does not omit it. The proof describes a different algorithm.",
         section=TITLE,
     )
 
@@ -143,8 +142,8 @@ def converges(ends: Mapping[str, tuple[float, float]], adaptive: float, duration
             for name, (first, last) in ends.items()
         ),
         holds={f"target {name}": last < _ZERO for name, (_, last) in ends.items()},
-        reason=f"With the antenna of eq. (16) a target that stands still is reached, {number(adaptive, 2)} m²; one "
-        "that moves is followed at a distance.",
+        reason=f"With the antenna of eq. (16) a fixed target is reached, {number(adaptive, 2)} m²; a moving one is "
+        "followed at a distance.",
         section=TITLE,
     )
 
@@ -152,8 +151,7 @@ def converges(ends: Mapping[str, tuple[float, float]], adaptive: float, duration
 def proof_holds(share: float) -> Check:
     """Share of the ticks in which h rises by the proof's algorithm, still target (%)."""
     return Check(
-        statement='`ZNNBAS(accept="improving")`, the algorithm of the proof, never lets h rise while the target stands '
-        "still.",
+        statement='`ZNNBAS(accept="improving")`, the algorithm of the proof, never lets h rise for a fixed target.',
         rule="h(θ) rises in no tick.",
         measured=f"in {number(share)} % of the ticks",
         holds=share == 0.0,

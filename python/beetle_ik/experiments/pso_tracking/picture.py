@@ -93,7 +93,7 @@ def locates(snake: Trials, threshold: Trials) -> Claim:
         holds=snake.near >= _SHARE * snake.count if snake.count >= _ENOUGH else None,
         reading="Squares are put back into eq. (20), the external energy is the strength of edges, the contour begins "
         "around a guess up to 0.1 rad off, and joint angles are fitted to it. The paper shows no picture.",
-        reason="" if snake.count >= _ENOUGH else "So few pictures do not tell: run without --short.",
+        reason="" if snake.count >= _ENOUGH else "Too few pictures to decide: run without --short.",
         section=TITLE,
     )
 

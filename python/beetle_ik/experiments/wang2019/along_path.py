@@ -110,7 +110,7 @@ def along_path(context: Context) -> Part:
                 drawing=_draw(case),
                 caption=(
                     "Best cost so far, mean over seeds (shaded: the standard deviation of TPBSO); the best of TPBSO's "
-                    "plans; how its last link stands; how far the tip is off."
+                    "plans; the orientation of its last link; the error of the tip."
                 ),
             )
         )
@@ -271,7 +271,7 @@ def _distances(plan: bik.Plan) -> tuple[NDArray[np.float64], NDArray[np.float64]
 def _draw_distance(axes: Axes, plan: bik.Plan, accuracy: float) -> None:
     time, distance = _distances(plan)
     axes.plot(time, 1e3 * distance, color=BLUE, marker=".", label="distance from the points")
-    axes.axhline(1e3 * accuracy, color=VERMILION, linestyle="--", label="accuracy asked for")
+    axes.axhline(1e3 * accuracy, color=VERMILION, linestyle="--", label="required accuracy")
     axes.set(xlabel="time [s]", ylabel="distance [mm]")
     legend_above(axes, columns=2)
 

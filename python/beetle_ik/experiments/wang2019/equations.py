@@ -116,7 +116,7 @@ def reaches(places: Array) -> Claim:
             f"{np.sum(missed <= _PLACED)} with the arccosine alone"
         ),
         holds=bool(np.all(signed_missed <= _PLACED)),
-        reading="Eq. (2) gives the cosine alone; the first joint turns the way from p′ to p.",
+        reading="Eq. (2) gives only the cosine; the first joint turns in the direction from p′ to p.",
         section=TITLE,
     )
 

@@ -100,7 +100,7 @@ def _is_quicker(cases: Sequence[Freedom]) -> Check:
         rule=f"Ours takes at most {_VIA} times the lowest mean of the searches, for each arm and freedom.",
         measured=(
             f"the lowest mean is {number(min(ratios), 4)} to {number(max(ratios), 4)} times ours; the best single plan "
-            f"of any search is quicker than ours for {'; '.join(longer) or 'no arm'}"
+            f"of any search is faster than ours for {'; '.join(longer) or 'no arm'}"
         ),
         holds=min(ratios) >= 1.0 / _VIA,
         section=TITLE,
