@@ -96,7 +96,7 @@ def immune(errors: Mapping[str, float]) -> Claim:
         measured=f"model {number(100 * replayed)} cm; ZNNBAS {number(100 * wrong)} cm, on the arm as drawn "
         f"{number(100 * drawn)} cm",
         holds=replayed > _MISSED and wrong <= _ALIKE * drawn,
-        reading="A link 2 cm longer, joints off by 2 degrees in turn. Without noise, and an arm that obeys at once.",
+        reading="A link 2 cm longer, joint offsets of 2 degrees with alternating signs; no noise, no servos.",
         section=TITLE,
     )
 
@@ -115,7 +115,7 @@ def on_servos_as_printed(error: float) -> Check:
 def follows_on_servos(dt: float, error: float) -> Check:
     """The best tick (s) and its true late rms error (m)."""
     return Check(
-        statement="ZNNBAS follows the circle on servos, given long ticks, eq. (16) and time.",
+        statement="ZNNBAS follows the circle on servos, with long ticks, eq. (16) and a slow path.",
         rule=f"At the best tick the tool is within {number(1e3 * _FOLLOWED, 1)} mm of the circle (rms).",
         measured=f"{number(1e3 * error)} mm at ticks of {1e3 * dt:g} ms",
         holds=error <= _FOLLOWED,

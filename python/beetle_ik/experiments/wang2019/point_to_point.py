@@ -128,7 +128,7 @@ def is_easy(motions: Sequence[Motion]) -> Claim:
         rule=f"The median run is within 1 % of its final cost after at most {_SOON} of {GENERATIONS} iterations.",
         measured=f"{iterations[2]:g} iterations; {others} links",
         holds=iterations[2] <= _SOON,
-        reading="Constants are ours. With two links every motion without a detour turns the joints by the same.",
+        reading="Constants are ours. With two links every motion without a detour turns the joints by the same amount.",
         section=TITLE,
     )
 
