@@ -124,6 +124,15 @@ def test_robust_is_who_fails_no_more_often_than_the_others() -> None:
     assert judge("obstacle", "is_robust", past([plan(1.8)] * 4, good)) is NOT_MET
 
 
+def test_one_run_of_each_search_decides_nothing() -> None:
+    found = motions(lambda name, *_: 1.1 if name == TPBSO else 1.0)
+    for motion in found:
+        for plans in (motion.usual, motion.tuned):
+            plans.update({name: some[:1] for name, some in plans.items()})
+    assert judge("comparison", "is_best", found) is Verdict.NOT_TESTED
+    assert judge("obstacle", "is_robust", past([plan(1.8)], [plan(1.7)])) is Verdict.NOT_TESTED
+
+
 def along(plans: list[Any], *, path: str = "pentagram", objective: str = "time", retimed: float = 1.0) -> Any:
     return SimpleNamespace(path=path, objective=objective, plans={TPBSO: plans}, best=plans[0], retimed=retimed)
 

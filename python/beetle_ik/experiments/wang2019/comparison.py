@@ -50,7 +50,7 @@ def is_best(motions: Sequence[Motion]) -> Claim:
         "algorithms.”",
         source="Section IV-D.1, Figure 17; abstract; section V",
         rule="Neither PSO nor GA has a lower mean than TPBSO on any motion, by more than two standard errors.",
-        measured="; ".join(f"{contest}: {_told(who)}" for contest, who in beaten.items()),
+        measured="; ".join(f"{contest}: {_told(who)}" for contest, who in beaten.items()) if enough else "",
         holds={contest: not who for contest, who in beaten.items()} if enough else None,
         reason="" if enough else TOO_FEW,
         section=TITLE,
