@@ -217,7 +217,7 @@ def page(rivals: dict[tuple[str, str], list[float]], seeds: int, evaluations: in
         f"mealpy {version('mealpy')}, pyswarms {version('pyswarms')}, numpy {version('numpy')}; written by",
         f"`benches/standard_functions.py`. Populations of {POPULATION} unless the row says otherwise.",
         "",
-        'p is the p-value of the one-sided rank test (Mann and Whitney) of "ours is worse"; **worse** marks p below 0.01.',
+        'p is the p-value of the one-sided rank test (Mann and Whitney) of "ours is worse"; **worse** marks p < 0.01.',
         "",
         "| ours | rival | function | our median | its median | p |",
         "|---|---|---|---|---|---|",
