@@ -46,9 +46,7 @@ Place = Annotated[
         metavar="X,Y,Z[,ROLL,PITCH,YAW]", help="Position of the tip in m; with angles in rad, its orientation too."
     ),
 ]
-Configuration = Annotated[
-    str | None, typer.Option(metavar="Q1,Q2,...", help="Joint positions, instead of a place of the tip.")
-]
+Configuration = Annotated[str | None, typer.Option(metavar="Q1,Q2,...", help="Joint positions instead of a tip pose.")]
 
 
 def point_to_point(
