@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::PathBuf;
 
 use ikcore::math::{Pose, pose};
-use ikcore::nalgebra::Vector3;
+use ikcore::nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use ikcore::robot::{JointKind, Robot};
 use proptest::prelude::*;
 
@@ -508,4 +508,46 @@ fn messages_repeat_no_more_than_a_line_of_a_file() {
     let long = "1 ".repeat(1_000_000);
     let says = error_after("0.1 0.2 0.3", &long);
     assert!(says.len() < 400 && says.ends_with("...'"), "{} characters", says.len());
+}
+
+/// The tip's pose by urdf-rs and a product of transforms, for joints in chain order.
+fn tip_by_urdf_rs(xml: &str, q: &[f64]) -> Pose {
+    let mut values = q.iter();
+    let mut tip = Isometry3::identity();
+    for joint in urdf_rs::read_from_string(xml).unwrap().joints {
+        let ([x, y, z], [roll, pitch, yaw]) = (joint.origin.xyz.0, joint.origin.rpy.0);
+        let turned = UnitQuaternion::from(Rotation3::from_euler_angles(roll, pitch, yaw));
+        tip *= Isometry3::from_parts(Translation3::new(x, y, z), turned);
+        let axis = Unit::new_normalize(Vector3::from(joint.axis.xyz.0));
+        match joint.joint_type {
+            urdf_rs::JointType::Revolute => tip *= UnitQuaternion::from_axis_angle(&axis, *values.next().unwrap()),
+            urdf_rs::JointType::Prismatic => tip *= Translation3::from(axis.scale(*values.next().unwrap())),
+            _ => {}
+        }
+    }
+    pose::from_parts(tip.translation.vector.into(), tip.rotation.to_rotation_matrix().into_inner())
+}
+
+proptest! {
+    #[test]
+    fn the_tip_is_where_urdf_rs_puts_it(
+        origins in prop::collection::vec(prop::array::uniform6(-3.0..3.0), 5),
+        axes in prop::collection::vec(prop::array::uniform3(0.1..1.0), 5),
+        q in prop::collection::vec(-1.0..1.0, 4),
+    ) {
+        let kinds = ["revolute", "prismatic", "fixed", "revolute", "revolute"];
+        let links: Vec<String> = (0..6).map(|i| format!("l{i}")).collect();
+        let mut xml = String::from("<robot name='r'>");
+        links.iter().for_each(|link| xml += &format!("<link name='{link}'/>"));
+        for (i, ([x, y, z, roll, pitch, yaw], [ax, ay, az])) in origins.iter().zip(&axes).enumerate() {
+            xml += &format!(
+                "<joint name='j{i}' type='{}'><origin xyz='{x} {y} {z}' rpy='{roll} {pitch} {yaw}'/><parent link='l{i}'/>\
+                 <child link='l{}'/><axis xyz='{ax} {ay} {az}'/><limit lower='-2' upper='2' velocity='1' effort='1'/></joint>",
+                kinds[i],
+                i + 1,
+            );
+        }
+        xml += "</robot>";
+        assert_same(&load(&xml).fk(&q).unwrap(), &tip_by_urdf_rs(&xml, &q), 1e-12);
+    }
 }
