@@ -11,6 +11,8 @@ Every result has `success`, `status` and `message`: a sentence that says what ha
     result.trajectory.to_csv("trajectory.csv")
 """
 
+import logging
+
 from . import goals, interop, obstacles, paths, plot, tasks, vision
 from ._core import (
     APPS,
@@ -72,6 +74,10 @@ from ._core import (
     track,
     track_model_free,
 )
+from ._versions import show_versions
+
+# Silent unless the application configures logging.
+logging.getLogger(__name__).addHandler(logging.NullHandler())
 
 __all__ = [
     "APPS",
@@ -131,6 +137,7 @@ __all__ = [
     "planar_posture",
     "plot",
     "pose",
+    "show_versions",
     "solve",
     "solve_all",
     "solve_batch",

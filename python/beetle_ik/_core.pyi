@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import disjoint_base
 
 __version__: str
+_instructions: str
 
 _Array: TypeAlias = NDArray[np.float64]
 _Transform: TypeAlias = _Homogeneous | _AsMatrix
@@ -448,6 +449,10 @@ class BAS:
         max_passes: largest number of passes; the paper has no such bound.
 
     The error band of the paper is the tolerance of the call.
+
+    In `minimize`, antennae are c1 times the square root of the function's value: the minimum must be zero, and c1 must suit
+    the function. With the default c1, the sum of squares about (0.3, 0.3) in [-2, 2]^2 stayed at 0.5 to 2.9 (5 seeds, 30000
+    evaluations), where `DifferentialEvolution` and `PSO` found the minimum exactly.
     """
 
     def __new__(
@@ -1501,7 +1506,7 @@ def minimize(
     lower: ArrayLike,
     upper: ArrayLike,
     *,
-    solver: _DerivativeFree | MultiStart,
+    solver: _DerivativeFree | MultiStart | None = None,
     start: ArrayLike | None = None,
     stop: Stop | None = None,
     seed: int = 0,
@@ -1514,8 +1519,8 @@ def minimize(
         function: takes x (n,) and returns a number; NaN and infinities count as the worst value.
         lower: (n,), finite.
         upper: (n,), finite.
-        solver: a derivative-free solver, such as `PSO` or `BAS`, or `MultiStart` of one. The antenna length of BAS is c1
-            times the square root of the value: it suits functions with minimum zero.
+        solver: a derivative-free solver, such as `PSO`, or `MultiStart` of one; None: `DifferentialEvolution()`. BAS suits
+            only functions with minimum zero, near it: see `BAS`.
         start: (n,), first point; None: drawn at random. Swarms include it in the first generation.
         stop: budgets; None: 30000 evaluations. `Stop(value_below=...)` sets a target value.
         seed: seed of the random draws; the same seed gives the same bits.
@@ -2004,7 +2009,7 @@ class Step:
         """Geodesic angle to the target's orientation (rad); NaN if the task leaves the orientation free."""
     @property
     def inside_limits(self) -> bool:
-        """False if a joint cannot return to its position limits within this step."""
+        """False if a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this step."""
 
 # --- obstacles ----------------------------------------------------------------------------------
 

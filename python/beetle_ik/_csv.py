@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ._core import InvalidInputError
 from ._files import path_of, whole_file
+from ._text import listed
 
 
 def write_table(file: str | os.PathLike[str], columns: Sequence[str], rows: NDArray[np.float64]) -> None:
@@ -56,7 +57,7 @@ def _text(file: str | os.PathLike[str]) -> str:
 
 
 def _check_header(file: str | os.PathLike[str], columns: list[str], required: Sequence[str]) -> None:
-    found = (", ".join(columns) or "none") + _header_advice(columns)
+    found = (listed(columns) or "none") + _header_advice(columns)
     for name in required:
         if name not in columns:
             raise InvalidInputError(f"{os.fspath(file)}, line 1: column '{name}' is missing; columns found: {found}")
@@ -95,7 +96,7 @@ def _number(where: str, column: str, entry: str) -> float:
     try:
         number = float(entry)
     except ValueError:
-        raise InvalidInputError(f"{where}, column '{column}': '{entry}' is not a number") from None
+        raise InvalidInputError(f"{where}, column '{column}': {entry!r:.60} is not a number") from None
     if not np.isfinite(number):
         raise InvalidInputError(f"{where}, column '{column}': {number} is not finite")
     return number

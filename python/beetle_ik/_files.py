@@ -1,7 +1,9 @@
 """Atomic writing: a file or folder appears complete, or not at all."""
 
 import errno
+import logging
 import os
+import secrets
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,6 +11,8 @@ from pathlib import Path
 from typing import BinaryIO
 
 from ._core import InvalidInputError
+
+_log = logging.getLogger(__name__)
 
 
 def path_of(file: str | os.PathLike[str]) -> Path:
@@ -32,14 +36,16 @@ def whole_file(file: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     path = path_of(file)
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "No such folder", str(path.parent))
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
+    unfinished = path.with_name(f".beetle-ik-{secrets.token_hex(8)}.part")
     try:
-        with unfinished.open("wb") as stream:
+        # "x" opens a new file or fails: neither a link nor a file of another thread is written.
+        with unfinished.open("xb") as stream:
             yield stream
         unfinished.replace(path)
     except BaseException:
         unfinished.unlink(missing_ok=True)
         raise
+    _log.info("wrote %s", path)
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._frames import Frames
-from ._shapes import draw_from_above, draw_in_space
+from ._shapes import draw_from_above, draw_in_space, joints_to_tip
 from ._style import BLACK, BLUE, GREEN, SKY, VERMILION, line
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class Scene:
         return np.asarray(self._plan.trajectory.at(share * self._plan.trajectory.duration)[0])
 
     def _origins(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.asarray(self._plan.robot.link_poses(q)[:, :3, 3])
+        return joints_to_tip(self._plan.robot, q)
 
     def _plot(self, points: NDArray[np.float64], **style: Any) -> Any:
         return self.axes.plot(*points.T[: 2 if self._flat else 3], **style)[0]

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ._core import Obstacle, Robot
 
 _FROM_ABOVE = "#F3D58C"  # orange on white, without showing what is below
+_TOOL = 1e-9  # m: a shorter tool is none
 _SEEN_BEYOND = 0.3  # margin around the arm, as a fraction of its extent
 
 
@@ -74,6 +75,13 @@ def inside(polygon: NDArray[np.float64], low: NDArray[np.float64], high: NDArray
                 return np.empty((0, 3))
             polygon = np.array(kept)
     return polygon
+
+
+def joints_to_tip(robot: Robot, q: ArrayLike) -> NDArray[np.float64]:
+    """Returns the origins of the link frames at `q` (n,), base first, and the tip if a tool moves it: (k, 3)."""
+    origins, tip = robot.link_poses(q)[:, :3, 3], robot.fk(q)[:3, 3]
+    has_tool = float(np.linalg.norm(tip - origins[-1])) > _TOOL
+    return np.vstack((origins, tip)) if has_tool else origins
 
 
 def draw_capsules(axes: Any, robot: Robot, q: ArrayLike) -> None:

@@ -1,6 +1,23 @@
-"""Counts with nouns."""
+"""Counts with nouns, and lists of names, for messages."""
+
+from collections.abc import Collection
+
+_LIST_LENGTH = 400  # characters
 
 
 def counted(number: int, thing: str) -> str:
     """Returns "1 step" or "2 steps"."""
     return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
+
+
+def listed(names: Collection[str]) -> str:
+    """Joins names with commas, up to a readable length; then says how many more there are."""
+    shown = ", ".join(names)
+    if len(shown) <= _LIST_LENGTH:
+        return shown
+    kept: list[str] = []
+    for name in names:
+        if len(", ".join([*kept, name])) > _LIST_LENGTH:
+            break
+        kept.append(name)
+    return f"{', '.join(kept)} and {len(names) - len(kept)} more" if kept else f"{len(names)} names"

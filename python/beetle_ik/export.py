@@ -7,7 +7,9 @@ back as cubics.
 """
 
 import os
+import struct
 import zipfile
+import zlib
 from typing import Any
 
 import numpy as np
@@ -16,10 +18,25 @@ from numpy.typing import NDArray
 from ._core import InvalidInputError, Trajectory
 from ._csv import read_table, write_table
 from ._files import path_of, whole_file
+from ._text import listed
 
 # Columns are named "q:joint", "qd:joint", "qdd:joint": position, velocity and acceleration of each joint.
 _DERIVATIVES = ("q", "qd", "qdd")
 _QUINTIC = 5
+# What numpy and zipfile raise for archives with wrong sizes, offsets, checksums, compression methods or headers.
+_DAMAGE = (
+    ValueError,
+    EOFError,
+    OSError,
+    MemoryError,
+    NotImplementedError,
+    RuntimeError,
+    SyntaxError,
+    KeyError,
+    struct.error,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 _PREFIXES = tuple(f"{derivative}:" for derivative in _DERIVATIVES)
 
 
@@ -67,7 +84,7 @@ def joint_positions(
     if not columns:
         raise InvalidInputError(
             f"{os.fspath(file)}, line 1: no joint positions: expected a column for each joint, "
-            f"named 'q:joint' or 'joint'; columns found: {', '.join(table)}"
+            f"named 'q:joint' or 'joint'; columns found: {listed(table)}"
         )
     return list(columns), np.column_stack([table[column] for column in columns.values()])
 
@@ -103,14 +120,16 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
     """Reads a trajectory that `to_npz` wrote.
 
     Raises:
-        InvalidInputError: the file is not an npz file, or lacks an array of a trajectory. Names the array.
+        InvalidInputError: the file is not an npz file or is damaged, an array is too large for the memory, or one of a
+            trajectory is missing. Names the array.
+        FileNotFoundError, PermissionError, IsADirectoryError: there is no such file, or it may not be read.
     """
     stored = _arrays(file)
     for name in ("time", "coefficients", "joint_names"):
         if name not in stored:
             raise InvalidInputError(
                 f"{os.fspath(file)}: not a trajectory: '{name}' is missing; "
-                f"the file holds: {', '.join(stored) or 'nothing'}"
+                f"the file holds: {listed(stored) or 'nothing'}"
             )
     joint_names = stored["joint_names"]
     if joint_names.ndim != 1 or joint_names.dtype.kind != "U":
@@ -129,5 +148,5 @@ def _arrays(file: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
         try:
             with np.load(stream, allow_pickle=False) as archive:
                 return {name: archive[name] for name in archive.files}
-        except (ValueError, EOFError, zipfile.BadZipFile) as error:
-            raise InvalidInputError(f"{os.fspath(file)}: damaged npz file: {error}") from error
+        except _DAMAGE as error:
+            raise InvalidInputError(f"{os.fspath(file)}: damaged npz file: {error!s:.200}") from error

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core, _plan_figure
-from ._shapes import draw_capsules, draw_in_space
-from ._style import BLUE, FORBIDDEN, GREEN, VERMILION, line, style
+from ._arguments import require
+from ._shapes import draw_capsules, draw_in_space, joints_to_tip
+from ._style import BLUE, FORBIDDEN, GREEN, ORANGE, VERMILION, line, style
 from ._text import counted
 
 if TYPE_CHECKING:
@@ -28,26 +29,31 @@ __all__ = ["animation", "model_free", "plan", "robot", "saturation", "track", "t
 _ROW_HEIGHT = 2.4  # inches per panel over time
 _VELOCITY_PANELS_A_ROW = 7
 _VELOCITY_ROW_HEIGHT = 2.0
+_HEADROOM = 1.15  # height of a panel over what it shows
+_FAR_LIMIT = 3.0  # a limit beyond this multiple of the velocities is written instead of drawn
 _LEGEND_ROWS = 10
 _TRAJECTORY_SAMPLES = 2001
 
 
 def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = None) -> Figure:
-    """Draws the robot as a stick figure at configuration `q` (n,), with its capsules and `obstacles`."""
-    _require("robot", robot, _core.Robot)
+    """Draws the robot as a stick figure at configuration `q` (n,), with its tool, its capsules and `obstacles`."""
+    require("robot", robot, _core.Robot)
     obstacles = () if obstacles is None else obstacles
-    _require("obstacles", obstacles, Iterable)
+    require("obstacles", obstacles, Iterable)
     obstacles = list(obstacles)
     for i, obstacle in enumerate(obstacles):
-        _require(f"obstacles[{i}]", obstacle, _core.Obstacle)
-    origins = robot.link_poses(q)[:, :3, 3]
+        require(f"obstacles[{i}]", obstacle, _core.Obstacle)
+    corners = joints_to_tip(robot, q)
+    flange = len(robot.link_names) - 1
     with style():
         figure = _new_figure(6.0, 6.0)
         axes = figure.add_subplot(projection="3d")
-        axes.plot(*origins.T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
-        axes.plot(*origins[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
+        axes.plot(*corners[: flange + 1].T, color=BLUE, linewidth=3, marker="o", markersize=6, label="links")
+        if len(corners) > flange + 1:
+            axes.plot(*corners[flange:].T, color=ORANGE, linewidth=3, label="tool")
+        axes.plot(*corners[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
         draw_capsules(axes, robot, q)
-        draw_in_space(axes, origins, obstacles)
+        draw_in_space(axes, corners, obstacles)
         axes.set_title(f"{robot.name}, {counted(robot.dof, 'joint')}")
         axes.legend(loc="upper left")
     return figure
@@ -55,7 +61,7 @@ def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = 
 
 def track(result: TrackResult) -> Figure:
     """Draws a tracked path: tip and target in space, errors, joint positions, evaluations, velocities with limits."""
-    _require("result", result, _core.TrackResult)
+    require("result", result, _core.TrackResult)
     panels = [_draw_position_error, _draw_joint_positions, _draw_evaluations]
     if np.isfinite(result.rotation_error).any():
         panels.insert(1, _draw_rotation_error)
@@ -80,7 +86,7 @@ def track(result: TrackResult) -> Figure:
 
 def model_free(result: ModelFreeResult) -> Figure:
     """Draws a path tracked without a model: tip and target in space, errors, joint positions, measurements."""
-    _require("result", result, _core.ModelFreeResult)
+    require("result", result, _core.ModelFreeResult)
     names = [f"joint {j + 1}" for j in range(result.q.shape[1])]
     oriented = bool(np.isfinite(result.rotation_error).any())
     rows = 4 if oriented else 3
@@ -107,7 +113,7 @@ def model_free(result: ModelFreeResult) -> Figure:
 
 def plan(plan: Plan) -> Figure:
     """Draws a planned motion: the arm along its path, the search history, and the joints over time."""
-    _require("plan", plan, _core.Plan)
+    require("plan", plan, _core.Plan)
     with style():
         figure = _new_figure(13.0, 3 * _ROW_HEIGHT + 0.4)
         _plan_figure.draw(figure, plan)
@@ -116,7 +122,7 @@ def plan(plan: Plan) -> Figure:
 
 def animation(result: Plan | TrackResult) -> FuncAnimation:
     """Animates the arm in real time: `bik.plot.animation(plan).save("plan.gif", writer="pillow")`."""
-    _require("result", result, _core.Plan, _core.TrackResult)
+    require("result", result, _core.Plan, _core.TrackResult)
     with style():
         figure = _new_figure(5.0, 5.0)
         return _plan_figure.animate(figure, result).animation(figure)
@@ -124,7 +130,7 @@ def animation(result: Plan | TrackResult) -> FuncAnimation:
 
 def trajectory(trajectory: Trajectory) -> Figure:
     """Draws position, velocity and, unless the segments are straight, acceleration of each joint over time."""
-    _require("trajectory", trajectory, _core.Trajectory)
+    require("trajectory", trajectory, _core.Trajectory)
     curved = trajectory.coefficients.shape[2] > 2
     labels = ["position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]"][: 3 if curved else 2]
     time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
@@ -145,8 +151,8 @@ def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
 
     In a time-optimal motion some joint is at 1 at any time. `limits` are constant, as `time_optimal` takes them.
     """
-    _require("trajectory", trajectory, _core.Trajectory)
-    _require("limits", limits, _core.Limits)
+    require("trajectory", trajectory, _core.Trajectory)
+    require("limits", limits, _core.Limits)
     time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
     _, velocity, acceleration = trajectory.at(time)
     shares = {
@@ -170,12 +176,6 @@ def saturation(trajectory: Trajectory, limits: Limits) -> Figure:
         columns = _legend_columns(trajectory.joint_names)
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper", ncols=columns)
     return figure
-
-
-def _require(name: str, value: object, *kinds: type) -> None:
-    if not isinstance(value, kinds):
-        wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
-        raise _core.InvalidInputError(f"{name} must be {wanted}, got {value!r:.60}")
 
 
 def _slopes(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -223,11 +223,13 @@ def _draw_evaluations(axes: Axes, result: TrackResult) -> None:
 
 
 def _draw_velocities(figure: Any, result: TrackResult, rows: int) -> None:
-    """Draws one small panel per joint; velocities beyond the limit are shaded."""
+    """Draws one small panel per joint, scaled to the velocities; a limit far beyond them is written, not drawn."""
     names = result.robot.joint_names
     panels = figure.subplots(rows, min(len(names), _VELOCITY_PANELS_A_ROW), sharex=True, sharey=True, squeeze=False)
     time, velocity, limit = result.time[1:], result.qd[1:], result.velocity_limit[1:]
-    top = 1.15 * _highest(limit if np.isfinite(limit).any() else velocity)
+    fastest = _highest(velocity)
+    highest = _highest(limit) if np.isfinite(limit).any() else fastest
+    top = _HEADROOM * (highest if highest <= _FAR_LIMIT * fastest else fastest)
     for j, axes in enumerate(panels.flat):
         if j >= len(names):
             axes.set_visible(False)
@@ -237,6 +239,9 @@ def _draw_velocities(figure: Any, result: TrackResult, rows: int) -> None:
         axes.fill_between(time, -bound, -2.0 * top, color=FORBIDDEN, linewidth=0)
         axes.plot(time, velocity[:, j], color=line(j)["color"])
         axes.set_title(names[j])
+        lowest = float(limit[:, j].min())
+        if top < lowest < np.inf:
+            axes.text(0.97, 0.97, f"limit {lowest:.3g}", transform=axes.transAxes, ha="right", va="top")
         axes.set_ylim(-top, top)
     unit = "rad/s" if _all_turn(result.robot) else "rad/s, m/s"
     figure.supylabel(f"velocity [{unit}]")

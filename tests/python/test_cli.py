@@ -285,7 +285,7 @@ def test_the_module_runs_and_a_pipe_gets_no_progress_bar() -> None:
     assert "mean position error [m]" in done.stdout
 
 
-@pytest.mark.parametrize("command", ["", "robots", "fk", "solve", "track", "plan", "reproduce"])
+@pytest.mark.parametrize("command", ["", "robots", "fk", "solve", "track", "plan", "reproduce", "doctor"])
 def test_every_command_has_help(command: str) -> None:
     result = run(*command.split(), "--help")
     assert result.exit_code == 0

@@ -95,3 +95,12 @@ def test_a_file_that_fails_half_way_leaves_the_old_one(tmp_path: Path) -> None:
         fail_half_way()
     assert [path.name for path in tmp_path.iterdir()] == ["result"]
     assert file.read_text() == "old"
+
+
+def test_a_long_header_is_cut(tmp_path: Path) -> None:
+    file = tmp_path / "wide.csv"
+    file.write_text(",".join(f"column_{i}" for i in range(10_000)) + "\n")
+    with pytest.raises(InvalidInputError) as caught:
+        read_table(file, ["time"])
+    assert str(caught.value).endswith(" more")
+    assert len(str(caught.value)) < 700

@@ -51,6 +51,23 @@ def test_the_classes_of_errors() -> None:
         (lambda: solve("up"), Invalid, "target must be an array of numbers, got 'up'"),
         (lambda: solve("1.0"), Invalid, "target must be an array of numbers, got '1.0'"),
         (
+            lambda: solve(np.ma.masked_greater([0.3, 0.3, 1.0], 0.5)),
+            Invalid,
+            "target has masked entries: replace them first, such as by .filled(value)",
+        ),
+        (lambda: solve(prefer="\ud800"), Invalid, "text must be valid Unicode, got '\\ud800'"),
+        (
+            lambda: bik.Trajectory([0, 1], np.zeros((1, 1, 2)), joint_names=["\ud800"]),
+            Invalid,
+            "text must be valid Unicode, got ['\\ud800']",
+        ),
+        (lambda: bik.Robot.from_urdf("<robot/>", tip="\udfff"), Invalid, "text must be valid Unicode, got '\\udfff'"),
+        (
+            lambda: solve(prefer="n" * 10**6),
+            Invalid,
+            f"prefer must be one of 'any', 'nearest', 'best', got '{'n' * 200}...'",
+        ),
+        (
             lambda: solve(np.ones(3) * 1j),
             Invalid,
             "target must be an array of numbers, got array([0.+1.j, 0.+1.j, 0.+1.j])",
@@ -300,6 +317,17 @@ def test_wrong_paths_are_named(call: Callable[[], object], error: type[Exception
             "matrix is not a rigid transform: R'R differs from the identity by 3.000e0",
         ),
         (
+            lambda: bik.pose([0, 0, 0], [0, 0, 0, 1]),
+            Invalid,
+            "pose takes an orientation by keyword only, since orders differ: xyzw= or wxyz= for a quaternion, rpy=, "
+            "rotvec= or matrix=",
+        ),
+        (
+            lambda: bik.pose([0, 0, 0], quat=[0, 0, 0, 1]),
+            Invalid,
+            "pose has no argument 'quat'; orientations are xyzw= or wxyz= for a quaternion, rpy=, rotvec= or matrix=",
+        ),
+        (
             lambda: bik.Trajectory([0, 1], np.zeros((1, 2))),
             Invalid,
             "coefficients: expected shape (k - 1, n, degree + 1), degree at most 6, got (1, 2)",
@@ -352,7 +380,6 @@ def test_a_wrong_type_is_told_with_its_argument(call: Callable[[], object], mess
         lambda: bik.Stop(5),
         lambda: bik.track(IIWA, CIRCLE, START, 0.1),
         lambda: bik.solve(IIWA, [0.3, 0.3, 1.0], START),
-        lambda: bik.pose([0, 0, 0], [0, 0, 0, 1]),
     ],
 )
 def test_options_are_named(call: Callable[[], object]) -> None:
@@ -367,3 +394,32 @@ def test_a_csv_with_a_missing_column_is_told(tmp_path: Path) -> None:
     file.write_text("seconds,q:a\n0,1\n")
     message = f"{file}, line 1: column 'time' is missing; columns found: seconds, q:a"
     assert_told(lambda: bik.Trajectory.from_csv(file), Invalid, message)
+
+
+def test_a_masked_array_without_masked_entries_is_an_array() -> None:
+    target = np.array([0.3, 0.3, 1.0])
+    np.testing.assert_array_equal(solve(np.ma.masked_array(target)).q, solve(target).q)
+
+
+def test_unaligned_arrays_are_copied() -> None:
+    packed = np.zeros(1, dtype=[("flag", "u1"), ("target", "f8", 3)])
+    packed["target"] = (0.3, 0.3, 1.0)
+    target = packed["target"][0]
+    assert not target.flags.aligned
+    np.testing.assert_array_equal(solve(target).q, solve([0.3, 0.3, 1.0]).q)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda name: bik.Robot.named(name),
+        lambda name: bik.Robot.from_urdf(name),
+        lambda name: IIWA.with_capsules([(name, [0, 0, 0], [0, 0, 1], 0.1)]),
+        lambda name: bik.Robot.from_urdf(f"<robot><joint name='{name}' type='x'/></robot>"),
+        lambda name: bik.Robot.from_dh(a=[1], alpha=[0], d=[0], kinds=[name]),
+    ],
+)
+def test_long_names_are_cut_in_messages(call: Callable[[str], object]) -> None:
+    with pytest.raises(bik.BeetleIkError) as caught:
+        call("n" * 10**6)
+    assert len(str(caught.value)) < 1000

@@ -206,7 +206,7 @@ def load(old: str = "", new: str = "", **links: str) -> bik.Robot:
         (
             lambda: load('<parent link="upper"/>', '<parent link="base"/>'),
             Urdf,
-            "robot 'arm' ends in several links: say which one is the tip; leaves: upper, hand",
+            "robot 'arm' ends in 2 links: say which one is the tip; leaves, by number of joints: upper (1), hand (1)",
         ),
         (
             lambda: load(tip="hnad"),

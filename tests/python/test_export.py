@@ -1,5 +1,8 @@
 """Trajectories to files and back."""
 
+import io
+import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -131,6 +134,51 @@ def test_a_file_that_is_not_npz_is_refused(tmp_path: Path, content: bytes) -> No
     with pytest.raises(bik.InvalidInputError) as caught:
         bik.Trajectory.from_npz(file)
     assert str(caught.value) == f"{file}: not an npz file"
+
+
+def test_an_array_larger_than_the_memory_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "huge.npz"
+    header = io.BytesIO()
+    np.lib.format.write_array_header_1_0(header, {"descr": "<f8", "fortran_order": False, "shape": (10**12,)})
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("time.npy", header.getvalue())
+    with pytest.raises(bik.InvalidInputError, match=r"huge\.npz: damaged npz file: "):
+        bik.Trajectory.from_npz(file)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_every_damaged_npz_is_refused_or_read(tmp_path: Path) -> None:
+    motion = bik.Trajectory.from_samples(TIME, np.zeros((len(TIME), 1)), joint_names=["a"])
+    whole = tmp_path / "motion.npz"
+    motion.to_npz(whole)
+    content, file = whole.read_bytes(), tmp_path / "damaged.npz"
+    refused = 0
+    for place in range(0, len(content), 3):
+        file.write_bytes(content[:place] + bytes([content[place] ^ 0xFF]) + content[place + 1 :])
+        try:
+            bik.Trajectory.from_npz(file)
+        except bik.InvalidInputError:
+            refused += 1
+    assert refused > 0
+
+
+def test_the_unfinished_file_follows_no_link(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    victim = tmp_path / "victim"
+    victim.write_text("precious")
+    monkeypatch.setattr("secrets.token_hex", lambda _: "known")
+    (tmp_path / ".beetle-ik-known.part").symlink_to(victim)
+    with pytest.raises(FileExistsError):
+        bik.Trajectory.from_samples(TIME, np.zeros((len(TIME), 1))).to_npz(tmp_path / "motion.npz")
+    assert victim.read_text() == "precious"
+
+
+def test_threads_may_write_one_file(tmp_path: Path) -> None:
+    motions = [bik.Trajectory.from_samples(TIME, np.full((len(TIME), 3), float(i))) for i in range(8)]
+    file = tmp_path / "motion.npz"
+    with ThreadPoolExecutor(8) as pool:
+        assert len(list(pool.map(lambda motion: motion.to_npz(file), motions * 20))) == 160
+    assert bik.Trajectory.from_npz(file) in motions
+    assert [entry.name for entry in tmp_path.iterdir()] == ["motion.npz"]
 
 
 def test_damaged_npz_is_refused(tmp_path: Path, tracked: bik.TrackResult) -> None:

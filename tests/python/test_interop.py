@@ -2,6 +2,7 @@
 
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,6 +11,7 @@ import pytest
 from generated import chain
 
 import beetle_ik as bik
+from beetle_ik.interop.chain import only_leaf
 
 TURN = bik.pose([0.1, 0.2, 0.3], rpy=[0.4, -0.5, 0.6])
 TIP = bik.pose([0.01, -0.02, 0.1], rpy=[0.3, 0.2, 0.1])
@@ -430,3 +432,43 @@ def test_mujoco_models_that_do_not_fit_are_refused(
 def test_text_that_is_no_mujoco_model_is_refused() -> None:
     with pytest.raises(bik.InvalidInputError, match=r"^MuJoCo cannot read the model: "):
         bik.interop.from_mujoco("<mujoco><nonsense/></mujoco>")
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (
+            lambda: bik.interop.to_ros(bik.Trajectory.from_samples(TIME, Q), frame_id="\ud800"),
+            "frame_id must be valid Unicode, got '\\ud800'",
+        ),
+        (lambda: bik.interop.to_ros(bik.Trajectory.from_samples(TIME, Q), frame_id=3), "frame_id must be a str, got 3"),
+        (lambda: bik.interop.to_ros([1.0]), "trajectory must be a Trajectory, got [1.0]"),
+    ],
+)
+def test_wrong_types_for_ros_are_named(call: Callable[[], object], message: str) -> None:
+    with pytest.raises(bik.InvalidInputError) as caught:
+        call()
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize("value", [None, 3, object(), b"<mujoco/>", "\ud800"], ids=repr)
+def test_what_is_no_mujoco_model_is_refused(value: object) -> None:
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    with pytest.raises(bik.InvalidInputError, match=r"^model must be "):
+        bik.interop.from_mujoco(value)
+
+
+@pytest.mark.parametrize("value", [None, 3, "model"], ids=repr)
+def test_what_is_no_pinocchio_model_is_refused(value: object) -> None:
+    pytest.importorskip("pinocchio", reason="Pinocchio is not installed")
+    with pytest.raises(bik.InvalidInputError, match=r"^model must be a Model, got "):
+        bik.interop.from_pinocchio(value)
+    with pytest.raises(bik.InvalidInputError, match=r"^robot must be a Robot, got "):
+        bik.interop.to_pinocchio(value)
+
+
+def test_long_lists_of_names_end_in_a_count() -> None:
+    with pytest.raises(bik.InvalidInputError) as caught:
+        only_leaf("MuJoCo", "bodies", [f"body_{i}" for i in range(5000)])
+    assert str(caught.value).endswith(" more")
+    assert len(str(caught.value)) < 600

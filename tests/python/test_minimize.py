@@ -72,6 +72,15 @@ def test_generations_come_whole() -> None:
     assert sizes == [(1, 3), (9, 3), (10, 3), (10, 3)]
 
 
+def test_differential_evolution_is_the_default() -> None:
+    def valley(x: np.ndarray) -> float:
+        return float((1 - x[0]) ** 2 + 100 * (x[1] - x[0] ** 2) ** 2)
+
+    found = bik.minimize(valley, [-2, -2], [2, 2])
+    given = bik.minimize(valley, [-2, -2], [2, 2], solver=bik.DifferentialEvolution())
+    assert found.value == given.value < 1e-8
+
+
 def test_history_is_the_best_value_against_evaluations() -> None:
     values: list[float] = []
 

@@ -405,3 +405,48 @@ def test_errors_come_back(again: Callable[[Exception], Exception]) -> None:
         bik.Robot.named("iiwa")
     other = again(caught.value)
     assert (type(other), str(other)) == (bik.UnknownNameError, str(caught.value))
+
+
+def forged(stored: bytes, place: int, value: int) -> bytes:
+    """The stored bytes with one byte of the payload replaced, and the checksum (FNV-1a) that belongs to it."""
+    payload = bytearray(stored[9:])
+    payload[place] = value
+    checksum = 0xCBF29CE484222325
+    for byte in payload:
+        checksum = (checksum ^ byte) * 0x100000001B3 % 2**64
+    return stored[:1] + checksum.to_bytes(8, "little") + payload
+
+
+def use(value: object) -> None:
+    """Computes with what a forged pickle gave."""
+    match value:
+        case bik.Path():
+            for t in (0.0, 0.3 * value.duration, np.inf):
+                value.position(t)
+                value.velocity(t)
+            value.sample(value.duration / 7)
+        case bik.Plan():
+            repr(value)
+            value.trajectory.at([0.0, 0.1, np.inf])
+            value.trajectory.max_velocity()
+        case _:
+            repr(value)
+            properties(value)
+
+
+STORED = {name: path for name, path in PATHS.items() if isinstance(path.__reduce__()[1][0], bytes)} | RESULTS
+
+
+@pytest.mark.parametrize("value", STORED.values(), ids=STORED)
+def test_forged_bytes_are_refused_or_used(value: object) -> None:
+    restore, (stored, *others) = value.__reduce__()
+    rng = np.random.default_rng(0)
+    places = rng.permutation(len(stored) - 9)[: max(6, min(120, 60_000 // len(stored)))]  # long ones take long
+    refused = 0
+    for place in places.tolist():
+        for byte in (0x00, 0x01, 0x7F, 0xF0, 0xFF):
+            try:
+                use(restore(forged(stored, place, byte), *others))
+            except bik.BeetleIkError:
+                refused += 1
+    assert refused > 0

@@ -259,9 +259,10 @@ def test_the_command_animates_a_plan_around_an_obstacle(tmp_path: Path, monkeypa
     monkeypatch.setattr(_plan_figure, "_FRAMES_A_SECOND", 2)
     monkeypatch.setattr(_plan_figure, "_PAUSE", 0)
     ends = ("--start-q", "0,0,0,0,0", "--end-q", "0.1,0,0,0,0")
-    result = run(
-        "point-to-point", "planar5", *ends, *QUICKLY, "--ellipse", "9,9,1,1,0", "--animation", "--out", str(tmp_path)
-    )
+    scene = tmp_path / "scene.json"
+    scene.write_text('[{"type": "ellipse", "center": [9, 9], "semi_axes": [1, 1]}]')
+    files = ("--scene", str(scene), "--animation", "--out", str(tmp_path))
+    result = run("point-to-point", "planar5", *ends, *QUICKLY, *files)
     assert result.exit_code == 0, result.output
     assert "smallest clearance [m]" in result.stdout
     assert (tmp_path / "plan.gif").read_bytes().startswith(b"GIF")
@@ -289,8 +290,14 @@ def test_the_command_plans_along_a_path() -> None:
     ("arguments", "message"),
     [
         (["point-to-point", "planar5", "--start", "9,0,0", "--end", "2,2,0"], "start cannot be reached"),
-        (["point-to-point", "planar5", "--start", "3,0", "--end", "2,2,0"], "--start: expected 3 numbers"),
-        (["point-to-point", "planar5", "--start", "3,0,0"], "no end was given: use --end X,Y,Z or --end-q Q1,Q2,..."),
+        (
+            ["point-to-point", "planar5", "--start", "3,0", "--end", "2,2,0"],
+            "--start: expected X,Y,Z or X,Y,Z,ROLL,PITCH,YAW",
+        ),
+        (
+            ["point-to-point", "planar5", "--start", "3,0,0"],
+            "no end was given: use --end X,Y,Z[,ROLL,PITCH,YAW] or --end-q",
+        ),
         (
             ["point-to-point", "planar5", "--start", "3,0,0", "--start-q", "0,0,0,0,0", "--end", "2,2,0"],
             "both --start and --start-q were given: give one of them",

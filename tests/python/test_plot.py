@@ -69,6 +69,35 @@ def test_a_robot_is_drawn_up_to_its_tip() -> None:
     np.testing.assert_allclose(axes.get_lines()[1].get_data_3d(), [[2.0], [0.0], [0.0]], atol=1e-12)
 
 
+def test_a_tool_is_drawn_up_to_the_tip() -> None:
+    robot = bik.Robot.planar([1.0, 1.0]).with_tool(bik.pose([0.3, 0.0, 0.0]))
+    (axes,) = bik.plot.robot(robot, [0.0, 0.0]).get_axes()
+    links, tool, tip = axes.get_lines()
+    assert (links.get_label(), tool.get_label(), tip.get_label()) == ("links", "tool", "tip")
+    assert links.get_data_3d()[0].max() == pytest.approx(2.0)
+    np.testing.assert_allclose(tool.get_data_3d()[0], [2.0, 2.3], atol=1e-12)
+    np.testing.assert_allclose(tip.get_data_3d()[0], [2.3], atol=1e-12)
+
+
+def test_a_plan_draws_the_tool() -> None:
+    robot = bik.Robot.planar([1.0, 1.0]).with_tool(bik.pose([0.3, 0.0, 0.0]))
+    limits = bik.Limits(velocity=1.0, acceleration=1.0)
+    plan = bik.plan_point_to_point(robot, start_q=[0.0, 0.0], end_q=[0.5, 0.5], limits=limits)
+    arm = plan.plot().get_axes()[0].get_lines()[0]
+    assert arm.get_xdata().max() == pytest.approx(2.3)
+
+
+def test_velocities_far_below_their_limits_fill_their_panels() -> None:
+    robot = bik.Robot.planar([1.0, 1.0], velocity=[100.0, 0.2])
+    path = bik.paths.polyline([(1.2, 0.4, 0.0), (1.2, 0.45, 0.0)], duration=1.0)
+    result = bik.track(robot, path, dt=0.1)
+    first, second = result.plot().get_axes()[4:]
+    fastest = np.abs(result.qd[1:]).max()
+    assert first.get_ylim()[1] == pytest.approx(1.15 * fastest)
+    assert [text.get_text() for text in first.texts] == ["limit 100"]
+    assert not second.texts or second.texts[0].get_text() == "limit 0.2"
+
+
 def test_a_floor_leaves_the_arm_its_size() -> None:
     floor = bik.obstacles.Box((0, 0, -0.05), (20, 20, 0.1))
     out_of_sight = bik.obstacles.Sphere((50, 0, 0), 1.0)

@@ -34,7 +34,8 @@ def wrongly_quoted(page: str) -> list[str]:
         if quoted is None:
             expected = spanned(name.split(": ")[1].split(", "))
         else:
-            _, *expected = COMPARISON[f"{quoted[1]} ({quoted[2]})"]
+            variant = ", start given" if ", start given" in name else ""
+            _, *expected = COMPARISON[f"{quoted[1]}{variant} ({quoted[2]})"]
         for cell, number in zip(cells, expected, strict=True):
             if not re.match(re.escape(number) + r"(?! of)(?![\d.])", cell):
                 wrong.append(f"{name}: {cell} where the table has {number}")

@@ -406,6 +406,16 @@ def test_all_asks_for_every_extra_at_once(tmp_path: Path, monkeypatch: pytest.Mo
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("name", ["cheng2020", "khan2022"])
+def test_experiments_on_simulated_arms_ask_for_mujoco(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("beetle_ik.report.needs.find_spec", lambda library: None if library == "mujoco" else object())
+    with pytest.raises(bik.BeetleIkError) as refused:
+        experiments.reproduce(name, tmp_path / "out", short=True)
+    assert str(refused.value) == "reports need mujoco, which is not installed: pip install 'beetle-ik[sim]'"
+
+
 @pytest.mark.parametrize("name", experiments.names())
 def test_every_experiment_is_registered_under_its_name(name: str) -> None:
     assert experiments.experiment(name).name == name

@@ -1,6 +1,7 @@
 """Finding a planar arm in a picture."""
 
 import sys
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -119,3 +120,31 @@ def test_the_extra_is_named_where_it_is_missing(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(sys.modules, "skimage", None)
     with pytest.raises(bik.BeetleIkError, match=r"locate_arm needs scikit-image.*pip install 'beetle-ik\[vision\]'"):
         vision.locate_arm(picture(), ARM, Q)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (
+            lambda: bik.vision.Camera(pixels_per_metre="wide"),
+            "pixels_per_metre must be positive and finite, got 'wide'",
+        ),
+        (lambda: bik.vision.Camera(origin=3.0), "origin must be column and row, got 3.0"),
+        (lambda: bik.vision.Camera(origin="here"), "origin must be numbers, got 'here'"),
+        (lambda: bik.vision.render("arm", [0.0]), "robot must be a Robot, got 'arm'"),
+        (lambda: bik.vision.render(ARM, [0.0] * 3, camera=3), "camera must be a Camera, got 3"),
+        (lambda: bik.vision.render(ARM, [0.0] * 3, shape=(3, "a")), "shape must be numbers, got (3, 'a')"),
+        (lambda: bik.vision.render(ARM, [0.0] * 3, noise="much"), "noise must be numbers, got 'much'"),
+        (lambda: bik.vision.render(ARM, [0.0] * 3, seed=-1), "seed must be a whole number, zero or more, got -1"),
+        (lambda: bik.vision.locate_arm(object, ARM, [0.0] * 3), "image: expected shape"),
+        (
+            lambda: bik.vision.locate_arm([[1], [1, 2]], ARM, [0.0] * 3),
+            "image must be an array of numbers, got [[1], [1, 2]]",
+        ),
+        (lambda: bik.vision.locate_arm(np.zeros((9, 9)), ARM, "guess"), "guess must be numbers, got 'guess'"),
+    ],
+)
+def test_wrong_types_are_named(call: Callable[[], object], message: str) -> None:
+    with pytest.raises(bik.InvalidInputError) as caught:
+        call()
+    assert str(caught.value).startswith(message)

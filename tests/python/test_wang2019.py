@@ -1,6 +1,6 @@
 """Wang et al. 2019: the rule of each verdict gives another one when the data must change it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
@@ -122,6 +122,16 @@ def test_robust_is_who_fails_no_more_often_than_the_others() -> None:
     assert judge("obstacle", "is_robust", past(good, hit)) is MET
     assert judge("obstacle", "is_robust", past(hit, good)) is NOT_MET
     assert judge("obstacle", "is_robust", past([plan(1.8)] * 4, good)) is NOT_MET
+
+
+def test_one_run_of_each_search_decides_nothing() -> None:
+    def first(plans: Mapping[str, Sequence[Any]]) -> dict[str, Sequence[Any]]:
+        return {name: some[:1] for name, some in plans.items()}
+
+    several = motions(lambda name, *_: 1.1 if name == TPBSO else 1.0)
+    found = [Motion(each.objective, each.links, first(each.usual), first(each.tuned)) for each in several]
+    assert judge("comparison", "is_best", found) is Verdict.NOT_TESTED
+    assert judge("obstacle", "is_robust", past([plan(1.8)], [plan(1.7)])) is Verdict.NOT_TESTED
 
 
 def along(plans: list[Any], *, path: str = "pentagram", objective: str = "time", retimed: float = 1.0) -> Any:

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::PathBuf;
 
 use ikcore::math::{Pose, pose};
-use ikcore::nalgebra::Vector3;
+use ikcore::nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use ikcore::robot::{JointKind, Robot};
 use proptest::prelude::*;
 
@@ -106,7 +106,10 @@ fn two_branches_meet_at_their_common_link() {
 
     let branch = Robot::from_urdf(&xml, Some("left_hand"), None).unwrap_err().to_string();
     assert_eq!(branch, "URDF: base and tip are both 'left_hand': a chain needs two links");
-    assert_eq!(error(&xml), "robot 'r' ends in several links: say which one is the tip; leaves: left_hand, right_hand");
+    assert_eq!(
+        error(&xml),
+        "robot 'r' ends in 2 links: say which one is the tip; leaves, by number of joints: left_hand (2), right_hand (2)"
+    );
     let typo = Robot::from_urdf(&xml, None, Some("left_hnd")).unwrap_err().to_string();
     assert_eq!(
         typo,
@@ -422,9 +425,129 @@ fn collision_shapes_become_capsules_that_hold_them() {
     assert!(
         message.starts_with("robot 'arm' has collision shapes that cannot be read (a mesh of link 'hand', a sphere")
     );
+    assert!(message.ends_with(
+        ": robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
+         robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
+    ));
     let given = robot.with_capsules(vec![cylinder.clone()]).unwrap();
     assert!(
         ikcore::obstacle::Scene::new(&given, &[]).is_ok(),
         "capsules that are given replace what could not be read"
     );
+}
+
+/// Links of the large robots: what is quadratic in them takes minutes.
+const MANY: usize = 100_000;
+
+/// A robot of [`MANY`] links; joint i leads from link `parent(i)` to link i.
+fn large(kind: &str, parent: impl Fn(usize) -> usize) -> String {
+    let mut xml = String::from("<robot name='large'>\n<link name='link_0'/>\n");
+    for i in 1..MANY {
+        let kind = if i == 1 { "continuous" } else { kind };
+        xml += &format!(
+            "<link name='link_{i}'/>\n<joint name='joint_{i}' type='{kind}'><parent link='link_{}'/><child link='link_{i}'/>\
+             </joint>\n",
+            parent(i)
+        );
+    }
+    xml + "</robot>"
+}
+
+#[test]
+fn loading_is_linear_in_the_links() {
+    let row = load(&large("fixed", |i| i - 1));
+    assert_eq!((row.dof(), row.link_names().count()), (1, MANY));
+
+    // A row with a leaf on each link.
+    let comb = large("fixed", |i| if i % 2 == 0 { i - 2 } else { i - 1 });
+    let says = error(&comb);
+    let start =
+        "robot 'large' ends in 50000 links: say which one is the tip; leaves, by number of joints: link_1 (1), link_3";
+    assert!(says.starts_with(start) && says.len() < 600, "{says}");
+    let robot = Robot::from_urdf(&comb, None, Some("link_1")).unwrap();
+    assert_eq!(robot.dof(), 1);
+
+    let moving = error(&large("revolute", |i| i - 1));
+    assert_eq!(moving, "robot 'large': 99999 moving joints between base and tip; at most 32 are supported");
+}
+
+#[test]
+fn mistakes_in_large_robots_are_found_at_once() {
+    // Line 2 has the root, line 2 i + 1 has joint i.
+    let circle = large("fixed", |i| if i == 1 { MANY - 1 } else { i - 1 });
+    assert_eq!(error(&circle), "URDF line 4: the joints form a cycle of 99999 links through 'link_1'");
+    let odd = large("fixed", |i| i - 1).replace("name='joint_90000' type='fixed'", "name='joint_90000' type='odd'");
+    let says = error(&odd);
+    assert!(says.starts_with("URDF line 180002: joint 'joint_90000' has the unknown type 'odd'; types: "), "{says}");
+    let missing = Robot::from_urdf(&large("fixed", |i| i - 1), None, Some("hand")).unwrap_err().to_string();
+    assert!(missing.starts_with("robot 'large' has no link 'hand'; its links: link_0, link_1, "), "{missing}");
+    assert!(missing.len() < 600, "{missing}");
+}
+
+#[test]
+fn arms_come_first_among_the_tips() {
+    let joints = [
+        ("wheel", "continuous", "root", "wheel", ""),
+        ("torso", "prismatic", "root", "chest", "<limit lower='0' upper='1'/>"),
+        ("camera_mount", "fixed", "chest", "camera", ""),
+        ("shoulder", "continuous", "chest", "upper", ""),
+        ("elbow", "continuous", "upper", "lower", ""),
+        ("grip", "fixed", "lower", "tool", ""),
+        ("finger", "prismatic", "lower", "finger", "<mimic joint='elbow'/>"),
+    ];
+    let links = ["root", "wheel", "chest", "camera", "upper", "lower", "tool", "finger"];
+    assert_eq!(
+        error(&robot(&links, &joints)),
+        "robot 'r' ends in 4 links: say which one is the tip; leaves, by number of joints: tool (3), finger (3), \
+         wheel (1), camera (1)"
+    );
+}
+
+#[test]
+fn messages_repeat_no_more_than_a_line_of_a_file() {
+    let long = "1 ".repeat(1_000_000);
+    let says = error_after("0.1 0.2 0.3", &long);
+    assert!(says.len() < 400 && says.ends_with("...'"), "{} characters", says.len());
+}
+
+/// The tip's pose by urdf-rs and a product of transforms, for joints in chain order.
+fn tip_by_urdf_rs(xml: &str, q: &[f64]) -> Pose {
+    let mut values = q.iter();
+    let mut tip = Isometry3::identity();
+    for joint in urdf_rs::read_from_string(xml).unwrap().joints {
+        let ([x, y, z], [roll, pitch, yaw]) = (joint.origin.xyz.0, joint.origin.rpy.0);
+        let turned = UnitQuaternion::from(Rotation3::from_euler_angles(roll, pitch, yaw));
+        tip *= Isometry3::from_parts(Translation3::new(x, y, z), turned);
+        let axis = Unit::new_normalize(Vector3::from(joint.axis.xyz.0));
+        match joint.joint_type {
+            urdf_rs::JointType::Revolute => tip *= UnitQuaternion::from_axis_angle(&axis, *values.next().unwrap()),
+            urdf_rs::JointType::Prismatic => tip *= Translation3::from(axis.scale(*values.next().unwrap())),
+            _ => {}
+        }
+    }
+    pose::from_parts(tip.translation.vector.into(), tip.rotation.to_rotation_matrix().into_inner())
+}
+
+proptest! {
+    #[test]
+    fn the_tip_is_where_urdf_rs_puts_it(
+        origins in prop::collection::vec(prop::array::uniform6(-3.0..3.0), 5),
+        axes in prop::collection::vec(prop::array::uniform3(0.1..1.0), 5),
+        q in prop::collection::vec(-1.0..1.0, 4),
+    ) {
+        let kinds = ["revolute", "prismatic", "fixed", "revolute", "revolute"];
+        let links: Vec<String> = (0..6).map(|i| format!("l{i}")).collect();
+        let mut xml = String::from("<robot name='r'>");
+        links.iter().for_each(|link| xml += &format!("<link name='{link}'/>"));
+        for (i, ([x, y, z, roll, pitch, yaw], [ax, ay, az])) in origins.iter().zip(&axes).enumerate() {
+            xml += &format!(
+                "<joint name='j{i}' type='{}'><origin xyz='{x} {y} {z}' rpy='{roll} {pitch} {yaw}'/><parent link='l{i}'/>\
+                 <child link='l{}'/><axis xyz='{ax} {ay} {az}'/><limit lower='-2' upper='2' velocity='1' effort='1'/></joint>",
+                kinds[i],
+                i + 1,
+            );
+        }
+        xml += "</robot>";
+        assert_same(&load(&xml).fk(&q).unwrap(), &tip_by_urdf_rs(&xml, &q), 1e-12);
+    }
 }

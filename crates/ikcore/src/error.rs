@@ -1,37 +1,39 @@
-//! The one error type: every variant names the thing, its value, the bound it broke and what would be right.
+//! The error type of the crate: every variant names the argument, its value, the bound it violates and what would be
+//! valid.
 
 use thiserror::Error;
 
 /// `Result` with this crate's [`enum@Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Everything that a caller can get wrong.
+/// Mistakes of a caller.
 ///
-/// Not having converged is no error: that is a [`Status`](crate::solver::Status) beside the best answer found.
+/// A search that does not converge is not an error: it has a [`Status`](crate::solver::Status) next to the best result
+/// found.
 #[non_exhaustive]
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Error {
     /// A number that must be finite is NaN or infinite.
     #[error("{what} must be finite, but {place} is {value}")]
     NotFinite {
-        /// What was passed, such as "joint angles".
+        /// The argument, such as "joint angles".
         what: String,
-        /// Which entry, such as "entry 2" or "joint 'elbow'".
+        /// The entry, such as "entry 2" or "joint 'elbow'".
         place: String,
         /// The offending number.
         value: f64,
     },
-    /// An array does not have the length it must have.
+    /// An array has the wrong length. Wrong shapes of Python arrays are reported by `ikpy-bind/src/convert.rs`.
     #[error("{what}: expected {expected}, got {got}")]
     WrongLength {
-        /// What was passed and to whom, such as "joint angles of robot 'iiwa14'".
+        /// The argument and its robot, such as "joint angles of robot 'iiwa14'".
         what: String,
-        /// What was expected, such as "7 joints".
+        /// The expected length, such as "7 joints".
         expected: String,
-        /// What came.
+        /// The value that was given.
         got: usize,
     },
-    /// A number lies outside the range that its meaning allows.
+    /// A number is outside its allowed range.
     #[error("{what} must be {requirement}, got {value}")]
     OutOfRange {
         /// The name of the argument.
@@ -41,12 +43,12 @@ pub enum Error {
         /// The offending number.
         value: f64,
     },
-    /// A word that is none of the allowed ones.
+    /// A word that is not among the allowed ones.
     #[error("{what} must be one of {known}, got '{value}'")]
     UnknownOption {
         /// The name of the argument.
         what: String,
-        /// What came.
+        /// The value that was given.
         value: String,
         /// The allowed words, quoted and separated by commas.
         known: String,
@@ -54,7 +56,7 @@ pub enum Error {
     /// No built-in robot has this name.
     #[error("no robot is named '{name}'{suggestion}; known robots: {known}")]
     UnknownRobot {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// ` (did you mean 'x'?)`, or empty.
         suggestion: String,
@@ -66,27 +68,29 @@ pub enum Error {
     UnknownLink {
         /// The robot's name.
         robot: String,
-        /// The link asked for.
+        /// The requested link.
         name: String,
         /// ` (did you mean 'x'?)`, or empty.
         suggestion: String,
         /// All links, separated by commas.
         known: String,
     },
-    /// The tip was left open, but the tree of links ends in several places.
-    #[error("robot '{robot}' ends in several links: say which one is the tip; leaves: {leaves}")]
+    /// No tip was given, but the tree of links has several leaves.
+    #[error("robot '{robot}' ends in {count} links: say which one is the tip; leaves, by number of joints: {leaves}")]
     AmbiguousTip {
         /// The robot's name.
         robot: String,
-        /// The leaf links, separated by commas.
+        /// The number of leaf links.
+        count: usize,
+        /// The leaf links, each with the number of its joints, most joints first.
         leaves: String,
     },
-    /// A description of a robot that cannot be one.
+    /// An invalid description of a robot.
     #[error("robot '{robot}': {problem}")]
     InvalidRobot {
         /// The robot's name.
         robot: String,
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// A URDF that cannot be read.
@@ -94,7 +98,7 @@ pub enum Error {
     Urdf {
         /// Line of the text, from 1, where known.
         line: Option<u32>,
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// A file that cannot be read.
@@ -120,7 +124,7 @@ pub enum Error {
     /// A configuration outside the position limits.
     #[error("{what}: joint '{joint}' at {value} is outside its limits [{lower}, {upper}]")]
     OutsideLimits {
-        /// What was passed, such as "start".
+        /// The argument, such as "start".
         what: String,
         /// The joint's name.
         joint: String,
@@ -134,7 +138,7 @@ pub enum Error {
     /// A configuration that puts the tip outside its region.
     #[error("{what}: {coordinate} of the tip, {value} m, is outside its region ({lower}, {upper})")]
     OutsideRegion {
-        /// What was passed, such as "start".
+        /// The argument, such as "start".
         what: String,
         /// The coordinate, in the base's frame.
         coordinate: String,
@@ -145,12 +149,12 @@ pub enum Error {
         /// Its upper bound (m).
         upper: f64,
     },
-    /// An end of a motion that the robot does not reach.
+    /// The start or end of a motion is out of reach.
     #[error("{what} cannot be reached: {problem}")]
     Unreachable {
-        /// Which end, such as "start".
+        /// The end, such as "start".
         what: String,
-        /// By how much it is missed, and what would be right.
+        /// The distance to it, and what would be right.
         problem: String,
     },
     /// A limit that is negative, at least for some time.
@@ -165,73 +169,71 @@ pub enum Error {
         /// The time at which it is reached (s).
         time: f64,
     },
-    /// A limit that the method cannot keep. No method ignores one.
+    /// A limit that the method does not support. No method silently ignores a limit.
     #[error("{method} cannot honour {field} limits: {remedy}")]
     UnsupportedLimit {
         /// The field of the limits, such as "acceleration".
         field: String,
-        /// What was asked to keep it.
+        /// The method.
         method: String,
-        /// What to do instead.
+        /// The remedy.
         remedy: String,
     },
-    /// Nothing satisfies what was asked.
+    /// No motion satisfies the request.
     #[error("infeasible: {problem}")]
     Infeasible {
-        /// What stands against what.
+        /// The conflicting requirements.
         problem: String,
     },
     /// A matrix that is not a rigid transform.
     #[error("{what} is not a rigid transform: {problem}")]
     NotRigid {
-        /// What was passed, such as "target".
+        /// The argument, such as "target".
         what: String,
         /// By how much it fails.
         problem: String,
     },
-    /// A position where a task needs a whole pose.
+    /// A position was given, but the task needs a whole pose.
     #[error("task {task} needs a target pose (4, 4), got a position (3,)")]
     WrongTarget {
         /// The kind of task.
         task: String,
     },
-    /// Options that do not go together.
+    /// Options that contradict each other.
     #[error("{problem}")]
     Contradiction {
-        /// Which, and what would be right.
+        /// Which options, and what would be right.
         problem: String,
     },
-    /// An obstacle that cannot be one, or not for this robot.
+    /// An invalid obstacle, or one that this robot does not support.
     #[error("{problem}")]
     InvalidObstacle {
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
-    /// Nothing is known of the room that a robot takes up.
-    #[error(
-        "robot '{robot}' {problem}: give it capsules with with_capsules(radius=...) along its links or \
-         with_capsules([(link, a, b, radius), ...]), or load a URDF whose links have <collision> shapes of spheres, \
-         cylinders, capsules and boxes"
-    )]
+    /// The robot has no capsules, so its shape is unknown.
+    #[error("robot '{robot}' {problem}: {remedy}")]
     NoCapsules {
         /// The robot's name.
         robot: String,
-        /// What is missing.
+        /// The problem, and the remedy.
         problem: String,
+        /// How to give it capsules.
+        remedy: String,
     },
-    /// A start or end that touches something.
+    /// A start or end in collision.
     #[error("{what}: link '{link}' is {depth} {other}")]
     InCollision {
-        /// What was passed, such as "start".
+        /// The argument, such as "start".
         what: String,
         /// The link.
         link: String,
-        /// What it is in, such as "obstacle 0 (Box)".
+        /// The other body, such as "obstacle 0 (Box)".
         other: String,
-        /// How deep, such as "0.02 m inside".
+        /// The penetration, such as "0.02 m inside".
         depth: String,
     },
-    /// A joint that no limit slows down.
+    /// A joint with neither a velocity nor an acceleration limit.
     #[error(
         "joint '{joint}' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
          limits=Limits(velocity=...)"
@@ -243,13 +245,13 @@ pub enum Error {
     /// A path without points, or one that cannot be followed in time.
     #[error("path: {problem}")]
     InvalidPath {
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// Times that do not increase.
     #[error("{what} must increase, but row {row} has {value} after {previous}")]
     NotIncreasing {
-        /// What was passed, such as "path times".
+        /// The argument, such as "path times".
         what: String,
         /// The first row, from 0, that is not later than the one before it.
         row: usize,
@@ -258,10 +260,10 @@ pub enum Error {
         /// The time of this row (s).
         value: f64,
     },
-    /// A joint motion that no robot could make.
+    /// An invalid joint motion.
     #[error("trajectory: {problem}")]
     InvalidTrajectory {
-        /// What is wrong and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// A mistake in one row of a batch.
@@ -269,37 +271,37 @@ pub enum Error {
     InRow {
         /// The row, from 0.
         row: usize,
-        /// What is wrong with it.
+        /// The problem.
         error: Box<Error>,
     },
-    /// The operating system does not give as many threads.
+    /// The operating system cannot start this many threads.
     #[error("cannot start {threads} threads ({problem}): ask for fewer; threads=1 needs none")]
     NoThreads {
-        /// How many were asked for.
+        /// The number of threads requested.
         threads: usize,
         /// The operating system's reason.
         problem: String,
     },
-    /// A call that comes before the one it needs.
+    /// A call that must come after another one.
     #[error("{call}: {remedy}")]
     OutOfTurn {
-        /// What was called.
+        /// The call.
         call: String,
-        /// What to call first.
+        /// The call that must come first.
         remedy: String,
     },
-    /// A plant that does not answer with a position, right at the start.
+    /// A plant that fails at the start.
     #[error("the plant {problem}")]
     PlantFailed {
-        /// What it did, such as "raised ValueError: no".
+        /// The failure, such as "raised ValueError: no".
         problem: String,
     },
-    /// Stored bytes that are not what they should be.
+    /// Corrupt stored bytes.
     #[error("cannot restore {what}: {problem}")]
     Corrupt {
-        /// What was to be restored.
+        /// The object to be restored.
         what: String,
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
     },
 }
@@ -308,7 +310,7 @@ impl Error {
     /// Shorthand for [`Error::UnknownOption`].
     pub(crate) fn unknown_option(what: &str, value: &str, known: &[&str]) -> Self {
         let known = known.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
-        Self::UnknownOption { what: what.into(), value: value.into(), known }
+        Self::UnknownOption { what: what.into(), value: shortened(value), known }
     }
 
     /// Shorthand for [`Error::OutOfRange`].
@@ -317,7 +319,7 @@ impl Error {
     }
 }
 
-/// Err unless every entry is finite; `name(i)` says which one is not.
+/// Checks that every entry is finite; `name(i)` says which one is not.
 pub(crate) fn require_finite(what: &str, values: &[f64], name: impl Fn(usize) -> String) -> Result<()> {
     match values.iter().position(|v| !v.is_finite()) {
         None => Ok(()),
@@ -325,12 +327,23 @@ pub(crate) fn require_finite(what: &str, values: &[f64], name: impl Fn(usize) ->
     }
 }
 
-/// Err unless `value` is finite and above zero.
+/// Checks that `value` is finite and above zero.
 pub(crate) fn require_positive(what: &str, value: f64) -> Result<()> {
     if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Error::out_of_range(what, "positive and finite", value)) }
 }
 
-/// ` (did you mean 'x'?)` for the candidate nearest to `name`, or nothing where none is near.
+/// Length up to which a message repeats a text (characters).
+const ECHO_LENGTH: usize = 200;
+
+/// A given text for a message, cut to a readable length.
+pub(crate) fn shortened(text: &str) -> String {
+    match text.char_indices().nth(ECHO_LENGTH) {
+        None => text.into(),
+        Some((end, _)) => format!("{}...", &text[..end]),
+    }
+}
+
+/// ` (did you mean 'x'?)` for the candidate nearest to `name`, or empty if none is near.
 pub(crate) fn suggestion<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let wanted = name.to_lowercase();
     candidates

@@ -25,23 +25,24 @@
 //!                                          trajectory
 //! ```
 //!
-//! Two families meet in [`objective`] and nowhere else. The robot side ([`robot`], [`limits`], [`task`], [`problem`])
-//! implements its small traits, the solver side ([`solver`]) consumes them: a solver file never mentions robots, a robot
-//! file never mentions solvers. So a solver serves any objective, and one that needs a Jacobian cannot be given an
-//! objective without.
+//! Two sides meet in [`objective`] and nowhere else. The robot side ([`robot`], [`limits`], [`task`], [`problem`])
+//! implements its small traits, the solver side ([`solver`]) uses them: a solver file never mentions robots, a robot
+//! file never mentions solvers. So a solver works with any objective, and the compiler refuses an objective without a
+//! Jacobian where the solver needs one.
 //!
 //! # What every algorithm keeps to
 //!
-//! - Evaluation budgets are exact, answers lie inside the box, the best point found is never lost: the
-//!   [`Evaluator`](solver::Evaluator) sees to it, not the algorithm.
-//! - Not having converged is a [`Status`](solver::Status) with a sentence that says what to try. An [`Error`] is a
-//!   caller's mistake, and names the thing, the value and what would be right.
+//! - Evaluation budgets are exact, results lie inside the box, and the best point found is never lost. The
+//!   [`Evaluator`](solver::Evaluator) ensures this, not the algorithm.
+//! - A search that does not converge returns a [`Status`](solver::Status) with a sentence that says what to try. An
+//!   [`Error`] is a caller's mistake; it names the argument, its value and what would be valid.
 //! - The same seed gives the same bits, on one build and instruction set.
 //! - Models are immutable and shared between threads without locks; hot loops do not allocate.
 //!
-//! # Rooms
+//! # Layers
 //!
-//! A file imports its own module and modules of lower layers only, never in a circle; a test checks it.
+//! A file imports its own module and modules of lower layers only, never in a circle. `docs/architecture.md` says what
+//! each module contains and where to find things; a test checks the layers.
 //!
 //! | layer | modules |
 //! |---|---|

@@ -10,16 +10,16 @@ use crate::objective::{Bounds, CallPattern, Objective, Point, Score};
 use crate::rng::{self, LazyRng};
 use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Monitor, Status, Stop, Stopwatch};
 
-/// How to minimise.
+/// Options of [`minimize`].
 #[derive(Debug, Clone)]
 pub struct MinimizeOptions {
     /// The algorithm.
     pub solver: AnySolver<DerivativeFree>,
-    /// The point to begin from (n,); None draws it from the box.
+    /// The start (n,). `None` draws it from the box.
     pub start: Option<Vec<f64>>,
-    /// Budgets. A value below [`Stop::value_below`] is good enough, also at the start.
+    /// Budgets. A value below [`Stop::value_below`] ends the search, also at the start.
     pub stop: Stop,
-    /// Seed of the random draws: the same seed, the same bits.
+    /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 
@@ -28,12 +28,12 @@ pub struct MinimizeOptions {
 pub struct Minimum {
     /// The point (n,), inside the box.
     pub x: Point,
-    /// Its value; infinite where the function had no finite value anywhere.
+    /// Value of the function there; infinite if it was never finite.
     pub value: f64,
     /// (evaluations made, best value then): the start, every improvement, and the end.
     pub history: Vec<[f64; 2]>,
-    /// [`Status::Solved`] below the requested value. Without one, a search ends by its own rule ([`Status::Stalled`]) or with
-    /// its budget.
+    /// [`Status::Solved`] below the requested value. Otherwise a search ends by its own rule ([`Status::Stalled`]) or
+    /// when its budget is spent.
     pub status: Status,
     /// Iterations over all starts.
     pub iterations: usize,
@@ -46,7 +46,7 @@ pub struct Minimum {
 }
 
 impl Minimum {
-    /// What happened, and what to try.
+    /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         let Self { value, evaluations, .. } = self;
         if value.is_infinite() {
@@ -63,11 +63,11 @@ impl Minimum {
     }
 }
 
-/// Searches the box from `lower` (n,) to `upper` (n,) for the least value of `objective`.
+/// Searches the box from `lower` (n,) to `upper` (n,) for the minimum of `objective`.
 ///
 /// # Errors
-/// Any [`enum@Error`] for wrong input: an open or an empty box, a start outside it, options out of range, a population larger
-/// than the budget. A search without success is a status, not an error.
+/// Any [`enum@Error`] for wrong input: an unbounded or empty box, a start outside it, options out of range, a
+/// population larger than the budget. A search without success is a status, not an error.
 pub fn minimize(
     objective: &mut dyn Objective,
     lower: &[f64],
@@ -141,7 +141,7 @@ fn require_inside<'a>(bounds: &Bounds, start: &'a [f64]) -> Result<&'a [f64]> {
     }
 }
 
-/// Records every improvement, and knows which value is good enough.
+/// Records every improvement, and compares values with the requested one.
 struct Recorded<'a> {
     objective: &'a mut dyn Objective,
     enough: Option<f64>,

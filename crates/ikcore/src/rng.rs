@@ -1,10 +1,10 @@
-//! Random generators, made nowhere else: repeatable from (seed, stream), and built at the first draw, since most targets are
-//! solved without one.
+//! The only constructor of random generators: repeatable from (seed, stream), and built at the first draw, since most
+//! targets are solved without one.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Numbers drawn at once; a quarter of the cost of single draws.
+/// Numbers drawn at once, at a quarter of the cost of single draws.
 const BUFFER: usize = 64;
 
 /// A generator that is built at its first draw. Equal (seed, stream) give equal draws on every platform.
@@ -33,7 +33,7 @@ pub fn split(uniform: f64) -> [f64; 2] {
     const HALF: f64 = (1_u64 << 26) as f64;
     const ROUNDER: f64 = (1_u64 << 52) as f64;
     let scaled = HALF * uniform;
-    // Adding 2^52 rounds to a whole number; down, where that was up. Casts would keep loops over it from vectorising.
+    // Adding 2^52 rounds to an integer; then down, if that was up. Casts would prevent vectorisation of loops over it.
     let rounded = (scaled + ROUNDER) - ROUNDER;
     let whole = if rounded > scaled { rounded - 1.0 } else { rounded };
     [whole * (1.0 / HALF), scaled - whole]
@@ -62,7 +62,7 @@ impl LazyRng {
         let mut bytes = [0; 8 * BUFFER];
         source.generator.fill_bytes(&mut bytes);
         for (uniform, bytes) in source.uniforms.iter_mut().zip(bytes.as_chunks().0) {
-            // The upper 53 bits: our own conversion, so that no library update can change the numbers.
+            // The upper 53 bits. Our own conversion, so that no library update can change the numbers.
             *uniform = (u64::from_le_bytes(*bytes) >> 11) as f64 / (1_u64 << 53) as f64;
         }
         source.next = 1;
@@ -79,8 +79,8 @@ impl LazyRng {
         self.draw(b, |v, uniform| *v = 2.0 * uniform - 1.0);
     }
 
-    /// Two independent uniforms in [0, 1) from one draw: 26 bits for the first, 27 for the second. Enough for weights, at
-    /// half the cost.
+    /// Two independent uniforms in [0, 1) from one draw: 26 bits for the first, 27 for the second. Enough for weights,
+    /// at half the cost.
     #[inline]
     fn uniform_pair(&mut self) -> [f64; 2] {
         split(self.uniform())
@@ -98,7 +98,7 @@ impl LazyRng {
         self.uniform_pair().map(|u| (count as f64 * u) as i64 as usize)
     }
 
-    /// A draw for each entry, in order.
+    /// Fills `out` with uniform draws, in order.
     pub fn fill(&mut self, mut out: &mut [f64]) {
         while let Some((first, rest)) = out.split_first_mut() {
             *first = self.uniform();
@@ -134,7 +134,7 @@ impl LazyRng {
         b.iter_mut().for_each(|v| *v *= scale);
     }
 
-    /// Calls `set` with each entry of `out` and a draw, in order; straight from the buffer where it has enough.
+    /// Calls `set` with each entry of `out` and a draw, in order; reads directly from the buffer if it holds enough.
     #[inline]
     fn draw(&mut self, out: &mut [f64], mut set: impl FnMut(&mut f64, f64)) {
         match &mut self.source {

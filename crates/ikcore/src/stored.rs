@@ -1,5 +1,5 @@
 //! Values as bytes, for storing and for copying between processes: a version, a checksum, then the value. The checksum
-//! refuses damaged bytes.
+//! detects damaged bytes.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 /// Version of the byte form.
 const FORMAT: u8 = 1;
 
-/// `value` as bytes; `what` names it in errors.
+/// Returns `value` as bytes; `what` names it in errors.
 ///
 /// # Errors
 /// [`Error::Corrupt`] if the encoder fails.
@@ -21,10 +21,10 @@ pub fn to_bytes<T: Serialize>(what: &str, value: &T) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The value that [`to_bytes`] stored, with every bit; `what` names it in errors.
+/// Returns the value stored by [`to_bytes`], bit-identical; `what` names it in errors.
 ///
 /// # Errors
-/// [`Error::Corrupt`] for bytes of another version, damaged ones, or those of something else.
+/// [`Error::Corrupt`] for bytes of another version, of another type, or damaged.
 pub fn from_bytes<T: DeserializeOwned>(what: &str, bytes: &[u8]) -> Result<T> {
     let (version, rest) = bytes.split_first().ok_or_else(|| corrupt(what, "no bytes".into()))?;
     if *version != FORMAT {
@@ -33,9 +33,17 @@ pub fn from_bytes<T: DeserializeOwned>(what: &str, bytes: &[u8]) -> Result<T> {
     }
     match rest.split_first_chunk() {
         Some((stored, payload)) if u64::from_le_bytes(*stored) == checksum(payload) => {
-            postcard::from_bytes(payload).map_err(|problem| corrupt(what, problem.to_string()))
+            postcard::from_bytes(payload).map_err(|problem| corrupt(what, reason(problem)))
         }
         _ => Err(corrupt(what, "the bytes were damaged: their checksum differs".into())),
+    }
+}
+
+/// Why the payload cannot be read. The decoder drops the message of a type that refuses its own values.
+fn reason(problem: postcard::Error) -> String {
+    match problem {
+        postcard::Error::SerdeDeCustom => "its values contradict each other".into(),
+        problem => problem.to_string(),
     }
 }
 
@@ -43,7 +51,7 @@ fn corrupt(what: &str, problem: String) -> Error {
     Error::Corrupt { what: what.into(), problem }
 }
 
-/// FNV-1a with 64 bits (Fowler, Noll and Vo): sees accidents, not malice.
+/// FNV-1a with 64 bits (Fowler, Noll and Vo): detects accidents, not manipulation.
 fn checksum(bytes: &[u8]) -> u64 {
     const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
     const PRIME: u64 = 0x0000_0100_0000_01b3;

@@ -1,10 +1,10 @@
-//! Numbers in messages, and the words of options.
+//! Numbers in messages, and names of options.
 
-/// Implements `name`, `Display` and `FromStr` for an option by these words; the error of `FromStr` lists them.
+/// Implements `name`, `Display` and `FromStr` for an option with these names; the error of `FromStr` lists them.
 macro_rules! words {
     ($what:literal: $option:ident { $($variant:ident => $word:literal),+ $(,)? }) => {
         impl $option {
-            /// The word of this option.
+            /// The name of this option.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $word,)+
@@ -33,16 +33,33 @@ macro_rules! words {
 
 pub(crate) use words;
 
-/// Four significant digits; an exponent only where it helps to read.
+/// Formats four significant digits, with an exponent only where it improves readability.
 pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-3..1e4).contains(&size) {
-        // As many decimals as leave four digits in all.
+        // Decimals for four significant digits.
         let decimals = if size == 0.0 { 0 } else { (3 - size.log10().floor() as i32).max(0) as usize };
         format!("{value:.decimals$}")
     } else {
         format!("{value:.3e}")
     }
+}
+
+/// Length of a list of names in a message: long enough for a known robot, short enough to read (characters).
+const LIST_LENGTH: usize = 400;
+
+/// Joins names with commas, up to a readable length; then says how many more there are.
+pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let mut names = names.into_iter();
+    let mut list = names.next().unwrap_or_default().to_owned();
+    while let Some(name) = names.next() {
+        if list.len() + name.len() > LIST_LENGTH {
+            return format!("{list} and {} more", 1 + names.count());
+        }
+        list += ", ";
+        list += name;
+    }
+    list
 }
 
 /// A time (s), rounded to 1e-9 s to remove the rounding of sums of dt.
@@ -53,6 +70,15 @@ pub(crate) fn time(seconds: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_long_list_ends_in_a_count() {
+        let names: Vec<String> = (0..100_000).map(|i| format!("link_{i:06}")).collect();
+        assert_eq!(listed([]), "");
+        assert_eq!(listed(names[..3].iter().map(String::as_str)), "link_000000, link_000001, link_000002");
+        let list = listed(names.iter().map(String::as_str));
+        assert!(list.ends_with("link_000030 and 99969 more"), "{list}");
+    }
 
     #[test]
     fn four_digits_whatever_the_size() {

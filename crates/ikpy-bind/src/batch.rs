@@ -16,9 +16,11 @@ use crate::indexing::{Selection, iterate, select};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::pickling::{self, Reduced};
+use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
+use crate::traversal::traversed;
 
 /// Solutions in the order of the targets, stored as columns. `b[i]` is a `Solution`; `b[10:20]` and `b[~b.success]` are
 /// batches.
@@ -59,6 +61,8 @@ pub struct PyBatchSolution {
     message: String,
 }
 
+traversed!(PyBatchSolution: limits);
+
 #[pymethods]
 impl PyBatchSolution {
     /// Total time (s).
@@ -90,6 +94,10 @@ impl PyBatchSolution {
     /// Iterates over the solutions.
     fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyIterator>> {
         iterate(slf.as_any())
+    }
+
+    fn _repr_html_<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        python_calls::html(slf.into_any(), "result")
     }
 
     fn __repr__(&self) -> String {
@@ -180,14 +188,14 @@ pub fn solve_batch(
     targets: &Bound<'_, PyAny>,
     starts: Option<&Bound<'_, PyAny>>,
     threads: Option<i128>,
-    on_invalid: &str,
+    #[pyo3(from_py_with = crate::convert::text)] on_invalid: &str,
     progress: Option<&Bound<'_, PyAny>>,
     task: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
     position_tolerance: f64,
     rotation_tolerance: f64,
     goals: Option<&Bound<'_, PyAny>>,
-    prefer: &str,
+    #[pyo3(from_py_with = crate::convert::text)] prefer: &str,
     limits: Option<&PyLimits>,
     stop: Option<&PyStop>,
     seed: i128,
@@ -210,6 +218,7 @@ pub fn solve_batch(
         on_invalid: on_invalid.parse::<OnInvalid>().map_err(raise)?,
     };
     let batch = watched(py, progress, |watcher| batch::solve_batch(arm, targets, &options, watcher))?;
+    python_calls::log(py, format!("solve_batch: {}", batch.message()))?;
     PyBatchSolution::new(py, batch, in_force)
 }
 

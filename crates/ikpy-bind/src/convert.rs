@@ -4,11 +4,12 @@ use std::ops::Deref;
 
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix3, Matrix4};
-use numpy::npyffi::NPY_ARRAY_WRITEABLE;
+use numpy::npyffi::{NPY_ARRAY_ALIGNED, NPY_ARRAY_WRITEABLE};
 use numpy::{
-    AsSliceError, Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods,
+    AsSliceError, Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArray,
+    PyUntypedArrayMethods,
 };
-use pyo3::exceptions::PyException;
+use pyo3::exceptions::{PyException, PyUnicodeError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyBytes, PyList, PyString, PyTuple, PyType};
@@ -44,9 +45,14 @@ impl<'py> Deref for Numbers<'py> {
 /// Converts an array-like to float64 in C order; copies only if needed. `what` names it in errors.
 pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
     if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
+        && value.is_exact_instance_of::<PyUntypedArray>()
         && array.is_c_contiguous()
+        && is_aligned(array)
     {
         return Ok(Numbers(array.clone()));
+    }
+    if is_masked(value)? {
+        return Err(invalid(format!("{what} has masked entries: replace them first, such as by .filled(value)")));
     }
     let no_numbers = || invalid(format!("{what} must be an array of numbers, got {}", summary(value)));
     if is_misread(value)? {
@@ -57,11 +63,30 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py
         None => Err(error),
     });
     match converted {
-        Ok(array) => Ok(Numbers(array.cast_into()?)),
+        Ok(array) => {
+            let array: Array<'py> = array.cast_into()?;
+            let aligned = is_aligned(&array);
+            Ok(Numbers(if aligned { array } else { array.call_method0(intern!(value.py(), "copy"))?.cast_into()? }))
+        }
         // Ctrl-C during the conversion is not an error of the value.
         Err(error) if error.is_instance_of::<PyException>(value.py()) => Err(no_numbers()),
         Err(interrupt) => Err(interrupt),
     }
+}
+
+/// Whether each number starts at a multiple of its size; fields of packed structures do not.
+fn is_aligned(array: &Array<'_>) -> bool {
+    // SAFETY: the array is alive, and only its flags are read.
+    unsafe { (*array.as_array_ptr()).fields.flags & NPY_ARRAY_ALIGNED != 0 }
+}
+
+/// Whether the value is a masked array with masked entries; numpy would use the numbers behind the mask.
+fn is_masked(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let py = value.py();
+    if !value.is_instance_of::<PyUntypedArray>() || value.is_exact_instance_of::<PyUntypedArray>() {
+        return Ok(false);
+    }
+    py.import(intern!(py, "numpy.ma"))?.call_method1(intern!(py, "is_masked"), (value,))?.extract()
 }
 
 /// Whether numpy would silently convert the value to unintended numbers: None to NaN, text to the number it spells, complex
@@ -108,6 +133,30 @@ fn matrix<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>>
 pub fn count<T: TryFrom<i128>>(what: &str, value: i128) -> PyResult<T> {
     let bound = || if value < 0 { "zero or more".into() } else { format!("below 2^{}", 8 * size_of::<T>()) };
     T::try_from(value).map_err(|_| invalid(format!("{what} must be {}, got {value}", bound())))
+}
+
+/// Reads a word. Python's own error for half a surrogate pair would not be one of this library.
+pub fn text<'a>(value: &'a Bound<'_, PyAny>) -> PyResult<&'a str> {
+    value.cast::<PyString>()?.to_str().map_err(|_| not_unicode(value))
+}
+
+/// Reads an optional word.
+pub fn optional_text<'a>(value: &'a Bound<'_, PyAny>) -> PyResult<Option<&'a str>> {
+    if value.is_none() { Ok(None) } else { text(value).map(Some) }
+}
+
+/// Reads an optional list of words.
+pub fn optional_texts(value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
+    if value.is_none() {
+        return Ok(None);
+    }
+    let encodes =
+        |error: PyErr| if error.is_instance_of::<PyUnicodeError>(value.py()) { not_unicode(value) } else { error };
+    value.extract().map(Some).map_err(encodes)
+}
+
+fn not_unicode(value: &Bound<'_, PyAny>) -> PyErr {
+    invalid(format!("text must be valid Unicode, got {}", summary(value)))
 }
 
 /// Reads an optional count.
@@ -221,7 +270,12 @@ pub fn matrix3(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
 
 /// Moves numbers in C order into a read-only array of this shape.
 pub fn table<'py, T: Element>(py: Python<'py>, values: Vec<T>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    Ok(read_only(values.into_pyarray(py).reshape(shape)?))
+    let count = values.len();
+    match values.into_pyarray(py).reshape(shape) {
+        Ok(array) => Ok(read_only(array)),
+        // Only stored values can disagree with their own sizes.
+        Err(_) => Err(invalid(format!("{count} stored numbers do not fill shape {}", shape_text(shape)))),
+    }
 }
 
 /// Moves a buffer into a read-only vector.

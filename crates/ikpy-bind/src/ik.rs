@@ -16,6 +16,7 @@ use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
+use crate::traversal::traversed;
 
 /// The best configuration found, and how the search ended.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
@@ -28,6 +29,8 @@ pub struct PySolution {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PySolution: limits);
 
 outcome! {
     PySolution = |result|
@@ -131,7 +134,7 @@ pub fn solve(
     position_tolerance: f64,
     rotation_tolerance: f64,
     goals: Option<&Bound<'_, PyAny>>,
-    prefer: &str,
+    #[pyo3(from_py_with = crate::convert::text)] prefer: &str,
     limits: Option<&PyLimits>,
     stop: Option<&PyStop>,
     seed: i128,

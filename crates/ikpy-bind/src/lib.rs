@@ -26,12 +26,14 @@ mod solver;
 mod task;
 mod tracking;
 mod trajectory;
+mod traversal;
 
 use pyo3::prelude::*;
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("_instructions", ikcore::math::instructions())?;
     error::register(module)?;
     solver::register(module)?;
     module.add_class::<robot::PyRobot>()?;

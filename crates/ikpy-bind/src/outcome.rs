@@ -41,6 +41,10 @@ macro_rules! outcome {
                 $evaluations
             }
 
+            fn _repr_html_<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+                $crate::python_calls::html(slf.into_any(), "result")
+            }
+
             /// Time taken (s).
             #[getter]
             fn elapsed(&self) -> f64 {

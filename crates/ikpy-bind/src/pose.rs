@@ -3,6 +3,7 @@
 use ikcore::math::{Pose, pose as poses};
 use numpy::PyArray2;
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::convert::{self, pose_array};
 use crate::error::{invalid, raise};
@@ -18,15 +19,28 @@ use crate::error::{invalid, raise};
 ///
 /// Without an orientation the axes are those of the base.
 #[pyfunction]
-#[pyo3(signature = (position, *, xyzw=None, wxyz=None, rpy=None, rotvec=None, matrix=None))]
+#[pyo3(
+    signature = (position, *others, xyzw=None, wxyz=None, rpy=None, rotvec=None, matrix=None, **unknown),
+    text_signature = "(position, *, xyzw=None, wxyz=None, rpy=None, rotvec=None, matrix=None)"
+)]
+#[allow(clippy::too_many_arguments)]
 pub fn pose<'py>(
     position: &Bound<'py, PyAny>,
+    others: &Bound<'py, PyTuple>,
     xyzw: Option<&Bound<'py, PyAny>>,
     wxyz: Option<&Bound<'py, PyAny>>,
     rpy: Option<&Bound<'py, PyAny>>,
     rotvec: Option<&Bound<'py, PyAny>>,
     matrix: Option<&Bound<'py, PyAny>>,
+    unknown: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    const FORMS: &str = "xyzw= or wxyz= for a quaternion, rpy=, rotvec= or matrix=";
+    if !others.is_empty() {
+        return Err(invalid(format!("pose takes an orientation by keyword only, since orders differ: {FORMS}")));
+    }
+    if let Some(name) = unknown.and_then(|unknown| unknown.keys().iter().next()) {
+        return Err(invalid(format!("pose has no argument '{name}'; orientations are {FORMS}")));
+    }
     let finite = |name: &str, value| poses::finite(name, convert::point(name, value)?).map_err(raise);
     let position_xyz = finite("position", position)?;
     let given: Vec<(&str, &Bound<'py, PyAny>)> =

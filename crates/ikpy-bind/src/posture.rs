@@ -13,6 +13,7 @@ use crate::options::options;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
+use crate::traversal::traversed;
 
 /// The particle swarm of "Trajectory tracking of redundant manipulator based on PSO algorithm optimization": particles
 /// are joint positions on circles; with a constriction factor (eq. 17, 18).
@@ -64,6 +65,8 @@ pub struct PyPlanarPosture {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PyPlanarPosture: limits);
 
 outcome! {
     PyPlanarPosture = |result|
@@ -143,7 +146,7 @@ pub fn planar_posture(
     py: Python<'_>,
     robot: &PyRobot,
     target: &Bound<'_, PyAny>,
-    measure: &str,
+    #[pyo3(from_py_with = crate::convert::text)] measure: &str,
     region: Option<&Bound<'_, PyAny>>,
     swarm: Option<&PyCircleSwarm>,
     seed: i128,

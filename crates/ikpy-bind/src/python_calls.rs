@@ -16,6 +16,11 @@ pub fn plot<'py>(result: Bound<'py, PyAny>, function: &str) -> PyResult<Bound<'p
     call(result.py(), "beetle_ik.plot", function, (result,))
 }
 
+/// Calls `beetle_ik._html.<function>(value)`, for notebooks.
+pub fn html<'py>(value: Bound<'py, PyAny>, function: &str) -> PyResult<Bound<'py, PyAny>> {
+    call(value.py(), "beetle_ik._html", function, (value,))
+}
+
 /// Calls `beetle_ik.export.<function>(trajectory, file, ...)`.
 pub fn write<'py>(py: Python<'py>, function: &str, arguments: impl pyo3::call::PyCallArgs<'py>) -> PyResult<()> {
     call(py, "beetle_ik.export", function, arguments).map(|_| ())
@@ -24,6 +29,11 @@ pub fn write<'py>(py: Python<'py>, function: &str, arguments: impl pyo3::call::P
 /// Calls `beetle_ik.export.<function>(file)`.
 pub fn read<'py>(function: &str, file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     call(file.py(), "beetle_ik.export", function, (file,))
+}
+
+/// Logs at level INFO under "beetle_ik", for calls that take long.
+pub fn log(py: Python<'_>, message: String) -> PyResult<()> {
+    call(py, "logging", "getLogger", ("beetle_ik",))?.call_method1("info", ("%s", message)).map(|_| ())
 }
 
 /// Makes a progress bar on the terminal.

@@ -17,6 +17,7 @@ use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
+use crate::traversal::traversed;
 
 /// The distinct solutions for one target, a sequence of `Solution`.
 #[pyclass(name = "SolutionSet", module = "beetle_ik", frozen, sequence)]
@@ -29,6 +30,8 @@ pub struct PySolutionSet {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PySolutionSet: limits);
 
 outcome! {
     PySolutionSet = |result|

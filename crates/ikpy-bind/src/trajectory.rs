@@ -49,7 +49,7 @@ impl PyTrajectory {
     fn new(
         time: &Bound<'_, PyAny>,
         coefficients: &Bound<'_, PyAny>,
-        joint_names: Option<Vec<String>>,
+        #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
     ) -> PyResult<Self> {
         let values = array("coefficients", coefficients)?;
         let &[_, n, powers @ 1..=POWERS] = values.shape() else {
@@ -76,7 +76,7 @@ impl PyTrajectory {
         q: &Bound<'_, PyAny>,
         qd: Option<&Bound<'_, PyAny>>,
         qdd: Option<&Bound<'_, PyAny>>,
-        joint_names: Option<Vec<String>>,
+        #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
     ) -> PyResult<Self> {
         let time = vector("time", time)?;
         let read = |what: &str, value: &Bound<'_, PyAny>| {

@@ -1,11 +1,13 @@
 """The list of commands, and how errors are reported."""
 
+import logging
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 from .. import BeetleIkError, __version__
+from .doctor import doctor
 from .fk import fk
 from .plan import plan
 from .reproduce import reproduce
@@ -45,7 +47,6 @@ class _Commands(TyperGroup):
 app = typer.Typer(
     cls=_Commands,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     help="Inverse kinematics, path tracking and planning for robot manipulators. SI units and radians.",
     epilog="Exit status: 0 target reached, 1 computed but not reached, 2 wrong input, 130 interrupted.",
@@ -61,14 +62,17 @@ def _print_version(asked: bool) -> None:
 @app.callback()
 def _options_of_all(
     *,
-    version: Annotated[
+    _version: Annotated[
         bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
     ] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Log to stderr what the library does.")] = False,
 ) -> None:
     """Options that belong to no single command."""
+    if verbose:
+        logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s: %(message)s")
 
 
-for command in (robots, fk, solve, track):
+for command in (robots, fk, solve, track, doctor):
     app.command()(command)
 app.add_typer(plan, name="plan")
 app.command()(reproduce)

@@ -15,15 +15,22 @@ if TYPE_CHECKING:
 
 _ROBOT = "Robot"
 
-RobotName = Annotated[str | None, typer.Argument(help="A built-in robot; `beetle-ik robots` lists them.")]
+
+def complete_robot(incomplete: str) -> list[str]:
+    """Returns the built-in robots that begin with what was typed."""
+    return [name for name in Robot.names() if name.startswith(incomplete)]
+
+
+RobotName = Annotated[
+    str | None,
+    typer.Argument(help="A built-in robot; `beetle-ik robots` lists them.", autocompletion=complete_robot),
+]
 UrdfFile = Annotated[
-    Path | None, typer.Option("--urdf", help="A URDF file, instead of a built-in robot.", rich_help_panel=_ROBOT)
+    Path | None, typer.Option("--urdf", help="A URDF file instead of a built-in robot.", rich_help_panel=_ROBOT)
 ]
-TipLink = Annotated[
-    str | None, typer.Option("--tip", help="Link to move; without it the only leaf.", rich_help_panel=_ROBOT)
-]
+TipLink = Annotated[str | None, typer.Option("--tip", help="Tip link; default: the only leaf.", rich_help_panel=_ROBOT)]
 BaseLink = Annotated[
-    str | None, typer.Option("--base", help="Link that stays fixed; without it the root.", rich_help_panel=_ROBOT)
+    str | None, typer.Option("--base", help="Base link, which stays fixed; default: the root.", rich_help_panel=_ROBOT)
 ]
 Start = Annotated[str | None, typer.Option(help="Joint positions to start from: q1,q2,...")]
 StartQ = Annotated[str | None, typer.Option("--start-q", help="Joint positions to start from: q1,q2,...")]

@@ -26,9 +26,7 @@ def solve(
     robot: RobotName = None,
     *,
     position: Annotated[str, typer.Option(help="Target position of the tip: x,y,z in m.")],
-    rpy: Annotated[
-        str | None, typer.Option(help="Target orientation: roll,pitch,yaw in rad; without it the orientation is free.")
-    ] = None,
+    rpy: Annotated[str | None, typer.Option(help="Target orientation: roll,pitch,yaw in rad; default: free.")] = None,
     start: Start = None,
     solver: Annotated[SolverName | None, typer.Option(help="Default: Levenberg-Marquardt from many starts.")] = None,
     position_tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = 1e-6,

@@ -31,13 +31,12 @@ from .show import print_json
 from .summary import print_summary, summarize
 
 _PATH = "Path"
-_CURVE = "Parameters of the curve; by default in the x-y plane, placed and sized to suit the arm"
+_CURVE = "Curve: by default in the x-y plane, placed and sized to suit the arm"
 
 # A band of 1.7e-5 m gives the BAS paper's mean error of 1e-5 m.
 _BAND = 1.7e-5
 
-Length = Annotated[float | None, typer.Option(metavar="METRES", rich_help_panel=_CURVE)]
-Point = Annotated[str | None, typer.Option(metavar="X,Y,Z", help="In m.", rich_help_panel=_CURVE)]
+Point = Annotated[str | None, typer.Option(metavar="X,Y,Z", help="Centre of the curve in m.", rich_help_panel=_CURVE)]
 Direction = Annotated[
     str | None, typer.Option(metavar="X,Y,Z", help="Unit vector in the plane of the curve.", rich_help_panel=_CURVE)
 ]
@@ -55,15 +54,28 @@ def track(
         float | None, typer.Option(help="Duration of the path in s; default 30.", rich_help_panel=_PATH)
     ] = None,
     center: Point = None,
-    diameter: Length = None,
-    radius: Length = None,
-    outer_radius: Length = None,
-    inner_radius: Length = None,
-    distance: Length = None,
-    width: Length = None,
-    height: Length = None,
+    diameter: Annotated[float | None, typer.Option(metavar="METRES", help="circle.", rich_help_panel=_CURVE)] = None,
+    radius: Annotated[
+        float | None, typer.Option(metavar="METRES", help="pentagram, rose.", rich_help_panel=_CURVE)
+    ] = None,
+    outer_radius: Annotated[
+        float | None, typer.Option(metavar="METRES", help="hypotrochoid.", rich_help_panel=_CURVE)
+    ] = None,
+    inner_radius: Annotated[
+        float | None, typer.Option(metavar="METRES", help="hypotrochoid.", rich_help_panel=_CURVE)
+    ] = None,
+    distance: Annotated[
+        float | None,
+        typer.Option(
+            metavar="METRES",
+            help="hypotrochoid: distance of the pen from the inner centre.",
+            rich_help_panel=_CURVE,
+        ),
+    ] = None,
+    width: Annotated[float | None, typer.Option(metavar="METRES", help="letter-m.", rich_help_panel=_CURVE)] = None,
+    height: Annotated[float | None, typer.Option(metavar="METRES", help="letter-m.", rich_help_panel=_CURVE)] = None,
     k: Annotated[
-        int | None, typer.Option("--k", help="Of the rose: its radius is radius cos(k u).", rich_help_panel=_CURVE)
+        int | None, typer.Option("--k", help="rose: its radius is radius cos(k u).", rich_help_panel=_CURVE)
     ] = None,
     a: Direction = None,
     b: Direction = None,

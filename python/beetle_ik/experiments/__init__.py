@@ -1,7 +1,7 @@
 """Papers run again: `beetle-ik reproduce NAME --out DIR`, or `reproduce(name, out)`.
 
-How to write an experiment. Make one module here (or a small folder, with an `__init__` that gathers it), and add its
-name to `registry.py`. The module holds settings with their sources, functions that run and functions that draw, and
+How to write an experiment. Make one module here (or a small folder, whose `__init__` combines its parts), and add its
+name to `registry.py`. The module contains settings with their sources, functions that run, functions that draw, and
 
     EXPERIMENT = Experiment(
         name="cheng2020",
@@ -28,7 +28,7 @@ where `run` takes a `Context` and returns a `Report`:
         )
         error = max(run.position_error[-1] for run in runs)
         return Report(
-            summary="What a reader should know who reads nothing else.",
+            summary="The findings, for readers who read nothing else.",
             sections=[
                 Section(
                     "Equal precision",
@@ -54,13 +54,13 @@ where `run` takes a `Context` and returns a `Report`:
 
 What the library expects of it:
 
-- An experiment of several parts is a folder with a module a part, whose function returns a `Part`: a section and the
-  claims and checks that it decides. `Report.of(summary, parts)` puts them together.
-- A compared cell is `(printed, measured)`. What the paper prints but our copy lacks is `Printed.NOT_IN_COPY`; what it
-  does not give is `Printed.NOT_STATED`. Nothing is invented.
-- Every claim of the paper has its row, the unwelcome ones too. `Claim.judged` derives the verdict from data by the
-  rule printed beside it; nobody writes a verdict down. A claim that does not hold is "contradicted": a finding.
-- What the library says of itself is a `Check`. One that fails makes the command exit with 1; one that cannot fail is
+- An experiment of several parts is a folder with one module per part, whose function returns a `Part`: a section, and
+  the claims and checks that it decides. `Report.of(summary, parts)` puts them together.
+- A compared cell is `(printed, measured)`. A value that the paper prints but our copy lacks is
+  `Printed.NOT_IN_COPY`; a value that it does not give is `Printed.NOT_STATED`. Nothing is invented.
+- Every claim of the paper has a row, including unwelcome ones. `Claim.judged` derives the verdict from data by the
+  rule printed beside it; verdicts are never written by hand. A claim that does not hold is "contradicted": a finding.
+- A statement about the library is a `Check`. One that fails makes the command exit with 1; one that cannot fail is
   no check.
 - A table or text with numbers of an earlier run says so: `Table(carried_over=...)`, `CarriedOver`.
 - All randomness comes from `context.seeds` and the `seed=` of calls; no result is kept from one run to the next.

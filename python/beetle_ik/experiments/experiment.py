@@ -32,7 +32,7 @@ class Context:
         return range(self.seed, self.seed + count)
 
     def each(self, what: str, items: Sequence[Item]) -> Iterator[Item]:
-        """Go through `items` while the progress bar shows how far `what` is."""
+        """Iterate over `items`, with a progress bar labelled `what`."""
         for done, item in enumerate(items):
             self.progress(what, done, len(items))
             yield item

@@ -1,4 +1,4 @@
-"""Which experiments there are. Their modules are loaded when they are asked for."""
+"""Names of the experiments. A module is loaded when it is first needed."""
 
 from importlib import import_module
 

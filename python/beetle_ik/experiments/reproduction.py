@@ -25,20 +25,20 @@ def reproduce(
 ) -> list[tuple[Report, Provenance]]:
     """Run the experiment `name`, or "all", anew and write its report into the folder `out`.
 
-    The report appears in `out` when all of it is done; until then, and where anything fails, what was there stays.
+    The report appears in `out` when it is complete; until then, and after any failure, the old content stays.
 
     Args:
-        name: one of `names()`, or "all": then each report is in a folder of its name, with an `index.html` over them.
-        out: the folder; it may hold an earlier report, which is replaced, and nothing else.
+        name: one of `names()`, or "all": then each report has a folder of its name, with an `index.html` over them.
+        out: the folder; it may contain an earlier report, which is replaced, and nothing else.
         short: a quick pass with fewer runs.
         seed: first seed of all random draws.
-        progress: called with what is being done, how much of it is done, and of how much.
-        option: what messages call `out`.
+        progress: called with a label, the number of items done, and their total.
+        option: the name of `out` in messages.
 
     Raises:
         UnknownNameError: there is no such experiment; lists them.
-        BeetleIkError: what the extra `report`, or another that an experiment needs, brings is not installed.
-        InvalidInputError: `out` cannot be written, or holds files that are no report's.
+        BeetleIkError: the extra `report`, or another that an experiment needs, is not installed.
+        InvalidInputError: `out` cannot be written, or contains files that do not belong to a report.
     """
     chosen = [experiment(each) for each in (names() if name == ALL else [name])]
     check_installed(extra for each in chosen for extra in each.extras)

@@ -6,7 +6,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .._arguments import require
 from .._core import InvalidInputError, Robot
+from .._text import listed
 
 Matrix: TypeAlias = NDArray[np.float64]
 Kind: TypeAlias = Literal["revolute", "continuous", "prismatic"]
@@ -72,8 +74,9 @@ def parts(robot: Robot, library: str) -> tuple[Matrix, list[Matrix | Motion | Li
     """Returns pose of the base link, elements up to the last link, and tool, for a library without mimic joints.
 
     Raises:
-        InvalidInputError: a mimic joint; names the joint that it follows.
+        InvalidInputError: not a `Robot`, or one with a mimic joint; names the joint that it follows.
     """
+    require("robot", robot, Robot)
     base, elements, tool = robot._chain()
     seen: set[int] = set()
     shown: list[Matrix | Motion | Link] = []
@@ -103,6 +106,4 @@ def only_leaf(library: str, what: str, leaves: list[str]) -> str:
     """
     if len(leaves) == 1:
         return leaves[0]
-    raise InvalidInputError(
-        f"the model of {library} has {len(leaves)} leaf {what}; give tip= one of: {', '.join(leaves)}"
-    )
+    raise InvalidInputError(f"the model of {library} has {len(leaves)} leaf {what}; give tip= one of: {listed(leaves)}")

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._arguments import require, require_text
 from .._core import InvalidInputError, Robot, UnknownNameError, pose
 from .._needs import library
+from .._text import listed
 from .chain import ChainReader, only_leaf
 
 if TYPE_CHECKING:
@@ -52,11 +54,15 @@ def from_mujoco(
 
 
 def _read(mujoco: Any, model: str | os.PathLike[str]) -> Any:
+    require("model", model, mujoco.MjModel, str, os.PathLike)
     text = os.fspath(model)
+    if not isinstance(text, str):
+        raise InvalidInputError(f"model must be a path of text, got {text!r:.60}")
+    require_text("model", text)
     try:
         return mujoco.MjModel.from_xml_string(text) if "<" in text else mujoco.MjModel.from_xml_path(str(Path(text)))
     except ValueError as error:
-        raise InvalidInputError(f"MuJoCo cannot read the model: {error}") from error
+        raise InvalidInputError(f"MuJoCo cannot read the model: {error!s:.200}") from error
 
 
 def _name(model: Any) -> str:
@@ -67,7 +73,8 @@ def _index(bodies: list[str], sites: list[str], name: str) -> int:
     """Returns the index of a name in the bodies followed by the sites."""
     names = bodies + sites
     if name not in names:
-        known = f"bodies: {', '.join(bodies)}" + (f"; sites: {', '.join(filter(None, sites))}" if any(sites) else "")
+        named = [site for site in sites if site]
+        known = f"bodies: {listed(bodies)}" + (f"; sites: {listed(named)}" if named else "")
         raise UnknownNameError(f"no body or site '{name}' in the MuJoCo model; {known}")
     return names.index(name)
 

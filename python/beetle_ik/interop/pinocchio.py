@@ -4,8 +4,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._arguments import require
 from .._core import InvalidInputError, Robot, UnknownNameError, pose
 from .._needs import library
+from .._text import listed
 from .chain import ChainReader, Kind, Link, Motion, only_leaf, parts
 
 if TYPE_CHECKING:
@@ -24,9 +26,11 @@ def from_pinocchio(model: "pin.Model", *, base: str | None = None, tip: str | No
 
     Raises:
         UnknownNameError: no frame of that name; the message lists them.
-        InvalidInputError: several leaves and no `tip`, a tip that is not a descendant of the base, other joint types.
+        InvalidInputError: not a model, several leaves and no `tip`, a tip that is not a descendant of the base, other
+            joint types.
     """
     pin = library("pinocchio", "pin", "a Pinocchio model")
+    require("model", model, pin.Model)
     names = [frame.name for frame in model.frames]
     start = model.frames[_frame(names, "universe" if base is None else base)]
     end = model.frames[_frame(names, _leaf(pin, model) if tip is None else tip)]
@@ -82,7 +86,7 @@ def to_pinocchio(robot: Robot) -> "pin.Model":
 
 def _frame(names: list[str], name: str) -> int:
     if name not in names:
-        raise UnknownNameError(f"no frame '{name}' in the Pinocchio model; frames: {', '.join(names)}")
+        raise UnknownNameError(f"no frame '{name}' in the Pinocchio model; frames: {listed(names)}")
     return names.index(name)
 
 

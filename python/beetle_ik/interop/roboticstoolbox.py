@@ -76,7 +76,7 @@ def _transforms(robot: Any, tip: str | None) -> tuple[Any, Matrix, Matrix]:
         return robot.ets(), nowhere, nowhere
     if isinstance(robot, rtb.ETS):
         return robot, nowhere, nowhere
-    raise InvalidInputError(f"expected a robot or an ETS of the Robotics Toolbox, got {robot!r}")
+    raise InvalidInputError(f"expected a robot or an ETS of the Robotics Toolbox, got {robot!r:.60}")
 
 
 def _add_joint(chain: ChainReader, transform: Any, number: int) -> None:

@@ -4,6 +4,7 @@ import json
 import os
 from typing import Any
 
+from .._arguments import require_text
 from .._core import InvalidInputError, Trajectory
 from .._files import whole_file
 from .samples import samples
@@ -27,6 +28,7 @@ def to_ros(trajectory: Trajectory, *, dt: float | None = None, frame_id: str = "
         InvalidInputError: `dt` is not positive, or two points fall into the same nanosecond.
     """
     time, *values_of = samples(trajectory, dt)
+    require_text("frame_id", frame_id)
     degree = trajectory.coefficients.shape[2] - 1
     fields = ("positions", "velocities", "accelerations")[: 1 + (degree > 1) + (degree > 3)]
     nanoseconds = [round(float(t) * _NANO) for t in time]

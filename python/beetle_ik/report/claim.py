@@ -27,11 +27,11 @@ class Verdict(StrEnum):
 
 
 _MEANINGS = {
-    Verdict.REPRODUCED: "The rule is met, with nothing chosen that the paper leaves open.",
-    Verdict.WITH_READING: "The rule is met once a gap or an ambiguity of the text is filled as stated.",
-    Verdict.CONTRADICTED: "The rule is not met: under the conditions given, the claim does not hold.",
-    Verdict.NOT_IDENTIFIABLE: "The paper does not give what would decide, or its possible readings disagree.",
-    Verdict.NOT_TESTED: "Nothing was run that could decide; the reason is given.",
+    Verdict.REPRODUCED: "The rule is met, and nothing had to be chosen.",
+    Verdict.WITH_READING: "The rule is met once a gap or ambiguity of the paper is filled as stated.",
+    Verdict.CONTRADICTED: "The rule is not met under the stated conditions, or under any reading of the text.",
+    Verdict.NOT_IDENTIFIABLE: "The paper omits what would decide, or its possible readings disagree.",
+    Verdict.NOT_TESTED: "Nothing was run that could decide; the report says why.",
 }
 
 
@@ -52,7 +52,7 @@ Readings: TypeAlias = Mapping[str, bool]
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """A statement of a paper beside what came out. Made by `Claim.judged`."""
+    """A statement of a paper beside the measured result. Made by `Claim.judged`."""
 
     statement: str
     """What the paper says, in our words or, in quotes, in its own."""
@@ -135,7 +135,7 @@ class Claim:
 
     @property
     def notes(self) -> list[str]:
-        """What stands below the measured values: readings, missing quantities, the reason."""
+        """The lines below the measured values: readings, missing quantities, the reason."""
         notes = [f"Reading: {self.reading}"] if self.reading else []
         if isinstance(self.holds, Mapping):
             for words, met in ((_HOLDS, True), (_FAILS, False)):

@@ -8,6 +8,7 @@ from .._core import BeetleIkError
 # What each extra brings: how it is imported, and how it is called.
 _BROUGHT = {
     "report": {"jinja2": "jinja2", "matplotlib": "matplotlib"},
+    "sim": {"mujoco": "mujoco"},
     "vision": {"skimage": "scikit-image"},
 }
 

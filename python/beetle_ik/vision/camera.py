@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .._arguments import require
 from .._core import InvalidInputError, Robot
 
 
@@ -24,8 +26,11 @@ class Camera:
     def __post_init__(self) -> None:
         """Checks the options."""
         for name in ("pixels_per_metre", "link_width"):
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise InvalidInputError(f"{name} must be positive and finite, got {getattr(self, name)}")
+            number = getattr(self, name)
+            if not isinstance(number, Real) or not 0.0 < float(number) < np.inf:
+                raise InvalidInputError(f"{name} must be positive and finite, got {number!r:.60}")
+        if numbers("origin", self.origin).shape != (2,):
+            raise InvalidInputError(f"origin must be column and row, got {self.origin!r:.60}")
 
     @property
     def half_width(self) -> float:
@@ -38,8 +43,31 @@ class Camera:
         return np.asarray(self.origin) + self.pixels_per_metre * points * [1.0, -1.0]
 
 
+def checked(camera: Camera | None) -> Camera:
+    """Returns the camera, or the default one for None."""
+    camera = Camera() if camera is None else camera
+    require("camera", camera, Camera)
+    return camera
+
+
+def numbers(name: str, values: object) -> NDArray[np.float64]:
+    """Returns finite numbers as an array.
+
+    Raises:
+        InvalidInputError: anything else; names the argument.
+    """
+    try:
+        array = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidInputError(f"{name} must be numbers, got {values!r:.60}") from None
+    if not np.isfinite(array).all():
+        raise InvalidInputError(f"{name} must be finite, got {values!r:.60}")
+    return array
+
+
 def check_planar(robot: Robot) -> None:
     """Raises an error unless the robot moves in the x-y plane."""
+    require("robot", robot, Robot)
     q = np.clip(np.full(robot.dof, 0.3), robot.lower, robot.upper)
     out_of_plane = np.abs(robot.jacobian(q)[2:5]).max()
     if "prismatic" in robot.joint_kinds or out_of_plane > 1e-9:

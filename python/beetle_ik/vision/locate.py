@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import InvalidInputError, Robot
 from .._needs import library
-from .camera import Camera, check_planar, distance_to_links
+from .camera import Camera, check_planar, checked, distance_to_links, numbers
 from .render import evenly, outline
 
 _SMOOTHING = 2.0  # pixels, standard deviation
@@ -105,16 +105,16 @@ def locate_arm(
     library("skimage", "scikit-image", "locate_arm", extra="vision")
     began = time.perf_counter()
     check_planar(robot)
-    camera = camera or Camera()
+    camera = checked(camera)
     grey = _grey(image)
     start = _checked_guess(guess, robot)
     if method not in ("threshold", "snake"):
-        raise InvalidInputError(f"method must be one of 'threshold', 'snake', got '{method}'")
+        raise InvalidInputError(f"method must be one of 'threshold', 'snake', got {method!r:.60}")
     mask, level, smooth = _arm_mask(grey)
     nothing = np.empty((0, 2))
 
-    def located(status: Sight, q: NDArray[np.float64], contour: NDArray[np.float64], **numbers: Any) -> ArmLocation:
-        shown = {"rms": np.nan, "overlap": np.nan, "evaluations": 0, **numbers}
+    def located(status: Sight, q: NDArray[np.float64], contour: NDArray[np.float64], **measured: Any) -> ArmLocation:
+        shown = {"rms": np.nan, "overlap": np.nan, "evaluations": 0, **measured}
         elapsed = time.perf_counter() - began
         return ArmLocation(q=_frozen(q), status=status, contour=_frozen(contour), elapsed=elapsed, **shown)
 
@@ -125,16 +125,19 @@ def locate_arm(
     residual = distance_to_links(contour, camera.joint_points(robot, q)) - camera.half_width
     rms = float(np.sqrt(np.mean(residual**2)))
     overlap = _overlap(mask, camera.joint_points(robot, q), camera)
-    numbers = {"rms": rms, "overlap": overlap, "evaluations": evaluations}
+    measured = {"rms": rms, "overlap": overlap, "evaluations": evaluations}
     if mask[0].any() or mask[-1].any() or mask[:, 0].any() or mask[:, -1].any():
-        return located(Sight.CUT_OFF, q, contour, **numbers)
+        return located(Sight.CUT_OFF, q, contour, **measured)
     reliable = rms <= _RELIABLE_RMS and overlap >= _RELIABLE_OVERLAP
-    return located(Sight.FOUND if reliable else Sight.UNRELIABLE, q, contour, **numbers)
+    return located(Sight.FOUND if reliable else Sight.UNRELIABLE, q, contour, **measured)
 
 
 def _grey(image: ArrayLike) -> NDArray[np.float64]:
     """Returns the brightness of the image, between 0 and about 1."""
-    picture = np.asarray(image)
+    try:
+        picture = np.asarray(image)
+    except (TypeError, ValueError):
+        raise InvalidInputError(f"image must be an array of numbers, got {image!r:.60}") from None
     coloured = picture.ndim == 3 and picture.shape[2] in (3, 4)
     if not (picture.ndim == 2 or coloured) or picture.dtype.kind not in "buif":
         raise InvalidInputError(
@@ -150,7 +153,7 @@ def _grey(image: ArrayLike) -> NDArray[np.float64]:
 
 
 def _checked_guess(guess: ArrayLike, robot: Robot) -> NDArray[np.float64]:
-    start = np.array(guess, dtype=float)
+    start = numbers("guess", guess)
     robot.fk(start)  # raises for a wrong length and for NaN
     return start
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._core import Robot
+from .._arguments import require_count
+from .._core import InvalidInputError, Robot
 from .._needs import library
-from .camera import Camera, check_planar, distance_to_links
+from .camera import Camera, check_planar, checked, distance_to_links, numbers
 
 
 def render(
@@ -30,7 +31,11 @@ def render(
         seed: seed of the noise.
     """
     check_planar(robot)
-    camera = camera or Camera()
+    camera = checked(camera)
+    if numbers("shape", shape).shape != (2,) or min(shape) < 1:
+        raise InvalidInputError(f"shape must be rows and columns, got {shape!r:.60}")
+    numbers("noise", noise)
+    require_count("seed", seed)
     rows, columns = np.mgrid[: shape[0], : shape[1]]
     pixels = np.stack((columns.ravel(), rows.ravel()), axis=1).astype(float)
     inside = camera.half_width - distance_to_links(pixels, camera.joint_points(robot, q))
@@ -43,9 +48,12 @@ def outline(
 ) -> NDArray[np.float64]:
     """Returns the closed outline of the arm at `q` (n,), `margin` pixels outside: (points, 2), column and row."""
     library("skimage", "scikit-image", "a picture", extra="vision")
+    check_planar(robot)
+    numbers("margin", margin)
+    require_count("points", points)
     from skimage.measure import find_contours
 
-    camera = camera or Camera()
+    camera = checked(camera)
     joints = camera.joint_points(robot, q)
     reach = camera.half_width + margin + 3.0
     low = np.floor(joints.min(axis=0) - reach).astype(int)

@@ -1,8 +1,8 @@
-//! The work of a batch: rows, groups of rows, and who solves them.
+//! The work of a batch: rows, and the threads that solve groups of rows.
 //!
-//! Items share nothing that changes: item i draws from stream i of the seed and writes to row i. So the bits of an item
-//! depend neither on the number of threads nor on the other items. Where the solver allows it, a thread solves four targets
-//! side by side in the lanes of its registers.
+//! Items share no mutable state: item i draws from stream i of the seed and writes to row i. So the bits of an item
+//! depend neither on the number of threads nor on the other items. If the solver allows it, a thread solves four
+//! targets side by side in the lanes of its registers.
 
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -22,7 +22,7 @@ use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
 
-/// What all threads share.
+/// The data that all threads share.
 pub(super) struct Job<'a> {
     context: SolveContext<'a>,
     targets: Targets<'a>,
@@ -31,14 +31,14 @@ pub(super) struct Job<'a> {
     dof: usize,
 }
 
-/// Rows checked between two polls of the monitor: some 100 microseconds.
+/// Rows checked between two polls of the monitor: about 100 microseconds.
 const CHECKED_AT_ONCE: usize = 1024;
 
-/// The fewest and the most targets in a group that a thread solves four side by side. With fewer, lanes idle at the end of a
-/// group; with more, threads idle at the end of the batch.
+/// Smallest and largest number of targets in a group that a thread solves four side by side. With fewer, lanes idle at
+/// the end of a group; with more, threads idle at the end of the batch.
 const GROUP: (usize, usize) = (8, 256);
 
-/// Groups per thread, where there are enough targets, so that threads end together.
+/// Groups per thread, if there are enough targets, so that threads end at about the same time.
 const GROUPS_A_THREAD: usize = 4;
 
 /// Time between two polls of the monitor while threads work.
@@ -60,7 +60,7 @@ impl<'a> Job<'a> {
         Ok(Self { context, targets, starts: options.starts, common_start, dof })
     }
 
-    /// Target `i` and its start, both checked.
+    /// Returns target `i` and its start, validated.
     fn read(&self, i: usize) -> Result<(Target, Option<&'a [f64]>)> {
         let target = self.context.read(&self.targets.read(i)?)?;
         let Some(starts) = self.starts else { return Ok((target, self.common_start)) };
@@ -86,7 +86,7 @@ impl<'a> Job<'a> {
         if together { (self.targets.len() / (GROUPS_A_THREAD * threads)).clamp(fewest, most) } else { 1 }
     }
 
-    /// Solves the targets from number `first` on, as many as there are `items`, and calls `done` after each.
+    /// Solves the targets from index `first` on, one per entry of `items`, and calls `done` after each.
     fn solve_rows<M: Monitor + Clone>(
         &self,
         first: usize,

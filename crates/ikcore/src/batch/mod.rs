@@ -1,7 +1,7 @@
-//! Many targets at once, on all cores. The only module that knows threads.
+//! Many targets at once, on all cores. The only module that uses threads.
 //!
-//! `solve_batch` is the call. A `job` reads rows, groups them and solves each group; `pool` holds the threads, `monitors` lets
-//! them be stopped. What comes out is in `results`.
+//! `solve_batch` is the call. A `job` reads rows, groups them and solves each group; `pool` holds the threads,
+//! `monitors` stop them on request, `results` holds the results.
 
 mod batch_options;
 mod job;

@@ -1,11 +1,11 @@
-//! The monitors that a batch hands to its solves.
+//! Monitors of the solves of a batch.
 
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::solver::Monitor;
 
-/// The caller's monitor, asked by targets that are solved side by side.
+/// The caller's monitor, shared by targets that are solved side by side.
 #[derive(Clone)]
 pub(super) struct SharedMonitor<'a, 'm>(pub &'a RefCell<&'m mut dyn Monitor>);
 
@@ -19,7 +19,7 @@ impl Monitor for SharedMonitor<'_, '_> {
     }
 }
 
-/// The monitor of a working thread: it knows only whether to stop.
+/// The monitor of a worker thread, which only signals whether to stop.
 #[derive(Clone)]
 pub(super) struct StopFlag<'a>(pub &'a AtomicBool);
 

@@ -6,7 +6,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::{Error, Result};
 
-/// Largest number of threads: more than any machine has use for.
+/// Largest number of threads; more than any machine needs.
 const MAX_THREADS: usize = 1024;
 
 /// Number of threads to use.
@@ -21,8 +21,8 @@ pub(super) fn thread_count(wanted: Option<usize>) -> Result<usize> {
     }
 }
 
-/// The pool of the last call, and the process that its threads run in: a forked child inherits the pool without them,
-/// and would wait for ever.
+/// The pool of the last call, and the process that owns its threads: a forked child inherits the pool without its
+/// threads, and would wait for ever.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
 /// A pool of `threads` threads, kept for the next call.
@@ -30,7 +30,7 @@ static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 /// # Errors
 /// [`Error::NoThreads`].
 pub(super) fn pool(threads: usize) -> Result<Arc<ThreadPool>> {
-    // Without waiting: when this process was forked, another thread of the parent may have held the lock.
+    // Without waiting: if this process was forked, another thread of the parent may have held the lock.
     let Ok(mut kept) = POOL.try_lock() else { return new_pool(threads) };
     let process = std::process::id();
     if let Some((owner, pool)) = &*kept
@@ -43,7 +43,7 @@ pub(super) fn pool(threads: usize) -> Result<Arc<ThreadPool>> {
     if let Some((owner, old)) = kept.replace((process, Arc::clone(&pool)))
         && owner != process
     {
-        std::mem::forget(old); // there are no threads here to be ended
+        std::mem::forget(old); // in this process there are no threads to join
     }
     Ok(pool)
 }

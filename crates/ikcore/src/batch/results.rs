@@ -14,9 +14,9 @@ use crate::task::TipError;
 pub struct BatchItem {
     /// Why the search ended.
     pub status: Status,
-    /// Errors by forward kinematics; NaN where nothing was solved.
+    /// Errors by forward kinematics; NaN if the item was not solved.
     pub error: TipError,
-    /// What keeps the tip from a target that was not reached, in words; empty where nothing is known.
+    /// Why the target was not reached, in words; empty if unknown or reached.
     pub obstruction: String,
     /// Iterations over all starts.
     pub iterations: usize,
@@ -24,7 +24,7 @@ pub struct BatchItem {
     pub restarts: usize,
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
-    /// Time taken by this target; time side by side with others is shared equally.
+    /// Time taken by this target; time shared with targets side by side is divided equally.
     pub elapsed: Duration,
 }
 
@@ -36,7 +36,7 @@ impl BatchItem {
         Self { status, error, obstruction, iterations: 0, restarts: 0, evaluations: 0, elapsed: Duration::ZERO }
     }
 
-    /// The same with its configuration.
+    /// Combines the item with its configuration.
     pub fn solution(&self, q: &[f64]) -> Solution {
         let Self { status, error, obstruction, iterations, restarts, evaluations, elapsed } = self.clone();
         Solution { q: Point::from_slice(q), status, error, obstruction, iterations, restarts, evaluations, elapsed }
@@ -48,7 +48,7 @@ impl BatchItem {
 pub struct Batch {
     /// Degrees of freedom, n.
     pub dof: usize,
-    /// The best configurations found, (m, n) row after row (rad, m); NaN where nothing was solved.
+    /// The best configurations found (m, n), row-major (rad, m); NaN for items that were not solved.
     pub q: Vec<f64>,
     /// The result of each target (m,).
     pub items: Vec<BatchItem>,
@@ -62,12 +62,12 @@ impl Batch {
         Self { dof, q: vec![f64::NAN; dof * len], items, elapsed: Duration::ZERO }
     }
 
-    /// BatchItem `i` on its own; None past the end.
+    /// The solution of item `i`; `None` past the end.
     pub fn solution(&self, i: usize) -> Option<Solution> {
         self.items.get(i).map(|item| item.solution(&self.q[i * self.dof..(i + 1) * self.dof]))
     }
 
-    /// The items in `rows`, in this order; the time is the sum of theirs.
+    /// The items in `rows`, in this order; the time is the sum of their times.
     ///
     /// # Panics
     /// If a row is past the end.
@@ -78,7 +78,7 @@ impl Batch {
         Self { dof: self.dof, q, items, elapsed }
     }
 
-    /// The number solved, and what to try for the others.
+    /// The number of solved targets, and what to try for the others.
     pub fn message(&self) -> String {
         let count = |status| self.items.iter().filter(|item| item.status == status).count();
         let (solved, total) = (count(Status::Solved), self.items.len());

@@ -9,9 +9,10 @@ use crate::error::Result;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
 
-/// Solves every target of `targets`; item i is what [`solve`](crate::ik::solve) would find from stream i of the seed.
+/// Solves every target of `targets`; item i is the solution that [`solve`](crate::ik::solve) would find with stream i
+/// of the seed.
 ///
-/// The monitor is called from the calling thread alone.
+/// The monitor is called only from the calling thread.
 ///
 /// # Errors
 /// Any [`Error`](enum@crate::Error) for wrong input; [`Error::InRow`](crate::Error::InRow) for an invalid target or start, unless

@@ -9,9 +9,9 @@ use crate::task::Target;
 /// The targets of a batch as arrays of m rows, not yet checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Targets<'a> {
-    /// Positions (m), the orientation left free.
+    /// Positions (m); the orientation is free.
     Positions(&'a [[f64; 3]]),
-    /// Poses, homogeneous 4x4 matrices, each stored row after row.
+    /// Poses: homogeneous 4x4 matrices, each row-major.
     Poses(&'a [[f64; 16]]),
 }
 

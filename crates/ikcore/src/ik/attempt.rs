@@ -1,4 +1,4 @@
-//! The attempt at one target: runs of the solver within the target's budget, and a last descent from the best miss.
+//! The attempt at one target: runs of the solver within the target's budget, and a final descent from the best miss.
 
 use super::budget::Budget;
 use super::context::SolveContext;
@@ -10,10 +10,10 @@ use crate::rng::LazyRng;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, Status, run};
 use crate::task::Goals;
 
-/// Starts from which a target beyond the reach is approached.
+/// Number of starts for approaching a target out of reach.
 const APPROACHES: usize = 8;
 
-/// Everything that solving one target needs.
+/// The state of solving one target.
 pub(super) struct Attempt<'m, 'p> {
     pub context: &'p SolveContext<'p>,
     pub problem: &'m mut Problem<'p>,
@@ -23,7 +23,7 @@ pub(super) struct Attempt<'m, 'p> {
 }
 
 impl<'m, 'p> Attempt<'m, 'p> {
-    /// An attempt with its whole budget.
+    /// An attempt with its full budget.
     pub fn new(
         context: &'p SolveContext<'p>,
         problem: &'m mut Problem<'p>,
@@ -43,7 +43,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         self.problem.propose_start(1, self.context.bounds(), self.rng, x);
     }
 
-    /// Runs the solver from `x0` and, where it misses, descends from its best point. A target provably beyond the reach is
+    /// Runs the solver from `x0` and, after a miss, descends from its best point. A target provably out of reach is
     /// only approached.
     pub fn solve_from(&mut self, x0: &[f64]) -> Solution {
         let bounds = self.context.bounds();
@@ -68,7 +68,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (status, Point::from_slice(&evaluator.best().x))
     }
 
-    /// The solution of a search that ended with `status` at `q`; a miss is followed by a descent from there.
+    /// The solution of a search that ended with `status` at `q`. After a miss, descends from `q` first.
     pub fn finish(&mut self, descent: &LevenbergMarquardt, status: Status, q: Point) -> Solution {
         if !matches!(status, Status::BudgetSpent | Status::Stalled) {
             return self.explained(status, q);
@@ -77,7 +77,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         self.explained(if solved { Status::Solved } else { status }, q)
     }
 
-    /// Descends once from `q` to the end; whether that solved, and the best point.
+    /// Descends once from `q` until convergence; returns whether that solved the target, and the best point.
     fn descend(&mut self, descent: &LevenbergMarquardt, q: Point) -> (bool, Point) {
         if self.budget.is_spent() {
             return (false, q);
@@ -89,7 +89,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (evaluator.best().solved, Point::from_slice(&evaluator.best().x))
     }
 
-    /// The nearest of a few descents towards a target that cannot be reached.
+    /// The best of a few descents towards a target that cannot be reached.
     fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64]) -> Point {
         let mut best: Option<(f64, Point)> = None;
         let mut x = Point::from_slice(x0);
@@ -107,7 +107,8 @@ impl<'m, 'p> Attempt<'m, 'p> {
         best.map_or(x, |(_, q)| q)
     }
 
-    /// Moves `q` along its self-motion to the nearest optimum of `goals`; false where `q` is at no solution, nor near one.
+    /// Moves `q` along its self-motion to the nearest optimum of `goals`; false if `q` is neither at nor near a
+    /// solution.
     pub fn descend_goals(&mut self, goals: &mut Goals, q: &mut Point) -> bool {
         let mut descent = GoalDescent {
             robot: self.context.robot(),
@@ -122,7 +123,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         is_solved
     }
 
-    /// The result at `q`, with the reason of a miss.
+    /// The result at `q`, with the reason for a miss.
     fn explained(&self, status: Status, q: Point) -> Solution {
         let mut solution = self.solution(status, q);
         if status != Status::Solved {
@@ -145,7 +146,8 @@ impl<'m, 'p> Attempt<'m, 'p> {
         }
     }
 
-    /// Gives a solved `solution` the status [`Status::HeldInRegion`] where the region keeps the tip from the target itself.
+    /// Gives a solved `solution` the status [`Status::HeldInRegion`] if the region keeps the tip from the target
+    /// itself.
     pub fn mark_held_in_region(&self, solution: Solution) -> Solution {
         match self.problem.criterion().blocked_by_region(self.problem.target()) {
             Some(obstruction) if solution.status == Status::Solved => {

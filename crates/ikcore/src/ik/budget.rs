@@ -3,7 +3,8 @@
 use crate::objective::Objective;
 use crate::solver::{Evaluator, Stop, Stopwatch};
 
-/// Evaluations kept back for a last descent from the best miss: multi-start abandons attempts long before they converge.
+/// Evaluations reserved for a final descent from the best miss: multi-start abandons attempts long before they
+/// converge.
 const RESERVE: usize = 200;
 
 /// The counts of one target so far, and the limits on them.
@@ -31,7 +32,7 @@ impl Budget {
         self.stop.max_evaluations.saturating_sub(self.evaluations)
     }
 
-    /// Evaluations that the first search leaves over.
+    /// Evaluations that the first search must leave.
     pub fn reserve(&self) -> usize {
         if self.left() > 10 * RESERVE { RESERVE } else { 0 }
     }
@@ -43,7 +44,7 @@ impl Budget {
             || self.stop.max_time.is_some_and(|limit| self.stopwatch.elapsed() >= limit)
     }
 
-    /// What is left of the budgets, less `reserve` evaluations.
+    /// The remaining budgets, less `reserve` evaluations.
     pub fn rest(&self, reserve: usize) -> Stop {
         Stop {
             max_evaluations: self.left() - reserve,

@@ -1,4 +1,4 @@
-//! What all targets of a call have in common, validated once.
+//! The validated arguments that all targets of a call share.
 
 use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
@@ -13,11 +13,11 @@ use crate::task::{Criterion, Goals, Target, Task};
 /// A validated target and start.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Query<'a> {
-    /// Where the tip is to be, as [`SolveContext::read`] returns it.
+    /// The target, as returned by [`SolveContext::read`].
     pub target: Target,
-    /// Where to begin.
+    /// The start, if given.
     pub start: Option<&'a [f64]>,
-    /// Which stream of the seed the draws come from.
+    /// The random stream of the seed.
     pub stream: u64,
 }
 
@@ -75,7 +75,8 @@ impl<'a> SolveContext<'a> {
         self.options
     }
 
-    /// The default solver's descent where it can run side by side: nothing follows it and no clock runs.
+    /// The descent of the default solver if it can run side by side: without goals or preferences after it, and without
+    /// a time limit.
     pub(crate) fn side_by_side_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
         let alone = self.options.prefer == Prefer::Any && self.goals.is_empty();
         let descent = self.options.solver.restarted_descent();
@@ -87,7 +88,7 @@ impl<'a> SolveContext<'a> {
         Problem::new(self.robot(), target, self.criterion).disregarding_turns()
     }
 
-    /// Returns the part of `wanted` that the task asks for, checked.
+    /// Returns the part of `wanted` that the task uses, validated.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::WrongTarget`].
@@ -105,7 +106,7 @@ impl<'a> SolveContext<'a> {
         self.robot().require_within("start", q, self.bounds.lower(), self.bounds.upper())
     }
 
-    /// Checks that the nearest solution is asked for with a start.
+    /// Checks that `prefer="nearest"` comes with a start.
     ///
     /// # Errors
     /// [`Error::Contradiction`].
@@ -129,7 +130,7 @@ impl<'a> SolveContext<'a> {
     }
 }
 
-/// The position limits as a box. Velocities do not matter to a single configuration.
+/// The position limits as a box. Velocity limits do not matter for a single configuration.
 fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     let Some(limits) = limits else {
         return Ok(Bounds::from_ranges(robot.joints().iter().map(|joint| (joint.lower, joint.upper))));

@@ -1,8 +1,8 @@
 //! Descent on the goals along the self-motion of a solution: the joints move, the tip stays.
 //!
-//! Projected gradient descent. The gradient of the goals is projected onto the linearised task and the box; Gauss-Newton
-//! brings a step back to the task; the step length follows Barzilai and Borwein (1988), which on the one-dimensional
-//! self-motion of a 7-joint arm is the secant method.
+//! Projected gradient descent: the gradient of the goals is projected onto the linearised task and the box;
+//! Gauss-Newton corrects each step back onto the task; the step length follows Barzilai and Borwein (1988), which on
+//! the one-dimensional self-motion of a 7-joint arm is the secant method.
 
 use crate::math::box_step::{BoxStep, least_damping};
 use crate::math::vector::dot;
@@ -11,20 +11,20 @@ use crate::problem::Problem;
 use crate::robot::Robot;
 use crate::task::Goals;
 
-/// Longest step of a joint (rad, m): beyond, the linearised task says little.
+/// Longest step of a joint (rad, m); beyond it the linearised task is inaccurate.
 const LONGEST: f64 = 0.3;
-/// A step that moves no joint by as much (rad, m) ends the descent.
+/// The descent ends when no joint moves by more than this (rad, m) in a step.
 const SHORTEST: f64 = 1e-7;
-/// The step by which a gradient is projected (rad, m): so short that only joints at their limits feel them.
+/// Step length for projecting a gradient (rad, m): so short that only joints at their limits are affected by them.
 const PROBE: f64 = 1e-5;
-/// Descents end by themselves; this many steps bound what a flat goal may cost.
+/// Maximum number of steps; bounds the cost of a flat goal, since descents normally end by themselves.
 const MOST_STEPS: usize = 100;
-/// Gauss-Newton steps back to the task before a step counts as too long.
+/// Gauss-Newton corrections before a step counts as too long.
 const MOST_CORRECTIONS: usize = 5;
 /// Factor on a step that was too long.
 const SHORTEN: f64 = 0.3;
 
-/// A descent on goals: problem, goals, and evaluations spent.
+/// A descent on goals: problem, goals, and evaluations made.
 pub(super) struct GoalDescent<'a, 'p> {
     pub robot: &'a Robot,
     pub problem: &'a mut Problem<'p>,
@@ -43,7 +43,7 @@ struct TaskPoint {
 }
 
 impl GoalDescent<'_, '_> {
-    /// Moves `q`, at or near a solution, to the nearest optimum of the goals; false where there is no solution near.
+    /// Moves `q`, at or near a solution, to the nearest optimum of the goals; false if there is no solution nearby.
     pub fn descend(&mut self, q: &mut Point) -> bool {
         let begin = self.place(q.clone());
         let was_solved = self.problem.assess(q).score.solved;
@@ -53,16 +53,16 @@ impl GoalDescent<'_, '_> {
         }
         let exact = self.place(q.clone());
         let end = self.follow_slope(exact);
-        // Brought exactly to the task, an arm that had nowhere to go may have lost what it gained by leaning on the tolerance.
+        // After the exact correction, an arm that could not move may have lost the gain it had within the tolerance.
         *q = if end.cost < begin.cost || !was_solved { end.q } else { begin.q };
         true
     }
 
-    /// Steps down the slope from `here` to where there is none.
+    /// Descends from `here` until the slope vanishes.
     fn follow_slope(&mut self, mut here: TaskPoint) -> TaskPoint {
         let mut linearization = Linearization::default();
         let mut rate = f64::INFINITY;
-        // The last step and the slope that it went down: what the next rate is estimated from.
+        // The last step and its slope, from which the next rate is estimated.
         let mut last: Option<(Point, Point)> = None;
         for _ in 0..MOST_STEPS {
             if self.evaluations + MOST_CORRECTIONS + 1 > self.max_evaluations {
@@ -82,8 +82,8 @@ impl GoalDescent<'_, '_> {
         here
     }
 
-    /// The step down `slope` at `rate`, or at the longest shorter one that lowers the cost and solves the task; None where
-    /// there is none worth the while.
+    /// The step down `slope` at `rate`, or at the largest smaller rate that lowers the cost and solves the task; `None`
+    /// if no step is worthwhile.
     fn shorter_until_better(
         &mut self,
         here: &TaskPoint,
@@ -104,8 +104,8 @@ impl GoalDescent<'_, '_> {
         None
     }
 
-    /// Brings `q` back to the task; whether that succeeded. One step is made beyond the tolerance: what the goals gained from
-    /// leaning on it, the next step could not gain again.
+    /// Corrects `q` back onto the task; returns whether that succeeded. It takes one step more than the tolerance
+    /// requires: a gain from using up the tolerance could not be repeated in the next step.
     fn correct(&mut self, q: &mut Point) -> bool {
         let mut linearization = Linearization::default();
         let mut was_solved = false;
@@ -121,11 +121,11 @@ impl GoalDescent<'_, '_> {
         false
     }
 
-    /// What is left of the gradient once the task and the box are respected.
+    /// The gradient projected onto the task and the box.
     fn projected(&self, here: &TaskPoint, at: &Linearization) -> Point {
         let rate = PROBE / largest(&here.gradient);
         let out = self.near(at, here, &here.gradient, rate);
-        // The task itself may be missed by what its tolerance allows: that part is no slope.
+        // The error of the task within its tolerance is not part of the slope.
         let still = self.near(at, here, &here.gradient, 0.0);
         difference(&still, &out).into_iter().map(|step| step / rate).collect()
     }
@@ -159,7 +159,7 @@ impl GoalDescent<'_, '_> {
     }
 }
 
-/// The largest entry, as a size; never zero, so that it may divide.
+/// The largest magnitude of an entry; never zero, so that it can be a divisor.
 fn largest(slope: &[f64]) -> f64 {
     slope.iter().fold(f64::MIN_POSITIVE, |largest, slope| largest.max(slope.abs()))
 }

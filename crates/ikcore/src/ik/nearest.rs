@@ -12,14 +12,14 @@ use crate::robot::Robot;
 use crate::solver::Status;
 use crate::task::{Goal, Goals};
 
-/// Solutions in a row that are no nearer, after which the search ends.
+/// Consecutive solutions without improvement after which the search ends.
 const PATIENCE: usize = 24;
 
-/// Distances that differ by less (rad, m) are the same.
+/// Distances that differ by less (rad, m) count as equal.
 const SAME: f64 = 1e-9;
 
-/// The solution nearest to `start` among those found until [`PATIENCE`] in a row were no nearer; the best miss where there is
-/// none.
+/// Returns the nearest solution to `start` found before [`PATIENCE`] consecutive solutions were no nearer; the best
+/// miss if there is none.
 pub(super) fn nearest_solution(attempt: &mut Attempt<'_, '_>, start: &[f64]) -> Solution {
     let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
     let goal = Goal::Posture { posture: start.to_vec(), weight: 1.0 };
@@ -51,7 +51,7 @@ pub(super) fn nearest_solution(attempt: &mut Attempt<'_, '_>, start: &[f64]) -> 
     }
 }
 
-/// Starts spread about the caller's.
+/// Random starts around the caller's start.
 struct Spread<'a> {
     robot: &'a Robot,
     bounds: &'a Bounds,
@@ -59,8 +59,8 @@ struct Spread<'a> {
 }
 
 impl Spread<'_> {
-    /// Draws a point no farther from the start than `share` of each joint's range: of one turn where that is less and the
-    /// joint repeats, as whole turns bring back what lies beyond.
+    /// Draws a point whose joints differ from the start by at most `share` of their ranges, or of one turn if that is
+    /// less and the joint is periodic, since whole turns bring back any point beyond.
     fn draw(&self, share: f64, rng: &mut LazyRng, x: &mut [f64]) {
         let Self { robot, bounds, start } = self;
         for (j, joint) in robot.joints().iter().enumerate() {

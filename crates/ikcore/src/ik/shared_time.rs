@@ -1,17 +1,17 @@
-//! Time that runs side by side share in equal parts.
+//! Elapsed time, shared equally by the runs that are side by side.
 
 use std::cell::Cell;
 use std::time::Duration;
 
 use crate::solver::Stopwatch;
 
-/// Time that runs share in equal parts with those beside them.
+/// Elapsed time, shared equally by concurrent runs.
 pub(super) struct SharedTime {
     stopwatch: Stopwatch,
     state: Cell<Shares>,
 }
 
-/// What a run that was there all the time would have used by `until`, and how many runs share the time from then on.
+/// The time that a run present from the start would have used by `until`, and the number of runs from then on.
 #[derive(Clone, Copy)]
 struct Shares {
     until: Duration,
@@ -25,7 +25,7 @@ impl SharedTime {
         Self { stopwatch: Stopwatch::start(), state: Cell::new(state) }
     }
 
-    /// Up to now, by so many runs from now on.
+    /// Updates the shares to now; `runs` changes the number of runs.
     fn share(&self, runs: impl FnOnce(u32) -> u32) -> Duration {
         let (Shares { until, each, runs: before }, now) = (self.state.get(), self.stopwatch.elapsed());
         let each = each + (now - until) / before.max(1);
@@ -33,12 +33,12 @@ impl SharedTime {
         each
     }
 
-    /// A run begins; what to [`leave`](Self::leave) with.
+    /// A run begins; returns the value to pass to [`leave`](Self::leave).
     pub fn enter(&self) -> Duration {
         self.share(|runs| runs + 1)
     }
 
-    /// A run ends; its share of the time since it began.
+    /// A run ends; returns its share of the time since it began.
     pub fn leave(&self, begun: Duration) -> Duration {
         self.share(|runs| runs - 1) - begun
     }

@@ -17,7 +17,7 @@ pub struct Solution {
     pub status: Status,
     /// Errors at `q`, by forward kinematics.
     pub error: TipError,
-    /// What keeps the tip from a target that was not reached, in words; empty where nothing is known.
+    /// Why the target was not reached, in words; empty if unknown or reached.
     pub obstruction: String,
     /// Iterations over all starts.
     pub iterations: usize,
@@ -30,7 +30,7 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// What happened, and what to try.
+    /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         let Self { error, obstruction, status, .. } = self;
         if error.position.is_nan() && error.rotation.is_nan() {

@@ -15,15 +15,17 @@ use crate::task::Target;
 
 /// Finds a configuration that brings the tip of `robot` to `target`.
 ///
-/// With goals, the solution found is moved along its self-motion to the nearest optimum of the goals.
+/// With goals, the solution is moved along its self-motion to the nearest optimum of the goals.
 ///
-/// With [`Prefer::Nearest`], starts spread ever wider about the given one lead to further solutions, each moved along its
-/// self-motion and by whole turns towards the start, until 24 in a row are no nearer or the budget is spent. Distance is
+/// With [`Prefer::Nearest`], the solve is repeated from starts at increasing distances from the given one. Each
+/// solution is moved along its self-motion and by whole turns towards the start, until 24 consecutive solutions are no
+/// nearer or the budget is spent. The distance is |q - start|, with joints in rad and m.
 /// |q - start|, joints counted in rad and m.
 ///
-/// With [`Prefer::Best`], starts from all over lead to further solutions, each moved along its self-motion, until 40 in a row
-/// serve the goals no better. An arm with one joint more than its task needs is led once along every curve of solutions, past
-/// the limits that cut it, until 40 solutions or 1200 evaluations in a row meet no new curve.
+/// With [`Prefer::Best`], the solve is repeated from starts all over the joint space. Each solution is moved along its
+/// self-motion, until 40 consecutive solutions are no better for the goals. For an arm with one joint more than its
+/// task needs, each curve of solutions is traced once, beyond the limits that interrupt it, until 40 solutions or 1200
+/// evaluations in a row find no new curve.
 ///
 /// # Errors
 /// Any [`Error`](crate::Error) for wrong input. A target that is not reached is a status, not an error.
@@ -49,7 +51,7 @@ pub(crate) fn solve_query(context: &SolveContext<'_>, query: &Query<'_>, monitor
     attempt.mark_held_in_region(solution)
 }
 
-/// The first solution found, moved along its self-motion where there are goals.
+/// Returns the first solution found; with goals it is moved along its self-motion.
 fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
     let context = attempt.context;
     let x0 = attempt.first_start(start);

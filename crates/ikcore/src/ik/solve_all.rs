@@ -17,17 +17,17 @@ use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
 
-/// Known solutions in a row after which the search ends.
+/// Consecutive known solutions after which the search ends.
 const PATIENCE: usize = 100;
 
-/// How to look for all solutions.
+/// Options of [`solve_all`].
 #[derive(Debug, Clone)]
 pub struct AllOptions {
-    /// How to solve. Its budgets apply to the whole search.
+    /// Options of each solve. Its budgets apply to the whole search.
     pub each: SolveOptions,
     /// Largest number of solutions to return.
     pub limit: usize,
-    /// Solutions count as the same where every joint differs by less (rad, m), whole turns aside.
+    /// Solutions count as the same if every joint differs by less than this (rad, m), apart from whole turns.
     pub separation: f64,
 }
 
@@ -40,9 +40,9 @@ impl Default for AllOptions {
 /// Distinct solutions, and how the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SolutionSet {
-    /// The solutions, nearest to the start first; without a start in the order in which they were found.
+    /// The solutions, nearest to the start first; without a start in the order of discovery.
     pub solutions: Vec<Solution>,
-    /// The best miss where there is no solution.
+    /// The best miss if there is no solution.
     pub miss: Option<Solution>,
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
@@ -53,7 +53,7 @@ pub struct SolutionSet {
 }
 
 impl SolutionSet {
-    /// [`Status::Solved`] where there is a solution, else why the last search ended.
+    /// [`Status::Solved`] if there is a solution, else why the last search ended.
     pub fn status(&self) -> Status {
         self.miss.as_ref().map_or(Status::Solved, |miss| miss.status)
     }
@@ -68,10 +68,10 @@ impl SolutionSet {
     }
 }
 
-/// Looks for distinct solutions until a hundred in a row were known already, or the budget is spent.
+/// Searches for distinct solutions until a hundred in a row are already known, or the budget is spent.
 ///
-/// Each is returned at the whole turns nearest to the start or, without one, to the middle of the limits. A redundant arm has
-/// infinitely many solutions: those returned are at least the separation apart.
+/// Each joint is shifted by whole turns to be nearest to the start or, without one, to the middle of its limits. A
+/// redundant arm has infinitely many solutions; those returned differ by at least the separation.
 ///
 /// # Errors
 /// Any [`enum@Error`] for wrong input.
@@ -114,7 +114,7 @@ fn search(mut attempt: Attempt<'_, '_>, start: Option<&[f64]>, options: &AllOpti
             known = 0;
             solutions.push(solution);
         }
-        // Without a start any solutions will do; with one, the nearest are wanted, and they may come last.
+        // Without a start any solutions are enough; with one, the nearest are required, and they may come last.
         let enough = start.is_none() && solutions.len() == options.limit;
         // Runs may be too short to poll the monitor.
         interrupted = !attempt.monitor.keep_going();
@@ -144,7 +144,7 @@ fn middle(robot: &Robot, bounds: &Bounds) -> Point {
         .collect()
 }
 
-/// Whether no joint differs by `separation`, whole turns aside.
+/// Whether no joint differs by `separation`, apart from whole turns.
 fn is_same(robot: &Robot, a: &[f64], b: &[f64], separation: f64) -> bool {
     (0..a.len()).all(|j| {
         let difference = a[j] - b[j];

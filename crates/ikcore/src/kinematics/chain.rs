@@ -1,5 +1,6 @@
-//! A serial chain as the kernels run through it: per moving element (a *stage*) one constant frame, then a turn about and
-//! a slide along its own z axis. Constant transforms and the directions of axes are folded in when the chain is built.
+//! A serial chain in the form used by the kernels: per moving element (a *stage*) one constant frame, then a rotation
+//! about and a translation along its own z axis. Constant transforms and axis directions are folded in when the chain
+//! is built.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -31,7 +32,7 @@ impl StageMotion {
     }
 }
 
-/// Constant frame of a link, seen from the frame reached after `stages` stages.
+/// Constant frame of a link, relative to the frame after `stages` stages.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LinkFrame {
     pub stages: usize,
@@ -41,21 +42,21 @@ pub(crate) struct LinkFrame {
 /// The folded chain.
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
-    /// Number of moving elements; the stages behind them are padding.
+    /// Number of moving elements; the remaining stages are padding.
     pub moving: usize,
     /// One per moving element.
     pub stages: Stages,
     /// One per moving element, then padding that moves nothing.
     pub motions: Vec<StageMotion>,
-    /// The tip, seen from the last stage.
+    /// The tip relative to the last stage.
     pub tip: Frame,
     pub links: Vec<LinkFrame>,
 }
 
-/// Numbers of stages that kernels are compiled for. Chains are padded up to the next one.
+/// Numbers of stages that kernels are compiled for. Chains are padded to the next one.
 pub(super) const SIZES: [usize; 8] = [4, 5, 6, 7, 8, 12, 16, 32];
 
-/// Sines are taken four at a time: a remainder of one to three costs as much as all the rest (measured).
+/// Sines are computed four at a time: a remainder of one to three costs as much as all the rest (measured).
 const LANES: usize = 4;
 
 impl Chain {
@@ -64,7 +65,7 @@ impl Chain {
         padded(self.moving)
     }
 
-    /// Constant frames of the moving elements, each seen from the one before.
+    /// Constant frames of the moving elements, each relative to the previous one.
     pub(super) fn moving_frames(&self) -> impl Iterator<Item = Frame> {
         (0..self.moving).map(|stage| self.stages.frame(stage))
     }
@@ -74,7 +75,7 @@ fn padded(moving: usize) -> usize {
     SIZES.into_iter().find(|size| *size >= moving).unwrap_or(moving)
 }
 
-/// Folds the elements of a chain, given one after another from base to tip.
+/// Folds the elements of a chain, added from base to tip.
 pub(crate) struct ChainFolder {
     /// Constant transform since the last moving element, from that element's z-aligned frame.
     constant: Pose,
@@ -94,7 +95,7 @@ impl ChainFolder {
         self.constant *= transform;
     }
 
-    /// Marks the frame reached so far as that of the next link.
+    /// Marks the current frame as that of the next link.
     pub fn link(&mut self) {
         self.links.push(LinkFrame { stages: self.frames.len(), offset: Frame::from(&self.constant) });
     }
@@ -107,7 +108,8 @@ impl ChainFolder {
         self.constant = aligned.inverse();
     }
 
-    /// The chain, its tip moved by `tool`. At least one element moves, at most [`MAX_DOF`](crate::math::MAX_DOF).
+    /// Returns the chain with its tip moved by `tool`. It has at least one moving element and at most
+    /// [`MAX_DOF`](crate::math::MAX_DOF).
     pub fn finish(self, tool: &Pose) -> Chain {
         let Self { constant, frames, mut motions, links } = self;
         let moving = frames.len();
@@ -116,7 +118,7 @@ impl ChainFolder {
     }
 }
 
-/// A rotation whose z axis is `axis`; exact where the axis is a coordinate axis.
+/// A rotation whose z axis is `axis`; exact if the axis is a coordinate axis.
 fn basis_with_z_along(axis: &Vector3<f64>) -> Matrix3<f64> {
     let helper = if axis.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
     let x = (helper - axis * axis.dot(&helper)).normalize();

@@ -1,4 +1,4 @@
-//! The direction that a tip keeps when all joints turn about parallel axes: planar arms, palletisers.
+//! The direction that a tip keeps if all joints rotate about parallel axes: planar arms, palletisers.
 
 use super::chain::StageMotion;
 use crate::math::Frame;
@@ -11,15 +11,15 @@ const PARALLEL: f64 = 1e-12;
 /// A direction fixed in the base and in the tip at every configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FixedDirection {
-    /// Of unit length, in the base's coordinates.
+    /// Unit vector in base coordinates.
     pub base: [f64; 3],
-    /// The same direction in the tip's coordinates.
+    /// The same direction in tip coordinates.
     pub tip: [f64; 3],
 }
 
 impl FixedDirection {
-    /// The fixed direction of a chain whose axes are parallel, None for other chains. `at_zero` holds the frame of each
-    /// moving element, z along its axis, and then the tip's, with no joint turned.
+    /// The fixed direction of a chain with parallel axes; `None` for other chains. `at_zero` holds the frames of the
+    /// moving elements at zero joint angles, z along their axes, followed by the frame of the tip.
     pub(super) fn of_chain(at_zero: &[Frame], motions: &[StageMotion]) -> Option<Self> {
         let (tip, moving) = at_zero.split_last()?;
         let mut axes =

@@ -1,6 +1,7 @@
-//! One pass from base to tip, in plain arrays, without allocation: what the kernels for one configuration share.
+//! The pass from base to tip that the kernels for one configuration share; plain arrays, no allocation.
 //!
-//! Each kernel has one straight-line body over N stages, their sines padded to L; [`kernels`](super::kernels) compiles it.
+//! Each kernel is one straight-line body over N stages, with sines padded to L; [`kernels`](super::kernels) compiles
+//! it.
 
 use super::chain::Chain;
 use super::wide_frame::WideFrame;
@@ -21,8 +22,8 @@ pub(super) fn stage_motions<A: Arithmetic, const L: usize>(chain: &Chain, q: &[f
     (sines, cosines, slides)
 }
 
-/// Calls `visit(i, frame)` for each stage from the base on, and returns the tip's frame. The frame is the one that stage i
-/// moves: its origin lies on the stage's axis, and its z axis is that axis.
+/// Calls `visit(i, frame)` for each stage from the base on, and returns the tip frame. `frame` is the frame that stage
+/// i moves: its origin lies on the axis of the stage, and its z axis is that axis.
 #[inline(always)]
 pub(super) fn forward_pass<A: Arithmetic, const N: usize, const L: usize>(
     chain: &Chain,

@@ -1,4 +1,4 @@
-//! The geometric Jacobian at the tip.
+//! The geometric Jacobian at the tip: one column per joint of the robot, from the axes and origins of its stages.
 
 use super::chain::Chain;
 use super::forward_pass::forward_pass;
@@ -6,7 +6,8 @@ use crate::math::arithmetic::Arithmetic;
 use crate::math::f64x4::F64x4;
 use crate::math::{Frame, MAX_DOF};
 
-/// Columns of a 6 x n matrix, one per joint: linear rows (m per rad or m), then angular rows; the first n are in use.
+/// Columns of a 6 x n matrix, one per joint: linear rows (m/rad, or 1 for a prismatic joint), then angular rows; the
+/// first n are in use.
 pub type Columns = [[f64; 6]; MAX_DOF];
 
 /// Writes the Jacobian in world axes into `columns`, linear rows before angular rows, and returns the tip's frame.

@@ -1,5 +1,4 @@
-//! Which compilation of the kernels a chain runs: one table for every padded number of stages, for machines with and
-//! without AVX2 and FMA.
+//! The table of compiled kernels: one entry per padded number of stages, for machines with and without AVX2 and FMA.
 
 use super::chain::Chain;
 use super::four_jacobians::{self, FourColumns};
@@ -14,17 +13,17 @@ use crate::math::f64x4::F64x4;
 /// The kernels compiled for one padded number of stages and one instruction set.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Kernels {
-    /// The tip's frame. `q` has one finite entry per independent joint, here and below.
+    /// Returns the tip frame. Here and below `q` has one finite entry per independent joint.
     pub tip: fn(&Chain, &[f64]) -> Frame,
-    /// The tip's position (m), at half the work.
+    /// Returns the tip position (m), at half the work.
     pub tip_position: fn(&Chain, &[f64]) -> [f64; 3],
-    /// Positions (m) at two configurations, coordinate by coordinate.
+    /// Tip positions (m) at two configurations, by coordinate.
     tip_pair: fn(&Chain, &[f64]) -> [[f64; 2]; 3],
-    /// The same at four.
+    /// Tip positions (m) at four configurations, by coordinate.
     tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
     /// Writes the geometric Jacobian and returns the tip's frame.
     pub jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
-    /// The same for four configurations, to the same bits; one entry of `columns` per joint.
+    /// The Jacobian for four configurations, bit-identical; one entry of `columns` per joint.
     pub jacobian_four: fn(&Chain, &[F64x4], &mut FourColumns) -> Frame<F64x4>,
     /// Writes the joint torques J'w of a wrench w(tip) and returns the tip's frame.
     pub torques: Torques,
@@ -35,13 +34,13 @@ pub(crate) struct Kernels {
 type Torques = fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Frame;
 
 impl Kernels {
-    /// The fastest that this machine runs.
+    /// The fastest kernels for this machine.
     pub fn for_chain(chain: &Chain) -> Self {
         for_stages(chain.padded_stages())
     }
 
-    /// Calls `visit` with the tip's position (m) at each of the configurations `qs`, stored one after another with `n`
-    /// entries each: four at once as long as there are four, then two; the same bits as `tip_position`.
+    /// Calls `visit` with the tip position (m) at each of the configurations `qs`, stored consecutively with `n`
+    /// entries each: in groups of four, then two; bit-identical to `tip_position`.
     #[inline]
     pub fn tip_positions(&self, chain: &Chain, mut qs: &[f64], n: usize, mut visit: impl FnMut([f64; 3])) {
         while let Some((group, rest)) = qs.split_at_checked(4 * n) {
@@ -65,7 +64,7 @@ fn transposed<const W: usize>(coordinates: [[f64; W]; 3]) -> [[f64; 3]; W] {
     std::array::from_fn(|w| coordinates.map(|coordinate| coordinate[w]))
 }
 
-/// `$table!(A, N, L)` for the size that `$stages` is: N stages, their sines padded to L.
+/// Expands `$table!(A, N, L)` for the size `$stages`: N stages, with sines padded to L.
 macro_rules! for_each_size {
     ($stages:expr, $table:ident, $arithmetic:ty) => {
         match $stages {
@@ -81,7 +80,7 @@ macro_rules! for_each_size {
     };
 }
 
-/// The kernels for N stages. Closures are compiled for the instructions of the function that they stand in.
+/// The kernels for N stages. Closures are compiled with the instructions of the enclosing function.
 macro_rules! table {
     ($a:ty, $n:literal, $l:literal) => {
         Kernels {
@@ -98,7 +97,7 @@ macro_rules! table {
 }
 
 by_instructions! {
-    /// The fastest kernels that this machine runs, for a chain padded to `stages`.
+    /// Returns the fastest kernels for this machine and a chain padded to `stages`.
     fn for_stages(stages: usize) -> Kernels {
         for_each_size!(stages, table, A)
     }
@@ -112,7 +111,7 @@ mod tests {
     use crate::math::{MAX_DOF, Pose, pose};
     use nalgebra::Vector3;
 
-    /// An arm of so many joints, every third of them sliding, on axes of no special direction.
+    /// An arm of this many joints, every third of them sliding, on axes of no special direction.
     fn arm(joints: usize) -> Chain {
         let mut arm = ChainFolder::new(&Pose::identity());
         for i in 0..joints {

@@ -1,17 +1,17 @@
 //! Kinematics of a serial chain as plain data: no names, limits or files, and no `Robot`.
 //!
-//! Read `chain` for the data and `forward_pass` for the walk along it; then one algorithm a file. `kernels` compiles
-//! them for each number of stages and for the processor's instructions.
+//! Read `chain` for the data and `forward_pass` for the pass along it; then each file is one algorithm. `kernels`
+//! compiles them for each number of stages and for the instructions of the processor.
 //!
 //! | file | what |
 //! |---|---|
-//! | `chain`, `stages` | constant frames, and what drives each stage |
+//! | `chain`, `stages` | constant frames, and the joint that drives each stage |
 //! | `forward_pass`, `wide_frame` | from the base to the tip, one frame per stage |
 //! | `tip`, `jacobian`, `torques`, `link_frames` | the kernels |
 //! | `four_jacobians` | Jacobians of four configurations at once |
 //! | `kernels` | table of compiled kernels |
 //! | `screws` | axis and velocity of every stage |
-//! | `reach`, `fixed_direction` | bounds on where the tip can be |
+//! | `reach`, `fixed_direction` | bounds on the positions of the tip |
 //! | `task_rank` | rank of the Jacobian by task |
 
 pub(crate) mod chain;

@@ -1,4 +1,4 @@
-//! Bounds on where the tip can be, from the lengths of the links.
+//! Bounds on the positions of the tip, from the lengths of the links.
 
 use std::fmt;
 
@@ -11,15 +11,15 @@ use crate::math::arithmetic::NoFma;
 use crate::math::so3::norm;
 use crate::wording::number;
 
-/// The ball that the tip cannot leave, or the disk where all joints turn about parallel axes. Not all of it can be
+/// The ball that the tip cannot leave, or the disk if all joints rotate about parallel axes. Not all of it can be
 /// reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// On the axis of the first joint (m); in the plane of the disk.
+    /// Centre on the axis of the first joint (m), in the plane of the disk.
     pub center: [f64; 3],
-    /// Infinite where a sliding joint has no limit (m).
+    /// Radius (m); infinite if a prismatic joint has no limit.
     pub radius: f64,
-    /// Unit normal of the disk; None for a ball.
+    /// Unit normal of the disk; `None` for a ball.
     pub normal: Option<[f64; 3]>,
     /// The direction that the tip keeps, if it keeps one.
     pub fixed_direction: Option<FixedDirection>,
@@ -28,11 +28,11 @@ pub struct Reach {
 /// Lower bounds on how far a target is out of reach.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Beyond {
-    /// From the nearest point that the tip can be at (m).
+    /// Distance from the nearest point that the tip can reach (m).
     pub distance: f64,
-    /// From the plane in which the tip of a planar arm moves (m); 0 for other arms.
+    /// Distance from the plane of a planar arm (m); 0 for other arms.
     pub off_plane: f64,
-    /// From the nearest orientation that the tip can have (rad).
+    /// Angle from the nearest orientation that the tip can have (rad).
     pub angle: f64,
 }
 
@@ -50,7 +50,7 @@ impl fmt::Display for Beyond {
 }
 
 impl Reach {
-    /// How far a position, an orientation, or both are outside; None within `tolerance` (m, rad).
+    /// How far a position, an orientation, or both are outside; `None` if within `tolerance` (m, rad).
     pub fn beyond(
         &self,
         position: Option<&[f64; 3]>,
@@ -69,7 +69,7 @@ impl Reach {
         (beyond != Beyond::default()).then_some(beyond)
     }
 
-    /// How far `position` is outside (m); zero or less inside.
+    /// Distance of `position` from the reach (m); zero or less inside.
     pub fn excess(&self, position: &[f64; 3]) -> f64 {
         let offset: [f64; 3] = std::array::from_fn(|k| position[k] - self.center[k]);
         let Some(normal) = self.normal else { return norm(&offset) - self.radius };
@@ -79,7 +79,7 @@ impl Reach {
         if beyond > 0.0 { height.hypot(beyond) } else { height.abs() }
     }
 
-    /// How far `position` is off the plane of the disk, along its normal (m); 0 for a ball.
+    /// Distance of `position` from the plane of the disk, along its normal (m); 0 for a ball.
     pub fn off_plane(&self, position: &[f64; 3]) -> f64 {
         let along = |normal: [f64; 3]| (0..3).map(|k| (position[k] - self.center[k]) * normal[k]).sum();
         self.normal.map_or(0.0, along)
@@ -87,7 +87,7 @@ impl Reach {
 }
 
 impl Reach {
-    /// The reach of the links stretched out, without what joints slide.
+    /// The reach of the stretched links, without prismatic motion.
     pub(crate) fn of_links(chain: &Chain) -> Self {
         let at_zero: Vec<Frame> = chain
             .moving_frames()
@@ -103,8 +103,8 @@ impl Reach {
         if let Some(FixedDirection { base: normal, .. }) = fixed_direction.filter(|_| !slides) {
             return Self { fixed_direction, ..Self::of_planar_links(&at_zero, normal) };
         }
-        // A first joint that turns keeps the height at which the second one begins, so that only the distance from its axis
-        // counts; of every other link all its length does.
+        // A rotating first joint keeps the height of the second one, so only its distance from the first axis counts;
+        // every other link counts with its full length.
         let mut links = chain.moving_frames().skip(1).chain([chain.tip]).map(|frame| frame.origin);
         let [x, y, height] = links.next().unwrap_or_default();
         let (on_axis, first) = match motions[0].slide_scale {
@@ -115,7 +115,7 @@ impl Reach {
         Self { center, radius: first + links.map(|link| norm(&link)).sum::<f64>(), normal: None, fixed_direction }
     }
 
-    /// This reach of the links of `chain`, and what its joints slide between these limits.
+    /// This reach of the links of `chain`, extended by the prismatic motion between these limits.
     pub(crate) fn with_slides(self, chain: &Chain, lower: &[f64], upper: &[f64]) -> Self {
         let slides: f64 = chain.motions.iter().map(|motion| longest_slide(motion, lower, upper)).sum();
         Self { radius: self.radius + slides, ..self }

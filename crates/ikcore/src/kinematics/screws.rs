@@ -1,4 +1,4 @@
-//! Screws of a chain at a configuration: the velocity that each moving element gives to everything behind it.
+//! Screws of a chain at a configuration: the velocity that each moving element gives to everything after it.
 
 use super::chain::{Chain, StageMotion};
 use super::link_frames::StageFrames;
@@ -17,14 +17,14 @@ pub struct Screw {
     pub slide: [f64; 3],
     /// A point on its axis (m).
     pub origin: [f64; 3],
-    /// Origin of the next moving element, or the tip behind the last one (m).
+    /// Origin of the next moving element, or the tip for the last one (m).
     pub end: [f64; 3],
 }
 
 impl Screw {
     const NONE: Self = Self { joint: 0, turn: [0.0; 3], slide: [0.0; 3], origin: [0.0; 3], end: [0.0; 3] };
 
-    /// Linear and angular velocity of a point behind it: its share of its joint's column of the Jacobian.
+    /// Linear and angular velocity of a point after this element: its contribution to the Jacobian column of its joint.
     pub fn column(&self, point: &[f64; 3]) -> [f64; 6] {
         let lever = std::array::from_fn(|k| point[k] - self.origin[k]);
         let [x, y, z] = cross(&self.turn, &lever);
@@ -51,7 +51,7 @@ impl std::ops::Deref for Screws {
 impl Screws {
     /// The screws of `chain` with its stages at `reached`, mimics included.
     pub(crate) fn of(chain: &Chain, reached: &StageFrames) -> Self {
-        // Padding moves nothing; so does a mimic of factor zero, but elements may follow it.
+        // Padding moves nothing. A mimic of factor zero moves nothing either, but elements may follow it.
         let count = chain.motions.iter().rposition(moves).map_or(0, |last| last + 1);
         let mut screws = Self { all: [Screw::NONE; MAX_DOF], count };
         for (i, screw) in screws.all[..count].iter_mut().enumerate() {

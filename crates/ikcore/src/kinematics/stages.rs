@@ -1,5 +1,5 @@
-//! Constant frames of a chain as a structure of arrays: the same number of all stages in one row, so that joints move four
-//! stages at a time before the pass along the chain.
+//! Constant frames of a chain as a structure of arrays: each row holds one entry of the frames of all stages, so that
+//! joint motion is applied to four stages at a time before the pass along the chain.
 
 use crate::math::Frame;
 use crate::math::MAX_DOF;
@@ -9,7 +9,7 @@ use crate::math::f64x4::F64x4;
 /// Coordinates of L vectors: entry i of each row belongs to vector i.
 type Vectors<const L: usize> = [[f64; L]; 3];
 
-/// Frame of each stage, seen from the one before; the identity for padding.
+/// Frame of each stage relative to the previous one; the identity for padding.
 #[derive(Debug, Clone)]
 pub(crate) struct Stages {
     x: Vectors<MAX_DOF>,
@@ -27,7 +27,7 @@ pub(crate) struct MovedStages<'a, const L: usize> {
 }
 
 impl Stages {
-    /// Stages at `frames`, of which there are at most [`MAX_DOF`].
+    /// Stages at `frames`, at most [`MAX_DOF`].
     pub fn new(frames: &[Frame]) -> Self {
         let frame = |i: usize| frames.get(i).unwrap_or(&Frame::IDENTITY);
         let rows = |number: &dyn Fn(&Frame, usize) -> f64| {
@@ -47,7 +47,7 @@ impl Stages {
         Frame { axes: [vector(&self.x, i), vector(&self.y, i), vector(&self.z, i)], origin: vector(&self.origin, i) }
     }
 
-    /// The first L stages, a multiple of four, each slid along and turned about its own z axis.
+    /// The first L stages (a multiple of four), each translated along and rotated about its own z axis.
     #[inline(always)]
     pub fn moved<A: Arithmetic, const L: usize>(
         &self,

@@ -1,4 +1,4 @@
-//! Rank of the tip's Jacobian by task: the number of directions in which the tip can move, almost everywhere.
+//! Rank of the tip Jacobian by task: the number of directions in which the tip can move, almost everywhere.
 
 use super::chain::Chain;
 use super::jacobian::Columns;
@@ -7,21 +7,21 @@ use crate::math::MAX_DOF;
 use crate::math::singular_values::SingularValues;
 use crate::rng;
 
-/// Rank of the Jacobian at configurations that are not singular.
+/// Rank of the Jacobian at non-singular configurations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TaskRank {
-    /// Of all six rows.
+    /// Rank of all six rows.
     pub pose: usize,
-    /// Of the linear rows, at most 3.
+    /// Rank of the linear rows, at most 3.
     pub position: usize,
-    /// Of the angular rows, at most 3.
+    /// Rank of the angular rows, at most 3.
     pub rotation: usize,
 }
 
-/// Singular values below this share of the largest count as zero.
+/// Singular values below this fraction of the largest count as zero.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// Configurations tried; one would do but for an unlucky draw.
+/// Random configurations tried; one is enough with probability 1.
 const DRAWS: u64 = 3;
 
 impl TaskRank {

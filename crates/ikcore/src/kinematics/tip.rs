@@ -12,20 +12,20 @@ pub(super) fn tip<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, 
     forward_pass::<A, N, L>(chain, q, |_, _| ()).into()
 }
 
-/// The tip's position (m): from the tip back to the base, half the work of [`tip`].
+/// The tip position (m): computed from the tip back to the base, half the work of [`tip`].
 #[inline(always)]
 pub(super) fn tip_position<A: Arithmetic, const N: usize, const L: usize>(chain: &Chain, q: &[f64]) -> [f64; 3] {
     let (sines, cosines, slides) = stage_motions::<A, L>(chain, q);
     let mut point = chain.tip.origin;
     for i in (0..N).rev() {
-        // Turning the frame instead of the point keeps the turn off the critical path from point to point.
+        // Rotating the frame instead of the point keeps the rotation off the critical path from point to point.
         let stage = chain.stages.frame(i).turned::<A>(sines[i], cosines[i]);
         point = stage.place::<A>(&[point[0], point[1], point[2] + slides[i]]);
     }
     point
 }
 
-/// [`tip_position`] for W configurations at once, coordinate by coordinate: lane w of every array is configuration w.
+/// [`tip_position`] for W configurations at once, by coordinate: lane w of every array is configuration w.
 #[inline(always)]
 pub(super) fn tip_positions<A: Arithmetic, const N: usize, const L: usize, const W: usize>(
     chain: &Chain,

@@ -5,11 +5,11 @@ use super::forward_pass::forward_pass;
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 
-/// Force (N) and moment (N m) at the tip, in the base's axes.
+/// Force (N) and moment (N m) at the tip, in base axes.
 pub type Wrench = [f64; 6];
 
-/// Writes the joint torques J'w into `torques`, with w = wrench(tip), and returns the tip's frame. Each axis takes the
-/// moment about itself and the force along itself.
+/// Writes the joint torques J'w into `torques`, with w = wrench(tip), and returns the tip frame. A rotating joint takes
+/// the moment about its axis, a prismatic joint the force along it.
 #[inline(always)]
 pub(super) fn torques<A: Arithmetic, const N: usize, const L: usize>(
     chain: &Chain,

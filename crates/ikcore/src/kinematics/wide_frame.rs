@@ -1,10 +1,10 @@
-//! A frame in four registers, for the pass along the chain: a Jacobian takes a tenth longer with plain arrays.
+//! A frame in four registers, for the pass along the chain: with plain arrays a Jacobian takes a tenth longer.
 
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::f64x4::F64x4;
 
-/// A rigid transform, each axis and the origin in a register of its own. The fourth lanes are unused.
+/// A rigid transform, with each axis and the origin in its own register. The fourth lanes are unused.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WideFrame {
     /// x, y and z axis.
@@ -25,7 +25,8 @@ impl WideFrame {
         let [new_x, new_y, new_z] = next.axes;
         let [px, py, pz] = next.origin;
         let [px, py, pz] = [F64x4::splat(px), F64x4::splat(py), F64x4::splat(pz)];
-        // Two short chains instead of one long one: the latency of this sum is what a chain of joints costs.
+        // Two short dependency chains instead of a long one: the latency of this sum determines the cost of a chain of
+        // joints.
         let origin = A::add_x4(A::mul_add_x4(x, px, self.origin), A::mul_add_x4(y, py, A::mul_x4(z, pz)));
         Self { axes: [turned(new_x), turned(new_y), turned(new_z)], origin }
     }

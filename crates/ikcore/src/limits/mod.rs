@@ -5,7 +5,7 @@
 //! | `field` | [`Field`]: positions, velocity, acceleration, jerk |
 //! | `profile` | [`Profile`]: one limit of one joint over time |
 //! | `joint_limits` | [`Limits`]: all joints, all fields |
-//! | `tick_box` | [`TickBox`]: position and velocity limits as the box of one tick |
+//! | `tick_box` | `TickBox`: position and velocity limits as the box of one tick |
 //! | `braking` | acceleration limits narrow that box, so that joints can stop in time |
 
 mod braking;

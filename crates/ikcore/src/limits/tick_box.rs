@@ -8,7 +8,7 @@ use crate::math::comparison::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::wording::words;
 
-/// Which time of a tick its limit is evaluated at.
+/// The time within a tick at which its limit is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum LimitAt {
     /// The smallest limit over the tick; it then holds at every instant.

@@ -29,9 +29,9 @@ pub struct DhTable {
     pub alpha: Vec<f64>,
     /// Link offsets (m); added to q of a prismatic joint.
     pub d: Vec<f64>,
-    /// Joint angles (rad): added to q of a joint that turns, the fixed angle of a prismatic one.
+    /// Joint angles (rad): added to q of a rotating joint, the fixed angle of a prismatic one.
     pub theta: Vec<f64>,
-    /// How the joints move.
+    /// Kinds of the joints.
     pub kinds: Vec<JointKind>,
     /// Lower position limits (rad or m).
     pub lower: Vec<f64>,
@@ -39,9 +39,9 @@ pub struct DhTable {
     pub upper: Vec<f64>,
     /// Velocity limits (rad/s or m/s).
     pub velocity: Vec<f64>,
-    /// Pose of frame 0, seen from the robot's base.
+    /// Pose of frame 0 in the frame of the robot's base.
     pub base: Pose,
-    /// Pose of the tool, seen from the last frame.
+    /// Pose of the tool in the last frame.
     pub tool: Pose,
 }
 
@@ -73,7 +73,8 @@ impl DhTable {
             let joint = Joint::new(format!("joint_{}", i + 1), kind).with_range(self.lower[i], self.upper[i]);
             let joint = chain.add_joint(joint.with_velocity(self.velocity[i]));
             let along_x = pose::translation(self.a[i], 0.0, 0.0) * pose::rotation(Vector3::x(), self.alpha[i]);
-            // Turns about and slides along one axis commute: the joint's own motion goes first, the constant one after.
+            // Rotations about and translations along one axis commute, so the joint motion goes first and the constant
+            // one after.
             let (offset, constant) = match kind {
                 JointKind::Prismatic => (self.d[i], pose::rotation(Vector3::z(), self.theta[i])),
                 JointKind::Revolute | JointKind::Continuous => (self.theta[i], pose::translation(0.0, 0.0, self.d[i])),
@@ -118,7 +119,7 @@ impl Robot {
     /// A robot from its Denavit-Hartenberg table. Joints are named `joint_1` on; links `base`, `link_1` on.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] where a list is not as long as `a`; [`Error::NotFinite`] for lengths and angles; those of
+    /// [`Error::WrongLength`] if a list is not as long as `a`; [`Error::NotFinite`] for lengths and angles; those of
     /// [`ChainBuilder::build`].
     pub fn from_dh(name: &str, table: &DhTable) -> Result<Self> {
         let mut chain = ChainBuilder::new(name, "base");

@@ -15,7 +15,7 @@ impl Robot {
     /// has its frame at joint i; the last frame is `tip`.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a length that is not positive and finite; [`Error::WrongLength`] for no link at all.
+    /// [`Error::OutOfRange`] for a length that is not positive and finite; [`Error::WrongLength`] without links.
     pub fn planar(lengths: &[f64]) -> Result<Self> {
         if lengths.is_empty() {
             let (what, expected) = ("lengths of a planar arm".into(), "at least 1".into());

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::singular_values::SingularValues;
 
-/// The tip velocities that unit joint speeds give, |q'| = 1: semi-axes, the longest first, one per direction of motion.
+/// The tip velocities for unit joint speeds, |q'| = 1: semi-axes, the longest first, one per direction of motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ellipsoid {
     /// Lengths of the semi-axes (m/s, rad/s).
@@ -23,7 +23,7 @@ impl Ellipsoid {
         self.lengths.iter().product()
     }
 
-    /// The longest over the shortest; infinite where a direction is lost.
+    /// The longest length over the shortest; infinite if a direction is lost.
     pub fn condition(&self) -> f64 {
         match (self.lengths.first(), self.lengths.last()) {
             (Some(longest), Some(shortest)) if *shortest > 0.0 => longest / shortest,
@@ -31,8 +31,8 @@ impl Ellipsoid {
         }
     }
 
-    /// Geometric over arithmetic mean of the squared lengths (Kim and Khosla 1991): 1 for a sphere, 0 where a direction
-    /// is lost.
+    /// Geometric over arithmetic mean of the squared lengths (Kim and Khosla 1991): 1 for a sphere, 0 if a direction is
+    /// lost.
     pub fn isotropy(&self) -> f64 {
         let m = self.lengths.len() as f64;
         let mean = self.lengths.iter().map(|length| length * length).sum::<f64>() / m;

@@ -1,8 +1,8 @@
 //! The exact gradient of Yoshikawa's index.
 //!
-//! With J = sum of s_i u_i v_i', the product of the singular values changes by dw = <G, dJ>, G = sum of
-//! (product of the others) u_i v_i'. The Jacobian changes by cross products of its own columns: turning about an element
-//! carries all elements behind it along, and moves the tip as seen from all before it.
+//! With J = sum of s_i u_i v_i', the product of the singular values changes by dw = <G, dJ>, with G = sum of (product
+//! of the others) u_i v_i'. The Jacobian changes by cross products of its own columns: a rotation about an element
+//! carries along all elements after it, and moves the tip relative to all elements before it.
 
 use super::gram;
 use super::index::Manipulability;
@@ -13,10 +13,11 @@ use crate::math::so3::cross;
 use crate::robot::Robot;
 
 impl Manipulability {
-    /// The index at `q`, and its gradient (n,) in `out`; nothing is allocated. `q` and `out` have one entry per joint.
+    /// Returns the index at `q`, and writes its gradient (n,) to `out`, without allocation. `q` and `out` have one
+    /// entry per joint.
     ///
-    /// Exact, by the derivative of the geometric Jacobian. Where the index is zero it has no gradient: `out` then points out
-    /// of the singularity on one of its two sides, or is zero.
+    /// Exact, by the derivative of the geometric Jacobian. At index zero there is no gradient: `out` then points out of
+    /// the singularity on one of its two sides, or is zero.
     pub fn gradient(&self, robot: &Robot, q: &[f64], out: &mut [f64]) -> f64 {
         let screws = robot.screws(q);
         let Some(tip) = screws.last().map(|screw| screw.end) else { return 0.0 };
@@ -25,9 +26,9 @@ impl Manipulability {
     }
 }
 
-/// Adds the gradient of the index of the point `tip` behind `screws` to `out` (n,), and returns the index.
+/// Adds the gradient of the index of the point `tip` after `screws` to `out` (n,), and returns the index.
 pub(super) fn add(measure: &Manipulability, screws: &[Screw], tip: &[f64; 3], out: &mut [f64]) -> f64 {
-    // Mimics: several elements may share a joint, so that their columns are summed.
+    // With mimics several elements share a joint, so their columns are summed.
     let mut shares = [[0.0; 6]; MAX_DOF];
     let mut columns: Columns = [[0.0; 6]; MAX_DOF];
     for (share, screw) in shares.iter_mut().zip(screws) {
@@ -66,8 +67,8 @@ fn sensitivity(measure: &Manipulability, columns: &mut [[f64; 6]]) -> (f64, Colu
     (measure.product(&values), sensitivity)
 }
 
-/// The derivative of one element's column by the motion of another: `carried` along if it is that one or behind it,
-/// else only the tip moves as seen from it.
+/// The derivative of one element's column by the motion of another element. `carried`: the column's element is the
+/// moving one or after it; otherwise only the tip moves relative to it.
 #[inline]
 fn change_of(column: &[f64; 6], moving: &[f64; 6], carried: bool) -> [f64; 6] {
     let ([v, w], [moving_v, moving_w]) = (halves(column), halves(moving));
@@ -81,7 +82,7 @@ fn halves(column: &[f64; 6]) -> [[f64; 3]; 2] {
     [[x, y, z], [a, b, c]]
 }
 
-/// The sum of products; the sensitivity is zero in rows that do not count.
+/// The scalar product; the sensitivity is zero in unused rows.
 fn inner(a: &[f64; 6], b: &[f64; 6]) -> f64 {
     (0..6).map(|k| a[k] * b[k]).sum()
 }

@@ -1,5 +1,5 @@
-//! The index by the LDL' factors of J J', at a tenth of the work of singular values. None near singularities, where
-//! squaring J loses digits and singular values take over.
+//! The index from the LDL' factors of J J', at a tenth of the cost of singular values. `None` near singularities, where
+//! squaring J loses digits and singular values are used instead.
 
 use crate::kinematics::Columns;
 use crate::math::arithmetic::NoFma;
@@ -9,7 +9,7 @@ use crate::math::real::{One, Real};
 
 use super::motion::Motion;
 
-/// A pivot below this share of the trace counts as near a singularity: ten of sixteen digits are left there.
+/// A pivot below this fraction of the trace counts as near a singularity: ten of sixteen digits remain there.
 const NEAR: f64 = 1e-6;
 
 /// w = sqrt(det(J J')) on the rows of `motion`.
@@ -21,7 +21,7 @@ pub(super) fn index(columns: &[[f64; 6]], motion: Motion) -> Option<f64> {
     }
 }
 
-/// The same w, and dw/dJ column by column in `out`.
+/// Returns w, and writes dw/dJ to `out` by column.
 pub(super) fn index_and_sensitivity(columns: &[[f64; 6]], motion: Motion, out: &mut Columns) -> Option<f64> {
     match motion {
         Motion::Pose => Some(GramFactor::<6>::of(columns, 0)?.write_sensitivity(columns, out)),
@@ -42,7 +42,7 @@ impl<const R: usize> GramFactor<R> {
         let matrix = gram::<NoFma, R>(columns.iter().map(|column| leading(column, first)), 0.0);
         let smallest = NEAR * trace(&matrix).stored();
         let ldl = Ldl::of(matrix);
-        // Written so that NaN is near too.
+        // Formulated so that NaN counts as near, too.
         (0..R).all(|j| ldl.pivot(j).stored() > smallest).then_some(Self { first, ldl })
     }
 
@@ -50,7 +50,7 @@ impl<const R: usize> GramFactor<R> {
         (0..R).map(|j| self.ldl.pivot(j).stored()).product::<f64>().sqrt()
     }
 
-    /// dw/dJ = w (J J')^-1 J, zero in the other rows. Returns w.
+    /// Writes dw/dJ = w (J J')^-1 J, zero in the other rows; returns w.
     fn write_sensitivity(&self, columns: &[[f64; 6]], out: &mut Columns) -> f64 {
         let index = self.index();
         for (out, column) in out.iter_mut().zip(columns) {
@@ -62,7 +62,7 @@ impl<const R: usize> GramFactor<R> {
     }
 }
 
-/// The rows from `first` on moved to the front, then zeros.
+/// Moves the rows from `first` on to the front, and pads with zeros.
 fn leading(column: &[f64; 6], first: usize) -> [f64; 6] {
     std::array::from_fn(|row| column.get(first + row).copied().unwrap_or(0.0))
 }

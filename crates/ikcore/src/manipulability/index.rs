@@ -11,8 +11,9 @@ use crate::robot::Robot;
 
 /// The measure of a robot's postures: the motion that counts, and the rank of its Jacobian.
 ///
-/// The index is the product of the `rank` largest singular values: sqrt(det(J J')) for full rank, sqrt(det(J' J)) for an arm
-/// of fewer joints, and the area of the ellipse for the tip of a planar arm, where both determinants vanish everywhere.
+/// The index is the product of the `rank` largest singular values: sqrt(det(J J')) for full rank, sqrt(det(J' J)) for
+/// an arm with fewer joints, and the area of the ellipse for the tip of a planar arm, for which both determinants
+/// vanish everywhere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Manipulability {
     motion: Motion,
@@ -31,7 +32,7 @@ impl Manipulability {
         Self { motion, rank }
     }
 
-    /// Which motion counts.
+    /// The motion that counts.
     pub fn motion(&self) -> Motion {
         self.motion
     }
@@ -48,7 +49,7 @@ impl Manipulability {
         self.index_of(&mut columns[..q.len()])
     }
 
-    /// The index of the matrix with these columns. The rows that do not count are emptied.
+    /// The index of the matrix with these columns; sets unused rows to zero.
     pub(super) fn index_of(&self, columns: &mut [[f64; 6]]) -> f64 {
         let regular = if self.has_full_rank() { gram::index(columns, self.motion) } else { None };
         regular.unwrap_or_else(|| {
@@ -90,7 +91,7 @@ pub fn manipulability(robot: &Robot, motion: Motion, q: &[f64]) -> Result<f64> {
     Ok(Manipulability::of(robot, motion).index(robot, q))
 }
 
-/// The same at `qs`, (m, n) row after row.
+/// Yoshikawa's index of `motion` at `qs` (m, n), row-major.
 ///
 /// # Errors
 /// As [`Robot::jacobian_all`].

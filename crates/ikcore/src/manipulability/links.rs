@@ -17,7 +17,7 @@ pub struct LinkIndices {
 }
 
 impl LinkIndices {
-    /// One per moving link; the last is the tip's. Links with fewer joints before them than the rank have zero.
+    /// One per moving link; the last is the tip's. Zero for links with fewer joints before them than the rank.
     pub fn values(&self) -> &[f64] {
         &self.values[..self.count]
     }

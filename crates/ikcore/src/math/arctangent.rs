@@ -1,7 +1,7 @@
-//! The angle of a sine and a cosine without branches, for one pair or one per lane.
+//! The angle for a sine and a cosine without branches, for one pair or one per lane.
 //!
-//! Turns by eighths bring the quotient into [-tan(pi/8), tan(pi/8)], where a minimax polynomial has a relative error of
-//! 2e-18; it was fitted for this file by Remez exchange.
+//! Rotations by multiples of an eighth of a turn bring the quotient into [-tan(pi/8), tan(pi/8)], where a minimax
+//! polynomial has a relative error of 2e-18; it was fitted for this file by Remez exchange.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -21,12 +21,13 @@ const P: [f64; 11] = [
     0.03832231473820668,
     -0.018175035551833984,
 ];
-/// tan(pi/8): a quotient beyond it is nearer to 1 than to 0.
+/// tan(pi/8): a larger quotient is reduced by pi/4 first.
 const EIGHTH: f64 = 0.41421356237309503;
 /// pi/4 - [`FRAC_PI_4`].
 const FRAC_PI_4_REST: f64 = 3.061616997868383e-17;
 
-/// The angle (rad, from 0 to pi) of a point at (`cosine`, `sine`), at any distance but zero; `sine` is not negative.
+/// Returns the angle (rad, from 0 to pi) of a point at (`cosine`, `sine`), at any nonzero distance; `sine` is not
+/// negative.
 #[inline(always)]
 pub fn angle_of<R: Real>(sine: R, cosine: R) -> R {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
@@ -49,7 +50,7 @@ pub fn angle_of<R: Real>(sine: R, cosine: R) -> R {
 fn arctangent<R: Real>(x: R) -> R {
     let u = x * x;
     let (u2, u4) = (u * u, (u * u) * (u * u));
-    // Pairs, pairs of pairs and so on: fewer operations that wait for one another than in Horner's scheme.
+    // Pairs, then pairs of pairs, and so on: shorter dependency chains than in Horner's scheme.
     let pair = |k: usize| R::splat(P[k]) + R::splat(P[k + 1]) * u;
     let four = |k: usize| pair(k) + pair(k + 2) * u2;
     let last = pair(8) + R::splat(P[10]) * u2;

@@ -1,7 +1,7 @@
-//! Arithmetic with or without the processor's fused multiply-add (FMA) and registers of four numbers.
+//! Arithmetic with or without the processor's fused multiply-add (FMA) and four-lane registers.
 //!
-//! Kernels are straight-line bodies over [`Arithmetic`]: one source, compiled portably and for machines with AVX2 and FMA
-//! by [`by_instructions`]. Both are repeatable; they differ from each other in the last bit.
+//! Kernels are straight-line bodies over [`Arithmetic`]: one source, compiled portably and for machines with AVX2 and
+//! FMA by [`by_instructions`]. Both are repeatable; they differ in the last bit.
 
 use super::f64x4::F64x4;
 
@@ -54,24 +54,24 @@ pub trait Arithmetic: Copy {
         F64x4(a.0.map(f64::sqrt))
     }
 
-    /// `then` where a < b, and `otherwise` elsewhere, NaN included, lane by lane.
+    /// `then` in lanes with a < b, else `otherwise` (also for NaN).
     #[inline(always)]
     fn choose_below_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
         F64x4(std::array::from_fn(|k| if a.0[k] < b.0[k] { then.0[k] } else { otherwise.0[k] }))
     }
 
-    /// `then` where a = b, and `otherwise` elsewhere, NaN included, lane by lane.
+    /// `then` in lanes with a = b, else `otherwise` (also for NaN).
     #[inline(always)]
     fn choose_equal_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
         F64x4(std::array::from_fn(|k| if a.0[k] == b.0[k] { then.0[k] } else { otherwise.0[k] }))
     }
 }
 
-/// Product and sum rounded apart: runs on any machine.
+/// Product and sum rounded separately: runs on any machine.
 #[derive(Debug, Clone, Copy)]
 pub enum NoFma {}
 
-/// Product and sum rounded once: fast only where the processor has the instruction. On x86-64 only for code inside
+/// Product and sum rounded once: fast only if the processor has the instruction. On x86-64 only for code inside
 /// [`by_instructions`], which is compiled for AVX2 and FMA.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Fma {}
@@ -163,10 +163,10 @@ fn from_register(register: x86::__m256d) -> F64x4 {
     unsafe { std::mem::transmute(register) }
 }
 
-/// What every machine of this architecture runs fast.
+/// The arithmetic that is fast on every machine of this architecture.
 #[cfg(target_arch = "aarch64")]
 pub(crate) type Baseline = Fma;
-/// What every machine of this architecture runs fast.
+/// The arithmetic that is fast on every machine of this architecture.
 #[cfg(not(target_arch = "aarch64"))]
 pub(crate) type Baseline = NoFma;
 
@@ -177,9 +177,18 @@ pub(crate) fn has_fma() -> bool {
     std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
 }
 
-/// Compiles a function twice, for any machine of the architecture and for AVX2 with FMA, and calls the one that this
-/// machine runs. In the body `A` is the [`Arithmetic`]. What the body calls must be `#[inline(always)]`, or a closure
-/// that stands in it, to be compiled with it.
+/// The instructions that the kernels run with on this machine.
+pub fn instructions() -> &'static str {
+    #[cfg(target_arch = "x86_64")]
+    if has_fma() {
+        return "AVX2 and FMA";
+    }
+    if cfg!(target_arch = "aarch64") { "NEON" } else { "baseline" }
+}
+
+/// Compiles a function twice, for any machine of the architecture and for AVX2 with FMA, and calls the version for this
+/// machine. In the body `A` is the [`Arithmetic`]. Functions that the body calls must be `#[inline(always)]`, or
+/// closures inside the body, to be compiled with its instructions.
 macro_rules! by_instructions {
     (
         $(#[$attribute:meta])*

@@ -1,4 +1,5 @@
-//! The bounded step: damped least squares on six rows; joints that hit a bound are fixed, and the step is solved again.
+//! The bounded step: damped least squares on six rows. Joints that reach a bound are held there, and the step is solved
+//! again.
 
 use super::arithmetic::{Arithmetic, by_instructions};
 use super::comparison::{larger, smaller};
@@ -7,37 +8,37 @@ use super::ldl;
 use super::real::{One, Real};
 use super::vector::squared_size;
 
-/// Task rows of every least-squares problem here; unused rows are zero.
+/// Number of task rows of every least-squares problem; unused rows are zero.
 pub const ROWS: usize = 6;
 
-/// Rows that a position takes: the first ones.
+/// Number of rows of a position: the first ones.
 pub(super) const POSITION_ROWS: usize = 3;
 
-/// Damping, relative to the squared size of the Jacobian, that keeps a singular system solvable and changes nothing
-/// elsewhere.
+/// Damping, relative to the squared size of the Jacobian, that keeps a singular system solvable and has no effect
+/// otherwise.
 pub const LEAST_DAMPING: f64 = 1e-10;
 
-/// Joints can hit bounds one after another; after this number of rounds the step is clipped to the box.
+/// Joints can reach bounds one after another; after this number of rounds the step is clipped to the box.
 pub(super) const ROUNDS: usize = 4;
 
 /// A step of damped least squares in a box: to the point x + dx in \[`lower`, `upper`\] that (nearly) minimises
 /// |residual + J dx|^2 + lambda |dx|^2.
 ///
-/// dx = -J' (J J' + lambda I)^-1 residual over the free joints. A joint that would leave the box is fixed at its bound,
-/// what it still moves is taken off the residual, and the others are solved again.
+/// dx = -J' (J J' + lambda I)^-1 residual over the free joints. A joint that would leave the box is held at its bound,
+/// its contribution is subtracted from the residual, and the step of the others is solved again.
 #[derive(Debug, Clone, Copy)]
 pub struct BoxStep<'a> {
     /// Columns of J, at least one per entry of `x`.
     pub columns: &'a [[f64; ROWS]],
-    /// Residual that the step is to remove.
+    /// Residual to be removed by the step.
     pub residual: &'a [f64; ROWS],
     /// The damping.
     pub lambda: f64,
     /// The current point.
     pub x: &'a [f64],
-    /// The box, one entry per entry of `x`.
+    /// Lower bounds, one per entry of `x`.
     pub lower: &'a [f64],
-    /// See `lower`.
+    /// Upper bounds, one per entry of `x`.
     pub upper: &'a [f64],
 }
 
@@ -52,8 +53,8 @@ impl BoxStep<'_> {
         write_step(self, out);
     }
 
-    /// Writes the point in the box that (nearly) solves residual + J (out - x) = 0 and is nearest to `preferred`, itself in
-    /// the box.
+    /// Writes the point in the box that (nearly) solves residual + J (out - x) = 0 and is nearest to `preferred`, which
+    /// must be in the box.
     pub fn write_near(&self, preferred: &[f64], out: &mut [f64]) {
         let mut there = *self.residual;
         for ((column, x), preferred) in self.columns.iter().zip(self.x).zip(preferred) {
@@ -64,7 +65,7 @@ impl BoxStep<'_> {
         BoxStep { residual: &there, x: preferred, ..*self }.write(out);
     }
 
-    /// Solves on the position rows alone where the others are zero: half the rows take less than half the time.
+    /// Solves only the position rows if the others are zero: half the rows take less than half the time.
     #[inline(always)]
     fn write_rows_in_use<A: Arithmetic>(&self, out: &mut [f64]) {
         let moves_position_alone = |column: &[f64; ROWS]| column[POSITION_ROWS..] == [0.0; ROWS - POSITION_ROWS];
@@ -75,13 +76,13 @@ impl BoxStep<'_> {
         }
     }
 
-    /// On the first `R` rows.
+    /// Solves the first `R` rows.
     #[inline(always)]
     fn write_first_rows<A: Arithmetic, const R: usize>(&self, out: &mut [f64]) {
         let Self { columns, lambda, x, lower, upper, .. } = *self;
         let n = x.len();
         let mut remaining = *self.residual;
-        // Bit j: joint j sits at a bound.
+        // Bit j: joint j is held at a bound.
         let mut fixed = 0_u64;
         for _ in 0..ROUNDS {
             let mut right = [One::of(0.0); R];

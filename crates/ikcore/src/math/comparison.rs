@@ -1,12 +1,12 @@
-//! Larger, smaller and sign in fewer instructions than the standard library's, which handle NaN and signed zeros.
+//! Larger, smaller and sign in fewer instructions than the standard library, which handles NaN and signed zeros.
 
-/// The larger of the two; the second where one is NaN.
+/// The larger of the two; the second if one is NaN.
 #[inline(always)]
 pub fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The smaller of the two; the second where one is NaN.
+/// The smaller of the two; the second if one is NaN.
 #[inline(always)]
 pub fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }

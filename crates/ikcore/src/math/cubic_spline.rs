@@ -1,14 +1,14 @@
-//! Cubic splines over knots that stay the same while the values change.
+//! Cubic splines over fixed knots with changing values.
 
 /// Conditions at the two ends of a spline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SplineEnds {
-    /// No curvature.
+    /// Zero second derivative.
     #[default]
     Natural,
-    /// The first two pieces are one cubic, and the last two.
+    /// The first two pieces are one cubic, and so are the last two.
     NotAKnot,
-    /// No slope.
+    /// Zero slope.
     Clamped,
 }
 
@@ -22,14 +22,14 @@ struct EndRule {
 }
 
 impl SplineEnds {
-    /// The rule of an end whose piece has length `h` and whose next piece has length `next`, with `pieces` in all. `sign` is
-    /// 1 at the beginning and -1 at the end.
+    /// The rule of an end whose piece has length `h` and whose next piece has length `next`, with `pieces` in total.
+    /// `sign` is 1 at the start and -1 at the end.
     fn rule(self, h: f64, next: f64, pieces: usize, sign: f64) -> EndRule {
         let rule = |chord_share, near, far| EndRule { chord_share, near, far };
         match self {
             Self::Clamped if pieces == 1 => rule(sign * 6.0 / h, 0.0, 0.0),
             Self::Clamped => rule(sign * 3.0 / h, -0.5, 0.0),
-            // Three points: both conditions say that the curve is one parabola.
+            // Three points: both conditions make the curve one parabola.
             Self::NotAKnot if pieces == 2 => rule(0.0, 1.0, 0.0),
             Self::NotAKnot if pieces > 2 => rule(0.0, 1.0 + h / next, -h / next),
             Self::NotAKnot | Self::Natural => rule(0.0, 0.0, 0.0),
@@ -37,7 +37,7 @@ impl SplineEnds {
     }
 }
 
-/// The factored tridiagonal system of the knots: a spline through new values costs one forward and one backward pass.
+/// The factored tridiagonal system of the knots: a spline through new values takes one forward and one backward pass.
 ///
 /// Slopes agree on both sides of each inner knot: h_(i-1) q''_(i-1) + 2 (h_(i-1) + h_i) q''_i + h_i q''_(i+1) =
 /// 6 (chord_i - chord_(i-1)), with q'' at the ends by their rules.
@@ -45,7 +45,7 @@ impl SplineEnds {
 pub struct CubicSpline {
     knots: Vec<f64>,
     rules: [EndRule; 2],
-    /// Knot by knot: the entries below and above the diagonal, and the inverse of the one on it, as elimination leaves them.
+    /// By knot: the entries below and above the diagonal, and the inverse of the diagonal entry, after elimination.
     below: Vec<f64>,
     above: Vec<f64>,
     inverse: Vec<f64>,
@@ -93,7 +93,7 @@ impl CubicSpline {
         Self { knots, rules, below, above, inverse }
     }
 
-    /// Splines without curvature at their ends.
+    /// Splines with zero second derivative at their ends.
     pub fn natural(knots: Vec<f64>) -> Self {
         Self::over(knots, SplineEnds::Natural)
     }
@@ -124,7 +124,7 @@ impl CubicSpline {
         for i in (1..last - 1).rev() {
             curvatures[i] -= self.above[i] * curvatures[i + 1];
         }
-        // With so few knots that a neighbour is missing, its factor in the rule is zero.
+        // If there are too few knots for a neighbour, its factor in the rule is zero.
         let inner = |i: usize| if 0 < i && i < last { curvatures[i] } else { 0.0 };
         let ends = [
             first_rule.curvature(chord(0), inner(1), inner(2)),
@@ -169,7 +169,7 @@ impl Piece {
         self.value + s * (self.slope + s * (self.curvature / 2.0 + s * self.third / 6.0))
     }
 
-    /// The largest slope, in magnitude: at an end or where the curvature vanishes.
+    /// The largest slope magnitude: at an end or where the second derivative vanishes.
     pub fn steepest(&self) -> f64 {
         let slope_at = |s: f64| (self.slope + s * (self.curvature + 0.5 * s * self.third)).abs();
         let level = -self.curvature / self.third;

@@ -1,9 +1,9 @@
-//! Four numbers in one register, where the machine has such registers.
+//! Four numbers in one register, if the machine has such registers.
 
 use std::ops::Neg;
 
-/// Four numbers, on which [`Arithmetic`](super::arithmetic::Arithmetic) works lane by lane. A vector of three may take one
-/// too, its last lane unused: the compiler splits arrays of three, and a Jacobian then takes a tenth longer.
+/// Four numbers, on which [`Arithmetic`](super::arithmetic::Arithmetic) works lane by lane. A vector of three also uses
+/// one, with the last lane unused: the compiler splits arrays of three, and a Jacobian then takes a tenth longer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(32))]
 pub struct F64x4(pub [f64; 4]);
@@ -43,7 +43,7 @@ impl F64x4 {
         [x, y, z]
     }
 
-    /// (y, z, x), the last lane as it is.
+    /// (y, z, x), with the last lane unchanged.
     #[inline(always)]
     pub(super) fn permuted(self) -> Self {
         let [x, y, z, w] = self.0;

@@ -6,8 +6,8 @@ use super::arithmetic::Arithmetic;
 use super::f64x4::F64x4;
 use super::{Pose, pose};
 
-/// A rigid transform: the columns of its rotation (its axes, seen from the base) and its origin (m). Over
-/// `F64x4`, four of them, lane by lane.
+/// A rigid transform: the columns of its rotation (its axes in base coordinates) and its origin (m). With `F64x4`
+/// entries, four transforms, one per lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame<T = f64> {
     /// x, y and z axis.
@@ -34,7 +34,7 @@ impl Frame<F64x4> {
 }
 
 impl Frame {
-    /// No motion.
+    /// The identity.
     pub const IDENTITY: Self = Self { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.0; 3] };
 
     /// Rotates a vector from this frame into the base: R v.
@@ -48,7 +48,8 @@ impl Frame {
     #[inline(always)]
     pub(crate) fn place<A: Arithmetic>(&self, p: &[f64; 3]) -> [f64; 3] {
         let [x, y, z] = &self.axes;
-        // Two short chains instead of one long one: the latency of this sum is what a chain of joints costs.
+        // Two short dependency chains instead of a long one: the latency of this sum determines the cost of a chain of
+        // joints.
         std::array::from_fn(|k| A::mul_add(x[k], p[0], self.origin[k]) + A::mul_add(y[k], p[1], z[k] * p[2]))
     }
 
@@ -66,7 +67,7 @@ impl Frame {
         Self { axes, origin }
     }
 
-    /// This frame turned about its own z axis, given sine and cosine of the angle.
+    /// This frame rotated about its own z axis, given sine and cosine of the angle.
     #[inline(always)]
     pub(crate) fn turned<A: Arithmetic>(&self, sine: f64, cosine: f64) -> Self {
         let [x, y, z] = self.axes;

@@ -4,10 +4,10 @@ use super::arithmetic::Arithmetic;
 use super::f64x4::F64x4;
 use super::real::{One, Real};
 
-/// J J' + lambda I on the first `R` rows, of a Jacobian with these columns.
+/// Returns J J' + lambda I on the first `R` rows of a Jacobian with these columns.
 #[inline(always)]
 pub fn gram<A: Arithmetic, const R: usize>(columns: impl Iterator<Item = [f64; 6]>, lambda: f64) -> [[One<A>; R]; R] {
-    // Four entries of a row, and then the rest: with three rows nothing asks for the rest, and it is not computed.
+    // Four entries of a row, then the rest; with three rows the rest is unused and not computed.
     let mut sum = [[F64x4::ZERO; 2]; R];
     for column in columns {
         let [c0, c1, c2, c3, c4, c5] = column;
@@ -18,7 +18,7 @@ pub fn gram<A: Arithmetic, const R: usize>(columns: impl Iterator<Item = [f64; 6
             }
         }
     }
-    // Loops and no closures, which may be compiled without the instructions of the kernel that calls this.
+    // Loops instead of closures, which might be compiled without the instructions of the calling kernel.
     let mut entries = [[One::of(0.0); R]; R];
     for (i, row) in entries.iter_mut().enumerate() {
         for (k, entry) in row.iter_mut().enumerate() {

@@ -1,9 +1,9 @@
-//! Hermite interpolation: the cubic through two values with two slopes.
+//! Hermite interpolation: the cubic with given values and slopes at both ends.
 
 /// A cubic in a parameter from 0 at one end to 1 at the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cubic {
-    /// In ascending powers of the parameter.
+    /// Coefficients in ascending powers of the parameter.
     pub coefficients: [f64; 4],
 }
 
@@ -29,7 +29,7 @@ impl Cubic {
         b + share * (2.0 * c + 3.0 * share * d)
     }
 
-    /// Bounds of the values between the ends: the smallest and largest Bézier point.
+    /// Bounds of the values between the ends: the smallest and largest Bézier coefficient.
     #[inline]
     pub fn hull(&self) -> [f64; 2] {
         let [a, b, c, _] = self.coefficients;
@@ -43,8 +43,8 @@ impl Cubic {
     pub fn lowest(&self) -> f64 {
         let [_, b, c, d] = self.coefficients;
         let end = if self.at(1.0) < self.at(0.0) { 1.0 } else { 0.0 };
-        // Of the roots of b + 2 c s + 3 d s^2 the one where the cubic bends upwards, written so that nothing cancels
-        // where it falls at first; NaN where there is none.
+        // Of the roots of b + 2 c s + 3 d s^2, the one with positive second derivative, in a form without cancellation
+        // if the cubic decreases at first; NaN if there is none.
         let inside = -b / (c + (c * c - 3.0 * b * d).sqrt());
         if 0.0 < inside && inside < 1.0 && self.at(inside) < self.at(end) { inside } else { end }
     }

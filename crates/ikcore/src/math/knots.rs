@@ -6,14 +6,24 @@ use crate::error::{Error, Result, require_finite};
 
 /// Times (s) that start at zero and increase: the ends of the segments of a piecewise function of time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<f64>")]
 pub struct Knots(Vec<f64>);
+
+/// Stored knots are checked again.
+impl TryFrom<Vec<f64>> for Knots {
+    type Error = Error;
+
+    fn try_from(times: Vec<f64>) -> Result<Self> {
+        Self::new("knots", times)
+    }
+}
 
 impl Knots {
     /// Checks the times (s); `what` names them in errors.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] for fewer than two, [`Error::NotFinite`], [`Error::OutOfRange`] where the first is not
-    /// zero, [`Error::NotIncreasing`].
+    /// [`Error::WrongLength`] for fewer than two, [`Error::NotFinite`], [`Error::OutOfRange`] if the first is not zero,
+    /// [`Error::NotIncreasing`].
     pub fn new(what: &str, times: Vec<f64>) -> Result<Self> {
         if times.len() < 2 {
             return Err(Error::WrongLength { what: what.into(), expected: "at least 2".into(), got: times.len() });
@@ -39,7 +49,7 @@ impl Knots {
         &self.0
     }
 
-    /// Number of segments: one less than there are knots.
+    /// Number of segments: one less than the number of knots.
     pub fn segments(&self) -> usize {
         self.0.len() - 1
     }
@@ -49,13 +59,13 @@ impl Knots {
         self.0[self.segments()]
     }
 
-    /// How long a segment lasts (s).
+    /// Duration of a segment (s).
     pub fn span(&self, segment: usize) -> f64 {
         self.0[segment + 1] - self.0[segment]
     }
 
-    /// The segment that time `t` (s, clamped to the knots) falls in, and the time since its start (s). A knot belongs
-    /// to the segment that it starts.
+    /// The segment that contains time `t` (s, clamped to the knots), and the time since its start (s). A knot belongs
+    /// to the segment that starts there.
     pub fn locate(&self, t: f64) -> (usize, f64) {
         let t = t.clamp(0.0, self.duration());
         let started = self.0.partition_point(|&knot| knot <= t);

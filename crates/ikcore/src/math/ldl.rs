@@ -2,7 +2,7 @@
 
 use super::real::Real;
 
-/// Pivots below this share of the matrix's trace count as zero: no step in that direction.
+/// Pivots below this fraction of the matrix's trace count as zero: no step in that direction.
 const SINGULAR: f64 = 1e-15;
 
 /// A = L D L' of a symmetric positive semi-definite matrix.
@@ -21,7 +21,7 @@ impl<R: Real, const N: usize> Ldl<R, N> {
         Self::eliminated(matrix, []).0
     }
 
-    /// Factors the matrix and takes the same steps of elimination on the right-hand sides.
+    /// Factors the matrix and applies the same elimination to the right-hand sides.
     #[inline(always)]
     fn eliminated<const M: usize>(mut scaled: [[R; N]; N], mut right: [[R; N]; M]) -> (Self, [[R; N]; M]) {
         let zero = R::splat(0.0);
@@ -42,7 +42,7 @@ impl<R: Real, const N: usize> Ldl<R, N> {
         (Self { scaled, inverse_pivots }, right)
     }
 
-    /// Solves A z = b; no component of z along directions whose pivots count as zero.
+    /// Solves A z = b, without components of z along directions whose pivots count as zero.
     #[inline(always)]
     pub fn solve(&self, mut b: [R; N]) -> [R; N] {
         for j in 0..N {
@@ -72,7 +72,7 @@ impl<R: Real, const N: usize> Ldl<R, N> {
     }
 }
 
-/// Solves A z = b for one right-hand side; with [`Ldl::of`] first, a bounded step takes 3 % longer.
+/// Solves A z = b for one right-hand side. With [`Ldl::of`] first, a bounded step would take 3 % longer.
 #[inline(always)]
 pub fn solve<R: Real, const N: usize>(matrix: [[R; N]; N], b: [R; N]) -> [R; N] {
     let (ldl, [b]) = Ldl::eliminated(matrix, [b]);

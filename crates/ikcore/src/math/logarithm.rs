@@ -1,4 +1,5 @@
-//! The natural logarithm without branches, which the compiler vectorises. For random draws: relative error below 1e-11.
+//! The natural logarithm without branches, so that the compiler vectorises it. For random draws: relative error below
+//! 1e-11.
 
 use std::f64::consts::{LN_2, SQRT_2};
 
@@ -6,7 +7,7 @@ use std::f64::consts::{LN_2, SQRT_2};
 const MANTISSA: u64 = (1 << 52) - 1;
 /// The bits of 1.0: exponent zero.
 const ONE: u64 = 1.0_f64.to_bits();
-/// 2^52, whose lowest bits count ones.
+/// 2^52: for numbers of this size the lowest bit has the value one.
 const COUNTER: f64 = 4503599627370496.0;
 
 /// ln x of a normal positive x.
@@ -15,7 +16,7 @@ pub fn ln(x: f64) -> f64 {
     let bits = x.to_bits();
     let exponent = f64::from_bits((bits >> 52) | COUNTER.to_bits()) - COUNTER - 1023.0;
     let mantissa = f64::from_bits((bits & MANTISSA) | ONE);
-    // The mantissa into [sqrt(1/2), sqrt(2)).
+    // Scales the mantissa into [sqrt(1/2), sqrt(2)).
     let large = mantissa >= SQRT_2;
     let m = if large { 0.5 * mantissa } else { mantissa };
     let k = if large { exponent + 1.0 } else { exponent };

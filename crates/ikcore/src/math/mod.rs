@@ -1,11 +1,11 @@
-//! Mathematics without robots: plain arrays where it is hot, nalgebra elsewhere.
+//! Mathematics without robots: plain arrays in hot code, nalgebra elsewhere.
 //!
 //! Kernels are compiled with and without FMA (`arithmetic`). Kernels for one number or four, one per lane of a register
 //! (`F64x4`), are written over `Real`.
 //!
 //! | files | what |
 //! |---|---|
-//! | `pose`, `frame` | rigid transforms: checked ones of callers, plain ones of kernels |
+//! | `pose`, `frame` | rigid transforms: `pose` for checked input, `frame` for kernels |
 //! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
 //! | `arithmetic`, `f64x4`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
@@ -37,6 +37,7 @@ pub mod ticks;
 pub(crate) mod vec3;
 pub(crate) mod vector;
 
+pub use arithmetic::instructions;
 pub use frame::Frame;
 pub use knots::Knots;
 

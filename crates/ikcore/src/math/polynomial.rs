@@ -23,8 +23,8 @@ pub fn derivative(coefficients: &[f64]) -> Short {
 
 /// All distinct real roots in `[lower, upper]`, ascending; the two ends for the zero polynomial.
 ///
-/// Between the roots of its derivative a polynomial is monotone, so that each stretch holds at most one root, bracketed
-/// by its ends. Two roots count as one where rounding hides the sign between them.
+/// Between the roots of its derivative a polynomial is monotone, so each such interval contains at most one root,
+/// bracketed by its ends. Two roots count as one if rounding hides the sign between them.
 pub fn roots(coefficients: &[f64], lower: f64, upper: f64) -> Short {
     let mut found = Short::new();
     let mut left = (lower, value_or_zero(coefficients, lower));
@@ -49,7 +49,7 @@ pub fn quadratic_roots(a: f64, b: f64, c: f64, lower: f64, upper: f64) -> SmallV
     if discriminant < 0.0 {
         return SmallVec::new();
     }
-    // Both roots from the half-sum that does not cancel; c = 0 leaves -a/b alone, the other is infinite.
+    // Both roots from the half-sum without cancellation; for c = 0 only -a/b remains, the other is infinite.
     let half_sum = -0.5 * (b + discriminant.sqrt().copysign(b));
     let [first, second] = [half_sum / c, a / half_sum];
     let ordered = if second < first { [second, first] } else { [first, second] };
@@ -70,7 +70,7 @@ pub fn range(coefficients: &[f64], lower: f64, upper: f64) -> (f64, f64) {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-/// Where the derivative vanishes strictly inside `(lower, upper)`.
+/// Returns the points where the derivative vanishes, strictly inside `(lower, upper)`.
 fn stationary_points(coefficients: &[f64], lower: f64, upper: f64) -> Short {
     if coefficients.len() < 2 {
         return Short::new();
@@ -80,16 +80,16 @@ fn stationary_points(coefficients: &[f64], lower: f64, upper: f64) -> Short {
     points
 }
 
-/// The value at `x`, or zero where it is no larger than the rounding of its own terms.
+/// The value at `x`, or zero if it is within the rounding error of its terms.
 fn value_or_zero(coefficients: &[f64], x: f64) -> f64 {
     let value = evaluate(coefficients, x)[0];
     let terms = coefficients.iter().rev().fold(0.0, |sum, c| sum * x.abs() + c.abs());
     if value.abs() <= 4.0 * f64::EPSILON * terms { 0.0 } else { value }
 }
 
-/// The root between two points where the signs differ, to the last bits.
+/// The root between two points with different signs, to the last bits.
 ///
-/// Newton steps, replaced by bisection where one leaves the bracket or is longer than half the step before.
+/// Newton steps, replaced by bisection if a step leaves the bracket or is longer than half the previous step.
 fn bracketed_root(coefficients: &[f64], mut lower: f64, mut upper: f64) -> f64 {
     let rising = evaluate(coefficients, lower)[0] < 0.0;
     let mut last_step = upper - lower;

@@ -1,11 +1,11 @@
-//! Rigid transforms from their parts, and the check that a 4x4 matrix is one.
+//! Rigid transforms from their parts, and the check of 4x4 matrices.
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 use super::Pose;
 use crate::error::{Error, Result, require_finite};
 
-/// How far R'R may be from the identity, entry by entry, for R to pass as a rotation.
+/// Largest deviation of R'R from the identity, entry by entry, for R to count as a rotation.
 const ORTHOGONALITY_TOLERANCE: f64 = 1e-6;
 
 /// A transform from its parts; `rotation` must be a rotation matrix.
@@ -24,15 +24,15 @@ pub fn rotation(axis: Vector3<f64>, angle: f64) -> Pose {
     Pose::from_parts(Translation3::identity(), Rotation3::from_axis_angle(&axis, angle))
 }
 
-/// The rotation of fixed-axis roll, pitch and yaw (rad), R = Rz(yaw) Ry(pitch) Rx(roll), as URDF has it.
+/// The rotation of fixed-axis roll, pitch and yaw (rad), R = Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
 pub fn from_rpy(rpy: [f64; 3], translation: [f64; 3]) -> Pose {
     Pose::from_parts(Translation3::from(translation), Rotation3::from_euler_angles(rpy[0], rpy[1], rpy[2]))
 }
 
-/// The rotation of a quaternion (x, y, z, w) of any length but zero.
+/// The rotation of a quaternion (x, y, z, w) of any nonzero length.
 ///
 /// # Errors
-/// [`Error::OutOfRange`] for a quaternion without a length.
+/// [`Error::OutOfRange`] for a zero quaternion.
 pub fn from_quaternion(xyzw: [f64; 4], translation: [f64; 3]) -> Result<Pose> {
     let [x, y, z, w] = xyzw;
     let quaternion = Quaternion::new(w, x, y, z);
@@ -59,7 +59,7 @@ pub fn from_rotation_matrix(what: &str, rotation: Matrix3<f64>, translation: [f6
     from_matrix(what, &matrix)
 }
 
-/// The pose itself if all its numbers are finite.
+/// The same pose, checked to be finite.
 ///
 /// # Errors
 /// [`Error::NotFinite`]; `what` names it.
@@ -68,7 +68,7 @@ pub fn checked(what: &str, pose: Pose) -> Result<Pose> {
     Ok(pose)
 }
 
-/// The same point or angles, if they are finite.
+/// The same point or angles, checked to be finite.
 ///
 /// # Errors
 /// [`Error::NotFinite`]; `what` names them.
@@ -77,7 +77,7 @@ pub fn finite(what: &str, values: [f64; 3]) -> Result<[f64; 3]> {
     Ok(values)
 }
 
-/// The 16 numbers of a pose, row after row.
+/// The 16 numbers of a pose, in row-major order.
 pub fn rows(pose: &Pose) -> [f64; 16] {
     let (r, p) = (pose.rotation.matrix(), &pose.translation);
     [
@@ -91,8 +91,8 @@ pub fn rows(pose: &Pose) -> [f64; 16] {
 /// Reads a homogeneous 4x4 matrix; `what` names it in errors.
 ///
 /// # Errors
-/// [`Error::NotFinite`] for NaN or infinity; [`Error::NotRigid`] where the last row is not (0, 0, 0, 1), or the
-/// rotation is not orthonormal to 1e-6 or is a reflection. What is within 1e-6 is orthonormalised.
+/// [`Error::NotFinite`] for NaN or infinity; [`Error::NotRigid`] if the last row is not (0, 0, 0, 1), or the rotation
+/// is not orthonormal to 1e-6 or is a reflection. Deviations within 1e-6 are orthonormalised.
 pub fn from_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<Pose> {
     require_finite(what, matrix.as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))?;
     let not_rigid = |problem: String| Error::NotRigid { what: what.into(), problem };
@@ -113,7 +113,7 @@ pub fn from_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<Pose> {
     Ok(from_parts(translation.into(), orthonormalized(rotation)))
 }
 
-/// Gram-Schmidt on a matrix that is a rotation up to rounding; the identity on one that already is exact.
+/// Applies Gram-Schmidt to a matrix that is a rotation up to rounding; an exact rotation is unchanged.
 fn orthonormalized(r: Matrix3<f64>) -> Matrix3<f64> {
     let x = r.column(0).normalize();
     let y = r.column(1) - x * x.dot(&r.column(1));

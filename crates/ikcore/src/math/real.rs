@@ -1,6 +1,6 @@
 //! The number type of kernels that are written once for one number and for four.
 //!
-//! Each lane of the four goes through the operations of the one in the same order: both agree bit for bit.
+//! Each lane of the four performs the operations of the one in the same order, so both agree bit for bit.
 
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -40,16 +40,16 @@ pub trait Real:
     /// The square root.
     fn sqrt(self) -> Self;
 
-    /// `then` where self < limit, and `otherwise` elsewhere, NaN included.
+    /// `then` if self < limit, else `otherwise` (also for NaN).
     fn choose_below(self, limit: Self, then: Self, otherwise: Self) -> Self;
 
-    /// `then` where self = other, and `otherwise` elsewhere, NaN included.
+    /// `then` if self = other, else `otherwise` (also for NaN).
     fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self;
 
-    /// The larger of the two; `other` where either is NaN.
+    /// The larger of the two; `other` if either is NaN.
     fn larger(self, other: Self) -> Self;
 
-    /// The smaller of the two; `other` where either is NaN.
+    /// The smaller of the two; `other` if either is NaN.
     fn smaller(self, other: Self) -> Self;
 }
 

@@ -1,10 +1,10 @@
-//! A Jacobian estimated from differences: columns from antennae, then a rank-one update for every step made.
+//! A Jacobian estimated from differences: columns from antennae, then a rank-one update after every step.
 
 use super::MAX_DOF;
 use super::box_step::{BoxStep, ROWS};
 use super::vector::squared_size;
 
-/// Shorter steps measure nothing but rounding.
+/// Shorter steps measure only rounding.
 const SHORTEST: f64 = 1e-12;
 
 /// An estimate of dr/dx, by columns.
@@ -34,8 +34,8 @@ impl Secant {
         sum
     }
 
-    /// Updates J after a step `dx` that changed r by `surprise` more than predicted: J + share surprise dx' / |dx|^2, the
-    /// least change of J that explains it (Broyden 1965, eq. 4.5), or a share of it where r is noisy.
+    /// Updates J after a step `dx` that changed r by `surprise` more than predicted: J + share surprise dx' / |dx|^2,
+    /// the least change of J that explains it (Broyden 1965, eq. 4.5), or a fraction `share` of it if r is noisy.
     pub fn learn(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; ROWS], share: f64) {
         let squared: f64 = dx.clone().map(|dx| dx * dx).sum();
         if squared < SHORTEST * SHORTEST {
@@ -60,8 +60,8 @@ impl Secant {
     }
 }
 
-/// Signed length of an antenna from `x` in \[`lower`, `upper`\]: `length` to a side that has room for it, else as far as
-/// the roomier side goes; zero where neither has room.
+/// Signed length of an antenna from `x` in \[`lower`, `upper`\]: `length` to a side that has room for it, else up to
+/// the farther bound; zero if there is no room on either side.
 pub fn antenna(x: f64, length: f64, lower: f64, upper: f64) -> f64 {
     let (below, above) = ((x - lower).max(0.0), (upper - x).max(0.0));
     if above >= length || above >= below { length.min(above) } else { -length.min(below) }

@@ -1,4 +1,4 @@
-//! Sine and cosine of a whole array at once, branch-free so that the compiler vectorises it.
+//! Sine and cosine of a whole array at once, without branches so that the compiler vectorises it.
 //!
 //! Reduction to [-pi/4, pi/4] by Cody and Waite (pi/2 in three parts), then minimax polynomials fitted for this file by
 //! Remez exchange; relative error of the polynomials 4e-18, of the results at most 1 ulp beyond rounding.
@@ -27,18 +27,18 @@ const C: [f64; 6] = [
 ];
 /// pi/2 in three parts; the first two have 33 bits, so that their products with a quadrant below 2^19 are exact.
 const HALF_PI: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
-/// Largest angle (rad) for which that holds; beyond it the standard library takes over.
+/// Largest angle (rad) for which that holds; beyond it the standard library is used.
 const LARGEST: f64 = 8e5;
-/// 1.5 * 2^52: adding it rounds to an integer, which then sits in the lowest bits.
+/// 1.5 * 2^52: adding it rounds to an integer, which is then in the lowest bits.
 const ROUNDER: f64 = 6755399441055744.0;
 
-/// Writes sines and cosines of `angles` (rad); all three are equally long.
+/// Writes sines and cosines of `angles` (rad); all three have the same length.
 #[inline(always)]
 pub fn sincos<A: Arithmetic>(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
     let mut all_small = true;
     for i in 0..angles.len() {
         (sines[i], cosines[i]) = sincos_one::<A>(angles[i]);
-        // False for NaN too, which the standard library leaves NaN.
+        // False for NaN too; the standard library returns NaN for it.
         all_small &= angles[i].abs() <= LARGEST;
     }
     if !all_small {
@@ -48,7 +48,7 @@ pub fn sincos<A: Arithmetic>(angles: &[f64], sines: &mut [f64], cosines: &mut [f
     }
 }
 
-/// [`sincos`] for W columns of angles side by side, to the bits that each column gets alone.
+/// [`sincos`] for W columns of angles side by side, bit-identical to each column alone.
 #[inline(always)]
 pub fn sincos_by_column<A: Arithmetic, const W: usize>(
     angles: &[[f64; W]],
@@ -82,7 +82,7 @@ fn sincos_one<A: Arithmetic>(x: f64) -> (f64, f64) {
     let u = r * r;
     let sine = A::mul_add(r * u, horner::<A>(&S, u), r);
     let cosine = A::mul_add(u * u, horner::<A>(&C, u), A::mul_add(-0.5, u, 1.0));
-    // Odd quadrants swap the two; the sine is negative in quadrants 2 and 3, the cosine in 1 and 2.
+    // Odd quadrants swap sine and cosine; the sine is negative in quadrants 2 and 3, the cosine in 1 and 2.
     let swap = (quadrant & 1).wrapping_neg();
     let (s, c) = (sine.to_bits(), cosine.to_bits());
     let sine_sign = (quadrant & 2) << 62;

@@ -1,5 +1,5 @@
-//! Singular values of a matrix of at most six rows, without allocation: one-sided Jacobi rotations (Hestenes 1958) turn
-//! its rows until they are orthogonal. Small values keep their relative accuracy, which squaring the matrix would lose.
+//! Singular values of a matrix of at most six rows, without allocation: one-sided Jacobi rotations (Hestenes 1958) make
+//! its rows orthogonal. Small values keep their relative accuracy, which squaring the matrix would lose.
 
 use super::MAX_DOF;
 use super::box_step::ROWS;
@@ -8,10 +8,10 @@ use super::vector::dot;
 /// Rows whose cosine is below this count as orthogonal.
 const ORTHOGONAL: f64 = 4.0 * f64::EPSILON;
 
-/// Rows shorter than this share of the longest count as rounding.
+/// Rows shorter than this fraction of the longest count as rounding.
 const NOTHING: f64 = 1e-14;
 
-/// Largest number of sweeps. Convergence is quadratic, and six are common.
+/// Maximum number of sweeps. Convergence is quadratic; six sweeps are typical.
 const SWEEPS: usize = 30;
 
 /// J = sum of length\[i\] left\[i\] right\[i\]', largest first.
@@ -19,14 +19,14 @@ const SWEEPS: usize = 30;
 pub struct SingularValues {
     /// The singular values; zero beyond the rank.
     pub lengths: [f64; ROWS],
-    /// Unit vectors in the space of the rows, orthogonal to each other.
+    /// Left singular vectors, one entry per row of the matrix, orthogonal to each other.
     pub left: [[f64; ROWS]; ROWS],
-    /// Unit vectors in the space of the columns; zero where the length is.
+    /// Right singular vectors, one entry per column of the matrix; zero for zero singular values.
     pub right: [[f64; MAX_DOF]; ROWS],
 }
 
 impl SingularValues {
-    /// The decomposition of the matrix with these columns, [`MAX_DOF`] at most.
+    /// Decomposes the matrix with these columns, at most [`MAX_DOF`].
     pub fn of(columns: &[[f64; ROWS]]) -> Self {
         let n = columns.len();
         let mut left = [[0.0; ROWS]; ROWS];
@@ -69,7 +69,7 @@ impl SingularValues {
     }
 }
 
-/// Turns rows `p` and `q` in their plane until they are orthogonal. Returns whether they were not.
+/// Rotates rows `p` and `q` in their plane until they are orthogonal. Returns false if they already were.
 fn turn_apart(rows: &mut [[f64; MAX_DOF]; ROWS], left: &mut [[f64; ROWS]; ROWS], p: usize, q: usize, n: usize) -> bool {
     let (squared_p, squared_q) = (dot(&rows[p][..n], &rows[p][..n]), dot(&rows[q][..n], &rows[q][..n]));
     let product = dot(&rows[p][..n], &rows[q][..n]);

@@ -1,4 +1,4 @@
-//! Rotations: logarithm and its Jacobian, accurate from no turn to half a turn.
+//! Rotations: the logarithm and its Jacobian, accurate from zero to half a turn.
 
 use super::Frame;
 use super::arctangent::angle_of;
@@ -6,13 +6,13 @@ use super::arithmetic::NoFma;
 use super::real::{One, Real};
 use super::vec3::Vec3;
 
-/// Below this angle (rad) series replace quotients that lose their digits.
+/// Below this angle (rad), series replace quotients that would lose digits.
 const SMALL: f64 = 1e-4;
 
-/// Below this cosine a turn counts as near half a turn.
+/// Below this cosine a rotation counts as near half a turn.
 const NEAR_HALF_TURN: f64 = -0.9;
 
-/// The columns of rotations: their axes, seen from the base.
+/// The columns of rotations: their axes in base coordinates.
 pub type Axes<R> = [Vec3<R>; 3];
 
 /// The axes of `frame`.
@@ -22,15 +22,15 @@ pub fn axes_of(frame: &Frame) -> Axes<One<NoFma>> {
     [Vec3::of(x), Vec3::of(y), Vec3::of(z)]
 }
 
-/// The rotation vector phi (rad) of R R_d', with R the axes of `frame` and R_d those of `target`: the turn from the target
-/// to the frame, in base coordinates. Its length is the geodesic angle, at most pi.
+/// Returns the rotation vector phi (rad) of R R_d', with R the axes of `frame` and R_d those of `target`: the rotation
+/// from the target to the frame, in base coordinates. Its length is the geodesic angle, at most pi.
 #[inline]
 pub fn rotation_between(target: &Frame, frame: &Frame) -> [f64; 3] {
     let (target, frame) = (axes_of(target), axes_of(frame));
     Turn::between(&target, &frame).vector(&target, &frame).stored()
 }
 
-/// [`rotation_between`], and its derivative with respect to a small turn put before.
+/// [`rotation_between`], and its derivative with respect to a small rotation applied on the left.
 #[inline(always)]
 pub fn rotation_and_jacobian<R: Real>(target: &Axes<R>, frame: &Axes<R>) -> (Vec3<R>, InverseLeftJacobian<R>) {
     let turn = Turn::between(target, frame);
@@ -38,7 +38,7 @@ pub fn rotation_and_jacobian<R: Real>(target: &Axes<R>, frame: &Axes<R>) -> (Vec
     (phi, InverseLeftJacobian::at(phi, turn.half_cotangent()))
 }
 
-/// R R_d' by sine and cosine of its angle theta.
+/// R R_d', given by sine and cosine of its angle theta.
 struct Turn<R> {
     /// sin(theta), times the axis.
     sine_axis: Vec3<R>,
@@ -76,7 +76,7 @@ impl<R: Real> Turn<R> {
         vector
     }
 
-    /// cot(theta/2), by the quotient that keeps its digits; infinite without a turn.
+    /// cot(theta/2), by the quotient without cancellation; infinite for the identity.
     #[inline(always)]
     fn half_cotangent(&self) -> R {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
@@ -97,21 +97,21 @@ fn near_half_turn(target: &[[f64; 3]; 3], frame: &[[f64; 3]; 3], angle: f64, sin
         0.5 * (entry(i, largest) + entry(largest, i)) - diagonal
     });
     let length = norm(&axis);
-    // The symmetric part leaves the sign open; the antisymmetric part, however small, decides it.
+    // The symmetric part does not determine the sign; the antisymmetric part, however small, does.
     let sign = if (0..3).map(|k| axis[k] * sine_axis[k]).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
     axis.iter_mut().for_each(|v| *v *= sign * angle / length);
     axis
 }
 
-/// The inverse left Jacobian of SO(3) at a rotation vector: the derivative of the logarithm with respect to a small turn
-/// put before.
+/// The inverse left Jacobian of SO(3) at a rotation vector: the derivative of the logarithm with respect to a small
+/// rotation applied on the left.
 #[derive(Debug, Clone, Copy)]
 pub struct InverseLeftJacobian<R> {
     columns: [Vec3<R>; 3],
 }
 
 impl<R: Real> InverseLeftJacobian<R> {
-    /// I - [phi]/2 + quadratic * [phi]^2 at the rotation vector `phi` (rad), given the cotangent of half its length.
+    /// I - \[phi\]/2 + quadratic \[phi\]^2 at the rotation vector `phi` (rad), given the cotangent of half its length.
     #[inline(always)]
     fn at(phi: Vec3<R>, half_cotangent: R) -> Self {
         let (half, one) = (R::splat(0.5), R::splat(1.0));
@@ -134,7 +134,7 @@ impl<R: Real> InverseLeftJacobian<R> {
         }
     }
 
-    /// Its product with `w`.
+    /// Returns the product with `w`.
     #[inline(always)]
     pub fn apply(&self, w: Vec3<R>) -> Vec3<R> {
         let [a, b, c] = self.columns;
@@ -142,7 +142,7 @@ impl<R: Real> InverseLeftJacobian<R> {
     }
 }
 
-/// `v`, turned by the rotation vector `phi` (rad): Rodrigues' formula.
+/// `v` rotated by the rotation vector `phi` (rad): Rodrigues' formula.
 #[inline]
 pub fn rotated(v: &[f64; 3], phi: &[f64; 3]) -> [f64; 3] {
     let squared = phi.iter().map(|entry| entry * entry).sum::<f64>();

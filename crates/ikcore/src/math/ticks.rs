@@ -2,14 +2,14 @@
 
 use crate::error::{Error, Result, require_positive};
 
-/// More ticks than this are taken for a mistake in `dt` (2.7 hours at 1 kHz).
+/// More ticks than this count as a mistake in `dt` (2.7 hours at 1 kHz).
 const MAX_TICKS: f64 = 1e7;
 
 /// Number of ticks of `dt` (s) that cover `duration` (s): the ceiling of their ratio, where a remainder below 1e-9 of a
 /// tick counts as rounding.
 ///
 /// # Errors
-/// [`Error::OutOfRange`] where `dt` is not positive, or so small that there would be over 10 million ticks.
+/// [`Error::OutOfRange`] if `dt` is not positive, or so small that more than 10 million ticks would result.
 pub fn ticks(duration: f64, dt: f64) -> Result<usize> {
     require_positive("dt", dt)?;
     let count = (duration / dt - 1e-9).ceil().max(1.0);
@@ -20,10 +20,10 @@ pub fn ticks(duration: f64, dt: f64) -> Result<usize> {
     Ok(count as usize)
 }
 
-/// [`ticks`] for a path to be followed, of which a longer tick would sample only the ends.
+/// [`ticks`] for a path; a tick longer than the path would sample only its ends.
 ///
 /// # Errors
-/// [`Error::OutOfRange`] as [`ticks`], and where `dt` is longer than `duration`.
+/// [`Error::OutOfRange`] as [`ticks`], and if `dt` is longer than `duration`.
 pub fn ticks_of_path(duration: f64, dt: f64) -> Result<usize> {
     let count = ticks(duration, dt)?;
     if dt > duration * (1.0 + 1e-9) {

@@ -1,5 +1,5 @@
-//! Vectors of three [`Real`]s for kernels. Operations are spelled out entry by entry: closures over arrays would be compiled
-//! without the instructions of the kernel that calls them.
+//! Vectors of three [`Real`]s for kernels. Operations are written out entry by entry: closures over arrays would be
+//! compiled without the instructions of the calling kernel.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -43,7 +43,7 @@ impl<R: Real> Vec3<R> {
         [self.x.lane(lane), self.y.lane(lane), self.z.lane(lane)]
     }
 
-    /// With another vector in lane `lane`.
+    /// The same with another vector in lane `lane`.
     #[inline(always)]
     pub fn with_lane(self, lane: usize, vector: &[f64; 3]) -> Self {
         let [x, y, z] = *vector;
@@ -76,7 +76,7 @@ impl<R: Real> Vec3<R> {
         }
     }
 
-    /// The cross product, with FMA where the arithmetic has it.
+    /// The cross product, with FMA if the arithmetic has it.
     #[inline(always)]
     pub fn cross_fma(self, other: Self) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! Products and lengths of vectors with any number of entries; those of three in hot places are in [`so3`](super::so3).
+//! Products and norms of vectors of any length; for vectors of three in hot code see [`so3`](super::so3).
 
 /// a'b.
 #[inline]
@@ -24,7 +24,7 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     squared_distance(a, b).sqrt()
 }
 
-/// The sum of the squared entries of all columns. Each row has a sum of its own, so that additions do not wait for one
+/// The sum of the squared entries of all columns. Each row has its own sum, so that additions do not wait for one
 /// another.
 #[inline]
 pub fn squared_size<const R: usize>(columns: &[[f64; R]]) -> f64 {

@@ -1,4 +1,4 @@
-//! The box that a search is confined to.
+//! The box of a search.
 
 use crate::error::{Error, Result};
 use crate::math::comparison::{larger, smaller};
@@ -14,7 +14,7 @@ pub struct Bounds {
     upper: Point,
 }
 
-/// Sampling range on an open side.
+/// Sampling range on an unbounded side.
 const HALF_TURN: f64 = std::f64::consts::PI;
 
 impl Bounds {
@@ -33,7 +33,7 @@ impl Bounds {
         }
     }
 
-    /// The box of these (lower, upper), not checked again.
+    /// The box of these (lower, upper) pairs, without checks.
     pub(crate) fn from_ranges(ranges: impl Iterator<Item = (f64, f64)>) -> Self {
         let mut bounds = Self { lower: Point::new(), upper: Point::new() };
         for (lower, upper) in ranges {
@@ -67,8 +67,8 @@ impl Bounds {
         }
     }
 
-    /// Brings every entry of `x` into its range by the fewest whole periods: eq. (12) of Yuan et al. 2016, which turns
-    /// once at most. An entry without a period is clipped; one that no number of periods brings inside stays outside.
+    /// Shifts every entry of `x` into its range by the fewest whole periods: eq. (12) of Yuan et al. 2016, which shifts
+    /// by at most one turn. An entry without a period is clipped; an entry that no shift brings inside stays outside.
     pub fn wrap(&self, x: &mut [f64], periods: &[Option<f64>]) {
         for (i, x) in x.iter_mut().enumerate() {
             let (lower, upper) = (self.lower[i], self.upper[i]);
@@ -92,7 +92,7 @@ impl Bounds {
         x.iter().zip(&self.lower).zip(&self.upper).all(|((x, lower), upper)| lower <= x && x <= upper)
     }
 
-    /// The ranges to draw from; an open side reaches one turn from the other bound, or half a turn from zero.
+    /// The ranges to draw from; an unbounded side ends one turn from the other bound, or half a turn from zero.
     pub fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
         self.lower.iter().zip(&self.upper).map(|(lower, upper)| sampling_range::finite(*lower, *upper, HALF_TURN))
     }

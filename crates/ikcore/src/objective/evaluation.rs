@@ -3,26 +3,26 @@
 use super::bounds::Bounds;
 use crate::rng::LazyRng;
 
-/// The value of an objective at a point, and whether it is good enough.
+/// The value of an objective at a point, and whether the point solves the problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Score {
     /// The weighted sum of squares r'r.
     pub value: f64,
-    /// The problem's own test, such as metres AND radians within their tolerances.
+    /// The problem's own test, for example that distance and angle are both within their tolerances.
     pub solved: bool,
 }
 
 /// How to evaluate an objective efficiently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CallPattern {
-    /// Points to evaluate together, where a solver has as many.
+    /// Number of points to evaluate together, if a solver has as many.
     pub batch_size: usize,
     /// Evaluations between two polls of monitor and clock.
     pub poll_interval: usize,
 }
 
 impl Default for CallPattern {
-    /// For evaluations of tens of nanoseconds: a poll every ten microseconds.
+    /// For evaluations of tens of nanoseconds: one poll every ten microseconds.
     fn default() -> Self {
         Self { batch_size: 8, poll_interval: 256 }
     }
@@ -36,7 +36,7 @@ pub trait Objective {
     /// The score of `x`, which lies inside the box.
     fn evaluate(&mut self, x: &[f64]) -> Score;
 
-    /// Scores of many points, stored one after another in `xs`.
+    /// Writes the scores of many points, stored consecutively in `xs`.
     fn evaluate_all(&mut self, xs: &[f64], out: &mut [Score]) {
         for (x, score) in xs.chunks_exact(self.dimension()).zip(out) {
             *score = self.evaluate(x);
@@ -54,7 +54,7 @@ pub trait Objective {
         bounds.sample(rng, x);
     }
 
-    /// The period of entry number `entry` of a point, if it has one: 2 pi for an angle whose turns do not count.
+    /// The period of entry `entry` of a point, if it has one: 2 pi for an angle whose full turns do not matter.
     fn period(&self, entry: usize) -> Option<f64> {
         let _ = entry;
         None

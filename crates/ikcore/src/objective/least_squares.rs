@@ -9,7 +9,7 @@ use crate::math::f64x4::F64x4;
 /// Residual r and Jacobian dr/dx at a point.
 #[derive(Debug, Clone)]
 pub struct Linearization {
-    /// Weighted residual, current minus wanted; rows that a task does not use are zero.
+    /// Weighted residual, actual minus target; rows that a task does not use are zero.
     pub residual: [f64; ROWS],
     /// Columns of the weighted Jacobian, one per entry of x; the first `dimension` are in use.
     pub columns: [[f64; ROWS]; MAX_DOF],
@@ -23,7 +23,7 @@ impl Default for Linearization {
 
 /// An objective that is a sum of at most six squares.
 pub trait Residual: Objective {
-    /// The weighted residual at `x`, current minus wanted, and the score; rows that a task does not use are zero.
+    /// The weighted residual at `x`, actual minus target, and the score; rows that a task does not use are zero.
     fn residual(&mut self, x: &[f64], out: &mut [f64; ROWS]) -> Score;
 }
 
@@ -48,10 +48,10 @@ impl Default for FourLinearizations {
     }
 }
 
-/// Objectives that are linearized faster four at a time than one by one. They are four problems of one system: for a robot,
-/// four targets of one kind.
+/// Objectives that are linearized faster four at a time than one by one. The four are problems of one system: for a
+/// robot, four targets of one kind.
 pub(crate) trait SideBySide: LeastSquares + Sized {
-    /// [`linearize`](LeastSquares::linearize) of each objective at its lane of `xs`, to the same bits.
+    /// [`linearize`](LeastSquares::linearize) of each objective at its lane of `xs`, bit-identical.
     fn linearize_four(objectives: [&Self; 4], xs: &[F64x4], out: &mut FourLinearizations) -> [Score; 4];
 }
 
@@ -64,7 +64,7 @@ impl Linearization {
     }
 }
 
-/// All that a solver can ask of the inverse kinematics problem.
+/// All evaluations of the inverse kinematics problem that a solver may use.
 pub trait Differentiable: LeastSquares + Gradient {}
 
 impl<O: LeastSquares + Gradient + ?Sized> Differentiable for O {}

@@ -1,7 +1,8 @@
-//! The meeting point of the robot side and the solver side: what is minimised, and within which box.
+//! The interface between the robot side and the solver side: objectives and the box of the search.
 //!
-//! An objective implements what it can: [`Objective`] (values), [`Residual`], [`Gradient`], [`LeastSquares`] (residual and
-//! Jacobian). A solver asks for what it needs, and the compiler checks that the two fit.
+//! An objective implements the traits that apply to it: [`Objective`] (values), [`Residual`], [`Gradient`],
+//! [`LeastSquares`] (residual and Jacobian). A solver requires the traits it needs, and the compiler checks that the
+//! two match.
 
 mod bounds;
 mod evaluation;

@@ -4,6 +4,6 @@ use smallvec::SmallVec;
 
 use crate::math::MAX_DOF;
 
-/// A point of the search space; on the stack up to [`MAX_DOF`] entries. `clone` copies entry by entry: hot paths take
+/// A point of the search space; on the stack up to [`MAX_DOF`] entries. `clone` copies entry by entry, so hot paths use
 /// `from_slice`, which copies all at once.
 pub type Point = SmallVec<[f64; MAX_DOF]>;

@@ -1,4 +1,4 @@
-//! Convex hulls, from the collision crate: the only file that knows its types.
+//! Convex hulls, based on the collision crate: the only file that uses its types.
 
 use nalgebra::Vector3;
 use parry3d_f64::math::Vector;
@@ -7,7 +7,7 @@ use parry3d_f64::shape::ConvexPolyhedron;
 
 use super::tangent::Tangent;
 
-/// The smallest convex body that holds some points.
+/// The convex hull of some points.
 #[derive(Debug, Clone)]
 pub struct Hull {
     points: Vec<[f64; 3]>,
@@ -70,7 +70,7 @@ impl Hull {
         (middle.into(), reach)
     }
 
-    /// The crate proposes the nearest point; the plane through the corners bounds the distance whatever its error.
+    /// The crate proposes the nearest point; the plane through the corners bounds the distance regardless of its error.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         let beyond =
             |(normal, offset): &(Vector3<f64>, f64)| Tangent { value: normal.dot(point) - offset, normal: *normal };

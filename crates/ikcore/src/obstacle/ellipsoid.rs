@@ -9,10 +9,10 @@ const STEPS: usize = 40;
 
 /// Of an ellipsoid about the origin with these semi-axes e along x, y, z.
 ///
-/// The nearest surface point is x_i = e_i^2 y_i / (t + e_i^2), with t the largest root of
-/// F(t) = sum (e_i y_i / (t + e_i^2))^2 - 1 (Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a
-/// Hyperellipsoid", 2013). Its outward normal n makes the answer a bound that holds whatever the root's error:
-/// y lies n . y - |E n| outside the supporting plane with normal n.
+/// The nearest surface point is x_i = e_i^2 y_i / (t + e_i^2), with t the largest root of F(t) = sum (e_i y_i / (t +
+/// e_i^2))^2 - 1 (Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid", 2013). Its outward
+/// normal n makes the result a bound that holds for any error of the root: y lies n . y - |E n| outside the supporting
+/// plane with normal n.
 pub(super) fn tangent(point: &Vector3<f64>, semi_axes: &[f64; 3]) -> Tangent {
     let e = Vector3::from(*semi_axes);
     let shortest = e.imin();

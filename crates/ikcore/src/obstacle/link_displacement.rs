@@ -1,4 +1,4 @@
-//! Bound on the motion of a link's capsule while the joints move by a given amount.
+//! Bound on the motion of a link's capsule for given joint motions.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,4 @@
-//! A robot among obstacles: which pairs of bodies can touch, and how near they are to each other.
+//! A robot among obstacles: pairs of bodies that can touch, and their distances.
 
 use std::fmt;
 
@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::math::arithmetic::NoFma;
 use crate::math::{Frame, MAX_DOF};
 use crate::robot::{Joint, Robot};
+use crate::wording::listed;
 
 /// A capsule of the robot, seen from the moving element that carries it.
 #[derive(Debug, Clone)]
@@ -30,7 +31,7 @@ pub(super) enum BodyPair {
     Capsules { near: usize, far: usize },
 }
 
-/// A body that a link is near to.
+/// The body that a link is near.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Body {
     /// The obstacle of this index, and its kind.
@@ -39,7 +40,7 @@ pub enum Body {
     Link(String),
 }
 
-/// A link and how near it is to something.
+/// A link, the body it is near, and their distance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// The link.
@@ -59,11 +60,11 @@ impl fmt::Display for Body {
     }
 }
 
-/// The capsules of a robot and what they may not touch: obstacles, and each other.
+/// The capsules of a robot, the obstacles, and the pairs of bodies that must not touch.
 ///
-/// Capsules that no joint moves are not tested against obstacles: no plan could move them away. Capsules of one link, or of two
-/// links with no capsule between them, are not tested against each other, and neither are pairs that touch with all joints in
-/// the middle of their ranges: such overlaps come from the model, not from the motion.
+/// Capsules that no joint moves are not tested against obstacles: no plan could move them away. Capsules of one link,
+/// or of two links with no capsule between them, are not tested against each other; nor are pairs that touch with all
+/// joints in the middle of their ranges, since such overlaps come from the model and not from the motion.
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
     robot: &'a Robot,
@@ -81,11 +82,11 @@ pub(super) struct Placement {
 
 impl<'a> Scene<'a> {
     /// # Errors
-    /// [`Error::NoCapsules`] where the robot has none, or where some of its collision shapes could not be read;
+    /// [`Error::NoCapsules`] if the robot has none, or if some of its collision shapes could not be read;
     /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane.
     pub fn new(robot: &'a Robot, obstacles: &'a [Obstacle]) -> Result<Self> {
         if robot.capsules().is_empty() || !robot.unread_collision_shapes().is_empty() {
-            return Err(Error::NoCapsules { robot: robot.name().into(), problem: missing(robot) });
+            return Err(no_capsules(robot));
         }
         if let Some(i) = obstacles.iter().position(Obstacle::is_flat)
             && !moves_in_plane(robot)
@@ -112,7 +113,7 @@ impl<'a> Scene<'a> {
         Ok(scene)
     }
 
-    /// The same scene for links that pass over each other, as those of an arm drawn in a plane.
+    /// The same scene, but links may cross each other, as in a planar arm.
     pub fn without_self_collision(mut self) -> Self {
         self.pairs.retain(|pair| matches!(pair, BodyPair::Obstacle { .. }));
         self
@@ -123,7 +124,7 @@ impl<'a> Scene<'a> {
         self.robot
     }
 
-    /// The pair that is nearest to each other at `q` (n,) or, overlapping, the deepest; None where nothing can touch.
+    /// The nearest pair at `q` (n,), or the deepest one if pairs overlap; `None` if nothing can touch.
     ///
     /// # Errors
     /// [`Error::WrongLength`] or [`Error::NotFinite`].
@@ -135,7 +136,7 @@ impl<'a> Scene<'a> {
         Ok(nearest.map(|(distance, pair)| self.contact(pair, distance)))
     }
 
-    /// The smallest distance (m) at `q` (n,); infinite where nothing can touch.
+    /// The smallest distance (m) at `q` (n,); infinite if nothing can touch.
     ///
     /// # Errors
     /// As [`nearest`](Self::nearest).
@@ -230,7 +231,7 @@ fn middle_of_range(joint: &Joint) -> f64 {
     0.5 * (lower + upper)
 }
 
-/// Whether the arm stays in the plane z = 0, whatever its joints do.
+/// Whether the arm stays in the plane z = 0 for all joint positions.
 fn moves_in_plane(robot: &Robot) -> bool {
     let q: Vec<f64> = robot.joints().iter().map(middle_of_range).collect();
     let mut columns = [[0.0; 6]; MAX_DOF];
@@ -239,10 +240,22 @@ fn moves_in_plane(robot: &Robot) -> bool {
     tip.origin[2].abs() < 1e-9 && columns[..robot.dof()].iter().all(flat)
 }
 
-/// Why the shape of a robot is not known.
-fn missing(robot: &Robot) -> String {
-    match robot.unread_collision_shapes() {
+/// Says which shapes are missing and how to give them.
+fn no_capsules(robot: &Robot) -> Error {
+    let unread = robot.unread_collision_shapes();
+    let problem = match unread {
         [] => "has no capsules, so that nothing is known of the room it takes up".into(),
-        unread => format!("has collision shapes that cannot be read ({})", unread.join(", ")),
-    }
+        _ => format!("has collision shapes that cannot be read ({})", listed(unread.iter().map(String::as_str))),
+    };
+    let given = "with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])";
+    let remedy = match robot.capsules() {
+        [] => format!(
+            "give it capsules with {given}, or load a URDF whose links have <collision> shapes of spheres, cylinders, \
+             capsules and boxes"
+        ),
+        _ => "robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
+              robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
+            .into(),
+    };
+    Error::NoCapsules { robot: robot.name().into(), problem, remedy }
 }

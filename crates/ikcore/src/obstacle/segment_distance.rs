@@ -1,5 +1,5 @@
-//! Distance of a segment to a convex set, from below: along a segment the signed distance is a convex function of one
-//! variable, which lies above all its tangents and below all its chords.
+//! Lower bound on the distance of a segment from a convex set: along a segment the signed distance is a convex function
+//! of one variable, which lies above all its tangents and below all its chords.
 
 use nalgebra::Vector3;
 
@@ -99,7 +99,7 @@ mod tests {
         [(); 2].map(|()| Vector3::from_fn(|_, _| rng.uniform_in(-1.0, 1.0)))
     }
 
-    /// The smallest distance between points at `steps` + 1 places of each segment.
+    /// The smallest distance between points at `steps` + 1 points of each segment.
     fn sampled([a, b]: &LineSegment, [c, d]: &LineSegment, steps: usize) -> f64 {
         let places = || (0..=steps).map(|i| i as f64 / steps as f64);
         let distance = |(s, t): (f64, f64)| (a + s * (b - a) - c - t * (d - c)).norm();

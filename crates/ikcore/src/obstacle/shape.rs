@@ -1,4 +1,4 @@
-//! Obstacles: convex shapes that stand still in the frame of the robot's base.
+//! Obstacles: convex shapes, fixed in the frame of the robot's base.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::error::{Result, require_finite, require_positive};
 use crate::math::{Pose, pose};
 
-/// What an obstacle looks like (m, rad).
+/// The geometry of an obstacle (m, rad).
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A ball.
@@ -51,12 +51,12 @@ pub enum Shape {
         /// Angle from the x axis of the base to its own.
         angle: f64,
     },
-    /// The smallest convex body that holds some points.
+    /// The convex hull of some points.
     #[cfg(feature = "convex-mesh")]
     ConvexMesh(Hull),
 }
 
-/// A shape that was validated.
+/// A validated obstacle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstacle {
     shape: Shape,
@@ -131,7 +131,7 @@ impl Obstacle {
         })
     }
 
-    /// The smallest convex body that holds `points` (m), at least four that do not lie in a plane.
+    /// The convex hull of `points` (m), at least four that do not lie in a plane.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::InvalidObstacle`] for fewer points or a flat body.
@@ -145,7 +145,7 @@ impl Obstacle {
         Ok(Self { shape: Shape::ConvexMesh(hull), bounding_center, bounding_radius })
     }
 
-    /// What it looks like.
+    /// The geometry.
     pub fn shape(&self) -> &Shape {
         &self.shape
     }
@@ -163,7 +163,7 @@ impl Obstacle {
         }
     }
 
-    /// Whether it lies in the plane z = 0 and means nothing to an arm that leaves that plane.
+    /// Whether it is flat, in the plane z = 0, and so undefined for an arm that leaves that plane.
     pub fn is_flat(&self) -> bool {
         matches!(self.shape, Shape::Ellipse { .. })
     }

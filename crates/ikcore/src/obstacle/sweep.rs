@@ -1,14 +1,15 @@
-//! Continuous collision checking: motions certified to be free of collisions at every instant, and their smallest clearance.
+//! Continuous collision checking: motions certified to be collision-free at every instant, and their smallest
+//! clearance.
 //!
-//! The distances are computed in the middle of an interval of the motion. A pair that is farther apart there than it can
-//! approach within the interval is clear in all of it; the other pairs are examined again in its two halves. No step width is
-//! chosen, and no collision can fall between two samples.
+//! Distances are computed in the middle of an interval of the motion. If a pair is farther apart there than it can
+//! approach within the interval, it is clear in the whole interval; the other pairs are examined again in both halves.
+//! No step width has to be chosen, and no collision can be missed between two samples.
 
 use super::scene::{BodyPair, Contact, Placement, Scene};
 use crate::math::MAX_DOF;
 use crate::objective::Point;
 
-/// A joint motion over an interval of its parameter (time, or a share of a straight line).
+/// A joint motion over an interval of its parameter (time, or the fraction of a straight line).
 pub trait JointMotion {
     /// Writes the configuration in the middle of \[`from`, `to`\], and by how much each joint differs from it in there
     /// at most (rad, m).
@@ -35,7 +36,7 @@ impl JointMotion for Edge<'_> {
     }
 }
 
-/// Where a motion comes too near to something.
+/// The point at which a motion comes too near to a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TooNear {
     /// The motion's parameter.
@@ -44,10 +45,11 @@ pub struct TooNear {
     pub contact: Contact,
 }
 
-/// A pair that exceeds its margin by less than this (m) counts as too near, since telling would take many bisections.
+/// A pair that exceeds its margin by less than this (m) counts as too near, since a decision would take many
+/// bisections.
 const RESOLUTION: f64 = 1e-5;
 
-/// The check of motions in a scene; owns its scratch.
+/// Checks motions in a scene; owns its scratch.
 #[derive(Debug)]
 pub struct Sweep<'a> {
     scene: &'a Scene<'a>,
@@ -57,19 +59,19 @@ pub struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// For any number of motions in `scene`.
+    /// A checker for any number of motions in `scene`.
     pub fn new(scene: &'a Scene<'a>) -> Self {
         let rest = vec![0.0; scene.robot().dof()];
         Self { scene, pending: scene.pairs.clone(), placement: scene.place(&rest), examined: 0 }
     }
 
-    /// How many configurations were examined.
+    /// Number of configurations examined.
     pub fn examined(&self) -> usize {
         self.examined
     }
 
-    /// Ok if all pairs stay at least `margin` (m) apart on the motion over \[`from`, `to`\], proven between samples too. Err where
-    /// one does not, or exceeds the margin by less than a hundredth of a millimetre.
+    /// Certifies that all pairs stay at least `margin` (m) apart on the motion over \[`from`, `to`\], between samples
+    /// too. An error if one does not, or exceeds the margin by less than a hundredth of a millimetre.
     pub fn check(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2], margin: f64) -> Result<(), Box<TooNear>> {
         self.check_pending(motion, [from, to], margin, self.pending.len())
     }
@@ -104,8 +106,8 @@ impl<'a> Sweep<'a> {
         self.check_pending(motion, [middle, to], margin, left)
     }
 
-    /// The smallest distance (m) on the motion over \[`from`, `to`\], and where it occurs: a proven lower bound, at most 0.1 mm or
-    /// 1 % below the true value. None where nothing can touch.
+    /// The smallest distance (m) on the motion over \[`from`, `to`\], and where it occurs: a certified lower bound, at
+    /// most 0.1 mm or 1 % below the true value. `None` if nothing can touch.
     pub fn smallest(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2]) -> Option<TooNear> {
         let first = self.pending.first().copied()?;
         let mut best = Best { seen: f64::INFINITY, proven: f64::INFINITY, at: from, pair: first };

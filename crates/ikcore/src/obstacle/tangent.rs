@@ -1,7 +1,7 @@
 //! Signed distance of a point to a convex set, with a plane that bounds the distance of every other point from below.
 //!
-//! The signed distance to a convex set (negative inside) is a convex function of the point: any of its tangents is a
-//! lower bound everywhere. All certificates rest on that.
+//! The signed distance to a convex set (negative inside) is a convex function of the point, so any of its tangents is a
+//! lower bound everywhere. All certificates rely on that.
 
 use nalgebra::Vector3;
 

@@ -10,11 +10,11 @@ use crate::math::Pose;
 /// A triangle's corners (m).
 pub(super) type Triangle = [[f64; 3]; 3];
 
-/// Steps around a round shape, and half as many from pole to pole.
+/// Number of steps around a round shape; half as many from pole to pole.
 const STEPS: usize = 24;
 
 impl Obstacle {
-    /// Triangles that show its surface (m): exact where it is flat, else with corners on it.
+    /// Triangles of the surface (m): exact for flat faces, else with corners on the surface.
     pub fn triangles(&self) -> Vec<Triangle> {
         match self.shape() {
             Shape::Sphere { center, radius } => ball(|u| (Vector3::from(*center) + *radius * u).into()),

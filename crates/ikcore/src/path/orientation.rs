@@ -11,6 +11,6 @@ pub(super) fn check_rotation(what: &str, rotation: &Matrix3<f64>) -> Result<Matr
 }
 
 /// Returns the rotations of all rows, made exactly orthonormal; errors name the row.
-pub(super) fn check_rotations<'a>(rows: impl Iterator<Item = &'a Matrix3<f64>>) -> Result<Vec<Matrix3<f64>>> {
-    rows.enumerate().map(|(row, rotation)| check_rotation(&format!("path rotation of row {row}"), rotation)).collect()
+pub(super) fn check_rotations(rows: impl Iterator<Item = Matrix3<f64>>) -> Result<Vec<Matrix3<f64>>> {
+    rows.enumerate().map(|(row, rotation)| check_rotation(&format!("path rotation of row {row}"), &rotation)).collect()
 }

@@ -9,9 +9,19 @@ use crate::math::Knots;
 
 /// Straight segments from vertex to vertex, each at its own constant speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "(Knots, Vec<[f64; 3]>)")]
 pub struct Polyline {
     knots: Knots,
     vertices: Vec<[f64; 3]>,
+}
+
+/// Stored segments are checked again.
+impl TryFrom<(Knots, Vec<[f64; 3]>)> for Polyline {
+    type Error = Error;
+
+    fn try_from((knots, vertices): (Knots, Vec<[f64; 3]>)) -> Result<Self> {
+        Self::through(knots.times().to_vec(), vertices)
+    }
 }
 
 impl Polyline {

@@ -5,17 +5,36 @@ use serde::{Deserialize, Serialize};
 
 use super::orientation::check_rotations;
 use super::{Curve, Polyline};
-#[cfg(doc)]
-use crate::error::Error;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::math::Pose;
 
 /// Positions, or poses, at given times. Between them the position moves along a straight line and the orientation about
 /// a fixed axis, both at constant speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "(Polyline, Rotations)")]
 pub struct Samples {
     positions: Polyline,
-    rotations: Option<Vec<UnitQuaternion<f64>>>,
+    rotations: Rotations,
+}
+
+/// One rotation per sample.
+type Rotations = Option<Vec<UnitQuaternion<f64>>>;
+
+/// Stored samples are checked again.
+impl TryFrom<(Polyline, Rotations)> for Samples {
+    type Error = Error;
+
+    fn try_from((positions, rotations): (Polyline, Rotations)) -> Result<Self> {
+        if let Some(rotations) = &rotations {
+            let count = positions.knots().times().len();
+            if rotations.len() != count {
+                let expected = format!("{count}, one per position");
+                return Err(Error::WrongLength { what: "path rotations".into(), expected, got: rotations.len() });
+            }
+            check_rotations(rotations.iter().map(|rotation| rotation.to_rotation_matrix().into_inner()))?;
+        }
+        Ok(Self { positions, rotations })
+    }
 }
 
 impl Samples {
@@ -35,7 +54,7 @@ impl Samples {
     pub fn from_poses(times: Vec<f64>, poses: &[Pose]) -> Result<Self> {
         let positions = poses.iter().map(|pose| pose.translation.vector.into()).collect();
         let positions = Polyline::through(times, positions)?;
-        let rotations = check_rotations(poses.iter().map(|pose| pose.rotation.matrix()))?;
+        let rotations = check_rotations(poses.iter().map(|pose| pose.rotation.into_inner()))?;
         let quaternion = |rotation| UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation));
         Ok(Self { positions, rotations: Some(rotations.into_iter().map(quaternion).collect()) })
     }

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 
+use super::orientation::check_rotation;
 use super::{Circle, Curve, Hypotrochoid, Path, Polyline, Rose, Samples};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require_finite, require_positive};
 use crate::stored;
 
 /// The library's own curves. Their order is part of the stored form.
@@ -60,9 +61,18 @@ impl Path {
     /// Returns the path stored by [`to_bytes`](Self::to_bytes).
     ///
     /// # Errors
-    /// [`Error::Corrupt`] for bytes of another version, of another type, or damaged.
+    /// [`Error::Corrupt`] for bytes of another version, of another type, or damaged; [`Error::OutOfRange`],
+    /// [`Error::NotFinite`] or [`Error::NotRigid`] for values that no path has.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let (curve, orientation): (StoredCurve, Option<Matrix3<f64>>) = stored::from_bytes("path", bytes)?;
-        Ok(Self { curve: curve.curve(), orientation })
+        let curve = curve.curve();
+        require_positive("duration of the stored path", curve.duration())?;
+        for t in [0.0, curve.duration()] {
+            require_finite("stored path", &curve.position(t), |i| format!("{} at t = {t} s", ["x", "y", "z"][i]))?;
+        }
+        if let Some(rotation) = &orientation {
+            check_rotation("orientation of the stored path", rotation)?;
+        }
+        Ok(Self { curve, orientation })
     }
 }

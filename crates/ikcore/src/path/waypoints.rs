@@ -22,7 +22,7 @@ impl Waypoints {
     /// [`Error::NotFinite`], [`Error::NotRigid`].
     pub fn new(positions: Vec<[f64; 3]>, rotations: Option<Vec<Matrix3<f64>>>) -> Result<Self> {
         check_points(&positions)?;
-        let rotations = rotations.map(|rows| check_rotations(rows.iter())).transpose()?;
+        let rotations = rotations.map(|rows| check_rotations(rows.into_iter())).transpose()?;
         match &rotations {
             Some(rows) if rows.len() != positions.len() => {
                 let expected = format!("{}, one a position", positions.len());

@@ -7,7 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::cost::Cost;
 use super::planar_arm::Orientations;
 use super::violation::Violation;
+use crate::error::{Error, Result};
 use crate::solver::Status;
+use crate::stored::from_bytes;
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
@@ -54,6 +56,19 @@ pub struct Improvement {
 const NAMED_IN_MESSAGE: usize = 3;
 
 impl Plan {
+    /// The plan that [`to_bytes`](crate::stored::to_bytes) stored.
+    ///
+    /// # Errors
+    /// [`Error::Corrupt`] for bytes of another version, damaged ones, those of something else, or values that no plan has.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        let plan: Self = from_bytes("plan", bytes)?;
+        if plan.redundancy.windows(2).any(|points| points[0].len() != points[1].len()) {
+            let problem = "its points have different numbers of redundant links".into();
+            return Err(Error::Corrupt { what: "plan".into(), problem });
+        }
+        Ok(plan)
+    }
+
     /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());

@@ -80,11 +80,11 @@ pub struct PointToPointOptions {
     pub obstacles: Vec<Obstacle>,
     /// Distance to keep from obstacles and between links (m). `None` means 1 mm.
     pub margin: Option<f64>,
-    /// Limits to keep; None: the robot's.
+    /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
-    /// Budget of the search; None: the method's own.
+    /// Budget of the search. `None` means the method's own.
     pub stop: Option<Stop>,
-    /// Seed of the random draws: the same seed, the same bits.
+    /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 
@@ -114,16 +114,16 @@ pub struct AlongPathOptions {
     pub objective: Cost,
     /// Start configuration (n,). `None` leaves it to the planner.
     pub start: Option<Vec<f64>>,
-    /// Limits to keep; None: the robot's.
+    /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
     /// Allowed distance of the tip from the path (m) and angle from its orientation (rad). `None` means the method's
     /// own.
     pub accuracy: Option<f64>,
     /// The solver of [`AlongPathMethod::Timed`]. `None` means differential evolution. [`Tpbso`] has its own.
     pub solver: Option<AnySolver<DerivativeFree>>,
-    /// Budget of the search; None: the method's own.
+    /// Budget of the search. `None` means the method's own.
     pub stop: Option<Stop>,
-    /// Seed of the random draws: the same seed, the same bits.
+    /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 

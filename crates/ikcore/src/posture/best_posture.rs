@@ -1,5 +1,5 @@
-//! The best posture of a planar arm, by the published swarm or by differential evolution over the headings of all links but
-//! the last two, which close the linkage on either side.
+//! The best posture of a planar arm, by the published swarm or by differential evolution over the headings of all links
+//! but the last two, which close the linkage on either side.
 
 use std::f64::consts::PI;
 use std::time::Duration;
@@ -17,25 +17,25 @@ use crate::robot::Robot;
 use crate::solver::{DifferentialEvolution, Evaluator, Monitor, Status, Stop, Stopwatch, run};
 use crate::task::{Target, TipError};
 
-/// How to search.
+/// Options of [`best_posture`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PostureOptions {
     /// The measure of a posture.
     pub measure: Measure,
-    /// The region of joint points; None: anywhere.
+    /// The region of joint points. `None` means anywhere.
     pub region: Option<Rectangle>,
     /// The published swarm, instead of our own search.
     pub swarm: Option<CircleSwarm>,
-    /// Seed of the random draws: the same seed, the same bits.
+    /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
 
 /// The best posture found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Posture {
-    /// The configuration (n,) (rad); as near as the tip gets where there is no posture.
+    /// The configuration (n,) (rad); if there is no posture, one with the tip as near as possible.
     pub q: Vec<f64>,
-    /// Its index; NaN where there is no posture.
+    /// The index of the posture; NaN if there is none.
     pub index: f64,
     /// The best index after each generation of a swarm; empty for our own search.
     pub history: Vec<f64>,
@@ -50,7 +50,7 @@ pub struct Posture {
 }
 
 impl Posture {
-    /// What happened, and what to try.
+    /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         match self.status {
             Status::Solved => format!("the best of {} postures, index {:.6}", self.evaluations, self.index),
@@ -93,13 +93,13 @@ pub fn best_posture(
     }
     let nearest = solve(robot, &Target::Position(*target), &SolveOptions::default(), monitor)?;
     let status = match nearest.status {
-        Status::Solved => Status::Stalled, // within reach, but not in a posture as asked for
+        Status::Solved => Status::Stalled, // within reach, but not in a permitted posture
         status => status,
     };
     Ok(posture(nearest.q.to_vec(), f64::NAN, vec![], status, nearest.evaluations))
 }
 
-/// Our own search; None where no posture was found.
+/// Our own search; `None` if no posture was found.
 fn evolve(linkage: &Linkage, seed: u64, monitor: &mut dyn Monitor) -> Option<FoundPosture> {
     let links = linkage.links();
     let mut objective = ClosedLinkage { linkage, q: vec![0.0; links], best: None, evaluations: 0 };

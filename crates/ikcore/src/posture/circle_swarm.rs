@@ -1,4 +1,4 @@
-//! Particle swarm with a constriction factor over joint points on circles: section 2.3 and 2.5, eq. (17) and (18), of
+//! Particle swarm with a constriction factor over joint points on circles: sections 2.3 and 2.5, eq. (17) and (18), of
 //! "Trajectory tracking of redundant manipulator based on PSO algorithm optimization".
 
 use super::linkage::{Linkage, Point2};
@@ -16,14 +16,14 @@ pub struct CircleSwarm {
     pub population: usize,
     /// Generations, the first draw included; published 10.
     pub generations: usize,
-    /// Attraction to the particle's own best place. phi = c1 + c2 must be above 4: eq. (18) has no root below, although
-    /// the paper says "phi > 3".
+    /// Attraction to the best position of the particle. phi = c1 + c2 must be above 4: below that eq. (18) has no root,
+    /// although the paper says "phi > 3".
     pub c1: f64,
-    /// Attraction to the swarm's best place; printed as the particle's own in eq. (17).
+    /// Attraction to the best position of the swarm; eq. (17) prints the particle's own.
     pub c2: f64,
     /// Vm: largest velocity of a coordinate (m per generation); not published.
     pub velocity_limit: f64,
-    /// Random factors from [-1, 1], as printed, instead of [0, 1].
+    /// Random factors in [-1, 1], as printed, instead of [0, 1].
     pub signed: bool,
 }
 
@@ -33,7 +33,7 @@ impl Default for CircleSwarm {
     }
 }
 
-/// Draws of a particle after which no posture is assumed to exist.
+/// Number of draws of a particle after which no posture is assumed to exist.
 const DRAWS: usize = 10_000;
 
 /// The result of a search.
@@ -89,13 +89,13 @@ impl CircleSwarm {
         if phi > 4.0 { Ok(()) } else { Err(Error::out_of_range("c1 + c2", "above 4", phi)) }
     }
 
-    /// chi of eq. (18), which lacks the bars.
+    /// chi of eq. (18), where the printed equation lacks the absolute value.
     fn constriction(&self) -> f64 {
         let phi = self.c1 + self.c2;
         2.0 / (2.0 - phi - (phi * phi - 4.0 * phi).sqrt()).abs()
     }
 
-    /// The best posture of `linkage` that the swarm finds; None where it finds none.
+    /// The best posture of `linkage` that the swarm finds; `None` if it finds none.
     pub(super) fn search(
         &self,
         linkage: &Linkage,
@@ -113,8 +113,8 @@ impl CircleSwarm {
 }
 
 impl Swarm<'_> {
-    /// Runs all generations, or as many as the monitor allows, and appends the best index after each to `history`. None where a
-    /// particle finds no posture.
+    /// Runs all generations, or as many as the monitor allows, and appends the best index after each to `history`.
+    /// `None` if a particle finds no posture.
     fn run(&mut self, history: &mut Vec<f64>) -> Option<Status> {
         let mut particles = vec![];
         for _ in 0..self.options.population {
@@ -136,7 +136,7 @@ impl Swarm<'_> {
         Some(Status::Solved)
     }
 
-    /// A particle somewhere on the circles, steps (1) and (2) of the paper.
+    /// A random particle on the circles: steps (1) and (2) of the paper.
     fn draw(&mut self) -> Option<Particle> {
         let links = self.linkage.links();
         for _ in 0..DRAWS {
@@ -152,7 +152,7 @@ impl Swarm<'_> {
         None
     }
 
-    /// One generation of a particle: eq. (17), then back onto the circles; drawn anew where that fails (step 5).
+    /// One generation of a particle: eq. (17), then projection onto the circles; redrawn if that fails (step 5).
     fn advance(&mut self, particle: &mut Particle) -> Option<()> {
         let CircleSwarm { c1, c2, velocity_limit, signed, .. } = *self.options;
         let chi = self.options.constriction();
@@ -182,7 +182,7 @@ impl Swarm<'_> {
         Some(())
     }
 
-    /// The index of a posture; keeps the posture where it is the best.
+    /// Returns the index of a posture, and records the posture if it is the best.
     fn evaluate(&mut self, points: &[Point2]) -> Option<f64> {
         let index = self.linkage.index(points, &mut self.q)?;
         self.evaluations += 1;

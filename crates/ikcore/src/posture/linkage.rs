@@ -1,5 +1,5 @@
-//! A planar arm with its tip held in place: joint points on circles. [`planar_arm`](crate::planning::planar_arm) has the
-//! same arm with orientations of links as unknowns, and says why each measures the links for itself.
+//! A planar arm with a fixed tip: joint points on circles. `planning::planar_arm` has the same arm
+//! with link orientations as unknowns, and explains why each measures the link lengths itself.
 
 use std::f64::consts::TAU;
 
@@ -14,7 +14,7 @@ pub type Point2 = [f64; 2];
 /// The measure of a posture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Measure {
-    /// Yoshikawa's index of the tip; k_m times that is the paper's SM_n, eq. (15).
+    /// Yoshikawa's index of the tip; multiplied by k_m it is the paper's SM_n, eq. (15).
     #[default]
     Tip,
     /// The sum of the indices of all links, SM of eq. (16).
@@ -23,16 +23,16 @@ pub enum Measure {
 
 words!("measure": Measure { Tip => "tip", Overall => "overall" });
 
-/// A rectangle that all joint points must stay in.
+/// A rectangle that contains all joint points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rectangle {
-    /// Least x and y (m).
+    /// Smallest x and y (m).
     pub lower: Point2,
     /// Largest x and y (m).
     pub upper: Point2,
 }
 
-/// Tolerance (m) on the edge of a region, where optima often lie.
+/// Tolerance (m) at the edges of a region, where optima often lie.
 const ON_EDGE: f64 = 1e-12;
 
 impl Rectangle {
@@ -41,7 +41,7 @@ impl Rectangle {
     }
 }
 
-/// A planar arm with its tip held in place.
+/// A planar arm with a fixed tip.
 #[derive(Debug, Clone)]
 pub struct Linkage {
     robot: Robot,
@@ -108,9 +108,9 @@ impl Linkage {
         &self.robot
     }
 
-    /// Joint points between base and tip, one fewer than links, from the headings (rad) of all links but the last two. The
-    /// last point is on the left of the line to the target for a positive `side`, else on the right; None where the last two
-    /// links cannot close the gap.
+    /// Returns the joint points between base and tip, one fewer than links, from the headings (rad) of all links but
+    /// the last two. For a positive `side` the last point is to the left of the line to the target, else to the right;
+    /// `None` if the last two links cannot close the linkage.
     pub fn close(&self, headings: &[f64], side: f64) -> Option<Vec<Point2>> {
         let mut points = Vec::with_capacity(self.links() - 1);
         let mut end = self.base;
@@ -122,8 +122,8 @@ impl Linkage {
         Some(points)
     }
 
-    /// Moves `points` onto their circles: each along the direction from the one before; the last to the nearer intersection of
-    /// the circles of the last two links. None where they do not intersect.
+    /// Moves `points` onto their circles: each along the direction from the previous one, the last to the nearer
+    /// intersection of the circles of the last two links. `None` if these do not intersect.
     pub(super) fn repair(&self, points: &mut [Point2]) -> Option<()> {
         let mut end = self.base;
         let last = points.len() - 1;
@@ -154,7 +154,8 @@ impl Linkage {
         Some([from[0] + along * ux - aside * uy, from[1] + along * uy + aside * ux])
     }
 
-    /// The index of a posture; None outside the region or the joint limits. Its configuration is left in `q` (n,).
+    /// Returns the index of a posture and writes its configuration to `q` (n,); `None` outside the region or the joint
+    /// limits.
     pub fn index(&self, points: &[Point2], q: &mut [f64]) -> Option<f64> {
         if self.region.is_some_and(|region| !points.iter().all(|point| region.contains(point))) {
             return None;
@@ -172,7 +173,7 @@ impl Linkage {
         })
     }
 
-    /// `angle` moved by whole turns between the limits of joint `j`, nearest to zero.
+    /// `angle` shifted by whole turns into the limits of joint `j`, nearest to zero.
     fn within_limits(&self, j: usize, angle: f64) -> Option<f64> {
         let joint = &self.robot.joints()[j];
         let nearest = angle - TAU * (angle / TAU).round();

@@ -1,10 +1,10 @@
 //! The best posture of a planar arm for a tip position, as published and by our own search.
 //!
-//! "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", section 2.5: with the tip at E, the
-//! first joint point lies on the circle about the base, the last on the circle about E, each with its link for radius. For
-//! any arm, and for poses, see [`Prefer::Best`](crate::ik::Prefer::Best).
+//! "Trajectory tracking of redundant manipulator based on PSO algorithm optimization", section 2.5: with the tip at E,
+//! the first joint point lies on the circle about the base, the last on the circle about E, with the link lengths as
+//! radii. For other arms, and for poses, see [`Prefer::Best`](crate::ik::Prefer::Best).
 //!
-//! | file | what it holds |
+//! | file | what |
 //! |---|---|
 //! | `linkage` | joint points, their circles, the index of a posture |
 //! | `circle_swarm` | particle swarm over joint points, as published |

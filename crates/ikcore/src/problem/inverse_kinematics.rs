@@ -12,13 +12,13 @@ use crate::starts::Starts;
 use crate::task::residual::entrywise;
 use crate::task::{Assessment, Criterion, Target};
 
-/// The inverse kinematics problem. It borrows everything, so that building one per tick costs nothing.
+/// The inverse kinematics problem. It borrows everything, so building one per tick costs nothing.
 #[derive(Debug, Clone, Copy)]
 pub struct Problem<'a> {
     robot: &'a Robot,
     target: &'a Target,
     criterion: Criterion,
-    /// Looked up when the first start is proposed.
+    /// Looked up when the first start is needed.
     seeds: Option<Starts<'a>>,
     turns: Turns,
 }
@@ -26,24 +26,24 @@ pub struct Problem<'a> {
 /// Whether configurations that differ by whole turns count as different.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Turns {
-    /// Different: the arm would have to make the turns, as in tracking.
+    /// Different, as in tracking, where the arm would have to make the turns.
     Distinct,
-    /// The same, as for a configuration by itself.
+    /// Equivalent, as for a single configuration.
     Equivalent,
 }
 
 impl<'a> Problem<'a> {
-    /// The problem of bringing the tip of `robot` to `target`.
+    /// The problem of moving the tip of `robot` to `target`.
     pub fn new(robot: &'a Robot, target: &'a Target, criterion: impl Into<Criterion>) -> Self {
         Self { robot, target, criterion: criterion.into(), seeds: None, turns: Turns::Distinct }
     }
 
-    /// The same problem, in which whole turns of a joint do not count.
+    /// The same problem, in which full turns of a joint do not matter.
     pub fn disregarding_turns(self) -> Self {
         Self { turns: Turns::Equivalent, ..self }
     }
 
-    /// Where the tip is to be.
+    /// The target of the tip.
     pub fn target(&self) -> &'a Target {
         self.target
     }
@@ -52,7 +52,7 @@ impl<'a> Problem<'a> {
         self.robot
     }
 
-    /// When the target counts as reached.
+    /// The criterion of the target.
     pub(crate) fn criterion(&self) -> &Criterion {
         &self.criterion
     }
@@ -87,8 +87,8 @@ impl Objective for Problem<'_> {
         repeats.then_some(std::f64::consts::TAU)
     }
 
-    /// Proposes the robot's indexed configurations, the nearest first, then uniform draws in the box, whose open sides end at the
-    /// joint's sampling range. The indexed configurations also follow a start that the caller gives.
+    /// Proposes the robot's indexed configurations, the nearest first, then uniform draws in the box; unlimited sides
+    /// end at the joint's sampling range. The indexed configurations also follow a start given by the caller.
     fn propose_start(&mut self, _attempt: usize, bounds: &Bounds, rng: &mut LazyRng, q: &mut [f64]) {
         if self.seeds.is_none() {
             let aim = self.criterion.aim(self.target);
@@ -110,7 +110,7 @@ impl Objective for Problem<'_> {
 
 impl Residual for Problem<'_> {
     fn residual(&mut self, q: &[f64], out: &mut [f64; ROWS]) -> Score {
-        // Without columns: the residual needs the tip alone.
+        // Without a Jacobian: the residual needs only the tip.
         let mut linearization = Linearization::default();
         let assessment = self.target.linearize_tip(&self.robot.tip(q), 0, &self.criterion, &mut linearization);
         *out = linearization.residual;
@@ -119,7 +119,7 @@ impl Residual for Problem<'_> {
 }
 
 impl Gradient for Problem<'_> {
-    /// E of eq. (11) of Yuan et al. 2016; half the weighted sum of squares where components have weights or the tip a region.
+    /// E of eq. (11) of Yuan et al. 2016; with component weights or a region, half the weighted sum of squares.
     #[inline]
     fn differentiate(&mut self, q: &[f64], gradient: &mut [f64]) -> SmoothScore {
         if self.criterion.components.is_some() || self.criterion.region.is_some() {

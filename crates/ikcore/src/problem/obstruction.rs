@@ -1,19 +1,19 @@
-//! Why a target was missed: out of reach, kept away by its region, joints at their limits.
+//! Explains why a target was missed: out of reach, blocked by its region, or joints at their limits.
 
 use super::inverse_kinematics::Problem;
 use crate::kinematics::Beyond;
 use crate::objective::Bounds;
 use crate::task::Target;
 
-/// The most joints that a message names; the others are counted.
+/// Largest number of joints that a message names; the others are counted.
 const MOST_NAMED: usize = 3;
 
 impl Problem<'_> {
-    /// How far the target is beyond the reach within `bounds`; None unless that is certain.
+    /// How far the target is beyond the reach within `bounds`; `None` unless that is certain.
     pub(crate) fn beyond_reach(&self, bounds: &Bounds) -> Option<Beyond> {
         let criterion = self.criterion();
         if criterion.components.is_some() {
-            return None; // weights and tolerances of components may free the part that is out of reach
+            return None; // component weights and tolerances may leave the unreachable part free
         }
         let aim = criterion.aim(self.target());
         let orientation = match &aim {
@@ -24,7 +24,7 @@ impl Problem<'_> {
         self.robot().reach(bounds.lower(), bounds.upper()).beyond(aim.position().as_ref(), orientation, tolerance)
     }
 
-    /// Describes what keeps the tip from the target at `q`; empty where nothing is known.
+    /// Describes the obstruction between the tip and the target at `q`; empty if nothing is known.
     pub(crate) fn obstruction(&self, bounds: &Bounds, q: &[f64]) -> String {
         let reach = self.beyond_reach(bounds).map(|beyond| beyond.to_string());
         let reasons = reach.into_iter().chain(self.outside_region(q)).chain(self.joints_at_limits(bounds, q));

@@ -1,4 +1,4 @@
-//! Kinematics of many configurations, in arrays stored row after row.
+//! Kinematics of many configurations, in row-major arrays.
 
 use super::model::Robot;
 use crate::error::{Error, Result};
@@ -6,10 +6,10 @@ use crate::kinematics::Columns;
 use crate::math::MAX_DOF;
 
 impl Robot {
-    /// Poses of the tip at `qs`, (m, n) row after row: (m, 4, 4) row after row.
+    /// Poses of the tip (m, 4, 4) at `qs` (m, n); both row-major.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] where `qs` is not whole rows, [`Error::NotFinite`] names row and joint.
+    /// [`Error::WrongLength`] if the length of `qs` is not a multiple of n, [`Error::NotFinite`] names row and joint.
     pub fn fk_all(&self, qs: &[f64]) -> Result<Vec<f64>> {
         let rows = self.rows(qs)?;
         let mut poses = Vec::with_capacity(16 * rows.len());
@@ -26,7 +26,7 @@ impl Robot {
         Ok(poses)
     }
 
-    /// Geometric Jacobians at `qs`, (m, n) row after row: (m, 6, n) row after row.
+    /// Geometric Jacobians (m, 6, n) at `qs` (m, n); both row-major.
     ///
     /// # Errors
     /// As [`fk_all`](Self::fk_all).
@@ -44,7 +44,7 @@ impl Robot {
         Ok(jacobians)
     }
 
-    /// The configurations inside the position limits that are nearest to `qs`, (m, n) row after row.
+    /// The configurations within the position limits that are nearest to `qs` (m, n), row-major.
     ///
     /// # Errors
     /// As [`fk_all`](Self::fk_all).
@@ -55,7 +55,7 @@ impl Robot {
             .collect())
     }
 
-    /// The rows of `qs`, all whole and finite.
+    /// The rows of `qs`, checked to be complete and finite.
     pub(crate) fn rows<'q>(&self, qs: &'q [f64]) -> Result<std::slice::ChunksExact<'q, f64>> {
         let n = self.dof();
         if !qs.len().is_multiple_of(n) {

@@ -1,12 +1,13 @@
-//! Bodies of a robot: the capsules on its links, given or laid along them.
+//! Bodies of a robot: the capsules on its links, given explicitly or generated along the links.
 
 use super::link_capsule::{Bodies, LinkCapsule};
 use super::model::Robot;
-use crate::error::{Error, Result, require_finite, suggestion};
+use crate::error::{Error, Result, require_finite, shortened, suggestion};
 use crate::kinematics::chain::{LinkFrame, StageMotion};
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::vector::distance;
+use crate::wording::listed;
 
 /// Shorter segments count as points (m).
 const SHORTEST: f64 = 1e-9;
@@ -17,8 +18,8 @@ impl Robot {
         &self.bodies().capsules
     }
 
-    /// Collision shapes of a URDF that became no capsule, such as "a mesh of link 'hand'". Add capsules for them by
-    /// [`with_capsules`](Self::with_capsules).
+    /// Collision shapes of a URDF that were not converted to a capsule, for example "a mesh of link 'hand'". Add
+    /// capsules for them by [`with_capsules`](Self::with_capsules).
     pub fn unread_collision_shapes(&self) -> &[String] {
         &self.bodies().unread
     }
@@ -32,9 +33,9 @@ impl Robot {
             if !self.link_names().any(|name| name == capsule.link) {
                 return Err(Error::UnknownLink {
                     robot: self.name().into(),
-                    name: capsule.link.clone(),
+                    name: shortened(&capsule.link),
                     suggestion: suggestion(&capsule.link, self.link_names()),
-                    known: self.link_names().collect::<Vec<_>>().join(", "),
+                    known: listed(self.link_names()),
                 });
             }
             let ends = [capsule.a, capsule.b];
@@ -46,12 +47,12 @@ impl Robot {
         Ok(self.with_bodies(Bodies { capsules, unread: vec![] }))
     }
 
-    /// The same robot with a capsule of this `radius` (m) along every link: from the joint before it, through the frames
-    /// of its links, to the axis of the next joint; the last one ends at the tip. The gap that a sliding joint opens
-    /// between two links belongs to neither.
+    /// The same robot with a capsule of this `radius` (m) along every link: from the preceding joint, through the
+    /// frames of its links, to the axis of the next joint; the last capsule ends at the tip. The gap that a prismatic
+    /// joint opens between two links is not covered.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a negative radius; [`Error::InvalidRobot`] where nothing between two joints has a name.
+    /// [`Error::OutOfRange`] for a negative radius; [`Error::InvalidRobot`] if nothing between two joints has a name.
     pub fn with_capsules_along_links(&self, radius: f64) -> Result<Self> {
         checked_radius("radius", radius)?;
         let chain = self.chain();
@@ -84,13 +85,13 @@ impl Robot {
         Error::InvalidRobot { robot: self.name().into(), problem }
     }
 
-    /// Number of moving elements before a link, and the link's frame seen from the last of them.
+    /// Number of moving elements before a link, and the frame of the link relative to the last of them.
     pub(crate) fn place_of_link(&self, link: &str) -> Option<(usize, Frame)> {
         let (found, _) = self.chain().links.iter().zip(self.link_names()).find(|(_, name)| *name == link)?;
         Some((found.stages, found.offset))
     }
 
-    /// Largest turn (rad) and slide (m) of moving element `stage` when each joint changes by up to `reach`.
+    /// Largest rotation (rad) and translation (m) of moving element `stage` when each joint changes by up to `reach`.
     #[inline]
     pub(crate) fn stage_travel(&self, stage: usize, reach: &[f64]) -> [f64; 2] {
         let StageMotion { joint, turn_scale, slide_scale, .. } = self.chain().motions[stage];

@@ -47,7 +47,7 @@ impl ChainBuilder {
         &self.description.name
     }
 
-    /// The independent joint of this index, to narrow its limits.
+    /// The independent joint of this index, mutable so that its limits can be narrowed.
     pub(crate) fn joint_mut(&mut self, index: usize) -> &mut Joint {
         &mut self.description.joints[index]
     }
@@ -74,7 +74,7 @@ impl ChainBuilder {
         self.description.elements.push(Element::Link(name.into()));
     }
 
-    /// Checks the description and makes the robot.
+    /// Checks the description and builds the robot.
     ///
     /// # Errors
     /// [`Error::InvalidRobot`](crate::Error::InvalidRobot) for no joints, too many, or a joint or link named twice;

@@ -1,4 +1,4 @@
-//! The description that a robot follows from: independent joints, and the elements of its chain from base to tip.
+//! The description of a robot: independent joints, and the elements of its chain from base to tip.
 
 use std::collections::HashSet;
 
@@ -17,9 +17,9 @@ pub enum Element {
     Fixed(Pose),
     /// A motion by `scale * q[joint] + offset`.
     Moving {
-        /// About or along this axis, of unit length.
+        /// Axis of the motion, of unit length.
         axis: Vector3<f64>,
-        /// True for a turn (rad), false for a slide (m).
+        /// True for a rotation (rad), false for a translation (m).
         turns: bool,
         /// The independent joint that drives it.
         joint: usize,
@@ -42,7 +42,7 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// The joint's own value.
+    /// Follows the joint directly.
     pub const DIRECT: Self = Self { scale: 1.0, offset: 0.0 };
 }
 
@@ -54,6 +54,15 @@ pub(crate) struct Description {
     pub elements: Vec<Element>,
 }
 
+/// Err for more moving joints than the kernels hold.
+pub(crate) fn require_supported(robot: &str, moving: usize) -> Result<()> {
+    if moving <= MAX_DOF {
+        return Ok(());
+    }
+    let problem = format!("{moving} moving joints between base and tip; at most {MAX_DOF} are supported");
+    Err(Error::InvalidRobot { robot: robot.into(), problem })
+}
+
 impl Description {
     /// Names of the links, base to tip.
     pub fn link_names(&self) -> impl Iterator<Item = &str> {
@@ -63,7 +72,7 @@ impl Description {
         })
     }
 
-    /// The chain between `base` and `tool`, in the form that the kernels run through.
+    /// The chain between `base` and `tool`, in the form used by the kernels.
     pub fn folded(&self, base: &Pose, tool: &Pose) -> Chain {
         let mut chain = ChainFolder::new(base);
         for element in &self.elements {
@@ -79,18 +88,14 @@ impl Description {
         chain.finish(tool)
     }
 
-    /// Checks everything that the kernels rely on.
+    /// Checks all assumptions of the kernels.
     pub fn validate(&self) -> Result<()> {
         let invalid = |problem: String| Error::InvalidRobot { robot: self.name.clone(), problem };
         let moving = self.elements.iter().filter(|e| matches!(e, Element::Moving { .. })).count();
         if moving == 0 || self.joints.is_empty() {
             return Err(invalid("no joint moves between base and tip".into()));
         }
-        if moving > MAX_DOF || self.joints.len() > MAX_DOF {
-            return Err(invalid(format!(
-                "{moving} moving joints between base and tip; at most {MAX_DOF} are supported"
-            )));
-        }
+        require_supported(&self.name, moving.max(self.joints.len()))?;
         let mut names = HashSet::new();
         for joint in &self.joints {
             if !names.insert(&joint.name) {

@@ -9,18 +9,18 @@ use crate::wording::words;
 /// Kind of motion of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JointKind {
-    /// Turns about its axis between two limits (rad).
+    /// Rotation between two limits (rad).
     Revolute,
-    /// Turns about its axis without end (rad).
+    /// Rotation without limits (rad).
     Continuous,
-    /// Slides along its axis between two limits (m).
+    /// Translation between two limits (m).
     Prismatic,
 }
 
 words!("kind of a joint": JointKind { Revolute => "revolute", Continuous => "continuous", Prismatic => "prismatic" });
 
 impl JointKind {
-    /// True for joints that turn, false for those that slide.
+    /// True for joints that rotate, false for prismatic ones.
     pub fn turns(self) -> bool {
         self != Self::Prismatic
     }
@@ -33,15 +33,15 @@ pub struct Joint {
     pub name: String,
     /// Kind of motion.
     pub kind: JointKind,
-    /// Lower position limit (rad or m); minus infinity where there is none.
+    /// Lower position limit (rad or m); minus infinity if there is none.
     pub lower: f64,
-    /// Upper position limit (rad or m); infinity where there is none.
+    /// Upper position limit (rad or m); infinity if there is none.
     pub upper: f64,
     /// Velocity limit (rad/s or m/s); infinity where unknown, zero locks the joint.
     pub velocity: f64,
 }
 
-/// Half-width of the range from which an unlimited sliding joint is sampled (m).
+/// Half-width of the sampling range of an unlimited prismatic joint (m).
 const UNLIMITED_SLIDE: f64 = 1.0;
 
 impl Joint {
@@ -61,7 +61,8 @@ impl Joint {
         Self { velocity, ..self }
     }
 
-    /// The finite range from which random configurations are drawn: one turn, or 2 m, wide on an open side.
+    /// The finite range from which random configurations are drawn; unlimited sides end one turn, or 2 m, from the
+    /// other limit.
     pub fn sampling_range(&self) -> (f64, f64) {
         self.sampling_range_within(self.lower, self.upper)
     }

@@ -53,8 +53,9 @@ impl Robot {
         (self.kernels().tip_position)(self.chain(), q)
     }
 
-    /// Calls `visit` with the tip's position (m) at each of the configurations `qs`, stored one after another; faster than
-    /// [`tip_position`](Self::tip_position) one by one, and the same bits (for joint angles below 8e5 rad).
+    /// Calls `visit` with the tip position (m) at each of the configurations `qs`, stored consecutively. Faster than
+    /// calling [`tip_position`](Self::tip_position) for each, with bit-identical results (for joint angles below 8e5
+    /// rad).
     #[inline]
     pub fn tip_positions(&self, qs: &[f64], visit: impl FnMut([f64; 3])) {
         self.kernels().tip_positions(self.chain(), qs, self.dof(), visit);
@@ -66,21 +67,21 @@ impl Robot {
         (self.kernels().jacobian)(self.chain(), q, columns)
     }
 
-    /// [`tip_and_jacobian`](Self::tip_and_jacobian) of four configurations at once, to the same bits; `qs` and `columns`
+    /// [`tip_and_jacobian`](Self::tip_and_jacobian) of four configurations at once, bit-identical; `qs` and `columns`
     /// have one entry per joint.
     #[inline]
     pub(crate) fn tips_and_jacobians(&self, qs: &[F64x4], columns: &mut FourColumns) -> Frame<F64x4> {
         (self.kernels().jacobian_four)(self.chain(), qs, columns)
     }
 
-    /// Writes the joint torques J'w (N m, N for sliding joints) of w = wrench(tip) and returns the tip, in one pass without
-    /// a Jacobian. `q` and `torques` have one entry per joint.
+    /// Writes the joint torques J'w (N m, or N for prismatic joints) of w = wrench(tip) and returns the tip, in one
+    /// pass without a Jacobian. `q` and `torques` have one entry per joint.
     #[inline]
     pub fn tip_and_torques(&self, q: &[f64], wrench: &dyn Fn(&Frame) -> Wrench, torques: &mut [f64]) -> Frame {
         (self.kernels().torques)(self.chain(), q, wrench, torques)
     }
 
-    /// Bounds on where the tip can be between these joint limits.
+    /// Bounds on the positions that the tip can reach between these joint limits.
     pub fn reach(&self, lower: &[f64], upper: &[f64]) -> Reach {
         self.reach_of_links().with_slides(self.chain(), lower, upper)
     }
@@ -92,7 +93,8 @@ impl Robot {
         Screws::of(self.chain(), &reached)
     }
 
-    /// Writes the frames reached after 0, 1, 2, ... moving elements; the z axis of each but the first is the element's axis.
+    /// Writes the frames after 0, 1, 2, ... moving elements; the z axis of each but the first is the axis of the
+    /// element.
     pub(crate) fn write_stage_frames(&self, q: &[f64], frames: &mut [Frame; MAX_DOF + 1]) {
         (self.kernels().stage_frames)(self.chain(), q, frames);
     }

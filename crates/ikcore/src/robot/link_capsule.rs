@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// All points within `radius` (m) of the segment from `a` to `b`, which are given in the frame of the link (m).
+/// A capsule: all points within `radius` (m) of the segment from `a` to `b`, in the frame of the link (m).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LinkCapsule {
     /// Name of the link that carries it.
@@ -15,10 +15,10 @@ pub struct LinkCapsule {
     pub radius: f64,
 }
 
-/// The capsules of a robot, and the collision shapes that became none.
+/// The capsules of a robot, and the collision shapes that were not converted.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Bodies {
     pub capsules: Vec<LinkCapsule>,
-    /// Collision shapes without a capsule, such as "a mesh of link 'hand'".
+    /// Collision shapes without a capsule, for example "a mesh of link 'hand'".
     pub unread: Vec<String>,
 }

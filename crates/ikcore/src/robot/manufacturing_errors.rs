@@ -1,4 +1,4 @@
-//! Robots with random errors of manufacture.
+//! Robots with random manufacturing errors.
 
 use super::description::Element;
 use super::model::Robot;
@@ -6,9 +6,9 @@ use crate::error::{Error, Result};
 use crate::rng::LazyRng;
 
 impl Robot {
-    /// The same robot with errors of manufacture: every constant offset between two joints is longer or shorter by up to
-    /// `length` (m) along its own direction, every turning joint's zero is off by up to `angle` (rad), all drawn uniformly.
-    /// Base and tool are as given.
+    /// The same robot with manufacturing errors: every constant offset between two joints is longer or shorter by up to
+    /// `length` (m) along its own direction, and the zero of every rotating joint is off by up to `angle` (rad), all
+    /// drawn uniformly. Base and tool are unchanged.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a length or angle that is negative or not finite.

@@ -8,7 +8,7 @@
 //! | `model` | [`Robot`] |
 //! | `kinematics`, `batched` | kinematics of one configuration, and of many |
 //! | `link_capsule`, `bodies` | capsules on the links |
-//! | `manufacturing_errors` | the same robot, built inexactly |
+//! | `manufacturing_errors` | a robot with random manufacturing errors |
 //! | `serialization` | robots as bytes |
 
 mod batched;
@@ -23,6 +23,7 @@ mod model;
 mod serialization;
 
 pub use builder::ChainBuilder;
+pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
 pub(crate) use link_capsule::Bodies;

@@ -16,19 +16,19 @@ use crate::starts::index::StartIndex;
 
 /// A robot arm: a serial chain from base to tip.
 ///
-/// Joint vectors hold the independent joints in chain order (rad, m); mimic joints follow theirs. Poses are seen from
-/// the robot's base.
+/// Joint vectors hold the independent joints in chain order (rad, m); mimic joints follow theirs. Poses are in the
+/// frame of the robot's base.
 #[derive(Debug, Clone)]
 pub struct Robot {
     description: Description,
     base: Pose,
     tool: Pose,
     bodies: Bodies,
-    /// Folded from description, base and tool.
+    /// The chain, folded from description, base and tool.
     chain: Arc<Chain>,
-    /// The compilation of the kernels that this machine runs for the chain.
+    /// The kernels compiled for the chain's size and this machine.
     kernels: Kernels,
-    /// Of the links stretched out, without slides.
+    /// The reach of the stretched links, without prismatic motion.
     reach_of_links: Reach,
     /// Built at first use; copies that differ in base and tool share it.
     start_index: Arc<OnceLock<StartIndex>>,
@@ -37,7 +37,7 @@ pub struct Robot {
 }
 
 impl PartialEq for Robot {
-    /// Compares what the rest follows from.
+    /// Compares the fields that determine all others.
     fn eq(&self, other: &Self) -> bool {
         (&self.description, &self.base, &self.tool, &self.bodies)
             == (&other.description, &other.base, &other.tool, &other.bodies)
@@ -90,17 +90,17 @@ impl Robot {
         &self.description.elements
     }
 
-    /// Pose of the chain's first link, seen from the robot's base.
+    /// Pose of the first link of the chain in the frame of the robot's base.
     pub fn base(&self) -> &Pose {
         &self.base
     }
 
-    /// Pose of the tool, seen from the tip link.
+    /// Pose of the tool in the frame of the tip link.
     pub fn tool(&self) -> &Pose {
         &self.tool
     }
 
-    /// The same robot, standing at `base`.
+    /// The same robot with its base at `base`.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
@@ -110,7 +110,7 @@ impl Robot {
         Ok(Self { start_index: self.start_index.clone(), ..robot })
     }
 
-    /// The same robot, its tip moved by `tool` from the tip link.
+    /// The same robot with its tip at `tool`, relative to the tip link.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
@@ -132,14 +132,14 @@ impl Robot {
         Self::assembled(description, self.base, self.tool, self.bodies.clone())
     }
 
-    /// Whether a whole turn of joint `joint` leaves the pose of every link unchanged.
+    /// Whether a full turn of joint `joint` leaves the pose of every link unchanged.
     pub(crate) fn repeats_every_turn(&self, joint: usize) -> bool {
         let driven = self.chain.motions.iter().filter(|motion| motion.joint == joint);
         let scales = driven.map(|motion| (motion.turn_scale, motion.slide_scale));
         self.joints()[joint].kind.turns() && scales.into_iter().all(|(turn, slide)| turn.fract() == 0.0 && slide == 0.0)
     }
 
-    /// Err unless `q` has one finite entry per joint; `what` names it in the message.
+    /// Checks that `q` has one finite entry per joint; `what` names it in the message.
     pub fn check(&self, what: &str, q: &[f64]) -> Result<()> {
         if q.len() != self.dof() {
             let expected = format!("{} joints", self.dof());
@@ -149,7 +149,7 @@ impl Robot {
         require_finite(what, q, |i| format!("joint '{}'", self.joints()[i].name))
     }
 
-    /// Err unless `q` (n,) lies in the box from `lower` to `upper` (n,); `what` names it in the message.
+    /// Checks that `q` (n,) lies in the box from `lower` to `upper` (n,); `what` names it in the message.
     ///
     /// # Errors
     /// [`Error::OutsideLimits`] names the joint, its value and its limits.
@@ -166,10 +166,10 @@ impl Robot {
         }
     }
 
-    /// `count` configurations drawn uniformly between the limits, one after another (count * n entries).
+    /// `count` configurations drawn uniformly between the limits, stored consecutively (count * n entries).
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for more than memory holds.
+    /// [`Error::OutOfRange`] if they would not fit into memory.
     pub fn random_configurations(&self, count: usize, rng: &mut LazyRng) -> Result<Vec<f64>> {
         let ranges = self.sampling_ranges();
         let mut qs = Vec::new();
@@ -182,18 +182,18 @@ impl Robot {
         Ok(qs)
     }
 
-    /// Rank of the tip's Jacobian by task, at configurations that are not singular.
+    /// Rank of the tip Jacobian by task, at non-singular configurations.
     pub fn task_rank(&self) -> TaskRank {
         *self.task_rank.get_or_init(|| TaskRank::of(&self.chain, &self.kernels, &self.sampling_ranges()))
     }
 
-    /// Starts for bringing the tip to `pose`. The first call on a robot builds its index, which copies with another base
-    /// or tool share.
+    /// Starts for a solve to `pose`. The first call on a robot builds its index; copies with another base or tool share
+    /// it.
     pub fn starts_near_pose(&self, pose: &Frame) -> Starts<'_> {
         self.start_index().near_pose(&self.chain, pose)
     }
 
-    /// Starts for bringing the tip to `position` (m), at any orientation.
+    /// Starts for a solve to `position` (m), at any orientation.
     pub fn starts_near_position(&self, position: &[f64; 3]) -> Starts<'_> {
         self.start_index().near_position(&self.chain, position)
     }

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::math::Pose;
 use crate::stored;
 
-/// The stored part of a robot; the rest follows from it.
+/// The stored part of a robot; the rest is derived from it.
 #[derive(Serialize, Deserialize)]
 struct StoredRobot<'a> {
     description: Cow<'a, Description>,
@@ -21,7 +21,7 @@ struct StoredRobot<'a> {
 }
 
 impl Robot {
-    /// The robot as bytes, for storing and for copying between processes.
+    /// Returns the robot as bytes, for storing and for copying between processes.
     ///
     /// # Errors
     /// [`Error::Corrupt`](crate::Error::Corrupt) if the encoder fails.
@@ -35,10 +35,10 @@ impl Robot {
         stored::to_bytes("robot", &stored)
     }
 
-    /// The robot that [`to_bytes`](Self::to_bytes) stored.
+    /// Returns the robot stored by [`to_bytes`](Self::to_bytes).
     ///
     /// # Errors
-    /// [`Error::Corrupt`](crate::Error::Corrupt) for bytes of another version, damaged ones, or those of something else.
+    /// [`Error::Corrupt`](crate::Error::Corrupt) for bytes of another version, of another type, or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let StoredRobot { description, base, tool, bodies } = stored::from_bytes("robot", bytes)?;
         let bare = Self::assembled(description.into_owned(), base, tool, Bodies::default())?;

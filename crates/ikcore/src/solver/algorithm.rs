@@ -14,7 +14,7 @@ use super::swarm::{BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genet
 use crate::error::Result;
 use crate::objective::{Differentiable, Objective};
 
-/// Algorithms that need values alone, so that they minimise any function.
+/// Algorithms that need only values, and so minimise any function.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DerivativeFree {
     /// Beetle antennae search.
@@ -44,7 +44,7 @@ pub enum Algorithm {
     Apps(Apps),
     /// Jacobian transpose.
     JacobianTranspose(JacobianTranspose),
-    /// Antenna differences as secants, which need residuals.
+    /// Quasi-Newton with antenna differences as secants; needs residuals.
     BroydenBas(BroydenBas),
     /// Levenberg-Marquardt.
     LevenbergMarquardt(LevenbergMarquardt),
@@ -52,7 +52,7 @@ pub enum Algorithm {
     NewtonRaphson(NewtonRaphson),
 }
 
-/// Evaluates `$body` for the derivative-free solver at hand.
+/// Evaluates `$body` for the derivative-free solver in use.
 macro_rules! whichever {
     ($algorithm:expr, $solver:ident => $body:expr) => {
         match $algorithm {
@@ -99,7 +99,7 @@ macro_rules! listed_with_more {
 listed_with_more!(Apps, BroydenBas, JacobianTranspose, LevenbergMarquardt, NewtonRaphson);
 
 impl DerivativeFree {
-    /// All of them with default options.
+    /// All derivative-free algorithms with default options.
     pub fn all() -> Vec<Self> {
         vec![
             Bas::of(BasVariant::Star).into(),
@@ -124,7 +124,7 @@ impl DerivativeFree {
         whichever!(self, solver => solver.validate())
     }
 
-    /// The schedule of a population; None for a single beetle.
+    /// The schedule of a population; `None` for a single beetle.
     fn schedule(&self) -> Option<Schedule> {
         match self {
             Self::Bas(_) => None,
@@ -138,25 +138,25 @@ impl DerivativeFree {
         }
     }
 
-    /// Members of a generation; None for a single beetle.
+    /// Members of a generation; `None` for a single beetle.
     pub fn population(&self) -> Option<usize> {
         self.schedule().map(|schedule| schedule.population)
     }
 
-    /// Steps without much progress after which an attempt is abandoned (see [`RestartRule::patience`]): a beetle needs passes to
-    /// shrink its antennae (of 100 positions for a 7-joint arm, patience 4 and 20 solved 90 and 99 by the star, 83 and 94
-    /// by the greedy variant).
+    /// Steps with too little progress after which an attempt is abandoned (see [`RestartRule::patience`]). A beetle
+    /// needs passes to shrink its antennae: of 100 positions for a 7-joint arm, patience 4 and 20 solved 90 and 99 by
+    /// the star, 83 and 94 by the greedy variant.
     fn patience(&self) -> usize {
         const BEETLE: usize = 20;
         let generations = self.schedule().map_or(BEETLE, |schedule| schedule.stall_generations);
         match self {
-            // A step is one firefly's turn, a generation a turn of each.
+            // A step is the turn of one firefly; a generation is a turn of each.
             Self::Firefly(firefly) => generations.saturating_mul(firefly.schedule.population),
             _ => generations,
         }
     }
 
-    /// Runs from one start or, by the rule for restarts, from many.
+    /// Runs from one start or, with a rule for restarts, from many.
     pub(super) fn run(
         &self,
         restarts: Option<RestartRule>,
@@ -181,7 +181,7 @@ impl Algorithm {
         all
     }
 
-    /// The algorithm with restarts, with the patience that suits it: a descent shows within a few iterations whether it
+    /// The algorithm with restarts and a suitable patience: a descent shows within a few iterations whether it
     /// converges.
     pub fn into_multi_start(self) -> MultiStart<Self> {
         let patience = match &self {
@@ -208,7 +208,7 @@ impl Algorithm {
         }
     }
 
-    /// Runs from one start or, by the rule for restarts, from many.
+    /// Runs from one start or, with a rule for restarts, from many.
     pub(super) fn run(
         &self,
         restarts: Option<RestartRule>,

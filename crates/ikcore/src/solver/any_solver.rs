@@ -9,13 +9,13 @@ use super::stop::Stop;
 use crate::error::{Error, Result};
 use crate::objective::{Differentiable, Objective};
 
-/// An algorithm `A` from one start or from many: [`Algorithm`] for robots, [`DerivativeFree`] for functions known by their
-/// values alone.
+/// An algorithm `A` from one start or from many: [`Algorithm`] for robots, [`DerivativeFree`] for functions that only
+/// have values.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AnySolver<A = Algorithm> {
-    /// From the start alone.
+    /// From the given start only.
     Single(A),
-    /// Again from other starts, until solved or the budget is spent.
+    /// From further starts, until solved or the budget is spent.
     MultiStart(MultiStart<A>),
 }
 
@@ -50,7 +50,7 @@ impl<A> AnySolver<A> {
 }
 
 impl AnySolver {
-    /// The same solver; None where the algorithm needs more than values.
+    /// The same solver; `None` if the algorithm needs more than values.
     pub fn into_derivative_free(self) -> Option<AnySolver<DerivativeFree>> {
         match self {
             Self::Single(Algorithm::DerivativeFree(solver)) => Some(AnySolver::Single(solver)),
@@ -69,18 +69,18 @@ impl AnySolver {
         self.validate_restarts().and(self.algorithm().validate())
     }
 
-    /// Whether a step along a path may end once it beats the step before (line 16 of Algorithm 1 in Cheng et al. 2020). A
-    /// random search could otherwise go on for long; a descent reaches its end in a few iterations.
+    /// Whether a tick of a track may end once it beats the previous one (line 16 of Algorithm 1 in Cheng et al. 2020).
+    /// A random search could otherwise run for long; a descent converges in a few iterations.
     pub(crate) fn settles_for_improvement(&self) -> bool {
         matches!(self.algorithm(), Algorithm::DerivativeFree(_))
     }
 
-    /// Whether it ends by itself without a budget, solved or not.
+    /// Whether it ends by itself even without a budget.
     pub(crate) fn ends_by_itself(&self) -> bool {
         matches!(self, Self::Single(Algorithm::DerivativeFree(_) | Algorithm::LevenbergMarquardt(_)))
     }
 
-    /// Levenberg-Marquardt from many starts, where this is the solver.
+    /// Levenberg-Marquardt from many starts, if this is the solver.
     pub(crate) fn restarted_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
         match *self {
             Self::MultiStart(MultiStart { solver: Algorithm::LevenbergMarquardt(solver), rule }) => {

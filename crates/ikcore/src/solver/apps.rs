@@ -1,7 +1,7 @@
-//! The autonomous path planning solution (APPS) of Yuan et al. 2016: gradient descent on the smooth error E, with the step of
-//! every joint limited. Equation numbers are those of the paper.
+//! The autonomous path planning solution (APPS) of Yuan et al. 2016: gradient descent on the smooth error E, with
+//! limited joint steps. Equation numbers are those of the paper.
 //!
-//! The search is free, as published: a joint may pass its limits, and eq. (12) brings it back by whole turns.
+//! The search is unconstrained, as published: a joint may leave its limits, and eq. (12) brings it back by whole turns.
 
 use super::domain::Domain;
 use super::driver::Solver;
@@ -17,7 +17,7 @@ pub enum LearningRate {
     /// 1988, Two-point step size gradient methods). From random starts to 2000 random targets of the paper's robot it
     /// converges on 85 % in 1000 iterations and on 86 % in 20 000, the best of five fixed rates on 51 and 79 %.
     Auto,
-    /// The same everywhere.
+    /// A constant rate.
     Fixed(f64),
 }
 
@@ -28,12 +28,13 @@ pub struct Apps {
     pub learning_rate: LearningRate,
     /// Largest change of a joint in an iteration (rad or m): d theta_th of eq. (20).
     pub step_limit: f64,
-    /// E_0: the search ends after the first update from an E of at most this, solved or not. None: it ends when solved.
+    /// E_0: the search ends after the first update that starts at an E of at most this, solved or not. `None` ends it
+    /// when solved.
     pub error_threshold: Option<f64>,
 }
 
 impl Default for Apps {
-    /// A longer step than the paper's one degree: a third of the iterations to random targets, at this rate.
+    /// A longer step than the paper's one degree: random targets need a third of the iterations.
     fn default() -> Self {
         Self { learning_rate: LearningRate::Auto, step_limit: 0.2, error_threshold: None }
     }
@@ -42,8 +43,8 @@ impl Default for Apps {
 impl Apps {
     /// The parameters of the paper's experiment, in the scale of its eq. (11).
     ///
-    /// It prints eta = 0.01 and E_0 = 1e-8. Both go with an E that is 20 times as large: so read, its tables follow to the
-    /// last iteration.
+    /// It prints eta = 0.01 and E_0 = 1e-8. Both match an E that is 20 times as large: with this reading, its tables
+    /// are reproduced to the last iteration.
     pub fn paper() -> Self {
         Self {
             learning_rate: LearningRate::Fixed(0.2),
@@ -77,11 +78,11 @@ pub struct State {
     /// E at theta.
     error: f64,
     gradient: Point,
-    /// The step that led to theta, and the gradient from where it began.
+    /// The step that led to theta, and the gradient at its start.
     step: Point,
     gradient_before: Point,
     iterations: usize,
-    /// Whether the last update was made from an E below the threshold.
+    /// Whether the last update started at an E below the threshold.
     arrived: bool,
 }
 
@@ -105,7 +106,8 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
         Ok(State { theta, error, gradient, step: zeros.clone(), gradient_before: zeros, iterations: 0, arrived })
     }
 
-    /// The paper evaluates E, updates theta, and stops if that E was small enough: its last update is made from there.
+    /// The paper evaluates E, updates theta, and stops if that E was small enough: so its last update starts from
+    /// there.
     fn step(&self, state: &mut State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status> {
         if state.arrived {
             evaluator.check_solved_outside()?;
@@ -122,7 +124,7 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
         *arrived = self.is_below_threshold(*error);
         let before = theta.clone();
         for ((theta, step), slope) in theta.iter_mut().zip(step.iter_mut()).zip(&*gradient) {
-            // (13) and (20), whose last case lacks the step in print; (21)
+            // (13) and (20), whose printed last case lacks the step; (21)
             *step = (-eta * slope).clamp(-self.step_limit, self.step_limit);
             *theta += *step;
         }
@@ -137,8 +139,9 @@ impl<O: Gradient + ?Sized> Solver<O> for Apps {
 }
 
 impl State {
-    /// The long and the short rate of Barzilai and Borwein, eq. (5) and (6), in turn; where E does not curve upwards along
-    /// the last step, or there is none, that of Polyak (1969), which would end on a straight slope to E = 0.
+    /// The long and the short rate of Barzilai and Borwein, eq. (5) and (6), alternating. If E has no positive
+    /// curvature along the last step, or there is no last step, the rate of Polyak (1969), which on a linear slope
+    /// would reach E = 0.
     fn two_point_rate(&self) -> f64 {
         let (mut ss, mut sy, mut yy, mut gg) = (0.0, 0.0, 0.0, 0.0);
         for ((s, g), before) in self.step.iter().zip(&self.gradient).zip(&self.gradient_before) {

@@ -1,15 +1,15 @@
-//! Beetle antennae search as Cheng et al. (2020) plan motions with it: Algorithm 1 and equations (8) to (13).
+//! Beetle antennae search (BAS) for motion planning, Cheng et al. (2020): Algorithm 1 and equations (8) to (13).
 //!
-//! A step of this solver is one pass: lines 5 to 15 of Algorithm 1, n explorations with one antenna length. Line 16 is up to
-//! the caller: the driver stops in the error band or below a given value.
+//! A step of this solver is one pass: lines 5 to 15 of Algorithm 1, n explorations with one antenna length. Line 16 is
+//! up to the caller: the driver stops in the error band or below a given value.
 //!
-//! Readings of what the paper leaves open: o in eq. (12) is the squared norm of the error, so that the antennae shrink
-//! in proportion to the error; it is taken at the best point so far against the target being sought. Passes beyond the
-//! first are made from the best beetle so far.
+//! Our reading where the paper leaves something open: o in eq. (12) is the squared norm of the error, so that the
+//! antennae shrink in proportion to the error; it is taken at the best point so far, for the current target. Passes
+//! after the first start from the best beetle so far.
 //!
-//! Read literally, the paper has two consequences. With c2 = 1 a beetle goes exactly where one of its antennae was, so that a
-//! third of all evaluations repeats one already made; we repeat it too, for counts that compare. And the best point is
-//! kept over all evaluations, antennae included, which for c2 = 1 is the best beetle of line 15.
+//! Read literally, the paper has two consequences. With c2 = 1 a beetle moves exactly to one of its antennae, so a
+//! third of all evaluations repeat an earlier one; we repeat them too, so that counts are comparable. And the best
+//! point is kept over all evaluations, including antennae, which for c2 = 1 is the best beetle of line 15.
 
 use smallvec::SmallVec;
 
@@ -26,9 +26,10 @@ use crate::wording::words;
 pub enum BasVariant {
     /// Always from the best point before the pass: eq. (8), (9) and (11) as printed.
     Star,
-    /// From where the beetle went, better or not: the original beetle antennae search.
+    /// From the beetle's last position, better or not: the original beetle antennae search.
     Chain,
-    /// From where the beetle went if that is better; antennae follow the error at once, and a pass ends when solved.
+    /// From the beetle's last position if that is better; antennae follow the error at once, and a pass ends when
+    /// solved.
     Greedy,
 }
 
@@ -39,13 +40,13 @@ words!("variant": BasVariant { Star => "star", Chain => "chain", Greedy => "gree
 pub struct Bas {
     /// Where explorations start.
     pub variant: BasVariant,
-    /// Antenna length over error, eq. (12): rad per unit of the error's norm.
+    /// Antenna length relative to the error, eq. (12): rad per unit of the error norm.
     pub c1: f64,
-    /// Step length over antenna length, eq. (13).
+    /// Step length relative to the antenna length, eq. (13).
     pub c2: f64,
     /// Explorations per pass, the paper's n.
     pub explorations: usize,
-    /// Passes after which it gives up; the paper sets no limit.
+    /// Passes after which the search gives up; the paper sets no limit.
     pub max_passes: usize,
 }
 
@@ -85,7 +86,7 @@ impl Bas {
 /// The beetle between passes.
 #[derive(Debug, Clone)]
 pub struct State {
-    /// Best point that the beetle stood on.
+    /// Best position of the beetle.
     base: Point,
     base_value: f64,
     passes: usize,
@@ -99,18 +100,18 @@ struct Pass {
     current_value: f64,
     /// Antenna length (rad).
     lambda: f64,
-    /// The best place it went to in this pass.
+    /// The best position in this pass.
     best: Point,
     best_value: f64,
 }
 
-/// Explorations of a star do not depend on each other, so that several at a time go to the objective.
+/// Explorations of a star are independent, so several at a time are evaluated together.
 const LARGEST_GROUP: usize = 4;
 
-/// Points one after another; on the stack up to eight entries each.
+/// Points, stored consecutively; on the stack up to eight entries each.
 type Points = SmallVec<[f64; 2 * LARGEST_GROUP * 8]>;
 
-/// Room for a group of explorations, one after another.
+/// Storage for a group of explorations.
 #[derive(Debug, Clone)]
 struct Group {
     directions: Points,
@@ -151,7 +152,7 @@ impl<O: Objective + ?Sized> Solver<O> for Bas {
                 evaluator.check_solved()?;
             }
         }
-        // A pass that found nothing better starts again from the same place.
+        // A pass without improvement starts again from the same position.
         if pass.best_value < *base_value {
             (*base, *base_value) = (pass.best, pass.best_value);
         }
@@ -160,19 +161,20 @@ impl<O: Objective + ?Sized> Solver<O> for Bas {
 }
 
 impl Bas {
-    /// Explorations that start from the same point.
+    /// Number of explorations that start from the same point.
     fn group(&self) -> usize {
         if self.variant == BasVariant::Star { LARGEST_GROUP } else { 1 }
     }
 
-    /// lambda = c1 sqrt(o), eq. (12); where the start has no finite value, a unit antenna. The rule supposes that the least
-    /// value is zero, as that of an error is: a function with another one is to be shifted by what its least value may be,
-    /// or antennae do not shrink as they approach it.
+    /// lambda = c1 sqrt(o), eq. (12); a unit antenna if the start has no finite value. The rule assumes that the
+    /// minimum is zero, as for an error. Shift any other function by its expected minimum, or antennae do not shrink
+    /// near it.
     fn antenna_length(&self, value: f64) -> f64 {
         self.c1 * if value.is_finite() { value.abs().sqrt() } else { 1.0 }
     }
 
-    /// Steps i) to v) of `count` explorations from one point: leaves in `group` where the beetles go, and returns o there.
+    /// Steps i) to v) of `count` explorations from one point: writes the beetles' next positions to `group`, and
+    /// returns o there.
     #[inline]
     fn explore<O: Objective + ?Sized>(
         &self,
@@ -194,7 +196,8 @@ impl Bas {
         }
         let mut smells = [[0.0; 2]; LARGEST_GROUP];
         evaluator.evaluate_all(antennae, smells[..count].as_flattened_mut())?;
-        // v) move towards the lower value, eq. (11) and (13); equal smells, also where neither is finite, leave the beetle
+        // v) move towards the lower value, eq. (11) and (13); with equal values, also if neither is finite, the beetle
+        // stays
         let delta = self.c2 * lambda;
         for ((b, beetle), [left, right]) in
             group.directions.chunks_exact(n).zip(beetles.chunks_exact_mut(n)).zip(smells)
@@ -206,7 +209,7 @@ impl Bas {
         Ok(values)
     }
 
-    /// Steps vi) record and vii) update the location, for a beetle that went to `beetle` and found `value`.
+    /// Steps vi) record and vii) update the position, for a beetle that moved to `beetle` with this `value`.
     #[inline]
     fn walk(&self, pass: &mut Pass, beetle: &[f64], value: f64) {
         if value < pass.best_value {

@@ -1,8 +1,8 @@
-//! Antenna differences as secants: a quasi-Newton method that needs residuals alone.
+//! Antenna differences as secants: a quasi-Newton method that needs only residuals.
 //!
-//! Beetle antennae search uses the sign of a difference r(x + lambda b) - r(x) alone. The difference itself is a secant of the
-//! Jacobian, lambda J b: one antenna per entry of x gives a whole Jacobian, and every step then updates it (Broyden 1965).
-//! The antennae are used again where steps are predicted badly.
+//! Beetle antennae search uses only the sign of a difference r(x + lambda b) - r(x). The difference itself is a secant
+//! of the Jacobian, lambda J b: one antenna per entry of x gives a whole Jacobian, and every step then updates it
+//! (Broyden 1965). The antennae are used again when steps are predicted badly.
 
 use super::driver::Solver;
 use super::evaluator::Evaluator;
@@ -15,12 +15,13 @@ use crate::objective::{Point, Residual};
 /// Broyden's method on antenna differences.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BroydenBas {
-    /// Length of the first antennae (rad, m): far above the sensor's noise once the arm has levered it up, far below a
-    /// radian, where the arm bends.
+    /// Length of the antennae (rad, m). The displacement of the tip should be far above the sensor noise, and the
+    /// length far below a radian, where the motion becomes nonlinear.
     pub antenna_length: f64,
-    /// Evaluations after which a step of a path ends; the next step continues.
+    /// Evaluations after which a tick of a track ends; the next tick continues.
     pub max_evaluations_per_step: usize,
-    /// Delay of a plant's sensor, in measurements: every command is repeated that many times, and the last answer counts.
+    /// Delay of a plant's sensor, in measurements: every command is repeated that many times, and only the last
+    /// measurement is used.
     pub sensor_delay: usize,
 }
 
@@ -33,13 +34,14 @@ impl Default for BroydenBas {
 /// Antenna length without sensor noise: a compromise between rounding and curvature.
 const NOISELESS_ANTENNA: f64 = 1e-6;
 
-/// Damping after a failed step, over the squared size of the Jacobian; each further failure multiplies it by ten.
+/// Damping after a failed step, relative to the squared size of the Jacobian; each further failure multiplies it by
+/// ten.
 pub(crate) const FIRST_DAMPING: f64 = 1e-3;
 
-/// Damping beyond which steps are too short to be of use.
+/// Damping above which steps are too short to be useful.
 pub(crate) const LARGEST_DAMPING: f64 = 1e2;
 
-/// Steps in a row that leave more than half of the residual, after which the antennae are used again.
+/// Consecutive steps that leave more than half of the residual before the antennae are used again.
 pub(crate) const SLOW_STEPS: usize = 3;
 
 impl BroydenBas {
@@ -124,7 +126,7 @@ impl State {
         for j in 0..self.x.len() {
             let length = antenna(self.x[j], NOISELESS_ANTENNA, bounds.lower()[j], bounds.upper()[j]);
             if length == 0.0 {
-                continue; // a locked joint: nothing to learn, nothing to use
+                continue; // a locked joint
             }
             let (mut x, mut residual) = (self.x.clone(), [0.0; ROWS]);
             x[j] += length;

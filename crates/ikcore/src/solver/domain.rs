@@ -1,11 +1,11 @@
-//! Where a solver's points may lie.
+//! Where the points of a solver may lie.
 
-/// Where a solver's points may lie. The returned point always lies in the box.
+/// Where the points of a solver may lie. The returned point is always in the box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Domain {
     /// In the box: points outside are clipped.
     Clipped,
-    /// Anywhere, for entries with a period: whole periods bring them into the box where that is possible, and they stay
-    /// outside where it is not. Entries without a period are clipped.
+    /// Anywhere, for entries with a period: whole periods bring them into the box if possible, otherwise they stay
+    /// outside. Entries without a period are clipped.
     Wrapped,
 }

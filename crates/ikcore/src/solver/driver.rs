@@ -9,27 +9,27 @@ use crate::objective::Objective;
 
 /// An algorithm: options in `self`, progress in `State`.
 pub trait Solver<O: Objective + ?Sized> {
-    /// What the algorithm remembers between steps.
+    /// The progress of the algorithm.
     type State;
 
-    /// Where its points may lie; by default, in the box.
+    /// Where the points may lie; by default in the box.
     fn domain(&self) -> Domain {
         Domain::Clipped
     }
 
-    /// Whether it ends at a threshold of its own ([`Status::BelowThreshold`]) instead of at the problem's test, which then
-    /// only decides whether the result counts as solved.
+    /// Whether the algorithm ends at its own threshold ([`Status::BelowThreshold`]) instead of the problem's test,
+    /// which then only decides whether the result counts as solved.
     fn has_own_threshold(&self) -> bool {
         false
     }
 
-    /// Evaluates the start `x0` first of all, then whatever else the algorithm begins with.
+    /// Evaluates the start `x0` first, then makes any further initial evaluations.
     ///
     /// # Errors
     /// The evaluator's [`Status`].
     fn start(&self, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Result<Self::State, Status>;
 
-    /// Begins anew at `x0`. Override it to reuse large buffers of `state`.
+    /// Restarts at `x0`. Override it to reuse large buffers of `state`.
     ///
     /// # Errors
     /// The evaluator's [`Status`].
@@ -41,7 +41,7 @@ pub trait Solver<O: Objective + ?Sized> {
     /// Makes one iteration.
     ///
     /// # Errors
-    /// The evaluator's [`Status`], or [`Status::Stalled`] by the algorithm's own rule.
+    /// The evaluator's [`Status`], or [`Status::Stalled`] by a rule of the algorithm.
     fn step(&self, state: &mut Self::State, evaluator: &mut Evaluator<'_, O>) -> Result<(), Status>;
 }
 
@@ -69,8 +69,8 @@ impl<O: Objective + ?Sized, S: Solver<O>> Solver<O> for &S {
     }
 }
 
-/// Runs `solver` from `x0` until it ends, and returns how it ended. The best point and the counts stay with the evaluator.
-/// A start that is solved already is returned untouched.
+/// Runs `solver` from `x0` until it ends, and returns how it ended. The evaluator keeps the best point and the counts.
+/// A start that is already solved is returned unchanged.
 pub fn run<O, S>(solver: &S, evaluator: &mut Evaluator<'_, O>, x0: &[f64]) -> Status
 where
     O: Objective + ?Sized,

@@ -1,5 +1,5 @@
-//! Jacobian transpose: steepest descent on r'r. Without an inverse, singular configurations do no harm; the price is many
-//! small steps.
+//! Jacobian transpose: steepest descent on r'r. Since it needs no inverse, singular configurations are harmless; the
+//! price is many small steps.
 
 use super::driver::Solver;
 use super::evaluator::Evaluator;
@@ -14,7 +14,7 @@ pub enum StepSize {
     /// The minimiser of the linearised residual: |g|^2 / |J g|^2 with g = J'r (Buss 2004, Introduction to inverse
     /// kinematics, section 6, which writes it <e, JJ'e> / <JJ'e, JJ'e>).
     Auto,
-    /// The same everywhere.
+    /// A constant length.
     Fixed(f64),
 }
 

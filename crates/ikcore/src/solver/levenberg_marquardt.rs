@@ -1,5 +1,5 @@
-//! Levenberg-Marquardt on a box: damping in proportion to the squared error, so that far targets get careful steps and
-//! near ones converge quadratically. A step is kept only where the value falls.
+//! Levenberg-Marquardt in a box. The damping is proportional to the squared error, so steps are careful far from the
+//! target and converge quadratically near it. A step is accepted only if the value decreases.
 
 use super::driver::Solver;
 use super::evaluator::Evaluator;
@@ -11,7 +11,7 @@ use crate::objective::{LeastSquares, Linearization, Point};
 /// Levenberg-Marquardt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevenbergMarquardt {
-    /// Damping over squared error at the start: lambda = damping * r'r.
+    /// Damping relative to the squared error at the start: lambda = damping * r'r.
     pub initial_damping: f64,
     /// Factor on the damping after a step that did not lower the value.
     pub increase: f64,
@@ -21,7 +21,7 @@ pub struct LevenbergMarquardt {
     pub min_gain: f64,
 }
 
-/// Damping beyond which steps are too short to be of use.
+/// Damping above which steps are too short to be useful.
 const LARGEST_DAMPING: f64 = 1e8;
 /// Damping below which it has no effect.
 const SMALLEST_DAMPING: f64 = 1e-6;
@@ -57,7 +57,7 @@ impl LevenbergMarquardt {
 pub struct State {
     x: Point,
     descent: Descent,
-    /// At the point and at the trial; `here` is the index of the point's.
+    /// Linearizations at the point and at the trial; `here` is the index of the point's.
     linearizations: [Linearization; 2],
     here: usize,
 }
@@ -72,9 +72,9 @@ pub(super) struct Descent {
 /// The decision about a trial step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TrialVerdict {
-    /// Accepted; the descent goes on from there.
+    /// Accepted; the descent continues from there.
     Kept,
-    /// Accepted; the descent ends there, having gained next to nothing.
+    /// Accepted; the descent ends there, because the gain is negligible.
     KeptAtLast,
     /// Refused; the next trial is shorter.
     Refused,
@@ -99,7 +99,7 @@ impl TrialVerdict {
 }
 
 impl LevenbergMarquardt {
-    /// A descent that begins at a point of this value.
+    /// A descent that starts at a point with this value.
     #[inline]
     pub(super) fn descent_from(&self, value: f64) -> Descent {
         Descent { value, damping: self.initial_damping }
@@ -124,7 +124,7 @@ impl Descent {
     /// The damping of the next step.
     ///
     /// # Errors
-    /// [`Status::Stalled`] where the value is not finite.
+    /// [`Status::Stalled`] if the value is not finite.
     #[inline]
     pub fn lambda(&self) -> Result<f64, Status> {
         if self.value.is_finite() { Ok(self.damping * self.value) } else { Err(Status::Stalled) }
@@ -161,7 +161,7 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
         let value = evaluator.linearize(&mut trial, &mut linearizations[1 - *here])?;
         let verdict = self.judge(descent, value);
         if verdict.keeps() {
-            // Entries in use only: a point has room for many more.
+            // Only the entries in use: a point has capacity for many more.
             x.copy_from_slice(&trial);
             *here = 1 - *here;
         }

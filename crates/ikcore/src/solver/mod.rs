@@ -1,16 +1,17 @@
-//! Solvers minimise an [`Objective`](crate::objective::Objective) inside a box. They know nothing of robots.
+//! Solvers minimise an [`Objective`](crate::objective::Objective) inside a box. They do not depend on robots.
 //!
 //! A solver is a value of named options; its progress is another value, its `State`. `driver` owns the loop. The
-//! [`Evaluator`] counts, clips, refuses what is not finite and keeps the best point, so that budgets are exact, answers lie
-//! in the box and the best point is never lost, whatever the algorithm.
+//! [`Evaluator`] counts evaluations, clips points, treats values that are not finite as the worst, and keeps the best
+//! point. So for every algorithm budgets are exact, results are in the box and the best point is never lost.
 //!
-//! Read `stop` and `status` (how a run ends), `driver` (the loop), `evaluator`, then any algorithm; `algorithm` lists them
-//! all, `any_solver` is what a caller chooses. `side_by_side` runs four descents at once for batches.
+//! Read `stop` and `status` (how a run ends), `driver` (the loop), `evaluator`, then any algorithm. `algorithm` lists
+//! all of them; `any_solver` is the caller's choice: an algorithm, with or without restarts. `side_by_side` runs four
+//! descents at once for batches.
 //!
 //! | file | algorithm | needs |
 //! |---|---|---|
-//! | `apps` | APPS (Yuan et al. 2016): gradient descent with every joint's step limited | gradient |
-//! | `bas` | beetle antennae search (Cheng et al. 2020): star, chain, greedy | values |
+//! | `apps` | APPS (Yuan et al. 2016): gradient descent with limited joint steps | gradient |
+//! | `bas` | BAS, beetle antennae search (Cheng et al. 2020): star, chain, greedy | values |
 //! | `broyden_bas` | quasi-Newton with antenna differences as secants | residual |
 //! | `jacobian_transpose` | Jacobian transpose: steepest descent | residual and Jacobian |
 //! | `levenberg_marquardt` | Levenberg-Marquardt in a box | residual and Jacobian |

@@ -11,7 +11,7 @@ pub trait Monitor {
     fn progress(&mut self, _done: usize, _total: usize) {}
 }
 
-/// A monitor that lets everything run to its end.
+/// A monitor that never interrupts.
 #[derive(Debug, Clone, Copy)]
 pub struct Unattended;
 
@@ -25,9 +25,9 @@ impl Monitor for Unattended {
 pub(crate) struct EvaluationMonitor<'a> {
     /// The caller's monitor.
     pub monitor: &'a mut dyn Monitor,
-    /// Evaluations made so far, counted elsewhere.
+    /// Evaluations so far, counted elsewhere.
     pub done: &'a Cell<usize>,
-    /// Evaluations that may be made.
+    /// Budget of evaluations.
     pub total: usize,
 }
 

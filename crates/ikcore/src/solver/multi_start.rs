@@ -10,16 +10,16 @@ use crate::objective::{Objective, Point};
 /// When to abandon an attempt and restart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RestartRule {
-    /// Starts in all, the caller's included.
+    /// Total number of starts, including the caller's.
     pub max_starts: usize,
     /// An attempt is abandoned when this many steps lower its best value by less than the factor `min_reduction`.
     pub patience: usize,
-    /// See `patience`.
+    /// Factor by which `patience` steps must lower the best value.
     pub min_reduction: f64,
 }
 
 impl RestartRule {
-    /// As many starts as the budget allows, each abandoned when `patience` steps do not halve its best value.
+    /// As many starts as the budget allows; each is abandoned if `patience` steps do not halve its best value.
     pub fn with_patience(patience: usize) -> Self {
         Self { max_starts: usize::MAX, patience, min_reduction: 2.0 }
     }
@@ -28,7 +28,7 @@ impl RestartRule {
 /// A solver with restarts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MultiStart<S> {
-    /// What runs from each start.
+    /// The solver that runs from each start.
     pub solver: S,
     /// When to restart.
     pub rule: RestartRule,
@@ -64,12 +64,12 @@ pub struct State<T> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AttemptProgress {
     steps: usize,
-    /// Its best value when `steps` was last a multiple of the patience.
+    /// The best value when `steps` was last a multiple of the patience.
     milestone: f64,
 }
 
 impl AttemptProgress {
-    /// That of an attempt that begins at a point of this value.
+    /// The progress of an attempt that starts at a point with this value.
     pub fn begun_at(value: f64) -> Self {
         Self { steps: 0, milestone: value }
     }

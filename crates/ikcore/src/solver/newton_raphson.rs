@@ -1,4 +1,4 @@
-//! Newton-Raphson: full steps by the pseudo-inverse of the Jacobian. Quick where it converges; nothing keeps it from
+//! Newton-Raphson: full steps by the pseudo-inverse of the Jacobian. Fast when it converges, but nothing keeps it from
 //! overshooting or cycling until its budget is spent.
 
 use super::driver::Solver;

@@ -1,7 +1,7 @@
 //! How a run ended: one vocabulary for solves, batches and tracks.
 //!
-//! A [`Stop`](super::Stop) holds the budgets that a caller asks for; a [`Status`] says how the run ended. Inside a run a
-//! status is also the signal that ends it: evaluator and solver return it as an error, `?` passes it up to the driver.
+//! A [`Stop`](super::Stop) holds the budgets of a run; a [`Status`] says how the run ended. Inside a run a status is
+//! also the signal that ends it: evaluator and solver return it as an error, and `?` passes it up to the driver.
 
 use serde::{Deserialize, Serialize};
 

@@ -4,18 +4,18 @@ use std::time::Duration;
 
 use crate::error::{Error, Result};
 
-/// The budgets of a run; it ends at whichever is spent first. Counts are repeatable, a time limit is not.
+/// The budgets of a run, which ends when the first of them is spent. Counts are repeatable, a time limit is not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
-    /// Objective evaluations (for a robot: forward kinematics), the start included.
+    /// Objective evaluations (for a robot: forward kinematics), including the start.
     pub max_evaluations: usize,
-    /// Iterations as the solver counts them.
+    /// Iterations, as counted by the solver.
     pub max_iterations: usize,
-    /// Iterations to make even from a start that is solved already.
+    /// Minimum number of iterations, even from a start that is already solved.
     pub min_iterations: usize,
     /// Wall-clock time. With it, results are no longer repeatable.
     pub max_time: Option<Duration>,
-    /// The run ends after a step whose best value is below this. The start itself is not compared with it.
+    /// The run ends after a step whose best value is below this. The start itself is not compared.
     pub value_below: Option<f64>,
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// Time since it was started.
+/// Measures the time since its start.
 #[derive(Debug, Clone, Copy)]
 pub struct Stopwatch(Instant);
 

@@ -1,12 +1,12 @@
-//! Index of random configurations by the frame that they reach.
+//! Index of random configurations by the frame of their tip.
 //!
-//! The first joint turns the whole arm about its axis and the last one only spins the flange; neither changes what the
-//! joints between them do. Both turns are taken out before stored frames are compared with a target, and set in closed
-//! form afterwards. Four dimensions instead of six remain to be covered, so that a few thousand configurations lie close
-//! to most targets. First and last joints that slide, or that drive others, keep their stored values.
+//! The first joint rotates the whole arm about its axis, and the last one only rotates the flange; neither changes the
+//! rest of the arm. So both rotations are removed before stored frames are compared with a target, and set in closed
+//! form afterwards. That leaves four dimensions instead of six, so that a few thousand configurations lie close to most
+//! targets. First and last joints that are prismatic, or that drive others, keep their stored values.
 //!
 //! Entries are sorted into buckets of similar frames. A search compares the centres of the buckets and then scans the
-//! nearest buckets: it reads a tenth of what a plain scan would, which matters because other work empties the caches
+//! nearest buckets: it reads a tenth of a plain scan, which matters because other work evicts the index from the caches
 //! between calls.
 
 use std::f64::consts::TAU;
@@ -18,7 +18,7 @@ use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::rng;
 
-/// Configurations stored: 1.4 MB for 7 joints, 3.1 MB for 32, built in some 4 ms.
+/// Number of configurations: 1.4 MB for 7 joints, 3.1 MB for 32, built in about 4 ms.
 const SIZE: usize = 8192;
 
 /// Configurations in a bucket.
@@ -36,25 +36,25 @@ pub(super) const AXIS_WEIGHT: f64 = 0.3;
 /// Features of a frame: position, weighted z axis, weighted x axis.
 const FEATURES: usize = 9;
 
-/// Random configurations of one chain, and the frames that they reach.
+/// Random configurations of one chain, and the frames of their last joints.
 ///
-/// Independent of base and tool: frames are those of the last joint, seen from the first.
+/// Independent of base and tool: frames of the last joint, relative to the first.
 #[derive(Debug)]
 pub(crate) struct StartIndex {
     dof: usize,
-    /// The first and last joint, where their turns can be taken out.
+    /// The first and last joint, if their rotations can be removed.
     pub(super) first: Option<Turn>,
     pub(super) last: Option<Turn>,
     configurations: Vec<f64>,
     frames: Vec<Frame>,
-    /// Rows of the `compared` features, block after block.
+    /// Rows of the `compared` features, block by block.
     rows: Vec<LaneRow>,
-    /// The same for the centres of the buckets.
+    /// Rows of the centres of the buckets.
     centres: Vec<LaneRow>,
     compared: Vec<usize>,
 }
 
-/// A joint that turns one stage and nothing else, by `scale` (rad) per unit of q.
+/// A joint that rotates one stage and nothing else, by `scale` (rad) per unit of q.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Turn {
     pub joint: usize,
@@ -62,7 +62,7 @@ pub(super) struct Turn {
 }
 
 impl StartIndex {
-    /// The index of a chain with neither base nor tool, drawn from `ranges`, one per joint.
+    /// Builds the index of a chain with neither base nor tool, drawn from `ranges`, one per joint.
     pub fn new(chain: &Chain, kernels: &Kernels, ranges: &[(f64, f64)]) -> Self {
         let motions = &chain.motions[..chain.moving];
         let first = Turn::of_stage(motions, 0);
@@ -70,7 +70,7 @@ impl StartIndex {
         let mut rng = rng::stream(0, 0);
         let drawn: Vec<f64> =
             (0..SIZE).flat_map(|_| ranges).map(|(lower, upper)| rng.uniform_in(*lower, *upper)).collect();
-        // The first joint turns every position to y = 0, the last one any x axis to any other.
+        // The first joint can rotate every position to y = 0, and the last one any x axis to any other.
         let redundant = |feature: usize| (first.is_some() && feature == 1) || (last.is_some() && feature >= 6);
         let compared = (0..FEATURES).filter(|feature| !redundant(*feature)).collect();
         let mut index = Self {
@@ -87,7 +87,7 @@ impl StartIndex {
         index
     }
 
-    /// Stores the configurations `drawn`, bucket after bucket.
+    /// Stores the configurations `drawn`, bucket by bucket.
     fn fill(&mut self, chain: &Chain, kernels: &Kernels, drawn: &[f64]) {
         let configurations: Vec<_> = drawn.chunks_exact(self.dof).collect();
         let frames: Vec<_> = configurations.iter().map(|q| between_joints(chain, &(kernels.tip)(chain, q))).collect();
@@ -141,25 +141,26 @@ impl StartIndex {
         nearest_by_lane(&self.rows, width, blocks, &distance)
     }
 
-    /// Entries that bring the point at `reach` (m) along the z axis of their frame near `place`, nearest first.
+    /// Entries with the point at `reach` (m) along the z axis of their frame near `place`, nearest first.
     pub(super) fn near_point(&self, place: [f64; 3], reach: f64) -> [usize; LANES] {
         let distance = ToPoint {
             place: place.map(|v| v as f32),
             reach: (reach / AXIS_WEIGHT) as f32,
             azimuth_free: self.first.is_some(),
         };
-        // Positions have fewer dimensions than frames, so that a sample of all buckets is as dense.
+        // Positions have fewer dimensions than frames, so a sample of all buckets is as dense.
         let blocks = (0..SIZE / LANES).step_by(STRIDE);
         nearest_by_lane(&self.rows, self.compared.len(), blocks, &distance)
     }
 
-    /// Configuration of entry `entry`, and the frame that it reaches.
+    /// Configuration and frame of entry `entry`.
     pub(super) fn entry(&self, entry: usize) -> (&[f64], &Frame) {
         (&self.configurations[entry * self.dof..(entry + 1) * self.dof], &self.frames[entry])
     }
 }
 
-/// Orders `entries` into runs of [`BUCKET`] with similar features, by halving them across the widest feature.
+/// Sorts `entries` into buckets of [`BUCKET`] with similar features, by repeatedly halving them along the widest
+/// feature.
 fn into_buckets(entries: &mut [u32], features: &[[f32; FEATURES]], compared: &[usize]) {
     if entries.len() <= BUCKET {
         return;
@@ -245,19 +246,20 @@ impl Turn {
         (alone && scale != 0.0).then_some(Self { joint, scale })
     }
 
-    /// The joint's value `q` after a turn by `angle` (rad), moved by whole turns to be nearest to the middle of `range`.
+    /// The joint value `q` after a rotation by `angle` (rad), shifted by whole turns to be nearest to the middle of
+    /// `range`.
     pub fn turned(&self, q: f64, angle: f64, (lower, upper): (f64, f64)) -> f64 {
         let (turned, period) = (q + angle / self.scale, TAU / self.scale.abs());
         turned - period * ((turned - 0.5 * (lower + upper)) / period).round()
     }
 }
 
-/// The frame of the last joint, seen from the first, when the tip of `chain` is at `tip`.
+/// The frame of the last joint, relative to the first, when the tip of `chain` is at `tip`.
 pub(super) fn between_joints(chain: &Chain, tip: &Frame) -> Frame {
     chain.stages.frame(0).inverse().then::<NoFma>(tip).then::<NoFma>(&chain.tip.inverse())
 }
 
-/// `frame` turned about the base's z axis, given sine and cosine of the angle.
+/// `frame` rotated about the base's z axis, given sine and cosine of the angle.
 pub(super) fn turned_about_base_z(frame: &Frame, sine: f64, cosine: f64) -> Frame {
     let turned = |v: [f64; 3]| [cosine * v[0] - sine * v[1], sine * v[0] + cosine * v[1], v[2]];
     Frame { axes: frame.axes.map(turned), origin: turned(frame.origin) }

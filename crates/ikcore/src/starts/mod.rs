@@ -1,7 +1,7 @@
-//! Starts for a descent: random configurations of a chain, indexed by where they bring the tip.
+//! Starts for a descent: random configurations of a chain, indexed by their tip pose.
 //!
-//! They know a chain and the ranges of its joints, no `Robot`. Read `index` for what is stored, `near_target` for
-//! how an entry becomes a start; `nearest_by_lane` scans.
+//! They depend on a chain and the ranges of its joints, not on `Robot`. Read `index` for the stored data and
+//! `near_target` for how an entry becomes a start; `nearest_by_lane` is the scan.
 
 pub(crate) mod index;
 mod near_target;

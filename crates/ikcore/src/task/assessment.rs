@@ -1,4 +1,4 @@
-//! How far a tip is from its target, weighed by a criterion.
+//! Errors of a tip relative to its target, weighted by a criterion.
 
 use super::components::Components;
 use super::criterion::Criterion;
@@ -8,7 +8,7 @@ use crate::math::Frame;
 use crate::math::box_step::ROWS;
 use crate::objective::{Linearization, Score};
 
-/// The distance of a tip from its target, by a criterion.
+/// The errors of a tip relative to its target, by a criterion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assessment {
     /// The weighted sum of squares, and whether the target is reached.
@@ -18,7 +18,7 @@ pub struct Assessment {
 }
 
 impl Criterion {
-    /// The assessment of `error` with the sum of squares `value`, where all components weigh the same.
+    /// The assessment of `error` with the sum of squares `value`, if all components weigh the same.
     #[inline(always)]
     pub(super) fn assess_unweighted(&self, error: SquaredError, value: f64) -> Assessment {
         Assessment { score: Score { value, solved: error.within(&self.tolerance) }, error }
@@ -67,8 +67,8 @@ impl Components {
     }
 }
 
-/// Rotates both halves of a vector from base coordinates into the target's frame. The difference of two axes is not rotated:
-/// only its length counts.
+/// Rotates both halves of a vector from base coordinates into the target frame. The difference of two axes is not
+/// rotated, because only its length counts.
 fn turned_into_frame(target: &Target, vector: &[f64; ROWS]) -> [f64; ROWS] {
     let along = |frame: &Frame, half: usize| -> [f64; 3] {
         frame.axes.map(|axis| (0..3).map(|k| axis[k] * vector[3 * half + k]).sum())

@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::math::box_step::ROWS;
 
-/// Weights and tolerances of the components: x, y, z (m) and the rotation vector's three (rad), along the axes of the
-/// target's frame; along those of the base for a target that is a position alone.
+/// Weights and tolerances of the components: x, y, z (m) and the three entries of the rotation vector (rad), along the
+/// axes of the target frame, or of the base if the target is only a position.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Components {
     /// Factors on the residuals; a component of weight zero is left free.
     pub weights: [f64; ROWS],
-    /// Largest error of each component (m, rad), instead of those of [`Tolerance`](super::Tolerance). Of a pointing target, the fourth is
-    /// the angle between the axes.
+    /// Largest error of each component (m, rad), instead of [`Tolerance`](super::Tolerance). For a pointing target, the
+    /// fourth entry is the angle between the axes.
     pub tolerance: Option<[f64; ROWS]>,
 }
 
@@ -27,7 +27,7 @@ impl Components {
     }
 }
 
-/// Checks that weights are not negative, and one is positive.
+/// Checks that no weight is negative, and that at least one is positive.
 pub(super) fn check_weights(weights: &[f64]) -> Result<()> {
     match weights.iter().position(|weight| !(*weight >= 0.0 && weight.is_finite())) {
         Some(i) => Err(Error::out_of_range(format!("weights[{i}]"), "zero or more, and finite", weights[i])),

@@ -8,7 +8,7 @@ use super::target::Target;
 use super::tip_error::Tolerance;
 use crate::error::Result;
 
-/// The widest margin (m): no tolerance, however wide, keeps the tip farther from the faces of its region.
+/// Largest margin (m) between the tip and the faces of its region, however wide the tolerance.
 const WIDEST_MARGIN: f64 = 1e-3;
 
 /// When a target counts as reached, and the weights of its components.
@@ -16,9 +16,9 @@ const WIDEST_MARGIN: f64 = 1e-3;
 pub struct Criterion {
     /// Largest distance and angle.
     pub tolerance: Tolerance,
-    /// Weights and tolerances component by component; None: all components weigh the same.
+    /// Weights and tolerances component by component. `None` means all components weigh the same.
     pub components: Option<Components>,
-    /// Where the tip must stay; None: anywhere.
+    /// The region that the tip must stay in. `None` means anywhere.
     pub region: Option<Region>,
     /// The value of a tip outside its region.
     pub outside: Outside,
@@ -34,19 +34,19 @@ impl Criterion {
     /// Checks tolerances and weights.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] names the entry.
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) names the entry.
     pub fn validate(&self) -> Result<()> {
         self.tolerance.validate()?;
         self.components.as_ref().map_or(Ok(()), Components::validate)
     }
 
-    /// Whether components are assessed one by one, so that the distance alone does not decide.
+    /// Whether components are assessed separately, so that the distance alone does not decide.
     #[inline(always)]
     pub(super) fn is_componentwise(&self) -> bool {
         self.components.is_some() || self.region.is_some()
     }
 
-    /// The distance from the faces (m) that the tip is led to.
+    /// The distance (m) that the tip keeps from the faces.
     pub(super) fn margin(&self) -> f64 {
         let within = match self.components.and_then(|components| Some((components.weights, components.tolerance?))) {
             Some((weights, tolerance)) => {
@@ -57,7 +57,7 @@ impl Criterion {
         (0.5 * within).min(WIDEST_MARGIN)
     }
 
-    /// The point that the tip is led to: the `target`, or the nearest place that the region allows.
+    /// The target of the search: `target` itself, or the nearest position in the region.
     pub(crate) fn aim(&self, target: &Target) -> Target {
         match &self.region {
             Some(region) => target.with_position(|wanted| region.nearest(wanted, self.margin())),

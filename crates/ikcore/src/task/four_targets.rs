@@ -1,4 +1,4 @@
-//! Four targets of one kind, linearized side by side.
+//! Linearization of four targets of one kind, side by side.
 
 use super::criterion::Criterion;
 use super::residual::orientation;

@@ -1,33 +1,33 @@
-//! Goals beside the task: costs on the joints where the task leaves them free.
+//! Secondary goals: costs on the joints in the null space of the task.
 
 use crate::error::{Result, require_positive};
 use crate::manipulability::{Manipulability, Motion};
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
-/// A cost to lower along the self-motion. Positive weights balance several goals.
+/// A cost to minimise along the self-motion. Positive weights balance several goals.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Goal {
-    /// Closeness to a posture: |q - posture|^2.
+    /// Distance from a posture: |q - posture|^2.
     Posture {
         /// (n,) (rad, m).
         posture: Vec<f64>,
         /// Weight among several goals.
         weight: f64,
     },
-    /// Distance from the limits: the sum of ((q - middle) / range)^2 over the joints that have limits.
+    /// Distance from the middle of the limits: the sum of ((q - middle) / range)^2 over the joints that have limits.
     Centring {
         /// Weight among several goals.
         weight: f64,
     },
-    /// Distance from singularities: -ln w, with w Yoshikawa's index.
+    /// Avoidance of singularities: -ln w, with w Yoshikawa's index.
     Manipulability {
         /// The motion of the tip that counts.
         motion: Motion,
         /// Weight among several goals.
         weight: f64,
     },
-    /// Distance of the whole arm from singularities: -ln of the sum of the indices of all links
+    /// Avoidance of singularities by the whole arm: -ln of the sum of the indices of all links
     /// ([`Manipulability::link_indices`]).
     LinkManipulability {
         /// The motion of the links' tips that counts.
@@ -60,7 +60,7 @@ enum Part {
     AllLinks,
 }
 
-/// Floor of an index: the logarithm of a singular posture's would be infinite.
+/// Smallest index used: the logarithm of a singular posture's index would be infinite.
 const SINGULAR: f64 = 1e-12;
 
 impl Goal {
@@ -101,7 +101,7 @@ impl Goal {
             }
             Self::Centring { weight } => {
                 let ranges = bounds.lower().iter().zip(bounds.upper());
-                // A joint without an end, or without room, has no middle to go to.
+                // A joint without limits, or without range, has no middle.
                 let springs = ranges.map(|(lower, upper)| match upper - lower {
                     range if range.is_finite() && range > 0.0 => (weight / (range * range), 0.5 * (lower + upper)),
                     _ => (0.0, 0.0),
@@ -128,7 +128,7 @@ impl Goals {
         Self { terms, gradient: Point::from_elem(0.0, robot.dof()) }
     }
 
-    /// Whether there are none.
+    /// Whether there are no goals.
     pub fn is_empty(&self) -> bool {
         self.terms.is_empty()
     }
@@ -142,7 +142,7 @@ impl Goals {
 }
 
 impl Term {
-    /// Adds the gradient at `q` to `gradient` and returns the cost. `one` is scratch.
+    /// Adds the gradient at `q` to `gradient` and returns the cost; `one` is scratch.
     fn add(&self, robot: &Robot, q: &[f64], one: &mut [f64], gradient: &mut [f64]) -> f64 {
         match self {
             Self::Springs { stiffness, rest } => {

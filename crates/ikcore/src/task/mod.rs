@@ -1,9 +1,9 @@
-//! What the tip is to reach: targets, tasks, residuals and their derivatives; and goals beside the task.
+//! Targets and tasks of the tip, their residuals and derivatives, and secondary goals in the null space.
 //!
-//! A [`Task`] turns what the caller wants into a [`Target`] and a [`Criterion`], which says when the target is reached
-//! ([`Tolerance`], [`Components`], [`Region`]). `residual` holds the mathematics of each kind of target; `tip_assessment`,
-//! `region_assessment` and `robot_assessment` apply it to a tip anywhere, a tip in a region and a robot at q. [`Goals`] are
-//! costs for the freedom that the task leaves.
+//! A [`Task`] turns the caller's target into a [`Target`] and a [`Criterion`], which decides when the target is reached
+//! ([`Tolerance`], [`Components`], [`Region`]). `residual` holds the mathematics of each kind of target;
+//! `tip_assessment`, `region_assessment` and `robot_assessment` apply it to a tip without a region, a tip in a region
+//! and a robot at q. [`Goals`] are costs in the null space of the task.
 
 mod assessment;
 mod components;

@@ -17,7 +17,7 @@ pub enum Outside {
     Infinite,
 }
 
-/// An open box in the frame of the base; infinite where it has no face.
+/// An open box in the base frame; infinite where it has no face.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Region {
     lower: [f64; 3],
@@ -59,8 +59,8 @@ impl Region {
         (0..3).all(|k| self.lower[k] < point[k] && point[k] < self.upper[k])
     }
 
-    /// The point nearest to `point` (m) that is `margin` (m) away from every face; between two close faces, at least a quarter
-    /// of the way.
+    /// The point nearest to `point` (m) that is `margin` (m) away from every face; if two faces are close, at least a
+    /// quarter of their distance away.
     #[inline]
     pub fn nearest(&self, point: &[f64; 3], margin: f64) -> [f64; 3] {
         std::array::from_fn(|k| {

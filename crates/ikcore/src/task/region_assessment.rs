@@ -1,8 +1,8 @@
 //! The assessment of a tip that is kept in a region.
 //!
-//! The tip is led to the point of the region that is nearest to its target, a margin inside the faces, so that a search that
-//! ends within its tolerance ends inside. A coordinate that the task leaves free has its distance to the region as residual,
-//! which is zero inside.
+//! The search aims at the point of the region that is nearest to the target, a margin inside the faces, so that a
+//! search that ends within its tolerance ends inside the region. For a coordinate that the task leaves free, the
+//! residual is its distance from the region, which is zero inside.
 
 use super::assessment::Assessment;
 use super::criterion::Criterion;
@@ -24,14 +24,14 @@ impl Criterion {
 }
 
 impl Target {
-    /// The assessment of `tip`, which is to be in `region`.
+    /// The assessment of `tip`, which must be in `region`.
     pub(super) fn assess_tip_within(&self, region: &Region, tip: &Frame, criterion: &Criterion) -> Assessment {
         let excess = free_excess(region, &tip.origin, criterion, self);
         let led = criterion.aim(self).assess_tip_anywhere(tip, criterion);
         self.assess_led(region, tip, criterion, led.score.value + dot(&excess, &excess))
     }
 
-    /// The same, with residual and Jacobian.
+    /// Like [`assess_tip_within`](Self::assess_tip_within), with residual and Jacobian.
     pub(super) fn linearize_tip_within(
         &self,
         region: &Region,
@@ -53,8 +53,8 @@ impl Target {
         self.assess_led(region, tip, criterion, led.score.value + dot(&excess, &excess))
     }
 
-    /// The assessment of a tip that is led at this `value`. Its errors are those to the target itself; it is solved inside the
-    /// region, as near to the target as that allows.
+    /// The assessment of a tip whose distance from the aim has this `value`. The errors are relative to the target
+    /// itself; it counts as solved inside the region, as near to the target as the region allows.
     fn assess_led(&self, region: &Region, tip: &Frame, criterion: &Criterion, value: f64) -> Assessment {
         let inside = region.contains(&tip.origin);
         let within = self.with_position(|wanted| region.nearest(wanted, 0.0));

@@ -1,4 +1,4 @@
-//! How far the tip of a robot is from its target: the entry points, with and without a region.
+//! Assessment and linearization of the tip of a robot: the entry points, with and without a region.
 
 use super::assessment::Assessment;
 use super::criterion::Criterion;
@@ -19,8 +19,8 @@ impl Target {
         }
     }
 
-    /// Calls `keep` with the [assessment](Self::assess) of each of the configurations stored one after another in `qs`, in order.
-    /// Positions are computed several at a time.
+    /// Calls `keep` with the [assessment](Self::assess) of each of the configurations stored consecutively in `qs`, in
+    /// order. Positions are computed several at a time.
     #[inline]
     pub(crate) fn assess_all(
         &self,
@@ -53,7 +53,8 @@ impl Target {
         self.linearize_tip(&tip, q.len(), criterion, out)
     }
 
-    /// The same from a tip and its geometric Jacobian, given in the first `dof` columns of `out`.
+    /// Like [`linearize`](Self::linearize), from a tip and its geometric Jacobian, given in the first `dof` columns of
+    /// `out`.
     #[inline]
     pub(crate) fn linearize_tip(
         &self,

@@ -1,20 +1,20 @@
-//! Where the tip is to be.
+//! Targets of the tip.
 
 use crate::error::{Result, require_finite};
 use crate::math::{Frame, Pose};
 
-/// Where the tip is to be.
+/// A target of the tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Target {
-    /// A position (m), the orientation left free.
+    /// A position (m); the orientation is free.
     Position([f64; 3]),
     /// A full pose.
     Pose(Frame),
-    /// The orientation of a frame, the position left free.
+    /// The orientation of a frame; the position is free.
     Orientation(Frame),
-    /// The position of a frame and the direction of `axis` in it; the spin about the axis is left free.
+    /// The position of a frame and the direction of `axis` in it; the rotation about the axis is free.
     Pointing {
-        /// The full pose, spin included.
+        /// The full pose, including the rotation about the axis.
         frame: Frame,
         /// The axis in the tip's own coordinates, of unit length.
         axis: [f64; 3],
@@ -41,7 +41,7 @@ impl Target {
         require_finite("target", frame.axes.as_flattened(), |i| format!("rotation entry {i}"))
     }
 
-    /// The position asked for (m), if any.
+    /// The target position (m), if any.
     pub fn position(&self) -> Option<[f64; 3]> {
         match self {
             Self::Position(position) => Some(*position),
@@ -50,7 +50,7 @@ impl Target {
         }
     }
 
-    /// The frame asked for, if any.
+    /// The target frame, if any.
     pub(super) fn frame(&self) -> Option<&Frame> {
         match self {
             Self::Position(_) => None,
@@ -58,7 +58,7 @@ impl Target {
         }
     }
 
-    /// The same target with its position, if it asks for one, replaced.
+    /// The same target with its position, if it has one, replaced.
     pub(super) fn with_position(&self, replaced: impl Fn(&[f64; 3]) -> [f64; 3]) -> Self {
         let moved = |frame: &Frame| Frame { origin: replaced(&frame.origin), ..*frame };
         match self {

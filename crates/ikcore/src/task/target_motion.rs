@@ -1,19 +1,19 @@
-//! How a target moves during a tick, for rules that work with velocities.
+//! Motion of a target during a tick, for rules that work with velocities.
 
 use super::target::Target;
 use crate::math::Frame;
 use crate::math::hermite::Cubic;
 use crate::math::so3::{rotated, rotation_between};
 
-/// The motion of a target from the beginning of a tick to its end. Positions follow the cubic that meets both velocities, or
-/// a straight line where those are unknown; orientations turn at constant speed.
+/// The motion of a target from the start of a tick to its end. Positions follow the cubic that meets both velocities,
+/// or a straight line if these are unknown; orientations rotate at constant speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TargetMotion {
-    /// At the beginning.
+    /// Target at the start.
     pub begin: Target,
-    /// At the end, of the same kind.
+    /// Target at the end, of the same kind.
     pub end: Target,
-    /// Velocities (m/s) at both.
+    /// Velocities (m/s) at start and end.
     pub velocities: Option<[[f64; 3]; 2]>,
     /// Length of the tick (s).
     pub dt: f64,
@@ -22,9 +22,9 @@ pub(crate) struct TargetMotion {
 /// Velocity (m/s) and angular velocity (rad/s) of a target, in the base's axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Twist {
-    /// m/s.
+    /// Linear velocity (m/s).
     pub linear: [f64; 3],
-    /// rad/s.
+    /// Angular velocity (rad/s).
     pub angular: [f64; 3],
 }
 

@@ -1,4 +1,4 @@
-//! The assessment of a tip and its linearization, whatever its region.
+//! The assessment of a tip and its linearization, without a region.
 
 use super::assessment::Assessment;
 use super::criterion::Criterion;
@@ -12,7 +12,7 @@ use crate::math::so3::axes_of;
 use crate::objective::Linearization;
 
 impl Target {
-    /// The assessment of `tip` by `criterion`, its region ignored.
+    /// The assessment of `tip` by `criterion`, ignoring its region.
     #[inline]
     pub(super) fn assess_tip_anywhere(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
         let (error, value) = self.error(tip);
@@ -23,7 +23,7 @@ impl Target {
     }
 
     /// Weighted residual and Jacobian from the geometric Jacobian in the first `dof` columns of `out`, and the assessment by
-    /// `criterion`, its region ignored.
+    /// `criterion`, ignoring its region.
     #[inline]
     pub(super) fn linearize_tip_anywhere(
         &self,
@@ -82,7 +82,7 @@ impl Target {
     }
 }
 
-/// Errors whose squares are those of the residual.
+/// The errors, and the sum of their squares.
 #[inline(always)]
 fn summed(error: SquaredError) -> (SquaredError, f64) {
     (error, error.sum())

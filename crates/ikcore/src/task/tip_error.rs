@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::wording::number;
 
-/// When a target counts as reached.
+/// Tolerances within which a target counts as reached.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Tolerance {
     /// Largest distance of the tip from the target (m).
@@ -43,7 +43,7 @@ impl Tolerance {
     }
 }
 
-/// Squared errors, which spare hot loops the root. None where the target does not ask for the part.
+/// Squared errors, which save the square root in hot loops. `None` if the target does not include the part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SquaredError {
     /// Squared distance (m^2).
@@ -59,7 +59,7 @@ impl SquaredError {
         self.position.unwrap_or(0.0) + self.rotation.unwrap_or(0.0)
     }
 
-    /// Whether both errors are within `tolerance`. Since sqrt(x * x) is x, this is the comparison of the errors.
+    /// Whether both errors are within `tolerance`. Since sqrt(x * x) is x, this is equivalent to comparing the errors.
     #[inline]
     pub fn within(&self, tolerance: &Tolerance) -> bool {
         self.position.is_none_or(|position| position <= tolerance.position * tolerance.position)
@@ -67,7 +67,7 @@ impl SquaredError {
     }
 }
 
-/// The errors of the tip; NaN where the target does not ask for the part.
+/// The errors of the tip; NaN if the target does not include the part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TipError {
     /// Distance (m).
@@ -93,7 +93,7 @@ impl From<SquaredError> for TipError {
 }
 
 impl fmt::Display for TipError {
-    /// Writes the errors that the target asks for, with units.
+    /// Writes the errors of the parts that the target includes, with units.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { position, rotation } = *self;
         match (position.is_nan(), rotation.is_nan()) {

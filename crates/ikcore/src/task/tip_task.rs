@@ -13,16 +13,16 @@ use crate::math::box_step::ROWS;
 use crate::math::so3::norm;
 use crate::robot::Robot;
 
-/// Which part of a pose matters.
+/// The part of a pose that matters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TaskKind {
     /// The whole pose.
     Pose,
-    /// The position; the orientation is left free.
+    /// The position; the orientation is free.
     Position,
-    /// The orientation; the position is left free.
+    /// The orientation; the position is free.
     Orientation,
-    /// The position and the direction of one axis of the tip; the spin about the axis is left free.
+    /// The position and the direction of one axis of the tip; the rotation about the axis is free.
     Pointing {
         /// The axis in the tip's own coordinates, of any length but zero.
         axis: [f64; 3],
@@ -32,13 +32,13 @@ pub enum TaskKind {
 /// A task of the tip, or of a tool at the tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Task {
-    /// Which part of a pose matters.
+    /// The part of a pose that matters.
     pub kind: TaskKind,
     /// Weights and tolerances by component.
     pub components: Option<Components>,
-    /// The tool's pose in the tip's frame; the tool is to reach the target. None: the tip itself.
+    /// Pose of the tool in the tip frame; the tool then has to reach the target. `None` means the tip itself.
     pub tool: Option<Pose>,
-    /// Where it must stay; None: anywhere.
+    /// The region that the tip must stay in. `None` means anywhere.
     pub region: Option<Region>,
 }
 
@@ -53,8 +53,8 @@ impl TaskKind {
         }
     }
 
-    /// The rows among the six components that each entry of its weights and tolerances covers; the angle of a pointing task
-    /// covers three.
+    /// The rows of the six components that each entry of the weights and tolerances covers; the angle of a pointing
+    /// task covers three.
     fn rows(&self) -> &'static [Range<usize>] {
         match self {
             Self::Pose => &[0..1, 1..2, 2..3, 3..4, 4..5, 5..6],
@@ -64,7 +64,7 @@ impl TaskKind {
         }
     }
 
-    /// Expands one entry for each component of this kind to six; `rest` for the others.
+    /// Expands one entry per component of this kind to six, with `rest` for the other components.
     fn expand(&self, what: &str, entries: &[f64], rest: f64) -> Result<[f64; ROWS]> {
         let rows = self.rows();
         if entries.len() != rows.len() {
@@ -93,9 +93,9 @@ impl From<TaskKind> for Task {
 }
 
 impl Task {
-    /// The task with weights and tolerances (m, rad), one entry for each component that its kind has: six for a pose, three
-    /// for a position or an orientation, x, y, z and the angle for pointing. None leaves weights of one, and the tolerances
-    /// of the call.
+    /// The task with weights and tolerances (m, rad), one entry per component of its kind: six for a pose, three for a
+    /// position or an orientation, and x, y, z and the angle for pointing. `None` means weights of one, and the
+    /// tolerances of the call.
     ///
     /// # Errors
     /// [`Error::WrongLength`]; as [`validate`](Self::validate).
@@ -123,12 +123,12 @@ impl Task {
         task.validate().map(|()| task)
     }
 
-    /// When a target of this task is reached.
+    /// The criterion for targets of this task.
     pub(crate) fn criterion(&self, tolerance: Tolerance) -> Criterion {
         Criterion { components: self.components, region: self.region, ..tolerance.into() }
     }
 
-    /// The weights, one for each component that the kind has; None where they are all one by default.
+    /// The weights, one for each component that the kind has; `None` if they are all one by default.
     pub fn weights(&self) -> Option<Vec<f64>> {
         self.components.map(|components| self.contract(&components.weights))
     }
@@ -145,8 +145,9 @@ impl Task {
     /// Checks axis, weights, tolerances and tool.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::OutOfRange`] names the entry; [`Error::Contradiction`] for a region beside weights
-    /// that leave some, not all, of a pose's x, y and z free: its axes are the base's, theirs are the target's.
+    /// [`Error::NotFinite`] or [`Error::OutOfRange`] names the entry; [`Error::Contradiction`] for a region combined
+    /// with weights that leave some, but not all, of x, y and z of a pose free: the region is aligned with the base,
+    /// the weights with the target.
     pub fn validate(&self) -> Result<()> {
         if let TaskKind::Pointing { axis } = &self.kind {
             require_finite("axis", axis, |i| format!("entry {i}"))?;
@@ -170,10 +171,10 @@ impl Task {
         Ok(())
     }
 
-    /// Returns the part of `wanted`, a position or a pose, that this task asks for.
+    /// Returns the part of `wanted`, a position or a pose, that this task uses.
     ///
     /// # Errors
-    /// [`Error::WrongTarget`] for a position where the task needs an orientation.
+    /// [`Error::WrongTarget`] if `wanted` is a position and the task needs an orientation.
     pub fn target(&self, wanted: &Target) -> Result<Target> {
         match (&self.kind, wanted) {
             (TaskKind::Position, Target::Pose(frame)) => Ok(Target::Position(frame.origin)),

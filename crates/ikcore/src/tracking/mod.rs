@@ -8,6 +8,15 @@
 //! - The rule of a tick works until the error is in its band or, for random searches, below the error of the previous
 //!   tick.
 //! - Time always advances, and the best configuration found is always kept.
+//!
+//! | file | what |
+//! |---|---|
+//! | `track`, `track_options` | the call for a whole path, and its options |
+//! | `session`, `step` | [`Session`]: accepted configuration, clock, box and rule; one [`Step`] per tick |
+//! | `rule` | tick rules: move a modelled arm by one tick inside the box |
+//! | `record` | [`Record`]: one row per tick, violations, status and message |
+//! | `model_free`, `plant` | tracking without a model: the call, and the arms that it commands |
+//! | `controller` | controllers, which only command and observe |
 
 mod controller;
 mod model_free;

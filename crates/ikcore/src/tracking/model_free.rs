@@ -15,7 +15,7 @@ use crate::solver::{Monitor, Status};
 use crate::task::{TipError, Tolerance};
 use crate::wording::time;
 
-/// How to track without a model.
+/// Options of [`track_model_free`].
 #[derive(Debug, Clone)]
 pub struct ModelFreeOptions {
     /// The controller.

@@ -29,7 +29,7 @@ pub fn track(
     let stopwatch = Stopwatch::start();
     let limits = options.limits_for(robot);
     limits.validate(reference.dt(), reference.len() - 1)?;
-    options.criterion()?; // before a start is solved for by other tolerances
+    options.criterion()?; // checked before a start is solved with other tolerances
     let start = match start {
         Some(q) => q.to_vec(),
         None => first_configuration(robot, reference, &limits, options, monitor)?,
@@ -50,7 +50,7 @@ pub fn track(
 /// Returns the largest distance by which the path is provably out of reach from row `first` on, and its time (s).
 fn farthest_out_of_reach(reference: &Reference, first: usize, session: &Session) -> Result<Option<(Beyond, f64)>> {
     let mut farthest: Option<(Beyond, f64)> = None;
-    let Ok(bounds) = session.limits().position_box() else { return Ok(None) }; // they vary in time
+    let Ok(bounds) = session.limits().position_box() else { return Ok(None) }; // limits vary over time
     for i in first..reference.len() {
         if let Some(beyond) = session.beyond_reach(&target(reference, i), &bounds)?
             && farthest.is_none_or(|(most, _)| (beyond.distance, beyond.angle) > (most.distance, most.angle))

@@ -6,7 +6,7 @@ use crate::limits::{LimitAt, Limits};
 use crate::robot::Robot;
 use crate::task::{Criterion, Goal, Task, Tolerance};
 
-/// Options of [`track`](super::track) and [`Session`](super::Session).
+/// Options of [`track`](super::track()) and [`Session`](super::Session).
 #[derive(Debug, Clone, Default)]
 pub struct TrackOptions {
     /// The rule that runs in every tick.
@@ -19,7 +19,7 @@ pub struct TrackOptions {
     pub tolerance: Tolerance,
     /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
-    /// Which time of a tick its velocity limit is evaluated at.
+    /// The time within a tick at which its velocity limit is evaluated.
     pub limit_at: LimitAt,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,

@@ -1,4 +1,7 @@
 //! Joint motion in time: piecewise polynomials with exact extremes.
+//!
+//! `piecewise` holds [`Trajectory`], `coefficients` the polynomial of one joint in one segment, `hermite_segment` its
+//! construction from values at both ends, and `sequence` the concatenation of motions.
 
 mod coefficients;
 mod hermite_segment;

@@ -15,11 +15,21 @@ const CONTINUITY_TOLERANCE: f64 = 1e-6;
 
 /// The motion of all joints in time: piecewise polynomials between common knots, continuous in position.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "(Vec<String>, Knots, Vec<Coefficients>)")]
 pub struct Trajectory {
     joints: Vec<String>,
     knots: Knots,
     /// By segment, then by joint.
     coefficients: Vec<Coefficients>,
+}
+
+/// Stored trajectories are checked again.
+impl TryFrom<(Vec<String>, Knots, Vec<Coefficients>)> for Trajectory {
+    type Error = Error;
+
+    fn try_from((joints, knots, coefficients): (Vec<String>, Knots, Vec<Coefficients>)) -> Result<Self> {
+        Self::new(joints, knots.times().to_vec(), coefficients)
+    }
 }
 
 impl Trajectory {

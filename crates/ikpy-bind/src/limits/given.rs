@@ -2,18 +2,29 @@
 
 use ikcore::limits::{Field, Profile};
 use pyo3::prelude::*;
+use pyo3::{PyTraverseError, PyVisit};
 
 use super::per_joint::PerJoint;
 use super::sampling::{Sampling, sampled};
 use super::sinusoid::PySinusoid;
 use crate::convert::summary;
 use crate::hash::content_hash;
+use crate::traversal::Traversed;
 
 /// Numbers, a sinusoid, or a function of time.
 pub enum GivenLimit {
     Numbers(PerJoint),
     Sinusoid(PySinusoid),
     Function(Py<PyAny>),
+}
+
+impl Traversed for GivenLimit {
+    fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        match self {
+            Self::Function(function) => function.traverse(visit),
+            Self::Numbers(_) | Self::Sinusoid(_) => Ok(()),
+        }
+    }
 }
 
 impl GivenLimit {

@@ -11,6 +11,7 @@ use super::per_joint::PerJoint;
 use super::sampling::Sampling;
 use crate::error::raise;
 use crate::options::NewArguments;
+use crate::traversal::traversed;
 
 /// Limits on joint motion. A given field replaces the robot's limit, None keeps the robot's limit, and np.inf removes it.
 ///
@@ -27,6 +28,8 @@ pub struct PyLimits {
     /// In the order of the fields.
     given: [Option<GivenLimit>; 5],
 }
+
+traversed!(PyLimits: given);
 
 const FIELDS: [Field; 5] = [Field::Lower, Field::Upper, Field::Velocity, Field::Acceleration, Field::Jerk];
 

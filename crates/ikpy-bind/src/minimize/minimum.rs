@@ -1,7 +1,7 @@
 //! `minimize` and `Minimum`.
 
 use ikcore::minimize::{self, MinimizeOptions};
-use ikcore::solver::Stop;
+use ikcore::solver::{AnySolver, DifferentialEvolution, Stop};
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
@@ -14,6 +14,7 @@ use crate::monitor::watched_keeping_result;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::solver::{PyStop, derivative_free_solver};
+use crate::traversal::traversed;
 
 /// The best point found by `minimize`, and how the search ended.
 #[pyclass(name = "Minimum", module = "beetle_ik", frozen)]
@@ -30,6 +31,8 @@ pub struct PyMinimum {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PyMinimum: limits);
 
 outcome! {
     PyMinimum = |result|
@@ -92,8 +95,8 @@ impl PyMinimum {
 ///     function: takes x (n,) and returns a number; NaN and infinities count as the worst value.
 ///     lower: (n,), finite.
 ///     upper: (n,), finite.
-///     solver: a derivative-free solver, such as `PSO` or `BAS`, or `MultiStart` of one. The antenna length of BAS is c1
-///         times the square root of the value: it suits functions with minimum zero.
+///     solver: a derivative-free solver, such as `PSO`, or `MultiStart` of one; None: `DifferentialEvolution()`. BAS suits
+///         only functions with minimum zero, near it: see `BAS`.
 ///     start: (n,), first point; None: drawn at random. Swarms include it in the first generation.
 ///     stop: budgets; None: 30000 evaluations. `Stop(value_below=...)` sets a target value.
 ///     seed: seed of the random draws; the same seed gives the same bits.
@@ -110,7 +113,7 @@ impl PyMinimum {
 /// Exceptions of the function and KeyboardInterrupt propagate unchanged. Their attribute `best` holds the best point so far,
 /// a `Minimum`, and a note on the exception says so.
 #[pyfunction(name = "minimize")]
-#[pyo3(signature = (function, lower, upper, *, solver, start=None, stop=None, seed=0, vectorized=false,
+#[pyo3(signature = (function, lower, upper, *, solver=None, start=None, stop=None, seed=0, vectorized=false,
                     progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn minimize_function(
@@ -118,7 +121,7 @@ pub fn minimize_function(
     function: &Bound<'_, PyAny>,
     lower: &Bound<'_, PyAny>,
     upper: &Bound<'_, PyAny>,
-    solver: &Bound<'_, PyAny>,
+    solver: Option<&Bound<'_, PyAny>>,
     start: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
     seed: i128,
@@ -130,7 +133,10 @@ pub fn minimize_function(
     }
     let (lower, upper) = (vector("lower", lower)?, vector("upper", upper)?);
     let options = MinimizeOptions {
-        solver: derivative_free_solver("minimize", solver)?,
+        solver: match solver {
+            None => AnySolver::Single(DifferentialEvolution::default().into()),
+            Some(solver) => derivative_free_solver("minimize", solver)?,
+        },
         start: start.map(|start| vector("start", start)).transpose()?,
         stop: stop.map_or(Stop::default(), PyStop::core),
         seed: count("seed", seed)?,

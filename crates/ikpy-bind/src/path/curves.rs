@@ -4,8 +4,8 @@ use ikcore::path::{Circle, Hypotrochoid, Path, Plane, Polyline, Rose, Samples};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 
-use super::PyPath;
-use crate::convert::{array, count, point, rigid_matrices, shape_text, summary, vector};
+use super::reference::{Curve, Orientation, PyPath};
+use crate::convert::{array, count, point, rigid_matrices, shape_text, vector};
 use crate::error::{invalid, raise};
 
 /// A direction in the plane of a curve.
@@ -119,13 +119,7 @@ pub fn from_samples(time: &Bound<'_, PyAny>, positions_or_poses: &Bound<'_, PyAn
 /// times of their ticks before they run.
 #[pyfunction]
 pub fn from_function(function: &Bound<'_, PyAny>, duration: f64) -> PyResult<PyPath> {
-    if !function.is_callable() {
-        return Err(invalid(format!("function must be a callable of t, got {}", summary(function))));
-    }
-    if !(duration.is_finite() && duration > 0.0) {
-        return Err(invalid(format!("duration must be positive and finite, got {duration}")));
-    }
-    Ok(PyPath::of_function(function.clone().unbind(), duration))
+    Ok(PyPath { curve: Curve::of_function(function, duration)?, orientation: Orientation::OfCurve })
 }
 
 fn positions(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; 3]>> {

@@ -1,15 +1,18 @@
 //! `Path`: a curve and an orientation, each from the core or from a Python function.
 
+use ikcore::math::pose::from_rotation_matrix;
 use ikcore::nalgebra::Matrix3;
 use ikcore::path::Path;
 use ikcore::stored::{from_bytes, to_bytes};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
+use pyo3::{PyTraverseError, PyVisit};
 
-use crate::convert::{Array, matrix3, point, row, table, times};
+use crate::convert::{Array, matrix3, point, row, summary, table, times};
 use crate::error::{invalid, raise};
 use crate::pickling::{self, Reduced};
+use crate::traversal::{Traversed, traversed};
 
 /// A reference path of the tip: position, and optionally orientation, for each time in [0, duration]. Times outside are
 /// clamped.
@@ -18,6 +21,8 @@ pub struct PyPath {
     pub(super) curve: Curve,
     pub(super) orientation: Orientation,
 }
+
+traversed!(PyPath: curve, orientation);
 
 /// The source of the orientation.
 pub(super) enum Orientation {
@@ -29,6 +34,24 @@ pub(super) enum Orientation {
 pub(super) enum Curve {
     Core(Path),
     Function { function: Py<PyAny>, duration: f64 },
+}
+
+impl Traversed for Curve {
+    fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        match self {
+            Self::Core(_) => Ok(()),
+            Self::Function { function, .. } => function.traverse(visit),
+        }
+    }
+}
+
+impl Traversed for Orientation {
+    fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        match self {
+            Self::OfCurve | Self::Constant(_) => Ok(()),
+            Self::Function(function) => function.traverse(visit),
+        }
+    }
 }
 
 /// Half the time over which the velocity of a user's function is differenced, as a fraction of its duration.
@@ -79,7 +102,7 @@ impl PyPath {
             Orientation::Function(orientation.clone().unbind())
         } else {
             let rotation = matrix3("orientation", orientation)?;
-            let pose = ikcore::math::pose::from_rotation_matrix("orientation", rotation, [0.0; 3]).map_err(raise)?;
+            let pose = from_rotation_matrix("orientation", rotation, [0.0; 3]).map_err(raise)?;
             Orientation::Constant(*pose.rotation.matrix())
         };
         Ok(Self { curve: self.curve.clone_ref(py), orientation })
@@ -113,12 +136,16 @@ impl PyPath {
     fn _restore(curve: &Bound<'_, PyAny>, duration: f64, orientation: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let curve = match curve.cast::<PyBytes>() {
             Ok(bytes) => Curve::Core(Path::from_bytes(bytes.as_bytes()).map_err(raise)?),
-            Err(_) => Curve::Function { function: curve.clone().unbind(), duration },
+            Err(_) => Curve::of_function(curve, duration)?,
         };
         let orientation = match orientation {
             None => Orientation::OfCurve,
             Some(value) => match value.cast::<PyBytes>() {
-                Ok(bytes) => Orientation::Constant(from_bytes("orientation", bytes.as_bytes()).map_err(raise)?),
+                Ok(bytes) => {
+                    let rotation = from_bytes("orientation", bytes.as_bytes()).map_err(raise)?;
+                    from_rotation_matrix("orientation", rotation, [0.0; 3]).map_err(raise)?;
+                    Orientation::Constant(rotation)
+                }
                 Err(_) => Orientation::Function(value.clone().unbind()),
             },
         };
@@ -133,6 +160,17 @@ impl From<Path> for PyPath {
 }
 
 impl Curve {
+    /// Makes a curve from a function of t.
+    pub(super) fn of_function(function: &Bound<'_, PyAny>, duration: f64) -> PyResult<Self> {
+        if !function.is_callable() {
+            return Err(invalid(format!("function must be a callable of t, got {}", summary(function))));
+        }
+        if !(duration.is_finite() && duration > 0.0) {
+            return Err(invalid(format!("duration must be positive and finite, got {duration}")));
+        }
+        Ok(Self::Function { function: function.clone().unbind(), duration })
+    }
+
     fn clone_ref(&self, py: Python<'_>) -> Self {
         match self {
             Self::Core(path) => Self::Core(path.clone()),
@@ -144,11 +182,6 @@ impl Curve {
 }
 
 impl PyPath {
-    /// Makes a path from a function of t.
-    pub(super) fn of_function(function: Py<PyAny>, duration: f64) -> Self {
-        Self { curve: Curve::Function { function, duration }, orientation: Orientation::OfCurve }
-    }
-
     /// Returns the state for pickling and hashing: (curve, duration, orientation), each as bytes or as the function given.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let curve = match &self.curve {

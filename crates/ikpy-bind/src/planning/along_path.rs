@@ -13,6 +13,7 @@ use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::path::PyPath;
+use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
 
@@ -53,7 +54,7 @@ pub fn plan_along_path(
     start_q: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     method: Option<&Bound<'_, PyAny>>,
-    objective: &str,
+    #[pyo3(from_py_with = crate::convert::text)] objective: &str,
     accuracy: Option<f64>,
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
@@ -74,6 +75,7 @@ pub fn plan_along_path(
         seed: count("seed", seed)?,
     };
     let plan = watched(py, progress, |watcher| planning::plan_along_path(&arm, &tip_path, &options, watcher))?;
+    python_calls::log(py, format!("plan_along_path: {}", plan.message()))?;
     PyPlan::new(plan, robot, in_force, PyTuple::empty(py).unbind())
 }
 

@@ -1,7 +1,7 @@
 //! `Plan`.
 
 use ikcore::planning::Plan;
-use ikcore::stored::{from_bytes, to_bytes};
+use ikcore::stored::to_bytes;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -15,6 +15,7 @@ use crate::pickling::{self, Reduced};
 use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::trajectory::PyTrajectory;
+use crate::traversal::traversed;
 
 /// A planned motion, and how its search ended.
 #[pyclass(name = "Plan", module = "beetle_ik", frozen)]
@@ -44,6 +45,8 @@ pub struct PyPlan {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PyPlan: obstacles, robot, limits);
 
 outcome! {
     PyPlan = |result|
@@ -112,7 +115,7 @@ impl PyPlan {
         limits: Py<PyLimits>,
         obstacles: Py<PyTuple>,
     ) -> PyResult<Self> {
-        Self::new(from_bytes("plan", bytes).map_err(raise)?, robot, limits, obstacles)
+        Self::new(Plan::from_bytes(bytes).map_err(raise)?, robot, limits, obstacles)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::Obstacles;
+use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::PyStop;
 
@@ -54,7 +55,7 @@ pub fn plan_point_to_point(
     end_q: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     method: Option<&Bound<'_, PyAny>>,
-    objective: &str,
+    #[pyo3(from_py_with = crate::convert::text)] objective: &str,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
     stop: Option<&PyStop>,
@@ -76,6 +77,7 @@ pub fn plan_point_to_point(
         seed: count("seed", seed)?,
     };
     let plan = watched(py, progress, |watcher| planning::plan_point_to_point(&arm, &start, &end, &options, watcher))?;
+    python_calls::log(py, format!("plan_point_to_point: {}", plan.message()))?;
     PyPlan::new(plan, robot, in_force, given)
 }
 

@@ -45,12 +45,12 @@ pub fn time_optimal(
     waypoints_q: &Bound<'_, PyAny>,
     limits: &PyLimits,
     knots: Option<&Bound<'_, PyAny>>,
-    spline: &str,
+    #[pyo3(from_py_with = crate::convert::text)] spline: &str,
     blend: Option<f64>,
     gridpoints: Option<i128>,
     start_speed: f64,
     end_speed: f64,
-    joint_names: Option<Vec<String>>,
+    #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
 ) -> PyResult<PyTrajectory> {
     let waypoints = array("waypoints_q", waypoints_q)?;
     let &[_, n] = waypoints.shape() else {

@@ -29,7 +29,11 @@ impl PyRobot {
     ///     UnknownNameError: no link of that name; the message lists them.
     #[staticmethod]
     #[pyo3(signature = (path_or_xml, *, base=None, tip=None))]
-    fn from_urdf(path_or_xml: &Bound<'_, PyAny>, base: Option<&str>, tip: Option<&str>) -> PyResult<Self> {
+    fn from_urdf(
+        path_or_xml: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] base: Option<&str>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
+    ) -> PyResult<Self> {
         let source = match path_or_xml.extract::<String>() {
             Ok(text) => text,
             Err(_) => match path_or_xml.extract::<PathBuf>() {
@@ -62,14 +66,14 @@ impl PyRobot {
         alpha: &Bound<'_, PyAny>,
         d: &Bound<'_, PyAny>,
         theta: Option<&Bound<'_, PyAny>>,
-        kinds: Option<Vec<String>>,
-        convention: &str,
+        #[pyo3(from_py_with = crate::convert::optional_texts)] kinds: Option<Vec<String>>,
+        #[pyo3(from_py_with = crate::convert::text)] convention: &str,
         lower: Option<&Bound<'_, PyAny>>,
         upper: Option<&Bound<'_, PyAny>>,
         velocity: Option<&Bound<'_, PyAny>>,
         base: Option<&Bound<'_, PyAny>>,
         tool: Option<&Bound<'_, PyAny>>,
-        name: Option<&str>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
     ) -> PyResult<Self> {
         let convention: Dh = convention.parse().map_err(raise)?;
         let mut table = DhTable::new(convention, vector("a", a)?, vector("alpha", alpha)?, vector("d", d)?);
@@ -121,7 +125,7 @@ impl PyRobot {
     /// Raises:
     ///     UnknownNameError: lists the names and suggests the nearest.
     #[staticmethod]
-    fn named(name: &str) -> PyResult<Self> {
+    fn named(#[pyo3(from_py_with = crate::convert::text)] name: &str) -> PyResult<Self> {
         Robot::named(name).map(Self::from).map_err(raise)
     }
 

@@ -14,6 +14,7 @@ use crate::error::raise;
 use crate::hash::content_hash;
 use crate::limits::PyLimits;
 use crate::pickling::{self, Reduced};
+use crate::python_calls;
 
 /// (link, a (3,), b (3,), radius (m)).
 type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);
@@ -26,7 +27,7 @@ type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>
 #[pyclass(name = "Robot", module = "beetle_ik", frozen, eq)]
 pub struct PyRobot {
     pub core: Arc<Robot>,
-    /// Made on first use: most results only store it.
+    /// Made on first use: most results only store it. Holds numbers alone, so that no cycle can pass through it.
     limits: PyOnceLock<Py<PyLimits>>,
 }
 
@@ -117,6 +118,10 @@ impl PyRobot {
     /// Hashes the name, the joints with their limits, and the links.
     fn __hash__(&self) -> u64 {
         content_hash(&(self.core.name(), self.core.joints(), self.core.link_names().collect::<Vec<_>>()))
+    }
+
+    fn _repr_html_<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        python_calls::html(slf.into_any(), "robot")
     }
 
     fn __repr__(&self) -> String {

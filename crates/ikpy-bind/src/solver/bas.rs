@@ -19,6 +19,10 @@ use crate::options::options;
 ///     max_passes: largest number of passes; the paper has no such bound.
 ///
 /// The error band of the paper is the tolerance of the call.
+///
+/// In `minimize`, antennae are c1 times the square root of the function's value: the minimum must be zero, and c1 must suit
+/// the function. With the default c1, the sum of squares about (0.3, 0.3) in [-2, 2]^2 stayed at 0.5 to 2.9 (5 seeds, 30000
+/// evaluations), where `DifferentialEvolution` and `PSO` found the minimum exactly.
 #[pyclass(name = "BAS", module = "beetle_ik", frozen, eq, from_py_object)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyBas(pub Bas);
@@ -28,7 +32,7 @@ impl PyBas {
     #[new]
     #[pyo3(signature = (*, variant="star", c1=None, c2=None, explorations=None, max_passes=200))]
     fn new(
-        variant: &str,
+        #[pyo3(from_py_with = crate::convert::text)] variant: &str,
         c1: Option<f64>,
         c2: Option<f64>,
         explorations: Option<i128>,

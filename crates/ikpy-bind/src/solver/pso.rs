@@ -45,13 +45,13 @@ impl PyPso {
     #[allow(clippy::too_many_arguments)]
     fn new(
         population: i128,
-        form: &str,
+        #[pyo3(from_py_with = crate::convert::text)] form: &str,
         inertia: Option<f64>,
         c1: Option<f64>,
         c2: Option<f64>,
         velocity_limit: f64,
-        accept: &str,
-        walls: &str,
+        #[pyo3(from_py_with = crate::convert::text)] accept: &str,
+        #[pyo3(from_py_with = crate::convert::text)] walls: &str,
         max_generations: Option<i128>,
         stall_generations: Option<i128>,
     ) -> PyResult<Self> {

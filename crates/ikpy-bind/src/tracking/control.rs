@@ -16,6 +16,7 @@ use crate::convert::{array, copied, count, counted, rigid_rows, shape_text, summ
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::solver::PyBroydenBas;
+use crate::traversal::traversed;
 
 /// A model-free controller for your own loop and hardware.
 ///
@@ -34,6 +35,8 @@ pub struct PyControlSession {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PyControlSession: limits);
 
 in_progress!(PyControlSession, ControlSession);
 

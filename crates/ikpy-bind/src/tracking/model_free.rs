@@ -5,6 +5,7 @@ use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::Tolerance;
 use ikcore::tracking::{self, ModelFreeOptions, ModelFreeRecord};
 use numpy::{PyArray1, PyArrayDyn};
+use pyo3::exceptions::PyBaseException;
 use pyo3::prelude::*;
 
 use super::control::controller;
@@ -18,6 +19,7 @@ use crate::outcome::outcome;
 use crate::path::PyPath;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
+use crate::traversal::traversed;
 
 /// The record of a track without a model, k rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt. If the
 /// plant fails, the record ends there.
@@ -32,8 +34,12 @@ pub struct PyModelFreeResult {
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
-    exception: Option<PyErr>,
+    /// The exception that the plant raised, or None.
+    #[pyo3(get)]
+    exception: Option<Py<PyBaseException>>,
 }
+
+traversed!(PyModelFreeResult: limits, exception);
 
 record! {
     PyModelFreeResult = |result| result.core.track,
@@ -68,12 +74,6 @@ impl PyModelFreeResult {
         self.core.settled_error()
     }
 
-    /// The exception that the plant raised, or None.
-    #[getter]
-    fn exception<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyAny>> {
-        self.exception.as_ref().map(|error| error.value(py).clone().into_any())
-    }
-
     /// Draws the path of the tip, the error, the joint positions and the measurements; returns a matplotlib figure.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         python_calls::plot(slf.into_any(), "model_free")
@@ -87,7 +87,7 @@ impl PyModelFreeResult {
     /// Keeps the exception of the plant if it can be pickled.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let core = pickling::bytes(py, to_bytes("track without a model", &self.core))?;
-        pickling::restored_from::<Self>(py, (core, self.limits.clone_ref(py), self.exception(py)))
+        pickling::restored_from::<Self>(py, (core, &self.limits, &self.exception))
     }
 
     /// Restores a pickled value.
@@ -97,15 +97,19 @@ impl PyModelFreeResult {
         py: Python<'_>,
         bytes: &[u8],
         limits: Py<PyLimits>,
-        exception: Option<Bound<'_, PyAny>>,
+        exception: Option<Py<PyBaseException>>,
     ) -> PyResult<Self> {
-        let core = from_bytes("track without a model", bytes).map_err(raise)?;
-        Self::new(py, core, limits, exception.map(PyErr::from_value))
+        Self::new(py, from_bytes("track without a model", bytes).map_err(raise)?, limits, exception)
     }
 }
 
 impl PyModelFreeResult {
-    fn new(py: Python<'_>, core: ModelFreeRecord, limits: Py<PyLimits>, exception: Option<PyErr>) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        core: ModelFreeRecord,
+        limits: Py<PyLimits>,
+        exception: Option<Py<PyBaseException>>,
+    ) -> PyResult<Self> {
         let (k, n) = (core.track.rows(), core.track.dof);
         let command = table(py, core.command.clone(), &[k, n])?.unbind();
         Ok(Self { columns: Columns::new(py, &core.track)?, command, limits, exception, core })
@@ -168,7 +172,8 @@ pub fn track_model_free(
     };
     let (core, exception) =
         watched_with_interpreter(py, progress, |watcher| run(plant, &reference, &start, &options, watcher))?;
-    PyModelFreeResult::new(py, core, in_force, exception)
+    python_calls::log(py, format!("track_model_free: {}", core.message()))?;
+    PyModelFreeResult::new(py, core, in_force, exception.map(|error| error.into_value(py)))
 }
 
 /// Returns the record, and the exception of a Python plant. Releases the interpreter unless the plant needs it.

@@ -14,6 +14,7 @@ use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::options::NewArguments;
 use crate::robot::PyRobot;
+use crate::traversal::traversed;
 
 /// A simulated arm that executes commands exactly, with a sensor at its tip; it runs without Python in the loop. To simulate
 /// an arm whose model is wrong, pass a modified robot, such as `robot.with_errors(...)`.
@@ -34,6 +35,8 @@ pub struct PyKinematicPlant {
     /// A copy for `move`, whose noise continues from call to call.
     moving: Mutex<KinematicPlant>,
 }
+
+traversed!(PyKinematicPlant: robot);
 
 #[pymethods]
 impl PyKinematicPlant {

@@ -12,6 +12,7 @@ use crate::error::raise;
 use crate::limits::PyLimits;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
+use crate::traversal::traversed;
 
 /// The result of one step of a `Tracker` or a `ControlSession`.
 #[pyclass(name = "Step", module = "beetle_ik", frozen)]
@@ -28,6 +29,8 @@ pub struct PyStep {
     limits: Py<PyLimits>,
     elapsed: Duration,
 }
+
+traversed!(PyStep: limits);
 
 outcome! {
     PyStep = |result|
@@ -55,7 +58,7 @@ impl PyStep {
         self.core.error.rotation
     }
 
-    /// False if a joint cannot return to its position limits within this step.
+    /// False if a joint cannot be brought within its position limits, or slowed down to its velocity limit, in this step.
     #[getter]
     fn inside_limits(&self) -> bool {
         self.core.inside_limits

@@ -18,6 +18,7 @@ use crate::pickling::{self, Reduced};
 use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::trajectory::PyTrajectory;
+use crate::traversal::traversed;
 
 /// The record of a track, k = steps + 1 rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
 #[pyclass(name = "TrackResult", module = "beetle_ik", frozen)]
@@ -37,6 +38,8 @@ pub struct PyTrackResult {
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
+
+traversed!(PyTrackResult: robot, limits);
 
 record! {
     PyTrackResult = |result| result.core,
@@ -164,7 +167,7 @@ pub fn track(
     position_tolerance: f64,
     rotation_tolerance: f64,
     seed: i128,
-    limit_at: &str,
+    #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTrackResult> {
     let arm = robot.get().core.clone();
@@ -178,5 +181,6 @@ pub fn track(
     let options = asked.read(resolved)?;
     let record =
         watched(py, progress, |watcher| tracking::track(&arm, &reference, start.as_deref(), &options, watcher))?;
+    python_calls::log(py, format!("track: {}", record.message()))?;
     PyTrackResult::new(py, record, robot.clone().unbind(), in_force)
 }

@@ -15,6 +15,7 @@ use crate::error::raise;
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::robot::PyRobot;
+use crate::traversal::traversed;
 
 /// Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 ///
@@ -45,6 +46,8 @@ pub struct PyTracker {
     limits: Py<PyLimits>,
 }
 
+traversed!(PyTracker: robot, limits);
+
 in_progress!(PyTracker, Session);
 
 #[pymethods]
@@ -64,7 +67,7 @@ impl PyTracker {
         position_tolerance: f64,
         rotation_tolerance: f64,
         seed: i128,
-        limit_at: &str,
+        #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
     ) -> PyResult<Self> {
         let (py, arm) = (robot.py(), &robot.get().core);
         limits.map_or(Ok(()), |limits| limits.require_no_functions("Tracker", "track"))?;

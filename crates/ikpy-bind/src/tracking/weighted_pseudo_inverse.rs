@@ -41,7 +41,7 @@ impl PyWeightedPseudoInverse {
                         posture_gain=WeightedPseudoInverse::default().posture_gain, damping=0.0))]
     fn new(
         gain: Option<f64>,
-        integrator: &str,
+        #[pyo3(from_py_with = crate::convert::text)] integrator: &str,
         weights: Option<&Bound<'_, PyAny>>,
         posture: Option<&PyTrajectory>,
         posture_gain: f64,

@@ -51,8 +51,8 @@ impl PyZnnbas {
         antenna_length: Option<&Bound<'_, PyAny>>,
         c1: Option<f64>,
         delay_steps: i128,
-        delay: &str,
-        accept: &str,
+        #[pyo3(from_py_with = crate::convert::text)] delay: &str,
+        #[pyo3(from_py_with = crate::convert::text)] accept: &str,
         sensor_delay: i128,
     ) -> PyResult<Self> {
         let antenna = antenna_length.map(|length| PerJoint::read("antenna_length", length)).transpose()?;

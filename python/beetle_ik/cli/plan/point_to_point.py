@@ -1,12 +1,13 @@
 """`beetle-ik plan point-to-point`: plans a motion between two positions."""
 
 from enum import StrEnum
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from ... import TPBSO, InvalidInputError, plan_point_to_point
-from ...obstacles import Ellipse
+from ... import TPBSO, InvalidInputError, plan_point_to_point, pose
+from ..._scene import read_obstacles
 from ..options import (
     Acceleration,
     AsJson,
@@ -37,12 +38,15 @@ class Objective(StrEnum):
     TIP_TRAVEL = "tip_travel"
 
 
-_ELLIPSE_NUMBERS = 5
+_POSE_NUMBERS = 6
 
-Place = Annotated[str | None, typer.Option(metavar="X,Y,Z", help="Position of the tip in m.")]
-Configuration = Annotated[
-    str | None, typer.Option(metavar="Q1,Q2,...", help="Joint positions, instead of a position of the tip.")
+Place = Annotated[
+    str | None,
+    typer.Option(
+        metavar="X,Y,Z[,ROLL,PITCH,YAW]", help="Position of the tip in m; with angles in rad, its orientation too."
+    ),
 ]
+Configuration = Annotated[str | None, typer.Option(metavar="Q1,Q2,...", help="Joint positions instead of a tip pose.")]
 
 
 def point_to_point(
@@ -59,11 +63,13 @@ def point_to_point(
         ),
     ] = Method.MINMAX,
     objective: Annotated[Objective, typer.Option(help="What to minimise.")] = Objective.TIME,
-    ellipses: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--ellipse", metavar="X,Y,A,B,ANGLE", help="An elliptical obstacle for a planar arm; may be repeated."
-        ),
+    scene: Annotated[
+        Path | None,
+        typer.Option(help="Obstacles: a JSON file of shapes; the page on planning has the format."),
+    ] = None,
+    link_radius: Annotated[
+        float | None,
+        typer.Option("--link-radius", help="Radius in m of a capsule along each link, which must not touch obstacles."),
     ] = None,
     velocity: Velocity = None,
     acceleration: Acceleration = None,
@@ -77,11 +83,13 @@ def point_to_point(
     base: BaseLink = None,
     as_json: AsJson = False,
 ) -> None:
-    """Plan a motion between two positions, from rest to rest."""
+    """Plan a motion between two places of the tip, or two configurations, from rest to rest."""
     arm = load_robot(robot, urdf, base, tip)
+    if link_radius is not None:
+        arm = arm.with_capsules(radius=link_radius)
     ends = _end("start", start, start_q) | _end("end", end, end_q)
     chosen = {"method": _method(method, solver)} | options(velocity, acceleration, max_evaluations)
-    obstacles = [_ellipse(text) for text in ellipses or ()]
+    obstacles = [] if scene is None else read_obstacles(scene)
     report(
         lambda: plan_point_to_point(
             arm,
@@ -101,15 +109,25 @@ def point_to_point(
 
 
 def _end(name: str, place: str | None, configuration: str | None) -> dict[str, Any]:
-    """Returns an end of the motion as an argument of `plan_point_to_point`: a tip position or joint positions."""
+    """Returns an end of the motion as an argument of `plan_point_to_point`: a place of the tip or joint positions."""
     match place, configuration:
         case str(), None:
-            return {name: numbers(f"--{name}", place, 3)}
+            return {name: _place(f"--{name}", place)}
         case None, str():
             return {f"{name}_q": numbers(f"--{name}-q", configuration)}
         case None, None:
-            raise InvalidInputError(f"no {name} was given: use --{name} X,Y,Z or --{name}-q Q1,Q2,...")
+            raise InvalidInputError(f"no {name} was given: use --{name} X,Y,Z[,ROLL,PITCH,YAW] or --{name}-q Q1,Q2,...")
     raise InvalidInputError(f"both --{name} and --{name}-q were given: give one of them")
+
+
+def _place(option: str, text: str) -> Any:
+    """Reads a position, or a pose."""
+    values = numbers(option, text)
+    if len(values) == _POSE_NUMBERS:
+        return pose(values[:3], rpy=values[3:])
+    if len(values) != 3:
+        raise InvalidInputError(f"{option}: expected X,Y,Z or X,Y,Z,ROLL,PITCH,YAW, got {len(values)} numbers")
+    return values
 
 
 def _method(method: Method, solver: SearchName | None) -> Any:
@@ -119,8 +137,3 @@ def _method(method: Method, solver: SearchName | None) -> Any:
     if solver is not None:
         raise InvalidInputError(f"--solver is the search of --method tpbso; {method} has its own: leave it out")
     return method.value
-
-
-def _ellipse(text: str) -> Any:
-    x, y, a, b, angle = numbers("--ellipse", text, _ELLIPSE_NUMBERS)
-    return Ellipse((x, y), (a, b), angle)

@@ -29,17 +29,21 @@ class SplineName(StrEnum):
 def retime(
     file: Annotated[
         Path,
-        typer.Argument(help="CSV with a column per joint, named 'joint' or 'q:joint'; a column 'time' sets the knots."),
+        typer.Argument(help="CSV with a column per joint, named 'JOINT' or 'q:JOINT'; a column 'time' sets the knots."),
     ],
     *,
     acceleration: Annotated[
         str, typer.Option("--acceleration-limit", help="rad/s^2: one number, or one per joint: a1,a2,...")
     ],
-    velocity: Annotated[str | None, typer.Option("--velocity-limit", help="The same in rad/s; default: none.")] = None,
-    jerk: Annotated[str | None, typer.Option("--jerk-limit", help="The same in rad/s^3; default: none.")] = None,
+    velocity: Annotated[
+        str | None, typer.Option("--velocity-limit", help="rad/s: one number, or one per joint; default: none.")
+    ] = None,
+    jerk: Annotated[
+        str | None, typer.Option("--jerk-limit", help="rad/s^3: one number, or one per joint; default: none.")
+    ] = None,
     spline: Annotated[SplineName, typer.Option(help="Curve through the rows.")] = SplineName.NATURAL,
     blend: Annotated[
-        float | None, typer.Option(help="For a polyline: corners are rounded from this distance before them, in rad.")
+        float | None, typer.Option(help="Polyline: distance from a corner at which its rounding starts, in rad.")
     ] = None,
     gridpoints: Annotated[
         int | None, typer.Option(help="Points where the acceleration may change; chosen automatically by default.")

@@ -50,4 +50,5 @@ EXPERIMENT = Experiment(
         "Beetle Antennae Search Algorithm”, *IEEE Access* 8, 2020"
     ),
     run=run,
+    extras=("sim",),
 )

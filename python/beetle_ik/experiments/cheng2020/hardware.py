@@ -52,7 +52,7 @@ def hardware(context: Context) -> Part:
         name="figure_9",
         title="Figure 9: the circle read back from the simulated arm",
         drawing=_draw(resolved, tips),
-        caption="Left: arm, circle and the tip as it was. Right: how far the tip was from its target, and from the "
+        caption="Left: arm, circle and measured tip. Right: distances of the tip from its target, and from the "
         "circle's radius. The servos sag, which moves the circle by a millimetre or two.",
     )
     return Section(TITLE, [_TEXT, figure]), [circle_claim(_radii(tips))]

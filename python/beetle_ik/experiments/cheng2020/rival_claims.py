@@ -1,4 +1,4 @@
-"""What the paper says of the five methods, and what came out."""
+"""Claims about the five methods."""
 
 from ..._text import counted
 from ...report import Check, Claim, not_given, number
@@ -31,7 +31,7 @@ def more_accurate_claim(section: str, errors: dict[str, float]) -> Claim:
         rule="The mean error of BAS is the smallest of the five.",
         measured=f"{_listed(errors)} m",
         holds=all(errors[BEETLE] < error for name, error in errors.items() if name != BEETLE),
-        reading=f"{BUDGET} evaluations a step for the running time; swarms are drawn anew in each step's whole box.",
+        reading=f"{BUDGET} evaluations a step for the running time; swarms start anew in each step's whole box.",
         section=section,
     )
 
@@ -64,7 +64,7 @@ def order_claim(section: str, evaluations: dict[str, float]) -> Claim:
         measured=", ".join(f"{name} {number(round(evaluations[name]))}" for name in found),
         holds=tuple(found) == _PRINTED_ORDER,
         missing=not_given({name: PARAMETERS[name] for name in ("options of the swarms",)}),
-        reason="With the best of as many settings for each, this is the order here.",
+        reason="With equal tuning the order is the one measured here.",
         section=section,
     )
 
@@ -75,10 +75,11 @@ def oscillations_claim(section: str, roughness: dict[str, float]) -> Claim:
     return Claim.judged(
         "At 1 mm PSO and GA cannot decrease the oscillations of the joint velocities; BAS stays far below the limits.",
         source="Section IV-A.4b, Figure 8",
-        rule=f"The joint velocities of PSO and of GA change from step to step by at least {_ROUGHER:g} times as much.",
+        rule="The joint velocities of PSO and of GA change from step to step at least "
+        f"{_ROUGHER:g} times as much as those of BAS.",
         measured=f"rms change: {_listed(roughness)} rad/s",
         holds=all(roughness[name] >= _ROUGHER * beetle for name in ("PSO", "GA")),
-        reading="Swarms are drawn anew in the whole box of each step.",
+        reading="Swarms start anew in the whole box of each step.",
         section=section,
     )
 
@@ -87,7 +88,7 @@ def _limits(section: str, compared: list[Compared]) -> Check:
     excess = max(0.0, *(one.excess for one in compared))
     runs = sum(len(one.results) for one in compared)
     return Check(
-        statement="No method breaks the variable velocity limit.",
+        statement="No method violates the variable velocity limit.",
         rule=f"The largest excess over the limit is at most {number(ROUNDING, 1)} rad/s.",
         measured=f"{shown_excess(excess)} in {counted(runs, 'run')}",
         holds=excess <= ROUNDING,

@@ -107,8 +107,8 @@ def _finding(costs: Costs) -> str:
         f"{_spans(costs, TRUST)} in the trust box; {_spans(costs, SCALED)} in a box as long as the error; and "
         f"{_span(over_beetle(costs, PLANAR, BANDS[0]))} on the five-link arm at 1 mm. **A small "
         "box removes most of the lead at 1 mm and little of it at 10 µm; a box that shrinks with the error removes it "
-        "at all three.** A swarm in such a box is little more than a few random points per generation, so the box must do "
-        "the work. The strength of the beetle is eq. (12), and all four rivals do about as well once they have it."
+        "at all three.** A swarm in such a box is little more than a few random points per generation, so the box must "
+        "do the work. The strength of the beetle is eq. (12), and all four rivals do about as well once they have it."
     )
 
 

@@ -31,15 +31,15 @@ _LOW, _HIGH = 3.2, 4.0  # of rms error over v / (k c1)
 _SLACK = 1.25
 
 _TEXT = """
-Remark 1 proposes an antenna that shrinks with the error, λ = c₁√h, and names no c₁. To see what it is worth the gain
-must be the same for both antennae: an error of 10⁻⁵ comes with a tenfold gain, with λ = 0.01 as with eq. (16), and at
-the printed gain eq. (16) with c₁ = 0.3 is worse than the constant antenna by a factor of {worse}. A constant antenna
-is either quick or exact. Eq. (16) with a good c₁ is both, and its tool hardly shakes.
+Remark 1 proposes an antenna that shrinks with the error, λ = c₁√h, and gives no c₁. A fair comparison needs the same
+gain for both antennae: an error of 10⁻⁵ needs a tenfold gain, with λ = 0.01 as with eq. (16), and at the printed gain
+eq. (16) with c₁ = 0.3 is worse than the constant antenna by a factor of {worse}. A constant antenna is either fast or
+accurate. Eq. (16) with a good c₁ is both, and its tool hardly shakes.
 """
 _TEXT_LAW = """
-With the antenna of eq. (16) the error in the steady state is proportional to v/(k c₁), v the speed of the target, over
-all settings that are stable (k times the tick at most 0.3, c₁ at most 1): between {low} and {high} times that here. A
-target that stands still is reached to rounding.
+With the antenna of eq. (16) the steady-state error is proportional to v/(k c₁), where v is the speed of the target, for
+all stable settings (k times the tick at most 0.3, c₁ at most 1): here between {low} and {high} times that. A target
+that does not move is reached to rounding.
 """
 
 

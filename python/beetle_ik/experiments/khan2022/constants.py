@@ -23,10 +23,10 @@ _FACTORS = (0.1, 0.3, 1.0, 3.0, 10.0)
 _FACTORS_SHORT = (0.1, 1.0, 10.0)
 
 _TEXT = """
-The paper calls α “the core hyper-parameter to determine the performance of the algorithm”. Of its three constants it
-matters least, as long as it stays below 1/k: over a longer delay the state itself has drifted, and the drift is taken
-for an antenna. Read as ten seconds, α = 10 does not converge at all: it must be ten ticks. Nor does the gain of the
-listing, -10, in eq. (14) as printed: it is that of a block that takes in the minus sign.
+The paper calls α “the core hyper-parameter to determine the performance of the algorithm”. Of its three constants α
+matters least, as long as it stays below 1/k: over a longer delay the state itself moves, and the motion is mistaken for
+an antenna. If α = 10 means ten seconds, the controller does not converge: it must mean ten ticks. The gain of the
+listing, -10, does not converge in eq. (14) as printed either: it probably includes the minus sign of the equation.
 """
 
 

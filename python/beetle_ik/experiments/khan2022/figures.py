@@ -40,21 +40,20 @@ _STEADY = 0.01  # m
 _REACHED = 1e-3  # m
 
 _TEXT = """
-All runs start in the home position, with the arm erect, and make exactly one measurement a tick: 50,000 in 50 s at 1
-ms. Two errors have to be told apart. The controller sends the arm to θ′ = θ + λb, a random antenna away from its state
-θ, and measures there; the arm never stands at θ. Constants are those of Algorithm 1: λ = 0.1, k = 10, α = 10 ticks.
+All runs start in the home position, with the arm erect, and make exactly one measurement per tick: 50,000 in 50 s at 1
+ms. Two errors have to be distinguished. The controller sends the arm to θ′ = θ + λb, a random antenna away from its
+state θ, and measures there; the arm is never at θ. Constants are those of Algorithm 1: λ = 0.1, k = 10, α = 10 ticks.
 """
 _TEXT_LIMITS = """
 **The M cannot be drawn within the limits of the arm.** Its vertex (0.1, 0.2, 0.5) is {vertex} m out of reach, and the
 first stroke, which takes the first 12.5 s, passes a point {worst} m out of reach: with joints 4 and 6 within 120
-degrees the tool comes no nearer to the shoulder. A run that brings the error on the M below 10⁻³ m² in under ten
+degrees the tool cannot come closer to the shoulder. A run that brings the error on the M below 10⁻³ m² in under ten
 seconds cannot have kept the limits of eq. (7).
 """
 _TEXT_STAR = """
-Nor is the star a star as printed. Eq. (20) multiplies its terms by a_y, b_y, a_z and b_z; with a = (0, 1, 0) and b =
-(0, 0, 1) two of the four vanish, and what is left is the Lissajous curve on the left. We take the hypotrochoid that
-must be meant. R, r and d are not stated: we use 0.10, 0.06 and 0.10 m without limits, and 0.04, 0.024 and 0.04 m
-within them.
+The star as printed is not a star either. Eq. (20) multiplies its terms by a_y, b_y, a_z and b_z; with a = (0, 1, 0) and
+b = (0, 0, 1) two of the four vanish, which leaves the Lissajous curve on the left. We use the hypotrochoid that must be
+meant. R, r and d are not stated: we use 0.10, 0.06 and 0.10 m without limits, and 0.04, 0.024 and 0.04 m within them.
 """
 
 
@@ -106,7 +105,7 @@ def figures(context: Context) -> Part:
             name="figure_2",
             title="Figure 2: the M without limits, printed constants",
             drawing=draw_run(found[_M].first, IIWA),
-            caption="The arm at θ, from home (pale) to the end. Blue is the tool at θ, where the arm never stands; "
+            caption="The arm at θ, from home (pale) to the end. Blue is the tool at θ, where the arm never is; "
             f"sky-blue the commanded tool, which is {_centimetres(found[_M])} cm (rms) off the path.",
         ),
         _TEXT_LIMITS.format(vertex=number(vertex), worst=number(worst)),
@@ -114,7 +113,7 @@ def figures(context: Context) -> Part:
             name="figure_2_limits",
             title="The same within the position limits of the arm",
             drawing=draw_run(found[_M_LIMITED].first, IIWA),
-            caption="Until the second stroke leads away from the shoulder, the error cannot go to zero.",
+            caption="The error cannot reach zero until the second stroke leads away from the shoulder.",
         ),
         _TEXT_STAR,
         Figure(
@@ -178,11 +177,11 @@ def letter_arrival(arrivals: Mapping[str, float]) -> Claim:
     return Claim.judged(
         "On the M the objective approaches zero in less than 10 s.",
         source="Section 4.1, Figures 2(d) and 2(e)",
-        rule="h(θ) falls below the value that is taken for zero in less than 10 s (median of the runs).",
+        rule="h(θ) falls below the threshold that counts as zero in less than 10 s (median of the runs).",
         measured=_listed(arrivals),
         holds={name: time < 10.0 for name, time in arrivals.items()},
-        reason="The paper states limits, eq. (7), but part of the first stroke is out of reach within them; what "
-        "counts as zero it does not say.",
+        reason="The paper states limits, eq. (7), but part of the first stroke is out of reach within them. It "
+        "does not say what counts as zero.",
         section=TITLE,
     )
 
@@ -202,8 +201,8 @@ def letter_error(mean: float, least: float, sent_mean: float) -> Claim:
             "least h(θ)": least <= 1e-5,
             "order of h(θ)": mean < 1e-4,
         },
-        reason="Which of them the figure shows is not said, and our copy lacks it. A tenfold gain brings the mean to "
-        "10⁻⁵, with either antenna: see the next section.",
+        reason="The paper does not say which of them the figure shows, and our copy lacks the figure. A tenfold gain "
+        "brings the mean to 10⁻⁵, with either antenna: see the next section.",
         section=TITLE,
     )
 
@@ -213,11 +212,11 @@ def star_arrival(arrivals: Mapping[str, float]) -> Claim:
     return Claim.judged(
         "On the star the objective approaches zero in less than 3 s.",
         source="Section 4.1, Figures 3(d) and 3(e)",
-        rule="h(θ) falls below the value that is taken for zero in less than 3 s (median of the runs).",
+        rule="h(θ) falls below the threshold that counts as zero in less than 3 s (median of the runs).",
         measured=_listed(arrivals),
         holds={name: time < 3.0 for name, time in arrivals.items()},
-        reason="The time step is not stated. R, r and d are not either, but hardly matter: the way from home is the "
-        "same.",
+        reason="The time step is not stated. R, r and d are not stated either, but hardly matter: most of the time "
+        "is the approach from home.",
         section=TITLE,
     )
 
@@ -231,7 +230,7 @@ def traced(statement: str, source: str, errors: Mapping[str, float], height: flo
         measured=", ".join(f"{name} {number(100 * error)} cm" for name, error in errors.items())
         + f"; height {number(100 * height)} cm",
         holds={name: error <= _TRACED * height for name, error in errors.items()},
-        reason="The arm never stands at θ. Which of the two the figures show is not said.",
+        reason="The arm is never at θ. The paper does not say which of the two the figures show.",
         section=TITLE,
     )
 
@@ -242,11 +241,11 @@ def no_spikes(error: float, speed: float, fastest: float) -> Claim:
         "It optimises “without showing any spikes of noise or undesirable behavior of manipulator”.",
         source="Section 4.1",
         rule=f"From 40 to 50 s the commanded tool is within {number(100 * _STEADY, 1)} cm of the M (rms), and the "
-        "commands ask no more than the arm's fastest joint can do (rms speed of a joint).",
-        measured=f"{number(100 * error)} cm; {number(speed)} rad/s, where the fastest joint does {number(fastest)}",
+        "commands need no more speed than the arm's fastest joint has (rms over the joints).",
+        measured=f"{number(100 * error)} cm; {number(speed)} rad/s, where the fastest joint reaches {number(fastest)}",
         holds=error <= _STEADY and speed <= fastest,
         reason="Every command is a random antenna away from the state whose error is reported: λ = 0.1 rad moves the "
-        "tool by centimetres a millisecond.",
+        "tool by centimetres every millisecond.",
         section=TITLE,
     )
 

@@ -33,7 +33,7 @@ from .settings import (
     rms,
 )
 
-TITLE = "Section 1: other methods, and what is said of this one"
+TITLE = "Section 1: other methods, and claims about this one"
 FEEDBACK = 20.0  # 1/s, of the position, for both methods that have a model
 COARSE = 0.01  # s, the tick of methods that have a model
 _TRACED = 0.02  # m
@@ -43,14 +43,14 @@ _SPEEDS = (12.5, 5.0, 2.5)  # s, of the M
 _SHORTER = 0.2  # of the command's step, at a tenth of the tick, if it moved continuously
 
 _TEXT = """
-The paper sets ZNNBAS against the pseudo-inverse of the Jacobian and against the dual neural network, without running
-either. We did, on the circle of Cheng et al., the M and the star. All begin on the path. The pseudo-inverse and the
-network know the model and act every 10 ms; the network is that of Zhang, Wang and Xia 2003, reference 18 of the paper,
-which keeps joint limits. ZNNBAS and `BroydenBAS` measure one position every millisecond.
+The paper compares ZNNBAS with the pseudo-inverse of the Jacobian and the dual neural network, without running either.
+We ran them on the circle of Cheng et al., the M and the star. All start on the path. The pseudo-inverse and the network
+use the model and act every 10 ms; the network is that of Zhang, Wang and Xia 2003, reference 18 of the paper, which
+keeps joint limits. ZNNBAS and `BroydenBAS` measure one position every millisecond.
 """
 
 Joints: TypeAlias = tuple[Array, Array]
-"""Where the arm stands (k, n) and the references (k, 3)."""
+"""Joint positions of the arm (k, n) and the references (k, 3)."""
 
 
 @dataclass(frozen=True)
@@ -136,7 +136,7 @@ def expensive(seconds: float) -> Claim:
     return Claim.judged(
         "Computing the Jacobian and its pseudo-inverse along the path is too expensive for real time.",
         source="Sections 1 and 2.1",
-        rule=f"A tick of the pseudo-inverse computes for more than {100 * _SHARE:g} % of a millisecond.",
+        rule=f"A tick of the pseudo-inverse takes more than {100 * _SHARE:g} % of a millisecond to compute.",
         measured=f"{number(1e6 * seconds, 2)} µs",
         holds=seconds > _SHARE * DT,
         section=TITLE,
@@ -148,7 +148,7 @@ def real_time(seconds: float) -> Claim:
     return Claim.judged(
         "ZNNBAS resolves the redundancy in real time.",
         source="Abstract, section 1",
-        rule=f"A tick of ZNNBAS computes for less than {100 * _SHARE:g} % of a millisecond.",
+        rule=f"A tick of ZNNBAS takes less than {100 * _SHARE:g} % of a millisecond to compute.",
         measured=f"{number(1e6 * seconds, 2)} µs, the simulated arm included",
         holds=seconds < _SHARE * DT,
         reading="Ticks of 1 ms. Only computing is meant: what the arm can follow is judged under Figures 2 and 3.",
@@ -161,10 +161,10 @@ def continuous(steps: Sequence[float]) -> Claim:
     return Claim.judged(
         "Unlike discrete swarms, whose particles jump from point to point, ZNNBAS moves the arm continuously.",
         source="Sections 1 and 5",
-        rule=f"At a tenth of the tick the command steps by at most {_SHORTER:g} of what it did.",
+        rule=f"With a tenth of the tick the steps of the command are at most {_SHORTER:g} times as long.",
         measured=f"{number(steps[0])} rad at ticks of 1 ms, {number(steps[1])} rad at 0.1 ms (rms, printed constants)",
         holds=steps[1] <= _SHORTER * steps[0],
-        reason="θ moves continuously, but the arm is sent to θ′, a fresh random antenna away in every tick.",
+        reason="θ moves continuously, but the arm is sent to θ′, a new random antenna away in every tick.",
         section=TITLE,
     )
 
@@ -196,7 +196,7 @@ def global_solution(reached: int, targets: int) -> Claim:
         measured=f"{reached} of {targets} targets",
         holds=reached == targets,
         reading="Targets are the tool's positions at random configurations within the limits. That shows no local "
-        "minimum in these runs; it proves nothing.",
+        "minimum in these runs; it is no proof.",
         section=TITLE,
     )
 
@@ -221,8 +221,8 @@ def _table(rows: Sequence[Sequence[str | float]], paths: Sequence[str]) -> Table
             *(Column(name=name, unit="mm", digits=4) for name in paths),
         ],
         rows=rows,
-        caption="The first stroke of the M is out of reach within the limits: a method has to find back to the path. "
-        "Errors are those of where the arm is sent, which for ZNNBAS is θ′.",
+        caption="The first stroke of the M is out of reach within the limits: a method has to return to the path. "
+        "Errors are those where the arm is sent, which for ZNNBAS is θ′.",
     )
 
 

@@ -30,15 +30,15 @@ _FED_BACK = f"pseudo-inverse, feedback {FEEDBACK:g}/s"
 _SECANTS = "BroydenBAS"
 
 _TEXT = """
-A redundant arm that closes a circle with its tool need not close it with its joints: what one round is off, ten rounds
-are off ten times. The paper says so of the pseudo-inverse, and rightly. It does not say that ZNNBAS does the same: its
-steps point down the gradient of the error on average, as those of the pseudo-inverse do, so its joints drift as
-far, and besides at random.
+When the tool of a redundant arm closes a circle, the joints need not return to their start, and the drift of each round
+adds up. The paper rightly says so of the pseudo-inverse. It does not say that ZNNBAS drifts too: on average its steps
+point down the gradient of the error, as those of the pseudo-inverse do, so its joints drift as far, and randomly in
+addition.
 
-Two methods come back. The dual network does where its criterion asks for it, by a term that pulls towards the first
-posture. `BroydenBAS` does by its nature: it steps along the rows of its estimated Jacobian, and a secant update adds
-to the rows only what is in their span already. So, as long as no antennae are put out again, its joints stay in a
-space of three dimensions, where a position of the tool has one configuration.
+Two methods return to their start. The dual network does so if its criterion includes a term that pulls towards the
+first posture. `BroydenBAS` does so by construction: it steps along the rows of its estimated Jacobian, and a secant
+update adds to the rows only what is already in their span. As long as it makes no new test motions, its joints stay in
+a space of three dimensions, in which a tool position has, locally, one configuration.
 """
 
 
@@ -109,7 +109,7 @@ def adds_up(open_loop: Array, fed_back: Array) -> Claim:
 def closes(drift: float, rounds: int) -> Check:
     """Joint difference by BroydenBAS after so many rounds (rad)."""
     return Check(
-        statement="`BroydenBAS` repeats its joints, without being told to.",
+        statement="`BroydenBAS` repeats its joint motion without a criterion for it.",
         rule=f"After {rounds} rounds no joint is {number(_CLOSED, 1)} rad from where it began.",
         measured=f"{number(drift)} rad",
         holds=drift < _CLOSED,

@@ -32,12 +32,11 @@ _CONTROLLERS: dict[str, bik.ZNNBAS | bik.BroydenBAS] = {
 }
 
 _TEXT = """
-Both controllers believe their sensor: a bias of the sensor is a bias of the tool, and a drift takes the tool along,
-whatever the controller. Noise is another matter. `BroydenBAS` is about as far off as its sensor is noisy, until the
-noise drowns the steps it learns from: between 1 and 3 mm ZNNBAS with the antenna of eq. (16) becomes the more exact of
-the two, and at 1 cm `BroydenBAS` is lost. ZNNBAS with the printed constants does not mind noise that is smaller than
-the reach of its antennae: its state θ hardly suffers from 1 cm. But the arm is never there; where it is sent, it is 6
-cm off with the best of sensors.
+Both controllers trust their sensor: a bias or drift of the sensor shifts the tool by as much. Noise acts differently.
+The error of `BroydenBAS` is close to the noise of its sensor, until the noise hides the steps that it learns from:
+between 1 and 3 mm ZNNBAS with the antenna of eq. (16) becomes the more accurate of the two, and at 1 cm `BroydenBAS`
+loses the path. ZNNBAS with the printed constants tolerates noise smaller than the motion of its antennae: 1 cm hardly
+affects its state θ. But the arm is never at θ; where it is sent, it is 6 cm off even with a perfect sensor.
 """
 
 

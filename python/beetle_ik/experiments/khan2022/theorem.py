@@ -25,17 +25,18 @@ _ROUND = 25.0  # s, of the circle that a long run repeats
 _ZERO = 1e-10  # m^2
 
 _TEXT = """
-Theorem 1 has the objective decrease monotonically: the algorithm “will only update the joint-state … if the objective
-function value decreases”, and “otherwise it will bring the manipulator back to its previous joint-state”. That is not
-what eq. (14) and (15) do, which move in every tick, by the sign of the change. We ran both: `accept="always"` is the
-equations, `accept="improving"` the algorithm of the proof, which stays at an antenna that is nearer and else goes
-back. It needs neither gain nor delay.
+Theorem 1 says that the objective decreases monotonically: the algorithm “will only update the joint-state … if the
+objective function value decreases”, and “otherwise it will bring the manipulator back to its previous joint-state”. Eq.
+(14) and (15) do not do that: they move in every tick, in a direction that depends on the sign of the change. We ran
+both: `accept="always"` is the equations, `accept="improving"` the algorithm of the proof, which stays at an antenna if
+it is better and goes back otherwise. It needs neither gain nor delay.
 
-With a target that stands still the proof is right about its own algorithm, and wrong about the published one. With a
-target that moves neither decreases monotonically, since the target itself can move away.
+For a fixed target the proof is correct for its own algorithm, and wrong for the published one. For a moving target
+neither decreases monotonically, since the target itself can move away.
 
-Definition 2 has the tool approach the reference as time goes to infinity. With a constant antenna it cannot: the arm
-is sent λ away for ever. Runs four times as long as the paper's end as far off as they were after a quarter.
+Definition 2 says that the tool approaches the reference as time goes to infinity. With a constant antenna it cannot:
+the arm is always sent λ away. Runs four times as long as the paper's end with the error that they had after a quarter
+of the time.
 """
 
 
@@ -69,7 +70,7 @@ def theorem(context: Context) -> Part:
             _TEXT,
             Figure(
                 name="theorem_1_still",
-                title="The objective while the target stands still",
+                title="The objective for a fixed target",
                 drawing=_draw({name: run.point for name, run in runs.items()}),
                 caption="From home to the middle of the M, printed antenna; the first second on the right.",
             ),
@@ -116,13 +117,12 @@ def monotone(rising: Mapping[str, float]) -> Claim:
 def goes_back(share: float) -> Claim:
     """Share of the ticks with a rise at which the state moved all the same (%)."""
     return Claim.judged(
-        "The joint state is updated only where the objective decreases; else the arm is brought back.",
+        "The joint state is updated only if the objective decreases; otherwise the arm is brought back.",
         source="Proof of Theorem 1",
-        rule="By eq. (14) and (15) θ stands still in each tick whose measured h is larger than that of α before.",
-        measured=f"θ moves in {number(share)} % of them, while the target stands still",
+        rule="By eq. (14) and (15) θ does not move in a tick whose measured h is larger than the one α ticks before.",
+        measured=f"θ moves in {number(share)} % of these ticks, with a fixed target",
         holds=share == 0.0,
-        reason="The sign function turns the step around; it does not leave it out. The proof describes another "
-        "algorithm than the one that is given.",
+        reason="The sign function reverses the step; it does not omit it. The proof describes a different algorithm.",
         section=TITLE,
     )
 
@@ -142,8 +142,8 @@ def converges(ends: Mapping[str, tuple[float, float]], adaptive: float, duration
             for name, (first, last) in ends.items()
         ),
         holds={f"target {name}": last < _ZERO for name, (_, last) in ends.items()},
-        reason=f"With the antenna of eq. (16) a target that stands still is reached, {number(adaptive, 2)} m²; one "
-        "that moves is followed at a distance.",
+        reason=f"With the antenna of eq. (16) a fixed target is reached, {number(adaptive, 2)} m²; a moving one is "
+        "followed at a distance.",
         section=TITLE,
     )
 
@@ -151,8 +151,7 @@ def converges(ends: Mapping[str, tuple[float, float]], adaptive: float, duration
 def proof_holds(share: float) -> Check:
     """Share of the ticks in which h rises by the proof's algorithm, still target (%)."""
     return Check(
-        statement='`ZNNBAS(accept="improving")`, the algorithm of the proof, never lets h rise while the target stands '
-        "still.",
+        statement='`ZNNBAS(accept="improving")`, the algorithm of the proof, never lets h rise for a fixed target.',
         rule="h(θ) rises in no tick.",
         measured=f"in {number(share)} % of the ticks",
         holds=share == 0.0,

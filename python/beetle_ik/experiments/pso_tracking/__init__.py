@@ -7,17 +7,17 @@ from .postures import postures
 from .tracking import tracking
 
 _SUMMARY = """
-A redundant arm can hold its tip in one place in many postures. The paper looks for the one in which it moves most
-easily, by a particle swarm over joint points on circles, tracks with the weighted pseudo-inverse, and finds the arm in
-a picture by an active contour.
+A redundant arm can hold its tip in one place in many postures. The paper looks for the posture in which it moves most
+easily, by a particle swarm over joint points on circles. It tracks with the weighted pseudo-inverse, and finds the arm
+in a picture by an active contour.
 
-**The methods work; most of what is said of them does not stand.** Ten generations of five particles find the best
-posture, whatever the length of the links, and the active contour finds the arm, though a plain threshold does so more
-surely. But no length gives both printed optima, q₂ is not small where the paper says it is, and an arm with q₂ = 0 is
+**The methods work; most of the claims about them do not hold.** Ten generations of five particles find the best
+posture, whatever the length of the links, and the active contour finds the arm, though a plain threshold is more
+reliable. But no length gives both printed optima, q₂ is not small where the paper says it is, and an arm with q₂ = 0 is
 not singular. Which posture is “balanced” depends on the length of the links, which is not given. The printed tracking
-error lies between those of 1 ms and 10 ms steps, once a closed loop is added that the paper lacks. Its rivals come out
-in the order of how they were tuned: a PID tuned by a plain grid is as good as the bee colony's, and on the same servos
-as theirs the pseudo-inverse is not ahead of all of them.
+error lies between those of 1 ms and 10 ms steps, once a closed loop is added that the paper lacks. The order of its
+rivals depends on how each is tuned: a PID tuned on a plain grid is as good as the bee colony's, and on the same servos
+the pseudo-inverse does not beat all of them.
 """
 
 

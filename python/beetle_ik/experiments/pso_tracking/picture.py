@@ -32,13 +32,13 @@ _OUTSIDE = 6.0  # pixels from the guess, where an active contour begins
 _TEXT = """
 Pictures of the arm, rendered with noise; a contour, by the active contour of the paper or by a plain threshold; and the
 joint angles at which every point of the contour is half a link's width from the nearest link, which the paper does not
-say how to find. Both begin with a guess up to 0.1 rad off a joint. The threshold finds the arm in {threshold} of
-{count} pictures, the active contour in {snake} of {count}, and takes {slower} times as long.
+say how to find. Both start from a guess that is up to 0.1 rad off in each joint. The threshold finds the arm in
+{threshold} of {count} pictures, the active contour in {snake} of {count}, and takes {slower} times as long.
 
-The energy of eq. (19) to (21) is that of Kass's active contour, which scikit-image minimises, but for the squares: as
-printed, ½(λ₁v′ + λ₂v″) is linear, and its sum over a closed contour is zero whatever the contour. Without squares
-nothing holds the points together, and they run to the nearest edges, {printed} pixels off the outline (rms, median)
-against {squared} with them. λ₁, λ₂ and the external energy are not given: 0.01, 0.05 and the strength of edges here.
+The energy of eq. (19) to (21) is that of Kass's active contour, which scikit-image minimises, except that the squares
+are missing: as printed, ½(λ₁v′ + λ₂v″) is linear, and its sum over any closed contour is zero. Without squares nothing
+holds the points together, and they run to the nearest edges, {printed} pixels off the outline (rms, median) against
+{squared} with them. λ₁, λ₂ and the external energy are not given: 0.01, 0.05 and the strength of edges here.
 """
 
 
@@ -93,7 +93,7 @@ def locates(snake: Trials, threshold: Trials) -> Claim:
         holds=snake.near >= _SHARE * snake.count if snake.count >= _ENOUGH else None,
         reading="Squares are put back into eq. (20), the external energy is the strength of edges, the contour begins "
         "around a guess up to 0.1 rad off, and joint angles are fitted to it. The paper shows no picture.",
-        reason="" if snake.count >= _ENOUGH else "So few pictures do not tell: run without --short.",
+        reason="" if snake.count >= _ENOUGH else "Too few pictures to decide: run without --short.",
         section=TITLE,
     )
 

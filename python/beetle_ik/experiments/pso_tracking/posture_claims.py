@@ -72,7 +72,7 @@ def printed_optima(overall: Mapping[str, tuple[float, float]], printed: float) -
 def text_and_tables(optima: Mapping[str, tuple[float, float]]) -> Claim:
     """Of each index the optimum of the text and that of the table."""
     return Claim.judged(
-        "The optima of the text are those of the tables.",
+        "The text and the tables give the same optima.",
         source="Section 3.1, Tables 2 and 3",
         rule="Text and table agree to the last digit that the text prints.",
         measured="; ".join(f"{name}: text {text:g}, table {table:g}" for name, (text, table) in optima.items()),
@@ -91,7 +91,7 @@ def best_so_far(printed: Mapping[str, Sequence[float]]) -> Claim:
         rule="No printed course ever falls.",
         measured="; ".join(f"{name}: smallest step {number(step, 2)}" for name, step in falls.items()),
         holds=all(step >= 0.0 for step in falls.values()),
-        reason="Table 3 falls from 10.7986 to 10.7977, which the best so far cannot.",
+        reason="Table 3 falls from 10.7986 to 10.7977, which a best-so-far value cannot.",
         section=SECTION,
     )
 
@@ -110,7 +110,7 @@ def second_joint_small(lengths: Mapping[str, PosturesAt]) -> Claim:
         measured="; ".join(f"{name} {number(angle)}°" for name, angle in shown.items()),
         holds={name: angle <= SMALL for name, angle in shown.items()},
         reason="It is small only for links below 0.25 m, which barely reach E; their SM₃ is below 0.34, a "
-        "twentieth of the printed one.",
+        "twentieth of the printed value.",
         section=SECTION,
     )
 
@@ -138,12 +138,12 @@ def balanced(lengths: Mapping[str, PosturesAt]) -> Claim:
         for name, at in lengths.items()
     }
     return Claim.judged(
-        "Looking at the whole arm makes the sizes of the joint angles balanced.",
+        "Optimising the whole arm balances the sizes of the joint angles.",
         source="Section 3.1, Figure 7",
         rule="The measure of balance is larger in the posture that is best for the whole arm than in that for the tip.",
         measured="; ".join(f"{name}: {number(tip)} tip, {number(all_)} whole" for name, (tip, all_) in values.items()),
         holds={name: all_ > tip for name, (tip, all_) in values.items()},
-        reason="Neither the length of the links nor a measure of balance is given.",
+        reason="The paper gives neither the link length nor a measure of balance.",
         section=SECTION,
     )
 

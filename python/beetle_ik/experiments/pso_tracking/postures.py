@@ -67,18 +67,18 @@ SCANNED: dict[float, dict[_Measure, tuple[float, float]]] = {
 }
 
 _TEXT = """
-Three equal links hold their tip at E = (0.5, 0.5). One freedom is left, and the paper searches it for the posture in
-which unit joint speeds move the tip over the largest ellipse, SM₃, or in which the ellipses of all links together are
-largest, SM. Its particles are joint points on circles, drawn back onto them in every generation.
+Three equal links hold their tip at E = (0.5, 0.5). One degree of freedom is left. The paper searches it for the posture
+in which unit joint speeds move the tip over the largest ellipse, SM₃, or in which the ellipses of all links together
+are largest, SM. Its particles are joint points on circles, projected back onto them in every generation.
 
-Printed values are set beside ours for their course, not for their size: the length of the links is not given (0.5 m
-here), and none fits both. c₁ = c₂ = 2.05 stand for the printed φ > 3, at which eq. (18) has no real root.
+Compare the course of printed and measured values, not their size: the link length is not given (0.5 m here), and no
+length fits both. c₁ = c₂ = 2.05 stand for the printed φ > 3, at which eq. (18) has no real root.
 """
 _TEXT_LENGTH = """
-The paper says of the tip's best posture that its joint angle q₂ is “very small”, and of the whole arm's that its
-angles are “very balanced”. The first is so for no length at which the links reach E with any ease; the second depends
-on the length and on what balance means. Nor is an arm with q₂ = 0 singular, as long as q₃ is not zero too: only the
-tip of link 2 has lost a direction then.
+The paper says of the tip's best posture that its joint angle q₂ is “very small”, and of the whole arm's that its angles
+are “very balanced”. The first is true only for links that barely reach E; the second depends on the link length and on
+the meaning of balance. An arm with q₂ = 0 is not singular either, unless q₃ is zero too: only the tip of link 2 loses a
+direction.
 """
 
 

@@ -34,19 +34,19 @@ _KINEMATIC, _DRIVEN = "without a servo", "on the same servos"
 _HELD = "K = 50, posture held, 10 ms"  # the variant that is set beside the controllers
 
 _TEXT = """
-The arm of eq. (1) and (2), two joints that turn and one that slides, follows the path of its tip that belongs to the
-printed joint motion, q₁ = q₂ = 0.5 cos(πt/2), q₃ = 0.2 sin(πt/2), for two seconds: afterwards q₃ would leave its own
-range. Link lengths are half the printed swing radius each; signs that eq. (1), (2) and (6) lost are put back, and
-J(2,1) is L₁ cos q₁ + (L₂ + q₃) cos(q₁ - q₂).
+The arm of eq. (1) and (2), with two revolute joints and a prismatic one, follows the tip path of the printed joint
+motion, q₁ = q₂ = 0.5 cos(πt/2), q₃ = 0.2 sin(πt/2), for two seconds: afterwards q₃ would leave its own range. Each link
+length is half the printed swing radius; the missing signs of eq. (1), (2) and (6) are restored, and J(2,1) is L₁ cos q₁
++ (L₂ + q₃) cos(q₁ - q₂).
 
 The PID, bee-colony and GA-RBF controllers are **our own baselines**: a servo of first order in velocity (50 ms), a
-bounded command and a slow disturbance, the same for all. The paper gives neither plant nor gains. The PID is there by
-hand, P = 20 and I = 10, and tuned by a rule: the best of a grid over the box that the bee colony searches, with as many
-trials. So tuned it is as good as the colony's; both end in the corner of the box.
+bounded command and a slow disturbance, the same for all. The paper gives neither plant nor gains. The PID is tuned by
+hand, P = 20 and I = 10, and by a rule: the best of a grid over the box that the bee colony searches, with as many
+trials. Tuned by the rule it is as good as the colony's; both end in the corner of the box.
 
-A kinematic tracker has no servo to fight. To compare like with like, the pseudo-inverse also drives the same servos,
-its joint velocities as commands. There its advantage is a feedforward of the wanted velocity; a tuned PID that is given
-the same is better still.
+A kinematic tracker has no servo lag. To compare like with like, the pseudo-inverse also drives the same servos, with
+its joint velocities as commands. Its advantage there is the feedforward of the desired velocity; a tuned PID with the
+same feedforward is better still.
 """
 
 

@@ -61,7 +61,7 @@ def jumps(own: Mapping[str, float], rivals: Mapping[str, float]) -> Claim:
         measured=f"pseudo-inverse {_listed(own)}; {_listed(rivals)} rad",
         holds={
             **{name: value < least for name, value in own.items()},
-            "each setting, against the PID fed forward too": max(own.values()) < rivals[_FORWARD],
+            "each setting, against the PID fed forward as well": max(own.values()) < rivals[_FORWARD],
         },
         reason="Plant and gains are ours.",
         section=SECTION,
@@ -79,7 +79,7 @@ def order(rivals: Mapping[str, float]) -> Claim:
         holds={
             name: network < _CLEARLY * bees and bees < _CLEARLY * rivals[name] for name in (_HAND, _TUNED, _FORWARD)
         },
-        reason="The order is that of how each was tuned, which the paper does not say.",
+        reason="The order depends on how each is tuned, which the paper does not say.",
         section=SECTION,
     )
 

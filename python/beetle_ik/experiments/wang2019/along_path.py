@@ -54,15 +54,15 @@ _NOT_MUCH = 1.1  # times the fastest timing, that uniform timing may take
 _ROUNDING = 1e-9  # a plan may use all of the accuracy
 
 _TEXT = f"""
-An arm of three links of 1 m follows 51 points of a path. How the last link stands is free within a range that follows
-from the law of cosines; five numbers between 0 and 1 say where in its range it is along the way (eq. 7), and a sixth
-how long all takes. Splines lead through every second point, each interval takes the same time, and how far
-the tip is from the points between is its accuracy (eq. 24). All searches have equal tuning and may spend
+An arm of three links of 1 m follows 51 points of a path. The orientation of the last link is free within a range that
+follows from the law of cosines; five numbers between 0 and 1 place it in that range along the path (eq. 7), and a sixth
+sets the total time. Splines pass through every second point, each interval takes the same time, and the distance of the
+tip from the points between is the accuracy (eq. 24). All searches have equal tuning and may spend
 {_SEARCHES[0].evaluations} evaluations, {_GENERATIONS} iterations of TPBSO with {POPULATION} members.
 
-The dashed line is the fastest timing of the very joint path that the best plan takes, from rest to rest (reachability
-analysis, `time_optimal`): time need not be spread evenly. The dotted one lets the redundancy be chosen for that timing
-(`method="timed"`), which is what the library does unless told otherwise.
+The dashed line is the fastest timing of the joint path of the best plan, from rest to rest (reachability analysis,
+`time_optimal`), without equal intervals. The dotted line optimises redundancy and timing together (`method="timed"`),
+the library's default.
 """
 
 
@@ -110,7 +110,7 @@ def along_path(context: Context) -> Part:
                 drawing=_draw(case),
                 caption=(
                     "Best cost so far, mean over seeds (shaded: the standard deviation of TPBSO); the best of TPBSO's "
-                    "plans; how its last link stands; how far the tip is off."
+                    "plans; the orientation of its last link; the error of the tip."
                 ),
             )
         )
@@ -271,7 +271,7 @@ def _distances(plan: bik.Plan) -> tuple[NDArray[np.float64], NDArray[np.float64]
 def _draw_distance(axes: Axes, plan: bik.Plan, accuracy: float) -> None:
     time, distance = _distances(plan)
     axes.plot(time, 1e3 * distance, color=BLUE, marker=".", label="distance from the points")
-    axes.axhline(1e3 * accuracy, color=VERMILION, linestyle="--", label="accuracy asked for")
+    axes.axhline(1e3 * accuracy, color=VERMILION, linestyle="--", label="required accuracy")
     axes.set(xlabel="time [s]", ylabel="distance [mm]")
     legend_above(axes, columns=2)
 

@@ -11,7 +11,7 @@ from ...report import Block, Claim, Column, Figure, Part, Printed, Section, Spre
 from ..experiment import Context
 from .drawing import label
 from .motions import CONTESTS, EQUAL_EVALUATIONS, EQUAL_ITERATIONS, EQUAL_TUNING, Motion
-from .searches import RIVALS, TPBSO, TUNED, USUAL, best_so_far, is_lower
+from .searches import RIVALS, TOO_FEW, TPBSO, TUNED, USUAL, best_so_far, is_lower
 from .settings import GENERATIONS, LINKS, POPULATION, UNITS, WORDS
 
 TITLE = "Beside PSO and GA"
@@ -20,17 +20,17 @@ _CLOSE = 1.1  # times the mean of TPBSO
 _RIVAL_OF = {"time": "PSO", "joint_travel": "GA"}  # which one the paper calls close
 
 _TEXT = f"""
-The paper does not say how much each algorithm may spend, nor what its constants are. A beetle evaluates three times an
-iteration, a particle once. So we compare three times:
+The paper states neither the budget of each algorithm nor its constants. A beetle evaluates three times per iteration, a
+particle once. So we compare three times:
 
-- **{EQUAL_ITERATIONS}**: {GENERATIONS} iterations of {POPULATION} members each, and TPBSO spends three times the
+- **{EQUAL_ITERATIONS}**: {GENERATIONS} iterations of {POPULATION} members each; TPBSO spends three times the
   evaluations of the others;
-- **{EQUAL_EVALUATIONS}**: the others may spend as many;
-- **{EQUAL_TUNING}**: besides, each search gets its best of 32 settings, found on seeds that play no part here.
+- **{EQUAL_EVALUATIONS}**: the others may spend as many evaluations;
+- **{EQUAL_TUNING}**: in addition, each search uses its best of 32 settings, found on seeds that are not used here.
 
-Differential evolution, which the paper does not have, takes part in the last one. A search is called better where its
-mean is lower by more than two standard errors of the difference. Rotation with two links is left out: there every
-motion without a detour turns the joints by the same.
+Differential evolution, which the paper does not have, is part of the last comparison. A search counts as better if its
+mean is lower by more than two standard errors of the difference. Least rotation with two links is left out: every
+motion without a detour turns the joints by the same amount.
 """
 
 
@@ -44,13 +44,15 @@ def comparison(_context: Context, motions: Sequence[Motion]) -> Part:
 def is_best(motions: Sequence[Motion]) -> Claim:
     """Whether no rival beats the beetle swarm on any motion."""
     beaten = {contest: list(_beaten(motions, contest)) for contest in CONTESTS}
+    enough = min(len(some) for motion in motions for contest in CONTESTS for some in motion.costs(contest).values()) > 1
     return Claim.judged(
         "“Whether in the comparison of execution time or joint rotation, TPBSO shows the best performance among three "
         "algorithms.”",
         source="Section IV-D.1, Figure 17; abstract; section V",
         rule="Neither PSO nor GA has a lower mean than TPBSO on any motion, by more than two standard errors.",
-        measured="; ".join(f"{contest}: {_told(who)}" for contest, who in beaten.items()),
-        holds={contest: not who for contest, who in beaten.items()},
+        measured="; ".join(f"{contest}: {_told(who)}" for contest, who in beaten.items()) if enough else "",
+        holds={contest: not who for contest, who in beaten.items()} if enough else None,
+        reason="" if enough else TOO_FEW,
         section=TITLE,
     )
 

@@ -25,14 +25,13 @@ _ENOUGH = 10**7  # evaluations
 _N_P, _N_I = "members, n_p", "iterations, n_i"
 
 _TEXT = """
-The paper states orders of growth and measures none. Below, each quantity grows while the others stay. Evaluations are
-counted, and the verdicts rest on them; times are the shortest of several runs, and depend on what else the machine
-does.
-An exponent of 1 means that time doubles with what grows.
+The paper states orders of growth and measures none. Below, one quantity grows at a time. The verdicts rest on counted
+evaluations; times are the shortest of several runs, and depend on the load of the machine. An exponent of 1 means that
+time doubles if the quantity doubles.
 
-Two things differ from the paper's tables. Our search looks at no output points: extremes come from formulas, so that
-Experiment I does not depend on their number at all. And a beetle needs three evaluations where a particle needs one,
-which orders of growth do not show.
+Two things differ from the paper's tables. Our search uses no output points: extremes come from formulas, so Experiment
+I does not depend on their number. And a beetle needs three evaluations where a particle needs one, which orders of
+growth do not show.
 """
 
 

@@ -19,11 +19,11 @@ _NODES, _POINTS = 5, 51
 Array = NDArray[np.float64]
 
 _TEXT = """
-Four statements need no search: each is tried with random numbers. The polynomials of eq. (3) to (6) are right as
-printed. Eq. (2) gives the cosine of the first joint alone: its sign has to be added. Eq. (13) refuses a wrist out of
-reach, but not one in the hole that links of unequal length leave. Eq. (7) keeps the redundant angle in its range at the
-five numbers that are chosen; between them only if straight lines join them. Our planner adds the sign, holds |k| at
-most 1, and clamps its spline.
+Four statements need no search: each is tested with random numbers. The polynomials of eq. (3) to (6) are correct as
+printed. Eq. (2) gives only the cosine of the first joint: its sign has to be added. Eq. (13) rejects a wrist out of
+reach, but not one too close to the base for links of unequal length. Eq. (7) keeps the redundant angle in its range at
+the five chosen numbers; between them it does so only if straight lines join them. Our planner adds the sign, requires
+|k| ≤ 1, and clamps its spline.
 """
 
 
@@ -116,7 +116,7 @@ def reaches(places: Array) -> Claim:
             f"{np.sum(missed <= _PLACED)} with the arccosine alone"
         ),
         holds=bool(np.all(signed_missed <= _PLACED)),
-        reading="Eq. (2) gives the cosine alone; the first joint turns the way from p′ to p.",
+        reading="Eq. (2) gives only the cosine; the first joint turns in the direction from p′ to p.",
         section=TITLE,
     )
 

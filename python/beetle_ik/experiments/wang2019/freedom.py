@@ -23,11 +23,11 @@ _POLYNOMIAL = 1.25  # times the bound, that one polynomial may take
 _VIA = 1.03  # times, that a straight motion may take longer than the mean of searches that also place a via point
 
 _TEXT = """
-Our own planner does not search motions at all. It looks for the configurations of start and end whose largest joint
-displacement is least, and joins them straight, with one polynomial or with constant speed between blends. It chooses
-how the arm bends at both ends; eq. (1) of the paper does not. So we compare twice, **with the same freedom for all**:
-once every elbow is positive; once all choose, and each search then runs four times, once for each combination of
-elbows, with all its evaluations, and keeps its best plan.
+Our own planner does not search over motions. It looks for start and end configurations with the smallest largest joint
+displacement, and joins them by a straight line in joint space, timed by one polynomial or by constant speed between
+blends. It chooses the elbows at both ends; eq. (1) of the paper does not. So we compare twice, **with the same freedom
+for all**: first with all elbows positive; then with free elbows, where each search runs four times, once for each
+combination of elbows, with its full number of evaluations, and keeps its best plan.
 """
 
 
@@ -100,7 +100,7 @@ def _is_quicker(cases: Sequence[Freedom]) -> Check:
         rule=f"Ours takes at most {_VIA} times the lowest mean of the searches, for each arm and freedom.",
         measured=(
             f"the lowest mean is {number(min(ratios), 4)} to {number(max(ratios), 4)} times ours; the best single plan "
-            f"of any search is quicker than ours for {'; '.join(longer) or 'no arm'}"
+            f"of any search is faster than ours for {'; '.join(longer) or 'no arm'}"
         ),
         holds=min(ratios) >= 1.0 / _VIA,
         section=TITLE,

@@ -26,15 +26,15 @@ _WELL = 1.25  # times the best plan known
 _SOON = 10  # iterations of 200
 
 _TEXT = """
-The tip goes from (1, 0) to (0.5, 1.5), at rest at both ends, through a via point that the search is free to choose: a
-polynomial of fourth order leads there and one of fifth order away (eq. 3-6). With more than two links the search also
-chooses how the last links stand at both ends. The paper names no limits; ours are half a turn a second, and twice that
-per second to get there. What the decision vector breaks costs a penalty (eq. 15); we hold the *exact* extremes of
-velocity and acceleration, roots of quadratics, against the limits, where the paper looks at samples.
+The tip goes from (1, 0) to (0.5, 1.5), at rest at both ends, through a via point that the search chooses: one
+polynomial of fourth order before it and one of fifth order after it (eq. 3-6). With more than two links the search also
+chooses the orientation of the last links at both ends. The paper states no limits; ours are half a turn per second for
+velocity, and one turn per second squared for acceleration. Violations cost a penalty (eq. 15); we compare the *exact*
+extremes of velocity and acceleration, roots of quadratics, with the limits, where the paper uses samples.
 
-All searches bend the arm as the arccosine of eq. (1) has it: both elbows positive. The dashed line is a bound for the
-same elbows: the least time in which *any* motion within the limits joins the nearest two configurations found, with
-full acceleration and full braking.
+All searches use the elbows that the arccosine of eq. (1) gives: both positive. The dashed line is a bound for the same
+elbows: the least time of *any* motion within the limits between the nearest two configurations found, with full
+acceleration and full braking.
 """
 
 
@@ -128,7 +128,7 @@ def is_easy(motions: Sequence[Motion]) -> Claim:
         rule=f"The median run is within 1 % of its final cost after at most {_SOON} of {GENERATIONS} iterations.",
         measured=f"{iterations[2]:g} iterations; {others} links",
         holds=iterations[2] <= _SOON,
-        reading="Constants are ours. With two links every motion without a detour turns the joints by the same.",
+        reading="Constants are ours. With two links every motion without a detour turns the joints by the same amount.",
         section=TITLE,
     )
 

@@ -155,6 +155,9 @@ def costs(plans: Sequence[bik.Plan]) -> list[float]:
     return [plan.cost for plan in plans]
 
 
+TOO_FEW = "One run of each search has no standard error: run without --short."
+
+
 def is_lower(one: Sequence[float], other: Sequence[float]) -> bool:
     """Whether the mean of `one` is lower than that of `other`, by more than two standard errors of the difference."""
     if min(len(one), len(other)) < 2:

@@ -48,13 +48,13 @@ _PATHS = ("pentagram", "closed curve")
 _TEXT = """
 **This table is a calibration, not a confirmation.** The paper prints times and rotations along its two paths, but
 neither the paths nor the links nor the limits. Below, four numbers (size of the star, shape and place of the curve,
-velocity limit) were *fitted* so that TPBSO's means come out near the printed ones: a star of radius 1 about the base,
+velocity limit) were *fitted* so that TPBSO's means are close to the printed ones: a star of radius 1 about the base,
 the curve (sin 3t, sin 2t) 1.4 m away, links of 1 m, 38.53 rad/s, no limit on acceleration. Several other combinations
-come as close, so the geometry cannot be told from the table.
+fit as well, so the table does not determine the geometry.
 
-What was not fitted is the test: the rows of PSO and GA, the order of the three, the deviations. They do not come out.
-All have their usual constants, at equal iterations. Whether TPBSO varies least can be read from the printed table
-itself: along the closed curve its rotation varies *most*.
+The test is what was not fitted: the rows of PSO and GA, the order of the three, the deviations. They differ from the
+printed ones. All three have their usual constants, at equal iterations. The printed table itself shows that TPBSO does
+not always vary least: along the closed curve its rotation varies *most*.
 """
 
 

@@ -79,7 +79,7 @@ def motions(runs: list[Motion]) -> Part:
             ),
             _TEXT_TABLES,
             _angle_table("table_3_r1", "Table 3, R₁: what APPS finds", R1, angles, decimals=4),
-            _angle_table("table_3_r2", "Table 3, R₂: where the robot then stands", R2, measured, decimals=2),
+            _angle_table("table_3_r2", "Table 3, R₂: where the robot goes", R2, measured, decimals=2),
             _position_table(first, second),
             _error_table(errors),
             Figure(

@@ -42,7 +42,7 @@ class Approach:
 
 
 def singularities(context: Context, runs: list[Motion]) -> Part:
-    """The motions' ways, and searches that begin at a singularity."""
+    """Singular values along the motions, and searches that start at a singularity."""
     approaches = [_approach(run) for run in runs]
     count = context.pick(full=2000, short=200)
     random = ROBOT.random_configurations(count, seed=context.seed)
@@ -73,7 +73,7 @@ def singularities(context: Context, runs: list[Motion]) -> Part:
 
 
 def motion_claim(name: str, smallest: float, rare: float, *, solved: bool) -> Claim:
-    """Smallest singular value on the way of a motion, beside that of a rare configuration."""
+    """Smallest singular value along a motion, compared with a low percentile of random configurations."""
     return Claim.judged(
         f"APPS performs well when a singularity exists, such as in motion {name}.",
         source="Text on Table 6",

@@ -22,7 +22,7 @@ def typos(runs: list[Motion]) -> Part:
             Table(
                 name="misprints",
                 title="Misprints",
-                columns=[Column(name="where"), Column(name="printed"), Column(name="right"), Column(name="evidence")],
+                columns=[Column(name="where"), Column(name="printed"), Column(name="correct"), Column(name="evidence")],
                 rows=_rows(runs),
             ),
         ],
@@ -77,7 +77,7 @@ def _rows(runs: list[Motion]) -> list[list[str]]:
             "Parameters: η, E₀",
             "0.01, 10⁻⁸",
             "0.2, 5 × 10⁻¹⁰ in the scale of eq. (11)",
-            "The only pair that gives all seven counts; both are off by the same factor, 20.",
+            "This pair gives all seven counts; both values differ from the printed ones by the factor 20.",
         ],
         [
             "Table 3, I-1, θ₁ and θ₆ of R₁",
@@ -101,12 +101,12 @@ def _rows(runs: list[Motion]) -> list[list[str]]:
             "in I-1 and 5-6",
             "Table 6 itself, and the next sentence of the text, which gives errors for 3-4 and 6-I.",
         ],
-        ["Text, change of θ₆ in 3-4", "-86.6430°", f"{sixth:.4f}°", "R₁ of 3-4 less R₂ of 2-3."],
+        ["Text, change of θ₆ in 3-4", "-86.6430°", f"{sixth:.4f}°", "R₁ of 3-4 minus R₂ of 2-3."],
         [
             "Text, change of θ₄ in 6-I",
             "142.4315°",
             f"{fourth:.4f}°",
-            "No misprint: it is the change before eq. (12) takes a whole turn away, and shows that it did.",
+            "No misprint: it is the change before eq. (12) removes a whole turn, and shows that it did.",
         ],
     ]
 

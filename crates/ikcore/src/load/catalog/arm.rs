@@ -1,4 +1,4 @@
-//! Tables of arms as makers print them: one DH row per joint, lengths in m, angles in degrees.
+//! Tables of arms as in their data sheets: one DH row per joint, lengths in m, angles in degrees.
 
 use nalgebra::Vector3;
 
@@ -10,7 +10,7 @@ use crate::robot::{ChainBuilder, JointKind, Robot};
 /// A robot arm as a table.
 pub(super) struct Arm {
     pub convention: Dh,
-    /// Turn of DH frame 0 about the x axis of the base (deg).
+    /// Rotation of DH frame 0 about the x axis of the base (deg).
     pub base_roll: f64,
     pub joints: &'static [DhRow],
     /// Distance of the flange from the last DH frame, along its z (m).
@@ -49,14 +49,14 @@ pub(super) const fn degrees(lower: f64, upper: f64, velocity: f64) -> JointRange
     radians(lower.to_radians(), upper.to_radians(), velocity.to_radians())
 }
 
-/// A joint that turns without end, its speed in degrees per second.
+/// A continuous joint, its speed in degrees per second.
 pub(super) const fn endless(velocity: f64) -> JointRange {
     let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
     JointRange { kind: JointKind::Continuous, lower, upper, velocity: velocity.to_radians() }
 }
 
 impl Arm {
-    /// The robot; its last link is `flange` where the table has one.
+    /// Builds the robot; its last link is `flange` if the table has one.
     pub(super) fn build(&self, name: &str) -> Result<Robot> {
         let column = |value: fn(&DhRow) -> f64| self.joints.iter().map(value).collect::<Vec<f64>>();
         let (a, alpha, d) = (column(|row| row.a), column(|row| row.alpha.to_radians()), column(|row| row.d));

@@ -3,8 +3,8 @@
 use super::arm::{Arm, degrees, row};
 use crate::load::dh::Dh::{Modified, Standard};
 
-/// LBR iiwa 14 R820: dimensions, ranges and speeds of the data sheet, to the flange. Joint 4 counts as on the
-/// real arm, against the sense of joint 2.
+/// LBR iiwa 14 R820: dimensions, ranges and speeds of the data sheet, to the flange. The sign of joint 4 is that of the
+/// real arm, opposite to joint 2.
 pub(super) const IIWA14: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,

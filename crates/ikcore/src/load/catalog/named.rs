@@ -2,14 +2,14 @@
 
 use super::arm::Arm;
 use super::{franka, hydraulic, kinova, kuka, universal_robots};
-use crate::error::{Error, Result, suggestion};
+use crate::error::{Error, Result, shortened, suggestion};
 use crate::robot::Robot;
 
-/// Where a built-in robot comes from.
+/// Source of a built-in robot.
 enum Source {
     /// A Denavit-Hartenberg table.
     Table(&'static Arm),
-    /// Code, for what no such table describes.
+    /// Code, for robots that a table cannot describe.
     Made(fn() -> Result<Robot>),
 }
 
@@ -47,7 +47,7 @@ impl Robot {
             Some((_, Table(arm))) => arm.build(name),
             Some((_, Made(make))) => make(),
             None => Err(Error::UnknownRobot {
-                name: name.into(),
+                name: shortened(name),
                 suggestion: suggestion(name, Self::names()),
                 known: Self::names().collect::<Vec<_>>().join(", "),
             }),

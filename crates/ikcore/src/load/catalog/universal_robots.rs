@@ -5,12 +5,12 @@
 use super::arm::{Arm, JointRange, degrees, endless, row};
 use crate::load::dh::Dh::Standard;
 
-/// A joint that makes two full turns, at a speed in degrees per second.
+/// A joint with a range of two full turns, its speed in degrees per second.
 const fn two_turns(speed: f64) -> JointRange {
     degrees(-360.0, 360.0, speed)
 }
 
-/// UR3e: the last joint turns without end.
+/// UR3e: the last joint is continuous.
 pub(super) const UR3E: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,

@@ -1,28 +1,29 @@
-//! The robot of the joints from base to tip: independent joints in order, then the elements of the chain.
+//! The robot from the URDF joints between base and tip: adds the independent joints (entries of q, hence columns of the
+//! Jacobian) in order, then the elements of the chain that they drive.
 
 use std::collections::HashMap;
 
 use nalgebra::Vector3;
-use urdf_rs::JointType;
 
-use super::document::Document;
+use super::document::{Document, UrdfKind};
 use super::mimic::{self, Coupling};
 use super::tree::TreeStep;
 use crate::error::{Error, Result};
 use crate::math::{Pose, pose};
-use crate::robot::{Bodies, ChainBuilder, Drive, Joint, JointKind, Robot};
+use crate::robot::{Bodies, ChainBuilder, Drive, Joint, JointKind, Robot, require_supported};
 
 /// Builds the robot whose chain starts at link `base` and passes these joints.
 pub(super) fn build(document: &Document, base: &str, path: &[TreeStep]) -> Result<Robot> {
-    let joints = &document.model.joints;
+    let joints = &document.joints;
     let moving: Vec<usize> =
-        path.iter().map(|step| step.joint).filter(|joint| joints[*joint].joint_type != JointType::Fixed).collect();
+        path.iter().map(|step| step.joint).filter(|joint| joints[*joint].kind != UrdfKind::Fixed).collect();
     if moving.is_empty() {
         let tip = path.last().map_or(base, |step| far_link(document, *step));
         let problem = format!("no joint moves between base '{base}' and tip '{tip}'");
         return Err(Error::Urdf { line: None, problem });
     }
-    let mut chain = ChainBuilder::new(&document.model.name, base);
+    require_supported(&document.name, moving.len())?;
+    let mut chain = ChainBuilder::new(&document.name, base);
     let index_in_q = add_joints(&mut chain, document, &moving)?;
     for step in path {
         append(&mut chain, document, *step, &index_in_q)?;
@@ -33,7 +34,7 @@ pub(super) fn build(document: &Document, base: &str, path: &[TreeStep]) -> Resul
     Ok(robot.with_bodies(bodies))
 }
 
-/// Capsules of the links of these names.
+/// Collects the capsules of the links with these names.
 fn bodies<'a>(document: &Document, names: impl Iterator<Item = &'a str>) -> Bodies {
     let mut bodies = Bodies::default();
     for link in names.filter_map(|name| document.capsules.get(name)) {
@@ -43,8 +44,8 @@ fn bodies<'a>(document: &Document, names: impl Iterator<Item = &'a str>) -> Bodi
     bodies
 }
 
-/// Adds the independent joints in chain order, narrowed by their followers, and returns the index in q of each independent
-/// joint of the document. A master off the chain takes the place of its first follower.
+/// Adds the independent joints in chain order, with limits narrowed by their mimic joints, and returns the index in q
+/// of each independent joint of the document. A master outside the chain takes the position of its first mimic joint.
 fn add_joints(chain: &mut ChainBuilder, document: &Document, moving: &[usize]) -> Result<HashMap<usize, usize>> {
     let mut index_in_q = HashMap::new();
     for &joint in moving {
@@ -65,36 +66,36 @@ fn add_joints(chain: &mut ChainBuilder, document: &Document, moving: &[usize]) -
     Ok(index_in_q)
 }
 
-/// A joint that moves, with its own limits.
+/// A moving joint with its own limits.
 fn described(document: &Document, index: usize) -> Result<Joint> {
-    let joint = &document.model.joints[index];
+    let joint = &document.joints[index];
     let kind = kind(document, index)?;
-    let described = Joint::new(&joint.name, kind).with_velocity(joint.limit.velocity);
+    let described = Joint::new(&joint.name, kind).with_velocity(joint.velocity);
     match kind {
         JointKind::Continuous => Ok(described),
-        _ => Ok(described.with_range(joint.limit.lower, joint.limit.upper)),
+        _ => Ok(described.with_range(joint.range.0, joint.range.1)),
     }
 }
 
 fn kind(document: &Document, index: usize) -> Result<JointKind> {
-    let joint = &document.model.joints[index];
-    match joint.joint_type {
-        JointType::Revolute => Ok(JointKind::Revolute),
-        JointType::Continuous => Ok(JointKind::Continuous),
-        JointType::Prismatic => Ok(JointKind::Prismatic),
+    let joint = &document.joints[index];
+    match joint.kind {
+        UrdfKind::Revolute => Ok(JointKind::Revolute),
+        UrdfKind::Continuous => Ok(JointKind::Continuous),
+        UrdfKind::Prismatic => Ok(JointKind::Prismatic),
         _ => {
-            let (name, kind) = (&joint.name, format!("{:?}", joint.joint_type).to_lowercase());
+            let (name, kind) = (&joint.name, format!("{:?}", joint.kind).to_lowercase());
             let problem = format!(
                 "joint '{name}' is {kind}, and a chain takes only revolute, continuous, prismatic, fixed and mimic \
                  joints: take base and tip on one side of it, such as base '{}'",
-                joint.child.link
+                joint.child
             );
             Err(document.error_at(index, problem))
         }
     }
 }
 
-/// Appends one joint. Reversed, it is the inverse: the motion by -q first, then the inverse of its origin.
+/// Appends one joint. A reversed joint is the inverse: the motion by -q first, then the inverse of its origin.
 fn append(
     chain: &mut ChainBuilder,
     document: &Document,
@@ -106,7 +107,7 @@ fn append(
     if !step.reversed {
         chain.fixed(origin);
     }
-    if document.model.joints[step.joint].joint_type != JointType::Fixed {
+    if document.joints[step.joint].kind != UrdfKind::Fixed {
         let Coupling { master, drive } = mimic::coupling(document, step.joint)?;
         let drive = Drive { scale: sign * drive.scale, offset: sign * drive.offset };
         chain.moving(index_in_q[&master], kind(document, step.joint)?, axis(document, step.joint)?, drive);
@@ -118,25 +119,25 @@ fn append(
 }
 
 fn origin(document: &Document, joint: usize) -> Pose {
-    let origin = &document.model.joints[joint].origin;
-    pose::from_rpy(*origin.rpy, *origin.xyz)
+    let joint = &document.joints[joint];
+    pose::from_rpy(joint.rpy, joint.xyz)
 }
 
 fn axis(document: &Document, index: usize) -> Result<Vector3<f64>> {
-    let joint = &document.model.joints[index];
-    let axis = Vector3::from(*joint.axis.xyz);
+    let joint = &document.joints[index];
+    let axis = Vector3::from(joint.axis);
     let largest = axis.amax();
     if largest == 0.0 {
         return Err(
             document.error_at(index, format!("axis of joint '{}' is zero: it must have a direction", joint.name))
         );
     }
-    // Its length may be anything; squares of tiny or huge numbers must not vanish or overflow.
+    // The axis may have any length; squares of tiny or huge numbers must not vanish or overflow.
     Ok(axis / largest)
 }
 
 /// The link that a step leads to.
 fn far_link(document: &Document, step: TreeStep) -> &str {
-    let joint = &document.model.joints[step.joint];
-    if step.reversed { &joint.parent.link } else { &joint.child.link }
+    let joint = &document.joints[step.joint];
+    if step.reversed { &joint.parent } else { &joint.child }
 }

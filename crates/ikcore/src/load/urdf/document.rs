@@ -1,7 +1,4 @@
-//! URDF text as a typed model: checked with roxmltree, reduced to links and joints, then read by urdf-rs.
-//!
-//! urdf-rs alone stops at unknown geometry, accepts NaN, skips words that are no numbers and cannot tell a missing limit
-//! from zero. It therefore gets a text of nothing but links and joints, with every number written out.
+//! URDF text as a checked list of links and joints. Ignores everything else but collision shapes.
 
 use std::collections::{HashMap, HashSet};
 
@@ -9,18 +6,66 @@ use roxmltree::Node;
 
 use super::link_capsules::{self, LinkCapsules};
 use super::xml;
-use crate::error::{Error, Result, suggestion};
-
-/// The joint types of URDF.
-const TYPES: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
+use crate::error::{Error, Result, shortened, suggestion};
 
 /// A checked URDF: numbers are finite (limits may be infinite), names unique. Its joints need not form a tree.
 pub(super) struct Document {
-    pub(super) model: urdf_rs::Robot,
-    /// Line of each joint, in the order of the model.
+    pub(super) name: String,
+    pub(super) links: Vec<String>,
+    pub(super) joints: Vec<UrdfJoint>,
+    /// Line of each joint.
     joint_lines: Vec<u32>,
     /// Collision shapes of each link, by name.
     pub(super) capsules: HashMap<String, LinkCapsules>,
+}
+
+/// A joint as the text describes it, with the defaults of URDF filled in.
+pub(super) struct UrdfJoint {
+    pub(super) name: String,
+    pub(super) kind: UrdfKind,
+    pub(super) parent: String,
+    pub(super) child: String,
+    /// (m)
+    pub(super) xyz: [f64; 3],
+    /// Fixed-axis roll, pitch and yaw (rad).
+    pub(super) rpy: [f64; 3],
+    pub(super) axis: [f64; 3],
+    /// Position limits (rad, m).
+    pub(super) range: (f64, f64),
+    /// Velocity limit (rad/s, m/s).
+    pub(super) velocity: f64,
+    pub(super) mimic: Option<Mimic>,
+}
+
+/// A joint follows another: value = multiplier * value of the other + offset.
+pub(super) struct Mimic {
+    pub(super) joint: String,
+    pub(super) multiplier: f64,
+    pub(super) offset: f64,
+}
+
+/// The joint types of URDF.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum UrdfKind {
+    Revolute,
+    Continuous,
+    Prismatic,
+    Fixed,
+    Floating,
+    Planar,
+    Spherical,
+}
+
+impl UrdfKind {
+    const NAMED: [(&str, Self); 7] = [
+        ("revolute", Self::Revolute),
+        ("continuous", Self::Continuous),
+        ("prismatic", Self::Prismatic),
+        ("fixed", Self::Fixed),
+        ("floating", Self::Floating),
+        ("planar", Self::Planar),
+        ("spherical", Self::Spherical),
+    ];
 }
 
 impl Document {
@@ -33,12 +78,24 @@ impl Document {
             return Err(xml::error_at(root, format!("the outermost element must be <robot>, found <{found}>")));
         }
         xml::refuse_xacro(root)?;
-        let joint_lines = xml::children(root, "joint").map(xml::line).collect();
-        let model = urdf_rs::read_from_string(&reduced(root)?)
-            .map_err(|error| Error::Urdf { line: None, problem: error.to_string() })?;
-        let links = xml::children(root, "link").filter_map(|link| Some((link.attribute("name")?, link)));
-        let capsules = links.map(|(name, link)| (name.to_owned(), link_capsules::read(name, link))).collect();
-        Ok(Self { model, joint_lines, capsules })
+        if xml::children(root, "joint").next().is_none() {
+            return Err(xml::error_at(root, "<robot> has no <joint>: a chain needs at least one that moves"));
+        }
+        let name = xml::attribute(root, "name")?.unwrap_or("robot").to_owned();
+        let (mut names, mut links, mut capsules) = (HashSet::new(), vec![], HashMap::new());
+        for link in xml::children(root, "link") {
+            let name = new_name(link, "link", &mut names)?;
+            links.push(name.to_owned());
+            capsules.insert(name.to_owned(), link_capsules::read(name, link));
+        }
+        names.clear();
+        let mut joints = vec![];
+        for joint in xml::children(root, "joint") {
+            let name = new_name(joint, "joint", &mut names)?;
+            joints.push(read_joint(joint, name)?);
+        }
+        let joint_lines = xml::lines(&text, xml::children(root, "joint"));
+        Ok(Self { name, links, joints, joint_lines, capsules })
     }
 
     /// An error at a joint.
@@ -47,64 +104,44 @@ impl Document {
     }
 }
 
-/// The same robot with links and joints only, and with all numbers written out.
-fn reduced(root: Node) -> Result<String> {
-    if xml::children(root, "joint").next().is_none() {
-        return Err(xml::error_at(root, "<robot> has no <joint>: a chain needs at least one that moves"));
-    }
-    let mut text = format!("<robot name=\"{}\">", escaped(xml::attribute(root, "name")?.unwrap_or("robot")));
-    let mut names = HashSet::new();
-    for link in xml::children(root, "link") {
-        let name = new_name(link, "link", &mut names)?;
-        text += &format!("<link name=\"{}\"/>", escaped(name));
-    }
-    names.clear();
-    for joint in xml::children(root, "joint") {
-        let name = new_name(joint, "joint", &mut names)?;
-        text += &reduced_joint(joint, name)?;
-    }
-    Ok(text + "</robot>")
-}
-
-/// The name of a link or joint, which no other may have.
+/// Returns the name of a link or joint, checked to be unique.
 fn new_name<'a>(node: Node<'a, '_>, tag: &str, names: &mut HashSet<&'a str>) -> Result<&'a str> {
     let name = xml::required(node, "name", &format!("<{tag}>"))?;
     if names.insert(name) { Ok(name) } else { Err(xml::error_at(node, format!("a second {tag} is named '{name}'"))) }
 }
 
-fn reduced_joint(joint: Node, name: &str) -> Result<String> {
-    let owner = format!("joint '{name}'");
-    let kind = joint_type(joint, &owner)?;
+fn read_joint(joint: Node, name: &str) -> Result<UrdfJoint> {
+    let owner = format!("joint '{}'", shortened(name));
+    let kind = joint_kind(joint, &owner)?;
     let link = |tag: &str| match xml::children(joint, tag).next() {
-        Some(end) => xml::required(end, "link", &format!("<{tag}> of {owner}")).map(escaped),
+        Some(end) => xml::required(end, "link", &format!("<{tag}> of {owner}")).map(str::to_owned),
         None => Err(xml::error_at(joint, format!("{owner} has no <{tag} link=\"...\"/>"))),
     };
-    let (parent, child) = (link("parent")?, link("child")?);
-    let [x, y, z] = vector(joint, "origin", "xyz", &owner)?.unwrap_or_default();
-    let [roll, pitch, yaw] = rotation(joint, &owner)?;
-    let [i, j, k] = vector(joint, "axis", "xyz", &owner)?.unwrap_or([1.0, 0.0, 0.0]);
-    let (lower, upper) = match (number(joint, "limit", "lower", &owner)?, number(joint, "limit", "upper", &owner)?) {
-        (None, None) => (f64::NEG_INFINITY, f64::INFINITY),
-        (lower, upper) => (lower.unwrap_or(0.0), upper.unwrap_or(0.0)),
-    };
-    let velocity = number(joint, "limit", "velocity", &owner)?.unwrap_or(f64::INFINITY);
-    let mimic = mimic(joint, &owner)?;
-    Ok(format!(
-        "<joint name=\"{name}\" type=\"{kind}\">\
-         <origin xyz=\"{x} {y} {z}\" rpy=\"{roll} {pitch} {yaw}\"/><parent link=\"{parent}\"/><child link=\"{child}\"/>\
-         <axis xyz=\"{i} {j} {k}\"/>\
-         <limit lower=\"{lower}\" upper=\"{upper}\" velocity=\"{velocity}\"/>{mimic}</joint>",
-        name = escaped(name),
-    ))
+    Ok(UrdfJoint {
+        kind,
+        parent: link("parent")?,
+        child: link("child")?,
+        xyz: vector(joint, "origin", "xyz", &owner)?.unwrap_or_default(),
+        rpy: rotation(joint, &owner)?,
+        axis: vector(joint, "axis", "xyz", &owner)?.unwrap_or([1.0, 0.0, 0.0]),
+        range: match (number(joint, "limit", "lower", &owner)?, number(joint, "limit", "upper", &owner)?) {
+            (None, None) => (f64::NEG_INFINITY, f64::INFINITY),
+            (lower, upper) => (lower.unwrap_or(0.0), upper.unwrap_or(0.0)),
+        },
+        velocity: number(joint, "limit", "velocity", &owner)?.unwrap_or(f64::INFINITY),
+        mimic: mimic(joint, &owner)?,
+        name: name.into(),
+    })
 }
 
-fn joint_type<'a>(joint: Node<'a, '_>, owner: &str) -> Result<&'a str> {
+fn joint_kind(joint: Node, owner: &str) -> Result<UrdfKind> {
     let kind = xml::required(joint, "type", owner)?;
-    if TYPES.contains(&kind) {
-        return Ok(kind);
+    if let Some((_, known)) = UrdfKind::NAMED.iter().find(|(name, _)| *name == kind) {
+        return Ok(*known);
     }
-    let (hint, known) = (suggestion(kind, TYPES), TYPES.join(", "));
-    Err(xml::error_at(joint, format!("{owner} has the unknown type '{kind}'{hint}; types: {known}")))
+    let names = UrdfKind::NAMED.map(|(name, _)| name);
+    let (hint, known) = (suggestion(kind, names), names.join(", "));
+    Err(xml::error_at(joint, format!("{owner} has the unknown type '{}'{hint}; types: {known}", shortened(kind))))
 }
 
 /// Roll, pitch and yaw (rad).
@@ -118,18 +155,17 @@ fn rotation(joint: Node, owner: &str) -> Result<[f64; 3]> {
     }
 }
 
-/// The element that makes a joint follow another, or nothing.
-fn mimic(joint: Node, owner: &str) -> Result<String> {
-    let Some(mimic) = xml::children(joint, "mimic").next() else { return Ok(String::new()) };
-    let master = escaped(xml::required(mimic, "joint", &format!("<mimic> of {owner}"))?);
+/// The joint that a joint follows, if any.
+fn mimic(joint: Node, owner: &str) -> Result<Option<Mimic>> {
+    let Some(mimic) = xml::children(joint, "mimic").next() else { return Ok(None) };
+    let master = xml::required(mimic, "joint", &format!("<mimic> of {owner}"))?;
     let finite = |attribute: &str, default: f64| match number(joint, "mimic", attribute, owner)? {
         Some(number) if number.is_infinite() => {
             Err(xml::error_at(mimic, format!("mimic {attribute} of {owner} must be finite, got '{number}'")))
         }
         number => Ok(number.unwrap_or(default)),
     };
-    let (multiplier, offset) = (finite("multiplier", 1.0)?, finite("offset", 0.0)?);
-    Ok(format!("<mimic joint=\"{master}\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>"))
+    Ok(Some(Mimic { joint: master.into(), multiplier: finite("multiplier", 1.0)?, offset: finite("offset", 0.0)? }))
 }
 
 fn vector(joint: Node, tag: &str, attribute: &str, owner: &str) -> Result<Option<[f64; 3]>> {
@@ -140,9 +176,4 @@ fn vector(joint: Node, tag: &str, attribute: &str, owner: &str) -> Result<Option
 fn number(joint: Node, tag: &str, attribute: &str, owner: &str) -> Result<Option<f64>> {
     let Some(element) = xml::children(joint, tag).next() else { return Ok(None) };
     xml::number(element, attribute, &format!("{tag} {attribute} of {owner}"))
-}
-
-/// Text as it must stand between quotation marks.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -1,4 +1,4 @@
-//! Collision shapes of a link as capsules that contain them.
+//! Collision shapes of a link as capsules that enclose them.
 
 use nalgebra::{Point3, Vector3};
 use roxmltree::Node;
@@ -15,7 +15,7 @@ pub(super) struct LinkCapsules {
     pub(super) unread: Vec<String>,
 }
 
-/// Reads the shapes of a link. A shape that cannot be read is no error: most callers never ask for it.
+/// Reads the shapes of a link. An unreadable shape is not an error: most callers never need it.
 pub(super) fn read(name: &str, link: Node) -> LinkCapsules {
     let mut read = LinkCapsules::default();
     for collision in xml::children(link, "collision") {
@@ -33,19 +33,19 @@ pub(super) fn read(name: &str, link: Node) -> LinkCapsules {
     read
 }
 
-/// Half of the axis, and the radius, of the capsule that contains a shape at the origin; None for unknown shapes.
+/// Half of the axis, and the radius, of the capsule that encloses a shape at the origin; `None` for unknown shapes.
 fn axis(shape: Node) -> Option<(Vector3<f64>, f64)> {
     let size = |name: &str| xml::number(shape, name, name).ok()?.filter(|size| *size > 0.0 && size.is_finite());
     match shape.tag_name().name() {
         "sphere" => Some((Vector3::zeros(), size("radius")?)),
-        // The caps stick out of a cylinder, whose ends are flat.
+        // The caps extend beyond the flat ends of a cylinder.
         "cylinder" | "capsule" => Some((Vector3::z() * 0.5 * size("length")?, size("radius")?)),
         "box" => {
             let edges = Vector3::from(xml::vector(shape, "size", "size").ok()??);
             if edges.min() <= 0.0 {
                 return None;
             }
-            // Along the longest edge; the radius reaches the corners of the section across.
+            // Along the longest edge; the radius reaches the corners of the cross-section.
             let along = edges.imax();
             let mut across = 0.5 * edges;
             across[along] = 0.0;
@@ -57,7 +57,7 @@ fn axis(shape: Node) -> Option<(Vector3<f64>, f64)> {
     }
 }
 
-/// Pose of the shape in its link; None where it cannot be read.
+/// Pose of the shape in its link; `None` if it cannot be read.
 fn origin(collision: Node) -> Option<Pose> {
     let Some(origin) = xml::children(collision, "origin").next() else { return Some(Pose::identity()) };
     let xyz = xml::vector(origin, "xyz", "xyz").ok()?.unwrap_or_default();

@@ -1,12 +1,11 @@
 //! Mimic joints: the independent joint that drives each, narrowed by the limits of its followers.
 
-use urdf_rs::JointType;
-
-use super::document::Document;
+use super::document::{Document, UrdfKind};
 use crate::error::{Error, Result, suggestion};
 use crate::robot::{Drive, Joint, JointKind};
+use crate::wording::listed;
 
-/// The independent joint that drives a joint (for most the joint itself), and its drive.
+/// The independent joint that drives a joint (usually the joint itself), and its drive.
 pub(super) struct Coupling {
     pub(super) master: usize,
     pub(super) drive: Drive,
@@ -14,7 +13,7 @@ pub(super) struct Coupling {
 
 /// Follows `<mimic>` from joint to joint: value = multiplier * value of the mimicked joint + offset.
 pub(super) fn coupling(document: &Document, joint: usize) -> Result<Coupling> {
-    let joints = &document.model.joints;
+    let joints = &document.joints;
     let mut coupling = Coupling { master: joint, drive: Drive::DIRECT };
     let mut passed = vec![joint];
     while let Some(mimic) = &joints[coupling.master].mimic {
@@ -26,11 +25,11 @@ pub(super) fn coupling(document: &Document, joint: usize) -> Result<Coupling> {
             return Err(document.error_at(follower, format!("mimic joints follow in a circle: {}", names.join(" -> "))));
         }
         passed.push(master);
-        let (multiplier, offset) = (mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0));
+        let (multiplier, offset) = (mimic.multiplier, mimic.offset);
         let Drive { scale, offset: constant } = coupling.drive;
         coupling = Coupling { master, drive: Drive { scale: scale * multiplier, offset: scale * offset + constant } };
     }
-    if joints[coupling.master].joint_type == JointType::Fixed {
+    if joints[coupling.master].kind == UrdfKind::Fixed {
         let (follower, master) = (&joints[joint].name, &joints[coupling.master].name);
         return Err(document.error_at(joint, format!("joint '{follower}' mimics '{master}', which is fixed")));
     }
@@ -38,14 +37,15 @@ pub(super) fn coupling(document: &Document, joint: usize) -> Result<Coupling> {
 }
 
 fn unknown_target(document: &Document, follower: usize, target: &str) -> Error {
-    let names = || document.model.joints.iter().map(|joint| joint.name.as_str());
-    let (hint, known) = (suggestion(target, names()), names().collect::<Vec<_>>().join(", "));
-    let follower_name = &document.model.joints[follower].name;
+    let names = || document.joints.iter().map(|joint| joint.name.as_str());
+    let (hint, known) = (suggestion(target, names()), listed(names()));
+    let follower_name = &document.joints[follower].name;
     let problem = format!("joint '{follower_name}' mimics '{target}', which does not exist{hint}; joints: {known}");
     document.error_at(follower, problem)
 }
 
-/// Narrows the master so that `follower`, driven by it, keeps its own limits. The error explains an empty range.
+/// Narrows the limits of the master so that its mimic joint `follower` keeps its own limits. The error explains an
+/// empty range.
 pub(super) fn narrow(master: &mut Joint, follower: &Joint, drive: Drive) -> Result<(), String> {
     let Drive { scale, offset } = drive;
     if scale == 0.0 {

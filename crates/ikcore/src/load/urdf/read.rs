@@ -5,25 +5,27 @@ use std::string::FromUtf8Error;
 use super::chain;
 use super::document::Document;
 use super::tree::Tree;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shortened};
 use crate::robot::Robot;
 
 impl Robot {
     /// Reads a robot from a URDF file, or from the XML itself (a string that contains `<`).
     ///
-    /// `base` and `tip` are link names; None is the root, and the only leaf below `base`. `base` need not be an
-    /// ancestor of `tip`: joints that are passed from child to parent move by -q. Poses are in the frame of `base`.
+    /// `base` and `tip` are link names. `None` means the root, and the only leaf below `base`. `base` need not be an
+    /// ancestor of `tip`: joints passed from child to parent move by -q. Poses are in the frame of `base`.
     ///
-    /// The independent joints stand in chain order. A mimic joint on the chain follows its master, and its own limits
-    /// narrow the master's; a master that is not on the chain is an independent joint in the place of its first
-    /// follower. Only joints on the chain, and masters, are judged: an odd gripper does not spoil an arm.
+    /// The independent joints are in chain order. A mimic joint on the chain follows its master, and its limits narrow
+    /// the master's; a master that is not on the chain becomes an independent joint at the position of its first mimic
+    /// joint. Only joints on the chain, and masters, are checked: an unsupported gripper does not prevent loading an
+    /// arm.
     ///
-    /// Limits: where a revolute or prismatic joint gives neither `lower` nor `upper` it is unlimited (URDF's default
-    /// of zero for both would lock it); where it gives one, the other is zero, as URDF has it. Without `velocity` the
-    /// speed is unlimited; an explicit zero locks the joint. Soft limits (`<safety_controller>`) are ignored.
+    /// Limits: a revolute or prismatic joint with neither `lower` nor `upper` is unlimited (URDF's default of zero for
+    /// both would lock it); if one is given, the other is zero, as URDF specifies. Without `velocity` the speed is
+    /// unlimited; an explicit zero locks the joint. Soft limits (`<safety_controller>`) are ignored.
     ///
-    /// Collision shapes of the links on the chain become [capsules](Robot::capsules) that hold them: spheres exactly,
-    /// cylinders and boxes with caps that stick out. Meshes are not read; [`Robot::unread_collision_shapes`] names them.
+    /// Collision shapes of the links on the chain become [capsules](Robot::capsules) that enclose them: exact for
+    /// spheres, with protruding caps for cylinders and boxes. Meshes are not read; [`Robot::unread_collision_shapes`]
+    /// names them.
     ///
     /// # Errors
     /// [`Error::Unreadable`] for a file; [`Error::Urdf`], with the line where there is one, for text that is no URDF;
@@ -50,7 +52,7 @@ impl Robot {
 
 fn read(path: &str) -> Result<String> {
     let bytes =
-        std::fs::read(path).map_err(|error| Error::Unreadable { path: path.into(), problem: error.to_string() })?;
+        std::fs::read(path).map_err(|error| Error::Unreadable { path: shortened(path), problem: error.to_string() })?;
     let text = String::from_utf8(bytes).map_err(|error| not_utf8(&error))?;
     if let Some(stem) = path.strip_suffix(".xacro") {
         let stem = stem.strip_suffix(".urdf").unwrap_or(stem);

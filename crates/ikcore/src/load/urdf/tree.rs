@@ -1,14 +1,18 @@
 //! The tree of links and joints, and the path through it from base to tip.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use super::document::Document;
-use crate::error::{Error, Result, suggestion};
+use super::document::{Document, UrdfKind};
+use crate::error::{Error, Result, shortened, suggestion};
+use crate::wording::listed;
+
+/// Largest number of links of a cycle whose names fit into a message.
+const CYCLE_SHOWN: usize = 10;
 
 /// The joints as a tree with one root.
 pub(super) struct Tree<'a> {
     document: &'a Document,
-    /// The joint that leads to each link from its parent.
+    /// The joint between each link and its parent.
     joint_above: HashMap<&'a str, usize>,
     root: &'a str,
 }
@@ -17,7 +21,7 @@ pub(super) struct Tree<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TreeStep {
     pub(super) joint: usize,
-    /// True where the path leads from child to parent.
+    /// True if the path leads from child to parent.
     pub(super) reversed: bool,
 }
 
@@ -25,20 +29,23 @@ impl<'a> Tree<'a> {
     /// Checks that every link has at most one parent, and all have the same root.
     pub(super) fn new(document: &'a Document) -> Result<Self> {
         let joint_above = joints_above(document)?;
-        let links = || document.model.links.iter().map(|link| link.name.as_str());
-        let roots: Vec<&str> = links().filter(|link| !joint_above.contains_key(link)).collect();
         let mut tree = Self { document, joint_above, root: "" };
-        for link in links() {
-            tree.refuse_cycle(link)?;
-        }
+        tree.refuse_cycles()?;
+        let roots: Vec<&str> = tree.links().filter(|link| !tree.joint_above.contains_key(link)).collect();
         match roots[..] {
             [root] => tree.root = root,
             _ => {
-                let problem = format!("no joint leads to any of the links {}: a tree has one root", quoted(&roots));
+                let quoted: Vec<String> = roots.iter().map(|name| format!("'{name}'")).collect();
+                let roots = listed(quoted.iter().map(String::as_str));
+                let problem = format!("no joint leads to any of the links {roots}: a tree has one root");
                 return Err(Error::Urdf { line: None, problem });
             }
         }
         Ok(tree)
+    }
+
+    fn links(&self) -> impl Iterator<Item = &'a str> {
+        self.document.links.iter().map(String::as_str)
     }
 
     pub(super) fn root(&self) -> &'a str {
@@ -47,34 +54,57 @@ impl<'a> Tree<'a> {
 
     /// The link of this name.
     pub(super) fn link(&self, name: &str) -> Result<&'a str> {
-        let model = &self.document.model;
-        let links = || model.links.iter().map(|link| link.name.as_str());
-        let moved_by = model.joints.iter().find(|joint| joint.name == name).map(|joint| &joint.child.link);
-        links().find(|link| *link == name).ok_or_else(|| Error::UnknownLink {
-            robot: model.name.clone(),
-            name: name.into(),
+        let moved_by = self.document.joints.iter().find(|joint| joint.name == name).map(|joint| &joint.child);
+        self.links().find(|link| *link == name).ok_or_else(|| Error::UnknownLink {
+            robot: self.document.name.clone(),
+            name: shortened(name),
             suggestion: match moved_by {
                 Some(link) => format!(" (did you mean '{link}', the link that the joint of this name moves?)"),
-                None => suggestion(name, links()),
+                None => suggestion(name, self.links()),
             },
-            known: links().collect::<Vec<_>>().join(", "),
+            known: listed(self.links()),
         })
     }
 
-    /// The one link below `base` from which no joint leads on.
-    pub(super) fn only_leaf_below(&self, base: &str) -> Result<&'a str> {
-        let model = &self.document.model;
-        let is_leaf = |link: &str| model.joints.iter().all(|joint| joint.parent.link != link);
-        let is_below = |link: &'a str| link == base || self.links_above(link).any(|ancestor| ancestor == base);
-        let links = model.links.iter().map(|link| link.name.as_str());
-        let leaves: Vec<&str> = links.filter(|link| is_leaf(link) && is_below(link)).collect();
-        match leaves[..] {
-            [leaf] => Ok(leaf),
-            _ => Err(Error::AmbiguousTip { robot: model.name.clone(), leaves: leaves.join(", ") }),
+    /// The only leaf link below `base`.
+    pub(super) fn only_leaf_below(&self, base: &'a str) -> Result<&'a str> {
+        let mut leaves = self.leaves_below(base);
+        if let [(leaf, _)] = leaves[..] {
+            return Ok(leaf);
         }
+        // Arms before wheels and sensors: a user looks for the end of an arm.
+        leaves.sort_by_key(|(_, joints)| std::cmp::Reverse(*joints));
+        let described: Vec<String> = leaves.iter().map(|(leaf, joints)| format!("{leaf} ({joints})")).collect();
+        Err(Error::AmbiguousTip {
+            robot: self.document.name.clone(),
+            count: leaves.len(),
+            leaves: listed(described.iter().map(String::as_str)),
+        })
     }
 
-    /// The joints from `base` to `tip`: up to where the two branches meet, then down.
+    /// The links below `base` from which no joint leads on, in the order of the document, each with the number of
+    /// independent joints that move it.
+    fn leaves_below(&self, base: &'a str) -> Vec<(&'a str, usize)> {
+        let joints = &self.document.joints;
+        let mut below: HashMap<&str, Vec<usize>> = HashMap::new();
+        for (index, joint) in joints.iter().enumerate() {
+            below.entry(&joint.parent).or_default().push(index);
+        }
+        let (mut leaves, mut open) = (HashMap::new(), vec![(base, 0)]);
+        while let Some((link, moved_by)) = open.pop() {
+            match below.get(link) {
+                None => _ = leaves.insert(link, moved_by),
+                Some(next) => open.extend(next.iter().map(|index| {
+                    let joint = &joints[*index];
+                    let independent = joint.kind != UrdfKind::Fixed && joint.mimic.is_none();
+                    (joint.child.as_str(), moved_by + usize::from(independent))
+                })),
+            }
+        }
+        self.links().filter_map(|link| Some((link, *leaves.get(link)?))).collect()
+    }
+
+    /// The joints from `base` to `tip`: up to the common ancestor, then down.
     pub(super) fn path(&self, base: &'a str, tip: &'a str) -> Result<Vec<TreeStep>> {
         if base == tip {
             let problem = format!("base and tip are both '{base}': a chain needs two links");
@@ -95,57 +125,66 @@ impl<'a> Tree<'a> {
 
     /// The joints from a link up to the root.
     fn joints_above(&self, link: &'a str) -> impl Iterator<Item = usize> {
-        let joints = &self.document.model.joints;
+        let joints = &self.document.joints;
         let above = |link: &str| self.joint_above.get(link).copied();
-        std::iter::successors(above(link), move |joint| above(&joints[*joint].parent.link))
+        std::iter::successors(above(link), move |joint| above(&joints[*joint].parent))
     }
 
     /// The links from a link's parent up to the root.
     fn links_above(&self, link: &'a str) -> impl Iterator<Item = &'a str> {
-        self.joints_above(link).map(|joint| self.document.model.joints[joint].parent.link.as_str())
+        self.joints_above(link).map(|joint| self.document.joints[joint].parent.as_str())
     }
 
-    /// Err if the way up from `start` comes back to it.
-    fn refuse_cycle(&self, start: &'a str) -> Result<()> {
-        let mut cycle = vec![start];
-        for link in self.links_above(start).take(self.document.model.links.len()) {
-            cycle.push(link);
-            if link == start {
-                cycle.reverse();
-                let problem = format!("the joints form a cycle: {}", cycle.join(" -> "));
-                return Err(self.document.error_at(self.joint_above[start], problem));
+    /// Err if the way up from any link comes back to a link. A way ends where an earlier one passed, so that each link is
+    /// visited once.
+    fn refuse_cycles(&self) -> Result<()> {
+        let mut passed_from = HashMap::new();
+        for start in self.links() {
+            for link in std::iter::once(start).chain(self.links_above(start)) {
+                match passed_from.insert(link, start) {
+                    None => {}
+                    Some(earlier) if earlier == start => return Err(self.cycle_through(link)),
+                    Some(_) => break,
+                }
             }
         }
         Ok(())
     }
+
+    fn cycle_through(&self, link: &'a str) -> Error {
+        let above = self.links_above(link).take_while(|above| *above != link);
+        let mut cycle: Vec<&str> = [link].into_iter().chain(above).chain([link]).collect();
+        cycle.reverse();
+        let links = cycle.len() - 1;
+        let problem = match links {
+            ..=CYCLE_SHOWN => format!("the joints form a cycle: {}", cycle.join(" -> ")),
+            _ => format!("the joints form a cycle of {links} links through '{link}'"),
+        };
+        self.document.error_at(self.joint_above[link], problem)
+    }
 }
 
-/// The joint that leads to each link. Err for a joint between links that do not exist, or two joints to one link.
+/// Returns the joint above each link. An error for a joint between links that do not exist, or two joints to one link.
 fn joints_above(document: &Document) -> Result<HashMap<&str, usize>> {
-    let model = &document.model;
-    let links: Vec<&str> = model.links.iter().map(|link| link.name.as_str()).collect();
-    let known: std::collections::HashSet<&str> = links.iter().copied().collect();
+    let links: Vec<&str> = document.links.iter().map(String::as_str).collect();
+    let known: HashSet<&str> = links.iter().copied().collect();
     let mut above = HashMap::new();
-    for (index, joint) in model.joints.iter().enumerate() {
+    for (index, joint) in document.joints.iter().enumerate() {
         let name = &joint.name;
-        for (end, link) in [("parent", &joint.parent.link), ("child", &joint.child.link)] {
+        for (end, link) in [("parent", &joint.parent), ("child", &joint.child)] {
             if !known.contains(link.as_str()) {
-                let (hint, known) = (suggestion(link, links.iter().copied()), links.join(", "));
+                let (hint, known) = (suggestion(link, links.iter().copied()), listed(links));
                 let problem = format!("{end} link '{link}' of joint '{name}' does not exist{hint}; links: {known}");
                 return Err(document.error_at(index, problem));
             }
         }
-        let child = joint.child.link.as_str();
+        let child = joint.child.as_str();
         if let Some(other) = above.insert(child, index) {
-            let other = &model.joints[other].name;
+            let other = &document.joints[other].name;
             let problem =
                 format!("link '{child}' is the child of two joints, '{other}' and '{name}': a tree has no loops");
             return Err(document.error_at(index, problem));
         }
     }
     Ok(above)
-}
-
-fn quoted(names: &[&str]) -> String {
-    names.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ")
 }

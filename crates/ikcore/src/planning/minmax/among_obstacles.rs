@@ -15,7 +15,7 @@ use crate::rng;
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 
-/// Configurations that all trees together may examine: about half a second.
+/// Total number of configurations that all trees may examine: about half a second.
 const BUDGET: usize = 200_000;
 /// With fewer collision-free pairs than this, more are sought ...
 const FEW_PAIRS: usize = 3;
@@ -23,7 +23,7 @@ const FEW_PAIRS: usize = 3;
 const TRIES: usize = 400;
 /// Intervals of a straight line at whose ends its penetration is measured.
 const INTERVALS: usize = 16;
-/// Paths that are searched, of which the quickest is taken.
+/// Number of paths searched, of which the quickest is taken.
 const PATHS: u64 = 4;
 /// How often blends are narrowed before the motion stops at every corner instead.
 const NARROWINGS: usize = 12;
@@ -65,7 +65,7 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
     finish(search, &scene, trajectory, ended, options, margin)
 }
 
-/// The pair whose straight line penetrates least, by samples.
+/// Returns the pair whose straight line penetrates least, at samples.
 fn least_penetrating<'p>(scene: &Scene, pairs: &'p [EndPair]) -> Option<&'p EndPair> {
     let distance = |pair: &EndPair| {
         let at = |i: usize| -> Vec<f64> {
@@ -78,13 +78,14 @@ fn least_penetrating<'p>(scene: &Scene, pairs: &'p [EndPair]) -> Option<&'p EndP
     pairs.iter().max_by(|one, other| distance(one).total_cmp(&distance(other)))
 }
 
-/// The motion certified to be free of collisions, or why there is none.
+/// The certified motion, or why there is none.
 enum Certified {
     Motion(Trajectory),
     Nothing(Status),
 }
 
-/// The quickest straight motion between `open` pairs that is free of collisions; else the quickest of some paths around obstacles.
+/// Returns the quickest collision-free straight motion between `open` pairs; else the quickest of several paths around
+/// obstacles.
 fn best_path(
     trees: &mut TreeSearch,
     limits: &MotionLimits,
@@ -157,7 +158,7 @@ fn keeps_clear(trees: &mut TreeSearch, trajectory: &Trajectory, margin: f64) -> 
     trees.sweep.check(&TimedMotion(trajectory), [0.0, trajectory.duration()], margin).is_ok()
 }
 
-/// Completes the plan with the limits and distances that its trajectory breaks.
+/// Completes the plan with the violations and clearance of its trajectory.
 fn finish(
     search: &PairSearch,
     scene: &Scene,

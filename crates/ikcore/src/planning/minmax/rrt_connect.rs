@@ -10,7 +10,7 @@ use crate::solver::Monitor;
 /// How the search for a path ended.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Connection {
-    /// A path, clear on all its lines.
+    /// A collision-free path.
     Found(JointPolyline),
     /// The budget was spent before the trees met.
     NotFound,
@@ -18,10 +18,10 @@ pub(super) enum Connection {
     Interrupted,
 }
 
-/// Length of an edge while a tree grows: the joints' displacements, each as a share of its range.
+/// Length of an edge while a tree grows: the norm of the joint displacements, relative to their ranges.
 const STRIDE: f64 = 0.08;
 
-/// The search, and what it keeps to.
+/// The search: scene, margin, ranges and budget.
 pub(super) struct TreeSearch<'a> {
     pub scene: &'a Scene<'a>,
     pub sweep: Sweep<'a>,
@@ -29,7 +29,7 @@ pub(super) struct TreeSearch<'a> {
     pub margin: f64,
     /// Lowest and highest value of each joint.
     pub ranges: Vec<(f64, f64)>,
-    /// Configurations that may be examined in all.
+    /// Total number of configurations that may be examined.
     pub budget: usize,
     /// Ends of edges refused before the edge was examined.
     refused: usize,
@@ -42,7 +42,7 @@ impl<'a> TreeSearch<'a> {
         Self { scene, sweep: Sweep::new(scene), margin, ranges, budget, refused: 0 }
     }
 
-    /// Whether the straight line keeps clear.
+    /// Whether the straight line is collision-free.
     pub(super) fn is_clear(&mut self, from: &[f64], to: &[f64]) -> bool {
         if !self.scene.is_clear(to, self.margin) {
             self.refused += 1;
@@ -51,12 +51,12 @@ impl<'a> TreeSearch<'a> {
         self.sweep.check(&Edge { from, to }, [0.0, 1.0], self.margin).is_ok()
     }
 
-    /// Whether the budget is spent. Refused ends have one of their own: where nothing is clear, no edge is ever examined.
+    /// Whether the budget is spent. Refused ends have their own budget: if nothing is clear, no edge is ever examined.
     fn is_spent(&self) -> bool {
         self.sweep.examined() >= self.budget || self.refused >= self.budget
     }
 
-    /// Squared distance, each joint's displacement as a share of its range.
+    /// Squared distance, with joint displacements relative to their ranges.
     fn squared_distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let share = |j: usize| (a[j] - b[j]) / (self.ranges[j].1 - self.ranges[j].0).max(1e-9);
         (0..a.len()).map(|j| share(j) * share(j)).sum()
@@ -97,7 +97,7 @@ impl<'a> TreeSearch<'a> {
         Connection::NotFound
     }
 
-    /// Grows `tree` towards `goal` by up to `strides` edges; returns the last node reached, None where it cannot grow.
+    /// Grows `tree` towards `goal` by up to `strides` edges; returns the last node reached, `None` if it cannot grow.
     fn grow(&mut self, tree: &mut Tree, goal: &[f64], strides: usize) -> Option<usize> {
         let distances = tree.nodes.iter().map(|node| self.squared_distance(node, goal)).enumerate();
         let (mut at, _) = distances.min_by(|one, other| one.1.total_cmp(&other.1))?;
@@ -122,7 +122,7 @@ impl<'a> TreeSearch<'a> {
         reached
     }
 
-    /// Straightens a path: leaves out points that are not needed, then tries random shortcuts.
+    /// Shortens a path: removes unnecessary points, then tries random shortcuts.
     pub(super) fn shorten(
         &mut self,
         path: JointPolyline,
@@ -145,7 +145,7 @@ impl<'a> TreeSearch<'a> {
         JointPolyline(self.with_longest_lines(points))
     }
 
-    /// From each point straight to the farthest one that can be reached so.
+    /// Connects each point to the farthest one that a straight line can reach.
     fn with_longest_lines(&mut self, points: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         let last = points.len() - 1;
         let (mut i, mut kept) = (0, vec![points[0].clone()]);
@@ -159,7 +159,7 @@ impl<'a> TreeSearch<'a> {
     }
 }
 
-/// Shortcuts that are tried.
+/// Number of random shortcuts tried.
 const SHORTCUTS: usize = 60;
 
 /// The line on which `place` lies (counted in lines), and the point there.

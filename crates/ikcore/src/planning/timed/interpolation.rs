@@ -14,7 +14,7 @@ use crate::robot::Robot;
 pub(super) struct JointWaypoints {
     /// Path parameters, from 0 to 1.
     pub knots: Vec<f64>,
-    /// Joint positions at each knot, row after row.
+    /// Joint positions at each knot, in row-major order.
     pub rows: Vec<f64>,
 }
 

@@ -5,9 +5,9 @@ use crate::objective::Point;
 /// The best point of a run so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BestPoint {
-    /// Where; empty before the first evaluation.
+    /// The point; empty before the first evaluation.
     pub x: Point,
-    /// Its value; infinite where the objective was never finite.
+    /// Its value; infinite if the objective was never finite.
     pub value: f64,
     /// Whether it passes the problem's own test.
     pub solved: bool,
@@ -21,7 +21,7 @@ impl Default for BestPoint {
 }
 
 impl BestPoint {
-    /// Keeps `x` where it is better: solved before unsolved, then the lower value, then the earlier.
+    /// Keeps `x` if it is better: solved before unsolved, then the lower value, then the earlier point.
     #[inline]
     pub(super) fn challenge(&mut self, x: &[f64], value: f64, solved: bool) {
         let better = (solved && !self.solved) || (solved == self.solved && value < self.value);

@@ -21,9 +21,9 @@ pub struct Evaluator<'a, O: ?Sized> {
     pub(super) dimension: usize,
     pub(super) pattern: CallPattern,
     pub(super) domain: Domain,
-    /// Whether the solver ends at a threshold of its own.
+    /// Whether the solver ends at its own threshold.
     pub(super) own_threshold: bool,
-    /// The period of each entry; empty where everything is clipped.
+    /// The period of each entry; empty if all entries are clipped.
     pub(super) periods: Vec<Option<f64>>,
     /// Whether the last point was solved, but outside the box.
     pub(super) solved_outside: bool,
@@ -85,14 +85,14 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
     pub(in crate::solver) fn adopt(&mut self, domain: Domain, own_threshold: bool) {
         (self.domain, self.own_threshold) = (domain, own_threshold);
         if domain == Domain::Wrapped {
-            // A locked entry has no room to turn in.
+            // A locked entry cannot be shifted by a period.
             let locked = |i: usize| self.bounds.lower()[i] == self.bounds.upper()[i];
             let period = |i| if locked(i) { None } else { self.objective.period(i) };
             self.periods = (0..self.dimension).map(period).collect();
         }
     }
 
-    /// What is minimised.
+    /// The objective.
     pub(in crate::solver) fn objective(&self) -> &O {
         self.objective
     }
@@ -107,7 +107,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         self.dimension
     }
 
-    /// The box that points are confined to.
+    /// The box that points must be in.
     pub fn bounds(&self) -> &'a Bounds {
         self.bounds
     }
@@ -166,7 +166,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         if self.stop.min_iterations == 0 { self.check_termination() } else { Ok(()) }
     }
 
-    /// Counts a finished step and checks whether the run ends with it.
+    /// Counts a finished step and checks whether the run ends after it.
     ///
     /// # Errors
     /// The status with which it ends.
@@ -184,7 +184,8 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         }
     }
 
-    /// The status of a run that `signal` ended: a budget that runs out in mid-step may have met a solution in that step.
+    /// The status of a run that `signal` ended: if a budget runs out within a step, that step may still have found a
+    /// solution.
     pub(in crate::solver) fn final_status(&self, signal: Status) -> Status {
         if self.progress.best.solved { Status::Solved } else { signal }
     }
@@ -205,7 +206,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         if self.solved_outside { Err(Status::OutsideLimits) } else { Ok(()) }
     }
 
-    /// A solver with a threshold of its own goes on where others are done.
+    /// Checks the end of the run; a solver with its own threshold continues when others are done.
     fn check_termination(&self) -> Result<(), Status> {
         if self.own_threshold { Ok(()) } else { self.check_solved() }
     }
@@ -238,7 +239,7 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         }
     }
 
-    /// Records the score of `x`, keeps `x` where it is the best so far, and returns its value.
+    /// Records the score of `x`, keeps `x` if it is the best so far, and returns its value.
     #[inline]
     pub(in crate::solver) fn record(&mut self, x: &[f64], score: Score) -> f64 {
         let value = if score.value.is_finite() { score.value } else { f64::INFINITY };

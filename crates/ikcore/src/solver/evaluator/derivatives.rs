@@ -1,4 +1,4 @@
-//! Evaluations of residuals and derivatives, and the evaluator for solvers that use values alone.
+//! Evaluations of residuals and derivatives, and the evaluator for solvers that use only values.
 
 use std::mem;
 
@@ -8,7 +8,7 @@ use crate::objective::{Differentiable, Gradient, LeastSquares, Linearization, Ob
 use crate::solver::status::Status;
 
 impl<O: Residual + ?Sized> Evaluator<'_, O> {
-    /// Clips `x` to the box; value and residual there.
+    /// Clips `x` to the box and returns the value; writes the residual.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
@@ -22,7 +22,7 @@ impl<O: Residual + ?Sized> Evaluator<'_, O> {
 }
 
 impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
-    /// Clips `x` to the box; value, residual and Jacobian there, counted as one evaluation.
+    /// Clips `x` to the box and returns the value; writes residual and Jacobian. Counts as one evaluation.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
@@ -36,8 +36,8 @@ impl<O: LeastSquares + ?Sized> Evaluator<'_, O> {
 }
 
 impl<O: Gradient + ?Sized> Evaluator<'_, O> {
-    /// Brings `x` into the domain; error and gradient there, counted as one evaluation. The error is infinite where the
-    /// value is not finite.
+    /// Brings `x` into the domain and returns the smooth error, infinite if it is not finite; writes the gradient.
+    /// Counts as one evaluation.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
@@ -52,7 +52,8 @@ impl<O: Gradient + ?Sized> Evaluator<'_, O> {
 }
 
 impl Evaluator<'_, dyn Differentiable + '_> {
-    /// Runs `work` with an evaluator of values alone, so that a derivative-free solver is compiled once for all objectives.
+    /// Runs `work` with an evaluator of values only, so that a derivative-free solver is compiled once for all
+    /// objectives.
     pub(in crate::solver) fn with_values_only<R>(
         &mut self,
         work: impl FnOnce(&mut Evaluator<'_, dyn Objective + '_>) -> R,

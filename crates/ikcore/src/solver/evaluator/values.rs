@@ -6,14 +6,14 @@ use super::budgeted::Evaluator;
 use crate::objective::{Objective, Score};
 use crate::solver::status::Status;
 
-/// Points whose scores are kept on the stack.
+/// Number of points whose scores are kept on the stack.
 const CHUNK: usize = 8;
 
 impl<O: Objective + ?Sized> Evaluator<'_, O> {
-    /// Clips `x` to the box and returns its value, infinite where it is not finite.
+    /// Clips `x` to the box and returns its value; infinite if it is not finite.
     ///
     /// # Errors
-    /// A [`Status`] when the budget is spent or the monitor asks to stop; `x` was not evaluated then.
+    /// A [`Status`] if the budget is spent or the monitor asks to stop; `x` was then not evaluated.
     #[inline]
     pub fn evaluate(&mut self, x: &mut [f64]) -> Result<f64, Status> {
         self.spend(1)?;
@@ -25,7 +25,8 @@ impl<O: Objective + ?Sized> Evaluator<'_, O> {
     /// Clips the points stored one after another in `xs` and writes the value of each.
     ///
     /// # Errors
-    /// As for one point; with a budget for some of them only, the first ones are evaluated before the run ends.
+    /// As for one point. If the budget covers only some of the points, the first ones are evaluated before the run
+    /// ends.
     pub fn evaluate_all(&mut self, mut xs: &mut [f64], values: &mut [f64]) -> Result<(), Status> {
         for values in values.chunks_mut(self.pattern.batch_size) {
             let affordable = values.len().min(self.stop.max_evaluations - self.progress.evaluations);

@@ -14,7 +14,7 @@ use crate::solver::evaluator::Evaluator;
 pub struct BeeColony {
     /// Food sources, each with an employed bee; there are as many onlookers. Karaboga's colony size is twice that.
     pub schedule: Schedule,
-    /// Trials without success after which a source is abandoned; None: sources times dimensions (Karaboga and Basturk
+    /// Failed trials after which a source is abandoned. `None` means sources times dimensions (Karaboga and Basturk
     /// 2007).
     pub limit: Option<usize>,
 }
@@ -48,7 +48,7 @@ pub struct State {
     trials: Vec<usize>,
     /// The source that each onlooker flies to.
     chosen: Vec<usize>,
-    /// The places that bees try.
+    /// Candidate positions.
     candidates: Members,
     /// Running sum of the fitness of the sources.
     fitness: Vec<f64>,
@@ -84,7 +84,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeeColony {
 }
 
 impl BeeColony {
-    /// Replaces the source with the most failed trials, once beyond the limit, by a uniform draw.
+    /// Replaces the source with the most failed trials by a uniform draw, once it exceeds the limit.
     fn send_scout<O: Objective + ?Sized>(
         &self,
         state: &mut State,

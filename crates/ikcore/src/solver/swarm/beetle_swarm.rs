@@ -1,9 +1,10 @@
 //! Beetle swarm optimisation (Wang et al. 2019, "trajectory-planning beetle swarm optimization", equations (26) to (32)):
 //! particles with antennae, which lie along their velocity.
 //!
-//! The equations do not work as printed. We read them as follows: eq. (27) has an inertia weight and a limit on the velocity, without
-//! which the swarm diverges; the antennae of eq. (28) to (30) stand at x +- V d/2 (the paper prints one name for both)
-//! with the velocity just updated, as line 7 of its Algorithm 1 has it. [`BeetleSwarm::literal`] has no inertia weight.
+//! The equations do not work as printed. In our reading, eq. (27) has an inertia weight and a limit on the velocity,
+//! without which the swarm diverges; the antennae of eq. (28) to (30) are at x +- V d/2 (the paper prints one name for
+//! both) with the velocity just updated, as in line 7 of its Algorithm 1. [`BeetleSwarm::literal`] has no inertia
+//! weight.
 
 use super::best_places::BestPlaces;
 use super::population::{Generation, Members, Population};
@@ -20,8 +21,8 @@ use crate::wording::words;
 /// The direction of a beetle along its velocity, given the values at its antennae.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BeetleDirection {
-    /// With the sign of F(right) - F(left), as eq. (28) prints it: against the slope where the velocity leads downhill,
-    /// which slows the swarm's contraction.
+    /// With the sign of F(right) - F(left), as printed in eq. (28): uphill if the velocity leads downhill, which slows
+    /// the contraction of the swarm.
     Printed,
     /// To the antenna with the lower value.
     Downhill,
@@ -36,27 +37,27 @@ pub struct BeetleSwarm {
     pub schedule: Schedule,
     /// Inertia weight; eq. (27) has none, which is 1.
     pub inertia: f64,
-    /// Attraction to the beetle's own best place, eq. (27).
+    /// Attraction to the best position of the beetle, eq. (27).
     pub c1: f64,
-    /// Attraction to the swarm's best place, eq. (27).
+    /// Attraction to the best position of the swarm, eq. (27).
     pub c2: f64,
-    /// Largest velocity per generation, as a fraction of the box's width.
+    /// Largest velocity per generation, relative to the width of the box.
     pub velocity_limit: f64,
-    /// lambda of eq. (26): the weight of the velocity in a move; the rest is the antennae's.
+    /// lambda of eq. (26): the weight of the velocity in a move; the rest comes from the antennae.
     pub velocity_share: f64,
-    /// delta at first, eq. (28).
+    /// Initial delta, eq. (28).
     pub step: f64,
     /// eta of eq. (32): factor on delta per generation.
     pub step_decay: f64,
-    /// c of eq. (31): delta over the distance d of the antennae.
+    /// c of eq. (31): ratio of delta to the distance d of the antennae.
     pub step_over_antennae: f64,
     /// The sign in eq. (28).
     pub direction: BeetleDirection,
 }
 
 impl Default for BeetleSwarm {
-    /// The constants that did well for trajectories of arms with two to five joints; the paper prints none but delta's
-    /// update. Inertia and attractions are those of Eberhart and Shi (2000).
+    /// Constants that work well for trajectories of arms with two to five joints; the paper prints only the update of
+    /// delta. Inertia and attractions are those of Eberhart and Shi (2000).
     fn default() -> Self {
         Self {
             schedule: Schedule::of(50),
@@ -112,7 +113,7 @@ pub struct State {
     population: Population,
     memory: BestPlaces,
     velocities: Velocities,
-    /// Right and left antenna of each beetle in turn.
+    /// Right and left antenna of each beetle, alternating.
     antennae: Members,
     /// delta of eq. (32).
     step: f64,
@@ -138,7 +139,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
         let State { population, memory, velocities, antennae, step } = state;
         if population.begin_generation(&self.schedule, evaluator)? == Generation::First {
             velocities.draw(population, evaluator.rng());
-            // The draw spans half the width; the limit is on all velocities.
+            // The draw spans half the width; the limit applies to all velocities.
             velocities.all.iter_mut().for_each(|v| *v *= (2.0 * self.velocity_limit).min(1.0));
         } else {
             // eq. (27), with inertia and limit
@@ -154,7 +155,7 @@ impl<O: Objective + ?Sized> Solver<O> for BeetleSwarm {
 }
 
 impl BeetleSwarm {
-    /// Smells at x + V d/2 and x - V d/2, eq. (29) and (30), with d = delta / c, eq. (31).
+    /// Evaluates x + V d/2 and x - V d/2, eq. (29) and (30), with d = delta / c, eq. (31).
     fn feel<O: Objective + ?Sized>(
         &self,
         beetles: &Members,

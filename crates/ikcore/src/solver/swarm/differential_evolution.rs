@@ -123,12 +123,12 @@ impl DifferentialEvolution {
     }
 }
 
-/// Three different members, none of them `i`: each is drawn from what the ones before leave over.
+/// Three different members other than `i`; each is drawn from the remaining ones.
 fn three_others(i: usize, count: usize, rng: &mut LazyRng) -> [usize; 3] {
     let mut taken = [i; 4];
     for k in 1..4 {
         let mut drawn = rng.below(count - k);
-        // In ascending order, everyone taken at or below the draw pushes it up by one.
+        // In ascending order, each member taken at or below the draw increases it by one.
         let mut before = taken;
         before[..k].sort_unstable();
         for other in &before[..k] {

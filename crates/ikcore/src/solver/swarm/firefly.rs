@@ -1,8 +1,8 @@
-//! Firefly algorithm (Yang 2009): fireflies move towards brighter ones, less so over a distance, plus a random part.
+//! Firefly algorithm (Yang 2009): fireflies move towards brighter ones, less so at a distance, plus a random part.
 //!
-//! The published loop runs over fireflies i and j, moves i towards j where j is brighter, and evaluates i at once. Here the
-//! loop over j is the outer one: every firefly has its turn to attract all that are less bright, and these are evaluated
-//! together. A step is one turn; a generation is a turn of each.
+//! The published loop runs over fireflies i and j, moves i towards j if j is brighter, and evaluates i at once. Here
+//! the loop over j is the outer one: in its turn, each firefly attracts all dimmer ones, which are evaluated together.
+//! A step is one turn; a generation is a turn of each.
 
 use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
@@ -18,11 +18,11 @@ use crate::solver::evaluator::Evaluator;
 pub struct Firefly {
     /// Fireflies and generations.
     pub schedule: Schedule,
-    /// beta_0: attractiveness at no distance.
+    /// beta_0: attractiveness at zero distance.
     pub attractiveness: f64,
-    /// gamma: absorption of light, with distances measured in widths of the box.
+    /// gamma: absorption of light, with distances relative to the width of the box.
     pub absorption: f64,
-    /// alpha: size of the random part, as a fraction of the box's width.
+    /// alpha: size of the random part, relative to the width of the box.
     pub randomness: f64,
     /// Factor on alpha per turn.
     pub randomness_decay: f64,
@@ -74,14 +74,14 @@ impl Firefly {
 #[derive(Debug, Clone)]
 pub struct State {
     population: Population,
-    /// Indices of the fireflies that move this turn (a prefix of the list is in use), and where they move to.
+    /// Indices of the fireflies that move this turn (a prefix of the list is in use), and their next positions.
     moving: Vec<usize>,
     moved: Members,
     /// The firefly whose turn it is.
     attractor: usize,
     /// alpha of this turn.
     randomness: f64,
-    /// One over the widths of the box; zero for a locked coordinate, along which there is no distance.
+    /// Inverse widths of the box; zero for a locked coordinate, which does not contribute to distances.
     scales: Point,
     draws: Vec<f64>,
 }
@@ -130,7 +130,7 @@ impl<O: Objective + ?Sized> Solver<O> for Firefly {
     }
 }
 
-/// Lists the fireflies less bright than `light` in `moving` and returns their number. Without branches, which would be
+/// Lists the fireflies dimmer than `light` in `moving` and returns their number. Without branches, which would be
 /// unpredictable.
 fn list_dimmer(values: &[f64], light: f64, moving: &mut [usize]) -> usize {
     let mut count = 0;
@@ -151,7 +151,7 @@ impl Firefly {
     }
 }
 
-/// x + beta (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009); a draw makes two of u.
+/// x + beta (x_j - x) + alpha (u - 1/2), eq. (10) of Yang (2009); one draw gives two values of u.
 #[inline]
 fn fly(x: &[f64], x_j: &[f64], beta: f64, randomness: f64, widths: &[f64], draws: &[f64], to: &mut [f64]) {
     let n = to.len();

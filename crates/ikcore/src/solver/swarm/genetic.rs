@@ -1,9 +1,10 @@
-//! Genetic algorithm on real numbers, with the operators and the options of the MATLAB `ga` that papers on manipulators
-//! compare with: elite, tournament selection, scattered crossover, Gaussian mutation (Goldberg 1989 for the scheme).
+//! Genetic algorithm on real numbers, with the operators and options of the MATLAB `ga`, against which papers on
+//! manipulators compare: elite, tournament selection, scattered crossover, Gaussian mutation (Goldberg 1989 for the
+//! scheme).
 //!
-//! A generation is the elite, then children by crossover, then children by mutation. The mutation's standard deviation
-//! shrinks by a constant factor: MATLAB's linear shrinking needs to know the last generation in advance, which a budget
-//! of evaluations or a tolerance leaves open.
+//! A generation is the elite, then children by crossover, then children by mutation. The standard deviation of
+//! mutations shrinks by a constant factor: MATLAB's linear shrinking requires the last generation to be known in
+//! advance, which it is not with a budget of evaluations or a tolerance.
 
 use super::population::{Generation, Members, Population};
 use super::schedule::Schedule;
@@ -21,21 +22,22 @@ pub struct Genetic {
     pub schedule: Schedule,
     /// Fraction of the members that survive unchanged, rounded up: MATLAB's EliteCount, 5 %.
     pub elite_share: f64,
-    /// Fraction of the other members that are born by crossover: MATLAB's CrossoverFraction.
+    /// Fraction of the other members that come from crossover: MATLAB's CrossoverFraction.
     pub crossover_share: f64,
-    /// Members of a tournament, the best of which becomes a parent: MATLAB's selectiontournament.
+    /// Number of members in a tournament, the best of which becomes a parent: MATLAB's selectiontournament.
     pub tournament: usize,
-    /// Probability that a coordinate of a mutant moves; one moves in any case. MATLAB's Gaussian mutation moves all, which
-    /// is 1; one over the dimension searches coordinate by coordinate.
+    /// Probability that a coordinate of a mutant changes; at least one changes. MATLAB's Gaussian mutation changes all
+    /// (1); one over the dimension searches coordinate by coordinate.
     pub mutation_rate: f64,
-    /// Standard deviation of mutations at first, as a fraction of the box's width.
+    /// Initial standard deviation of mutations, relative to the width of the box.
     pub mutation_scale: f64,
     /// Factor on the standard deviation per generation.
     pub mutation_decay: f64,
 }
 
 impl Default for Genetic {
-    /// MATLAB's elite, crossover share and population; tournaments of two, which keep more variety than MATLAB's four.
+    /// MATLAB's elite, crossover fraction and population; tournaments of two, which keep more variety than MATLAB's
+    /// four.
     fn default() -> Self {
         Self {
             schedule: Schedule::of(50),
@@ -90,7 +92,7 @@ pub struct State {
     children: Members,
     /// Indices of members; the elite comes first.
     ranking: Vec<usize>,
-    /// Standard deviation of mutations, as a fraction of the width.
+    /// Standard deviation of mutations, relative to the width.
     scale: f64,
 }
 
@@ -136,7 +138,7 @@ impl<O: Objective + ?Sized> Solver<O> for Genetic {
     }
 }
 
-/// The best members come first in the next generation, values and all.
+/// Copies the best members to the front of the next generation, with their values.
 fn keep_elite(parents: &Members, elite: usize, ranking: &mut [usize], children: &mut Members) {
     if elite == 0 {
         return;
@@ -186,7 +188,7 @@ fn mutate(x: &mut [f64], widths: &[f64], scale: f64, rng: &mut LazyRng) {
     }
 }
 
-/// Gaussian mutation of each coordinate with probability `rate`, and of one in any case.
+/// Gaussian mutation of each coordinate with probability `rate`, and of at least one.
 fn mutate_some(x: &mut [f64], widths: &[f64], scale: f64, rate: f64, rng: &mut LazyRng) {
     let forced = rng.below(x.len());
     for (k, (x, width)) in x.iter_mut().zip(widths).enumerate() {
@@ -196,7 +198,7 @@ fn mutate_some(x: &mut [f64], widths: &[f64], scale: f64, rate: f64, rng: &mut L
     }
 }
 
-/// Coins, 32 from a draw.
+/// Coin tosses, 32 per draw.
 #[derive(Default)]
 struct Coins {
     bits: u32,

@@ -1,7 +1,8 @@
-//! Population methods: swarms, colonies and evolution. They need objective values alone.
+//! Population methods: swarms, colonies and evolution. They need only objective values.
 //!
-//! `schedule` sizes a population and says when it gives up; `population` holds its members, `best_places` the best place of
-//! each, `velocities` the velocities of the two methods whose members have one. Every other file is one algorithm.
+//! `schedule` is the size of a population and its stopping rule; `population` holds its members, `best_places` the best
+//! position of each member, `velocities` the velocities for the two methods that have them. Every other file is one
+//! algorithm.
 
 mod bee_colony;
 mod beetle_swarm;

@@ -1,28 +1,28 @@
 //! The members of a population and their generations.
 //!
-//! The first generation is the start and, for the rest, uniform draws in the box. A step of a swarm is one generation:
-//! the first step draws and evaluates the other members, so that a start that is solved costs one evaluation.
+//! The first generation is the start and uniform draws in the box. A step of a swarm is one generation: the first step
+//! draws and evaluates the other members, so that a start that is already solved costs one evaluation.
 
 use super::schedule::Schedule;
 use crate::objective::{Objective, Point};
 use crate::solver::Status;
 use crate::solver::evaluator::Evaluator;
 
-/// Fraction of the best value that counts as a gain: the function tolerance of the MATLAB solvers.
+/// Relative improvement of the best value that counts as a gain: the function tolerance of the MATLAB solvers.
 const GAIN: f64 = 1e-6;
 
-/// Points, one after another, and their values.
+/// Points, stored consecutively, and their values.
 #[derive(Debug, Clone)]
 pub(super) struct Members {
     /// All coordinates, member by member.
     pub points: Vec<f64>,
-    /// A value for each.
+    /// One value per member.
     pub values: Vec<f64>,
     dimension: usize,
 }
 
 impl Members {
-    /// Room for `count` members, none of which has a value yet.
+    /// `count` members without values.
     pub fn new(count: usize, dimension: usize) -> Self {
         Self { points: vec![0.0; count * dimension], values: vec![f64::INFINITY; count], dimension }
     }
@@ -89,24 +89,24 @@ impl Members {
 /// The present generation.
 #[derive(Debug, Clone)]
 pub(super) struct Population {
-    /// Where its members are.
+    /// The members.
     pub members: Members,
     /// Widths of the ranges that the first generation is drawn from.
     pub widths: Point,
     /// Generations so far, the first included.
     pub generation: usize,
-    /// The best value when a gain was last seen.
+    /// The best value at the last gain.
     milestone: f64,
-    /// Generations since then.
+    /// Generations since the last gain.
     without_gain: usize,
 }
 
 /// The generation that a step begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Generation {
-    /// The first; its members are drawn and evaluated already.
+    /// The first one; its members are already drawn and evaluated.
     First,
-    /// A generation that the algorithm makes from the one before.
+    /// A later one, which the algorithm makes from the previous one.
     Later,
 }
 
@@ -128,8 +128,8 @@ impl Population {
         Ok(Self { members, widths, generation: 0, milestone: f64::INFINITY, without_gain: 0 })
     }
 
-    /// Begins a step: gives up where the schedule says so, and completes the first generation by drawing and evaluating its
-    /// other members. Later generations are left to the algorithm.
+    /// Begins a step: gives up if the schedule says so, and completes the first generation by drawing and evaluating
+    /// its other members. Later generations are left to the algorithm.
     ///
     /// # Errors
     /// The evaluator's [`Status`]; [`Status::Stalled`] by the schedule.
@@ -163,7 +163,7 @@ impl Population {
     }
 }
 
-/// Fills `rows` with copies of `row`, so that one loop over the coordinates of all members can read common data.
+/// Fills `rows` with copies of `row`, so that one loop over the coordinates of all members can read shared data.
 pub(super) fn tile(row: &[f64], rows: &mut [f64]) {
     let mut filled = row.len().min(rows.len());
     rows[..filled].copy_from_slice(&row[..filled]);

@@ -1,8 +1,8 @@
 //! Particle swarm optimisation, with a constriction factor (Clerc and Kennedy 2002) or an inertia weight (Shi and
 //! Eberhart 1998).
 //!
-//! The global-best swarm; velocities are clamped to a share of the box as Eberhart and Shi (2000) advise for both forms,
-//! and by default a particle stops at the walls of the box.
+//! The global-best swarm. Velocities are clamped relative to the width of the box, as Eberhart and Shi (2000) recommend
+//! for both forms, and by default a particle stops at the walls of the box.
 
 use std::fmt;
 
@@ -21,7 +21,7 @@ use crate::wording::words;
 /// The rule that keeps velocities from growing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PsoForm {
-    /// The whole new velocity is multiplied by chi, which follows from the attractions.
+    /// The new velocity is multiplied by chi, which follows from the attractions.
     Constriction,
     /// The old velocity is multiplied by this weight.
     Inertia(f64),
@@ -37,10 +37,10 @@ impl fmt::Display for PsoForm {
 }
 
 impl PsoForm {
-    /// The form of this name; `inertia` is the weight of "inertia", 0.729 if left out (Eberhart and Shi 2000).
+    /// The form with this name; `inertia` is the weight of "inertia", by default 0.729 (Eberhart and Shi 2000).
     ///
     /// # Errors
-    /// [`Error::UnknownOption`] lists the names; [`Error::OutOfRange`] for an inertia that the form does not have.
+    /// [`Error::UnknownOption`] lists the names; [`Error::OutOfRange`] if an inertia is given to another form.
     pub fn named(name: &str, inertia: Option<f64>) -> Result<Self> {
         match (name, inertia) {
             ("constriction", None) => Ok(Self::Constriction),
@@ -62,23 +62,24 @@ impl PsoForm {
     }
 }
 
-/// What happens to a coordinate that would leave the box; techniques compared by Helwig, Branke and Mostaghim (2013).
+/// Treatment of a coordinate that would leave the box; techniques compared by Helwig, Branke and Mostaghim (2013).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Walls {
-    /// It stops at the wall and loses its velocity.
+    /// It stops at the wall, with zero velocity.
     Absorbing,
-    /// It is drawn anew in the box and keeps its velocity, as in mealpy's PSO.
+    /// It is redrawn in the box and keeps its velocity, as in mealpy's PSO.
     Random,
 }
 
 words!("walls": Walls { Absorbing => "absorbing", Random => "random" });
 
-/// Whether a particle stays where it went.
+/// Whether a particle keeps its new position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ParticleAcceptance {
     /// Always, as published.
     Always,
-    /// Where that is its best place so far; otherwise it returns there. Quicker on smooth functions; as in mealpy's PSO.
+    /// Only if that is its best position so far; otherwise it returns to the best one. Faster on smooth functions; as
+    /// in mealpy's PSO.
     Improving,
 }
 
@@ -91,15 +92,15 @@ pub struct Pso {
     pub schedule: Schedule,
     /// The rule that keeps velocities from growing.
     pub form: PsoForm,
-    /// Attraction to the particle's own best place.
+    /// Attraction to the best position of the particle.
     pub c1: f64,
-    /// Attraction to the swarm's best place.
+    /// Attraction to the best position of the swarm.
     pub c2: f64,
-    /// Largest velocity per generation, as a fraction of the box's width.
+    /// Largest velocity per generation, relative to the width of the box.
     pub velocity_limit: f64,
-    /// Whether a particle stays where it went.
+    /// Whether a particle keeps its new position.
     pub accept: ParticleAcceptance,
-    /// What happens to a coordinate that would leave the box.
+    /// Treatment of a coordinate that would leave the box.
     pub walls: Walls,
 }
 
@@ -110,7 +111,8 @@ impl Default for Pso {
 }
 
 impl Pso {
-    /// A form with its published attractions. The velocity limit of half the width is the dynamic range X_max of Eberhart and Shi (2000).
+    /// A form with its published attractions. The velocity limit of half the width is the dynamic range X_max of
+    /// Eberhart and Shi (2000).
     pub fn of(form: PsoForm) -> Self {
         let attraction = form.attraction();
         Self {
@@ -228,7 +230,7 @@ impl TiledBounds {
         }
     }
 
-    /// x = x + v; a coordinate that would leave the box is drawn anew.
+    /// x = x + v; a coordinate that would leave the box is redrawn.
     fn draw_anew(&self, points: &mut [f64], velocities: &[f64], rng: &mut LazyRng) {
         let walls = self.lower.iter().zip(&self.upper);
         for ((x, v), (lower, upper)) in points.iter_mut().zip(velocities).zip(walls) {

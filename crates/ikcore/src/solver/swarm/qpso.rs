@@ -1,5 +1,5 @@
-//! Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): particles have no velocity. They are drawn around an
-//! attractor, with a spread in proportion to their distance from the mean best place.
+//! Quantum-behaved particle swarm optimisation (Sun, Feng and Xu 2004): particles have no velocity. They are drawn
+//! around an attractor, with a spread proportional to their distance from the mean best position.
 
 use super::best_places::BestPlaces;
 use super::population::{Generation, Members, Population, tile};
@@ -67,14 +67,14 @@ impl<O: Objective + ?Sized> Solver<O> for Qpso {
     }
 }
 
-/// The data of an update, repeated for every particle, so that an update is one long loop over all coordinates, which the
-/// compiler vectorises whatever the dimension.
+/// Data of an update, repeated for every particle, so that an update is one long loop over all coordinates, which the
+/// compiler vectorises for any dimension.
 #[derive(Debug, Clone)]
 struct Scratch {
-    /// Mean of the best places.
+    /// Mean of the best positions.
     mean: Point,
     means: Vec<f64>,
-    /// The swarm's best place.
+    /// Best position of the swarm, repeated.
     leader: Vec<f64>,
     draws: Vec<f64>,
 }
@@ -87,7 +87,7 @@ impl Scratch {
     }
 }
 
-/// The unit of the second half of a draw, which has 27 bits.
+/// Resolution of the second half of a draw, which has 27 bits.
 const LAST_PLACE: f64 = 1.0 / (1_u64 << 27) as f64;
 
 /// m = (sum over particles of p) / M.
@@ -111,7 +111,8 @@ impl Qpso {
         let (g, mean, draws) = (&scratch.leader[..count], &scratch.means[..count], &scratch.draws[..count]);
         for k in 0..count {
             let [phi, rest] = split(draws[k]);
-            // Sign and size from one draw, uniform in (-1, 1). The ends, where the logarithm is infinite, cannot occur.
+            // Sign and magnitude from one draw, uniform in (-1, 1). The ends, where the logarithm is infinite, cannot
+            // occur.
             let signed = 2.0 * rest - (1.0 - LAST_PLACE);
             let spread = self.expansion * (mean[k] - x[k]).abs() * -ln(1.0 - signed.abs());
             x[k] = g[k] + phi * (p[k] - g[k]) + spread.copysign(signed);

@@ -7,18 +7,18 @@ use crate::error::{Error, Result};
 pub struct Schedule {
     /// Members of a generation.
     pub population: usize,
-    /// Generations after which the swarm gives up, the first included.
+    /// Maximum number of generations, including the first.
     pub max_generations: usize,
-    /// Generations in a row without a gain of a millionth of the best value, after which the swarm gives up earlier.
+    /// The swarm gives up after this many consecutive generations without a gain of a millionth of the best value.
     pub stall_generations: usize,
 }
 
-/// The largest population: it must fit into memory.
+/// Largest population; it must fit into memory.
 const LARGEST_POPULATION: usize = 1_000_000;
 
 impl Schedule {
-    /// `population` members; as many generations as the budget allows, at most 50 without a gain (the default of the MATLAB
-    /// genetic algorithm).
+    /// `population` members and as many generations as the budget allows, at most 50 without a gain (the default of the
+    /// MATLAB genetic algorithm).
     pub const fn of(population: usize) -> Self {
         Self { population, max_generations: usize::MAX, stall_generations: 50 }
     }

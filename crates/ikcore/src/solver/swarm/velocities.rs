@@ -1,7 +1,7 @@
 //! Velocities of a particle swarm or a beetle swarm.
 //!
-//! Common data is repeated for each particle, so that an update is one long loop over all coordinates, which the compiler
-//! vectorises whatever the dimension.
+//! Shared data is repeated for each particle, so that an update is one long loop over all coordinates, which the
+//! compiler vectorises for any dimension.
 
 use super::best_places::BestPlaces;
 use super::population::{Population, tile};
@@ -12,15 +12,16 @@ use crate::rng::{LazyRng, split};
 pub(super) struct Velocities {
     /// All coordinates, particle by particle.
     pub all: Vec<f64>,
-    /// The largest velocities, for every coordinate of every particle.
+    /// Velocity limits, for every coordinate of every particle.
     limits: Vec<f64>,
-    /// The swarm's best place.
+    /// Best position of the swarm, repeated.
     leader: Vec<f64>,
     draws: Vec<f64>,
 }
 
 impl Velocities {
-    /// Particles at rest. `limit` is the largest velocity per generation as a fraction of the box's width; infinite: no limit.
+    /// Particles at rest. `limit` is the largest velocity per generation relative to the width of the box; infinite
+    /// means no limit.
     pub fn new(population: &Population, limit: f64) -> Self {
         let none = vec![0.0; population.members.points.len()];
         let mut limits = none.clone();
@@ -30,7 +31,7 @@ impl Velocities {
         Self { all: none.clone(), limits, leader: none.clone(), draws: none }
     }
 
-    /// The first velocities: uniform within half the width of the box (standard PSO 2007).
+    /// Draws the initial velocities: uniform within half the width of the box (standard PSO 2007).
     pub fn draw(&mut self, population: &Population, rng: &mut LazyRng) {
         for v in self.all.chunks_exact_mut(population.widths.len()) {
             for (v, width) in v.iter_mut().zip(&population.widths) {

@@ -1,7 +1,7 @@
 //! The tip's orientation: r = phi = log(R R_d'), in base coordinates.
 //!
-//! A small turn w of the tip changes phi by J_l^-1(phi) w, with J_l the left Jacobian of SO(3). The derivative is exact at any
-//! distance from the target.
+//! A small rotation w of the tip changes phi by J_l^-1(phi) w, with J_l the left Jacobian of SO(3). The derivative is
+//! exact at any distance from the target.
 
 use crate::math::Frame;
 use crate::math::box_step::ROWS;

@@ -1,8 +1,8 @@
-//! The tip at a point with one of its axes in a direction: r = (p - p_d, a - d), in base coordinates; the spin about the axis
-//! is left free.
+//! The tip at a point, with one of its axes in a given direction: r = (p - p_d, a - d), in base coordinates; the
+//! rotation about the axis is free.
 //!
-//! a is the tip's axis and d the wanted one. Unlike the angle between them, their difference is smooth everywhere; its length
-//! is 2 sin(angle / 2), and a small turn w of the tip changes it by w x a.
+//! a is the axis of the tip and d the target direction. Unlike the angle between them, their difference is smooth
+//! everywhere; its length is 2 sin(angle / 2), and a small rotation w of the tip changes it by w x a.
 
 use super::position;
 use crate::math::Frame;

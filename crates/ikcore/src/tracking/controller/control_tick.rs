@@ -12,7 +12,7 @@ pub(super) struct ControlTick<'a> {
     pub bounds: &'a Bounds,
 }
 
-/// Whether a tick goes on after a measurement.
+/// Whether a tick continues after a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TickProgress {
     /// The controller has another command for this tick.

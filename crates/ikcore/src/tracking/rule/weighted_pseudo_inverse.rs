@@ -21,7 +21,7 @@ use crate::robot::Robot;
 use crate::trajectory::Trajectory;
 use crate::wording::words;
 
-/// How velocities become configurations.
+/// Integration of joint velocities over a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Integrator {
     /// The velocity at the start of the tick: an error of second order a tick.
@@ -38,7 +38,7 @@ words!("integrator": Integrator { Euler => "euler", RungeKutta4 => "rk4" });
 pub struct WeightedPseudoInverse {
     /// K (1/s): the fraction of the error that is corrected per second. `None` means half of it in every tick.
     pub gain: Option<f64>,
-    /// How velocities become configurations.
+    /// Integration of joint velocities over a tick.
     pub integrator: Integrator,
     /// W (n,), positive: the cost of each joint's squared velocity. `None` means eq. (11), from the velocity limits of
     /// the tick; joints without a limit count like the fastest joint that has one.

@@ -1,0 +1,27 @@
+"""Checks of arguments in Python, with errors of this library."""
+
+from numbers import Integral
+
+from ._core import InvalidInputError
+
+
+def require(name: str, value: object, *kinds: type) -> None:
+    """Raises `InvalidInputError` unless the value is an instance of one of `kinds`."""
+    if not isinstance(value, kinds):
+        wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
+        raise InvalidInputError(f"{name} must be {wanted}, got {value!r:.60}")
+
+
+def require_text(name: str, value: object) -> None:
+    """Raises `InvalidInputError` unless the value is text that can be encoded; half a surrogate pair cannot."""
+    require(name, value, str)
+    try:
+        str(value).encode()
+    except UnicodeEncodeError:
+        raise InvalidInputError(f"{name} must be valid Unicode, got {value!r:.60}") from None
+
+
+def require_count(name: str, value: object) -> None:
+    """Raises `InvalidInputError` unless the value is a whole number, zero or more."""
+    if not isinstance(value, Integral) or value < 0:
+        raise InvalidInputError(f"{name} must be a whole number, zero or more, got {value!r:.60}")

@@ -1,0 +1,91 @@
+"""Versions, logs, notebooks and completion."""
+
+import json
+import logging
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import beetle_ik as bik
+from beetle_ik._versions import EXTRAS
+from beetle_ik.cli import app
+from beetle_ik.cli.options import complete_robot
+
+IIWA = bik.Robot.named("iiwa14")
+PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
+
+
+def test_versions_name_what_matters(capsys: pytest.CaptureFixture[str]) -> None:
+    bik.show_versions()
+    shown = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
+    assert shown["beetle-ik"] == bik.__version__
+    assert shown["numpy"] == np.__version__
+    assert shown["CPU"].endswith("instructions")
+    assert {f"[{extra}]" for extra in EXTRAS} <= set(shown)
+
+
+def test_versions_know_every_extra() -> None:
+    declared = tomllib.loads(PYPROJECT.read_text())["project"]["optional-dependencies"]
+    for extra, packages in EXTRAS.items():
+        ours = {name.partition(">")[0] for name in declared[extra] if not name.startswith("beetle-ik")}
+        assert set(packages) == ours
+    assert set(declared) - set(EXTRAS) == {"test", "oracles", "docs"}
+
+
+def test_the_doctor_solves_a_target() -> None:
+    done = CliRunner().invoke(app, ["doctor", "--json"])
+    found = json.loads(done.stdout)
+    assert (done.exit_code, found["beetle-ik"]) == (0, bik.__version__)
+    assert "self-test" in found
+
+
+def test_completion_can_be_installed_and_knows_the_robots() -> None:
+    assert "--install-completion" in CliRunner().invoke(app, ["--help"]).stdout
+    assert complete_robot("iiwa") == ["iiwa14", "iiwa7"]
+
+
+def test_the_library_logs_only_when_asked(caplog: pytest.LogCaptureFixture, tmp_path: Path) -> None:
+    script = (
+        "import beetle_ik as bik; bik.Trajectory.from_samples([0, 1], [[0.0], [1.0]]).to_npz(__import__('sys').argv[1])"
+    )
+    command = [sys.executable, "-c", script, str(tmp_path / "quiet.npz")]
+    quiet = subprocess.run(command, check=True, capture_output=True, text=True)
+    assert (quiet.stdout, quiet.stderr) == ("", "")
+    with caplog.at_level(logging.INFO, logger="beetle_ik"):
+        bik.Trajectory.from_samples([0, 1], [[0.0], [1.0]]).to_npz(tmp_path / "motion.npz")
+        batch = bik.solve_batch(IIWA, [(0.3, 0.3, 1.0)], threads=1)
+    assert [record.getMessage() for record in caplog.records] == [
+        f"wrote {tmp_path / 'motion.npz'}",
+        f"solve_batch: {batch.message}",
+    ]
+
+
+def test_verbose_logs_to_stderr() -> None:
+    command = [sys.executable, "-m", "beetle_ik", "--verbose", "track", "planar5", "--curve", "circle", "--dt", "0.5"]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert " beetle_ik: track: " in done.stderr
+
+
+def test_a_robot_is_a_table_in_a_notebook() -> None:
+    page = IIWA._repr_html_()
+    assert page.startswith("<b>iiwa14</b>: 7 joints, ")
+    assert page.count("<tr>") == 8
+
+
+def test_results_are_tables_in_a_notebook() -> None:
+    solution = bik.solve(IIWA, (0.3, 0.3, 1.0))
+    page = solution._repr_html_()
+    assert page.startswith(f"<b>Solution SOLVED</b>: {solution.message}<table><tr><td>q [rad, m]</td>")
+    assert "rotation_error" not in page
+    batch = bik.solve_batch(IIWA, [(0.3, 0.3, 1.0)] * 30, threads=1)
+    assert "array of shape (30, 7)" in batch._repr_html_()
+
+
+def test_names_are_escaped_in_a_notebook() -> None:
+    robot = bik.Robot.from_dh(a=[1.0], alpha=[0.0], d=[0.0], name="<script>")
+    assert "<script>" not in robot._repr_html_()
