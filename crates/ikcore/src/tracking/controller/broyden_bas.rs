@@ -38,6 +38,8 @@ pub(super) struct BroydenBasState {
     /// Accepted configuration, and the tip measured there.
     q: Point,
     tip: TipPose,
+    /// Earlier measurements of a repeated command.
+    earlier: [TipPose; 2],
     /// Last command, and its purpose.
     sent: Point,
     purpose: Purpose,
@@ -59,16 +61,16 @@ pub(super) struct BroydenBasState {
 /// Purpose of a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Purpose {
-    /// Measure at the start again: `first` and `second` are the earlier measurements.
-    Repeat { first: TipPose, second: Option<TipPose> },
+    /// Measure at the start again, which was `measured` once or twice.
+    Repeat { measured: usize },
     /// Measure at the accepted configuration, before antennae are put out.
     Stand,
     /// Put out the antenna of a joint. As `next`: of this joint or, if it has no room, of the next joint that has.
     Antenna { joint: usize },
     /// Step towards the target.
     Step,
-    /// Repeat the step, because the measurement `first` missed the prediction.
-    Again { first: TipPose },
+    /// Repeat the step, because its measurement missed the prediction.
+    Again,
 }
 
 impl BroydenBasState {
@@ -79,6 +81,7 @@ impl BroydenBasState {
             jacobian: Secant::default(),
             q: start.into(),
             tip: TipPose::UNKNOWN,
+            earlier: [TipPose::UNKNOWN; 2],
             sent: start.into(),
             purpose: Purpose::Stand,
             next: Purpose::Antenna { joint: 0 },
@@ -93,8 +96,8 @@ impl BroydenBasState {
     }
 
     pub(super) fn begin(&mut self, tip: &TipPose) {
-        self.tip = *tip;
-        self.next = Purpose::Repeat { first: *tip, second: None };
+        (self.tip, self.earlier[0]) = (*tip, *tip);
+        self.next = Purpose::Repeat { measured: 1 };
     }
 
     pub(super) fn accepted(&self) -> &[f64] {
@@ -119,7 +122,7 @@ impl BroydenBasState {
         self.sent.copy_from_slice(&self.q);
         self.purpose = match self.next {
             Purpose::Antenna { joint } => self.put_out_antenna(joint, tick),
-            Purpose::Step | Purpose::Again { .. } => {
+            Purpose::Step | Purpose::Again => {
                 self.step(tick);
                 self.next
             }
@@ -184,11 +187,12 @@ impl BroydenBasState {
     /// Processes the measurement `tip` of the last command.
     fn learn(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
         let verdict = match self.purpose {
-            Purpose::Repeat { first, second: None } => {
-                self.next = Purpose::Repeat { first, second: Some(*tip) };
+            Purpose::Repeat { measured: 1 } => {
+                (self.earlier[1], self.next) = (*tip, Purpose::Repeat { measured: 2 });
                 TickProgress::GoOn
             }
-            Purpose::Repeat { first, second: Some(second) } => {
+            Purpose::Repeat { .. } => {
+                let [first, second] = self.earlier;
                 self.know_start([first, second, *tip]);
                 TickProgress::GoOn
             }
@@ -200,8 +204,8 @@ impl BroydenBasState {
                 self.feel(joint, tip);
                 TickProgress::GoOn
             }
-            Purpose::Step => self.believe(tick, tip, None),
-            Purpose::Again { first } => self.believe(tick, tip, Some(&first)),
+            Purpose::Step => self.believe(tick, tip, false),
+            Purpose::Again => self.believe(tick, tip, true),
         };
         let near_enough = self.tolerance.at_least(NEAR_ENOUGH * self.noise.level());
         let arrived = self.next == Purpose::Step && self.tip.error(tick.target).within(&near_enough);
@@ -223,8 +227,8 @@ impl BroydenBasState {
         }
     }
 
-    /// Processes the measurement of a step; `first` is the measurement before, if the step was repeated.
-    fn believe(&mut self, tick: ControlTick<'_>, tip: &TipPose, first: Option<&TipPose>) -> TickProgress {
+    /// Processes the measurement of a step, which may be a repeated one.
+    fn believe(&mut self, tick: ControlTick<'_>, tip: &TipPose, repeated: bool) -> TickProgress {
         let Self { q, sent, jacobian, .. } = self;
         let dq = || sent.iter().zip(q.iter()).map(|(to, from)| to - from);
         let predicted = jacobian.predict(dq());
@@ -234,16 +238,16 @@ impl BroydenBasState {
         let surprising = miss > SURPRISING * motion;
         self.next = Purpose::Step;
         let mut noisy = self.noise.explains(motion);
-        match first {
-            None if surprising && !noisy => {
-                self.next = Purpose::Again { first: *tip };
-                return TickProgress::GoOn;
-            }
-            Some(first) if surprising && tip.distance(first) > 0.5 * miss => {
-                self.noise.note(tip.distance(first));
+        if surprising && !repeated && !noisy {
+            (self.earlier[0], self.next) = (*tip, Purpose::Again);
+            return TickProgress::GoOn;
+        }
+        if surprising && repeated {
+            let apart = tip.distance(&self.earlier[0]);
+            if apart > 0.5 * miss {
+                self.noise.note(apart);
                 noisy = true;
             }
-            _ => {}
         }
         if !noisy {
             jacobian.learn(dq(), &surprise, self.noise.share(miss));
