@@ -104,7 +104,7 @@ def test_infinity_switches_a_limit_off() -> None:
 
 
 def test_a_function_may_leave_positions_unlimited() -> None:
-    free = track(bik.Limits(lower=lambda t: -np.inf, upper=lambda t: np.inf, velocity=0.4))
+    free = track(bik.Limits(lower=lambda _: -np.inf, upper=lambda _: np.inf, velocity=0.4))
     np.testing.assert_array_equal(free.q, track(bik.Limits(lower=-np.inf, upper=np.inf, velocity=0.4)).q)
 
 
