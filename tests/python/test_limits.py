@@ -103,6 +103,11 @@ def test_infinity_switches_a_limit_off() -> None:
     assert free.limit_margin == np.inf
 
 
+def test_a_function_may_leave_positions_unlimited() -> None:
+    free = track(bik.Limits(lower=lambda _: -np.inf, upper=lambda _: np.inf, velocity=0.4))
+    np.testing.assert_array_equal(free.q, track(bik.Limits(lower=-np.inf, upper=np.inf, velocity=0.4)).q)
+
+
 def test_zero_locks_a_joint() -> None:
     result = track(bik.Limits(velocity=[1.0, 1.0, 0.0, 1.0, 1.0]))
     np.testing.assert_array_equal(result.q[:, 2], np.full(41, START[2]))

@@ -110,7 +110,7 @@ def test_mistakes_are_named() -> None:
     with pytest.raises(bik.UnsupportedLimit, match=f"^{re.escape(message)}$"):
         bik.plan_along_path(robot, circle(False))
     far = circle(False) + np.array([3.0, 0.0, 0.0])
-    with pytest.raises(bik.InvalidInputError, match=r"^point 0 of the path cannot be reached: the nearest"):
+    with pytest.raises(bik.InvalidInputError, match=r"^points 0 to \d+ of the path cannot be reached: the nearest"):
         bik.plan_along_path(robot, far, limits=ACCELERATION)
     with pytest.raises(bik.InfeasibleError, match=r"^infeasible: start_q has the tip .* m from the path's first point"):
         bik.plan_along_path(robot, circle(False), start_q=np.full(7, 0.5), limits=ACCELERATION)

@@ -196,3 +196,12 @@ def test_every_status_is_explained() -> None:
         assert status.__doc__ in bik.Status.__doc__
         assert f"- `{status.name}`: " in bik.Status.__doc__
         assert status.__doc__.endswith(".")
+
+
+@pytest.mark.parametrize("size", [1e12, 1e15, 1.7e308])
+def test_limits_beyond_a_million_turns_count_as_none(size: float) -> None:
+    robot = bik.Robot.named("iiwa14")
+    wide = robot.with_limits(lower=-size, upper=size)
+    for q in robot.random_configurations(20, seed=1):
+        assert bik.solve(wide, robot.fk(q)).success
+    assert np.abs(wide.random_configurations(100, seed=1)).max() <= np.pi

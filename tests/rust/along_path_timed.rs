@@ -135,13 +135,25 @@ fn rotations_are_kept_between_points_too() {
 
 #[test]
 fn what_cannot_be_kept_is_told() {
-    // The tip of two links that reach 1 m passes (0, 0.99) and (0.99, 0), but not (0.99, 0.99) between.
+    // Two links that reach 1 m.
     let robot = Robot::planar(&[0.5, 0.5]).unwrap();
-    let points = Waypoints::new(vec![[0.0, 0.99, 0.0], [0.99, 0.99, 0.0], [0.99, 0.0, 0.0]], None).unwrap();
     let limits = Limits::of(&robot).replace(Field::Acceleration, vec![Profile::Constant(5.0)]).unwrap();
     let options = AlongPathOptions { limits: Some(limits), ..Default::default() };
-    let tip_path = TipPath::through(&points).unwrap();
-    let error = plan_along_path(&robot, &tip_path, &options, &mut Unattended).unwrap_err().to_string();
+    let error = |points: &[[f64; 2]]| {
+        let points = Waypoints::new(points.iter().map(|[x, y]| [*x, *y, 0.0]).collect(), None).unwrap();
+        let tip_path = TipPath::through(&points).unwrap();
+        plan_along_path(&robot, &tip_path, &options, &mut Unattended).unwrap_err().to_string()
+    };
+    let nearest = "of the path cannot be reached: the nearest configurations found within the limits stay up to";
+    let one = error(&[[0.0, 0.99], [0.99, 0.99], [0.99, 0.0]]);
+    assert!(one.starts_with(&format!("point 1 {nearest} 0.4001 m")), "{one}");
+    let two = error(&[[0.9, 0.0], [1.1, 0.0], [1.2, 0.0], [1.2, 0.2], [0.8, 0.2], [0.8, 0.7], [0.6, 0.6]]);
+    assert!(two.starts_with(&format!("points 1 to 3 and 5 {nearest} 0.2166 m")), "{two}");
+    // Both ends are in reach, but the line between them passes the hole about the base.
+    let short = Robot::planar(&[0.7, 0.3]).unwrap();
+    let points = Waypoints::new(vec![[-0.6, 0.1, 0.0], [0.6, 0.1, 0.0]], None).unwrap();
+    let through = TipPath::through(&points).unwrap();
+    let error = plan_along_path(&short, &through, &options, &mut Unattended).unwrap_err().to_string();
     assert!(error.starts_with("the path between points 0 and 1 cannot be reached: the nearest"), "{error}");
 }
 

@@ -8,7 +8,7 @@ use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::load::{Dh, DhTable};
 use ikcore::math::{Frame, pose};
 use ikcore::nalgebra::{Point3, Rotation3, Vector3};
-use ikcore::robot::{JointKind, Robot};
+use ikcore::robot::{Joint, JointKind, Robot};
 use ikcore::solver::{Algorithm, AnySolver, Bas, BasVariant, LevenbergMarquardt, Status, Stop, Unattended};
 use ikcore::task::{Target, Tolerance};
 
@@ -268,4 +268,26 @@ fn limits_that_a_single_configuration_cannot_have_are_refused() {
         refused(Field::Upper, Profile::Sinusoid(swinging)),
         "solve cannot honour time-varying upper limits: one configuration has no time; give numbers"
     );
+}
+
+#[test]
+fn limits_beyond_a_million_turns_count_as_none() {
+    let arm = robot("iiwa14");
+    let names: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
+    for size in [1e12, 1e15, 1e300, f64::MAX] {
+        let wide = |sign: f64| vec![Profile::Constant(sign * size); 7];
+        let limits = Limits::none(names.clone()).replace(Field::Lower, wide(-1.0)).unwrap();
+        let limits = limits.replace(Field::Upper, wide(1.0)).unwrap();
+        let options = SolveOptions { limits: Some(limits), ..SolveOptions::default() };
+        for q in configurations(&arm, 20) {
+            let solution = solved(&arm, &pose_at(&arm, &q), &options);
+            assert_eq!(solution.status, Status::Solved, "{size}: {}", solution.error.position);
+        }
+        let joint = Joint::new("wide", JointKind::Revolute).with_range(-size, size);
+        assert_eq!(joint.sampling_range(), (-PI, PI));
+        let half = Joint::new("half", JointKind::Revolute).with_range(-1.0, size);
+        assert_eq!(half.sampling_range(), (-1.0, 2.0 * PI - 1.0));
+    }
+    let named = Joint::new("turns", JointKind::Revolute).with_range(-6e6, 6e6);
+    assert_eq!(named.sampling_range(), (-6e6, 6e6));
 }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use ikcore::ik::{AllOptions, solve_all};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::{Obstacle, Scene};
-use ikcore::planning::{Endpoint, Plan, PointToPointMethod, PointToPointOptions, Tpbso, plan_point_to_point};
+use ikcore::planning::{Cost, Endpoint, Plan, PointToPointMethod, PointToPointOptions, Tpbso, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Stop, Unattended};
@@ -311,4 +311,42 @@ fn mistakes_are_named() {
         refused(&panda, &rest, &rest, with(vec![oval], &panda)),
         "obstacle 0 is an Ellipse, which lies in the plane z = 0, and robot 'panda' leaves that plane: use an Ellipsoid"
     );
+}
+
+/// A planar arm's motion past a pillar.
+fn around_a_pillar(objective: Cost, stop: Option<Stop>) -> Plan {
+    let robot = Robot::planar(&[0.5, 0.4, 0.3]).unwrap().with_capsules_along_links(0.01).unwrap();
+    let options = PointToPointOptions {
+        limits: Some(limits(&robot, Some(1.0), 5.0)),
+        obstacles: vec![Obstacle::ellipse([0.75, 0.0], [0.12, 0.12], 0.0).unwrap()],
+        objective,
+        stop,
+        ..Default::default()
+    };
+    let [start, end] = [-0.5, 0.5].map(|y| Endpoint::Target(Target::Position([0.8, y, 0.0])));
+    plan_point_to_point(&robot, &start, &end, &options, &mut Unattended).unwrap()
+}
+
+#[test]
+fn plans_among_obstacles_minimise_their_objective() {
+    let [time, joints, tip] = [Cost::Time, Cost::JointTravel, Cost::TipTravel].map(|cost| around_a_pillar(cost, None));
+    for plan in [&time, &joints, &tip] {
+        assert_eq!(plan.status, Status::Solved, "{}", plan.message());
+    }
+    assert!(joints.trajectory != time.trajectory || tip.trajectory != time.trajectory);
+    let travel = |plan: &Plan| -> f64 {
+        let all: Vec<Vec<f64>> = states(plan, 2000).collect();
+        all.windows(2).flat_map(|pair| pair[0].iter().zip(&pair[1])).map(|(a, b)| (b - a).abs()).sum()
+    };
+    assert!(joints.cost <= travel(&time) + 1e-3, "{} {}", joints.cost, travel(&time));
+}
+
+#[test]
+fn time_that_is_up_ends_a_plan_among_obstacles() {
+    let whole = around_a_pillar(Cost::Time, None);
+    let none_left = Stop { max_time: Some(std::time::Duration::ZERO), ..Stop::default() };
+    let cut_short = around_a_pillar(Cost::Time, Some(none_left));
+    assert_eq!(cut_short.status, Status::BudgetSpent, "{}", cut_short.message());
+    assert!(cut_short.evaluations < whole.evaluations / 2, "{} of {}", cut_short.evaluations, whole.evaluations);
+    assert!(!cut_short.violations.is_empty());
 }

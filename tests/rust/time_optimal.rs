@@ -145,6 +145,73 @@ fn farthest_from(path: &JointPath, trajectory: &Trajectory) -> f64 {
     (0..=100).map(|i| gap(&state(trajectory, trajectory.duration() * f64::from(i) / 100.0)[0])).fold(0.0, f64::max)
 }
 
+/// Checks that the timed polyline keeps velocity and acceleration limits and ends at its last waypoint.
+fn assert_polyline_is_timed(waypoints: &[f64], joints: usize, blend: f64, [velocity, acceleration]: [f64; 2]) -> f64 {
+    let path = JointPath::polyline(names(joints), waypoints, blend).unwrap();
+    let limits = velocity_and_acceleration(&vec![velocity; joints], &vec![acceleration; joints]);
+    let trajectory = time_optimal(&path, &limits, &TimingOptions::default()).unwrap();
+    let size = waypoints.iter().fold(0.0_f64, |size, q| size.max(q.abs()));
+    let [q, ..] = state(&trajectory, trajectory.duration());
+    let last = &waypoints[waypoints.len() - joints..];
+    assert!(q.iter().zip(last).all(|(q, last)| (q - last).abs() < 1e-9 * size), "{q:?} {last:?}");
+    let within = |largest: Vec<f64>, limit: f64| largest.iter().all(|x| *x <= limit * (1.0 + 1e-6));
+    assert!(within(trajectory.max_velocity(), velocity), "{:?}", trajectory.max_velocity());
+    assert!(within(trajectory.max_acceleration(), acceleration), "{:?}", trajectory.max_acceleration());
+    trajectory.duration()
+}
+
+fn line(from: &[f64], to: &[f64], rows: usize) -> Vec<f64> {
+    let share = |row: usize| row as f64 / (rows - 1) as f64;
+    (0..rows).flat_map(|row| from.iter().zip(to).map(move |(a, b)| a + share(row) * (b - a))).collect()
+}
+
+#[test]
+fn collinear_waypoints_are_as_fast_as_their_line() {
+    let mut rng = ikcore::rng::stream(5, 0);
+    for rows in [3, 20, 100] {
+        for _ in 0..20 {
+            let [from, to] = [(); 2].map(|()| (0..3).map(|_| rng.uniform_in(-2.0, 2.0)).collect::<Vec<f64>>());
+            let direct = assert_polyline_is_timed(&line(&from, &to, 2), 3, 0.0, [1.0, 5.0]);
+            for blend in [0.0, 0.1] {
+                let timed = assert_polyline_is_timed(&line(&from, &to, rows), 3, blend, [1.0, 5.0]);
+                assert!((timed / direct - 1.0).abs() < 1e-2, "{rows} rows, blend {blend}: {timed} and {direct}");
+            }
+        }
+    }
+}
+
+#[test]
+fn repeated_waypoints_of_polylines_count_once() {
+    let once = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0];
+    let expected = assert_polyline_is_timed(&once, 2, 0.1, [1.0, 5.0]);
+    for gap in [0.0, 3e-17, 1e-14] {
+        let twice: Vec<f64> = once.chunks(2).flat_map(|row| [row[0], row[1], row[0] + gap, row[1]]).collect();
+        let timed = assert_polyline_is_timed(&twice, 2, 0.1, [1.0, 5.0]);
+        assert!((timed / expected - 1.0).abs() < 1e-9, "{gap}: {timed} and {expected}");
+    }
+    assert_polyline_is_timed(&[0.0, 0.0, 1.0, 0.0, 1.0, 1e-9, 1.0, 1.0], 2, 0.1, [1.0, 5.0]);
+    let same = JointPath::polyline(names(1), &[1.0; 3], 0.1).unwrap_err();
+    assert_eq!(same.to_string(), "path: all waypoints are the same: give at least two that differ");
+}
+
+#[test]
+fn narrow_blends_of_long_polylines_keep_the_limits() {
+    // Speeding up takes as little of the duration as its rounding leaves.
+    let mut rng = ikcore::rng::stream(7, 0);
+    for _ in 0..150 {
+        let exponent = |rng: &mut ikcore::rng::LazyRng, from: f64, to: f64| 10.0_f64.powf(rng.uniform_in(from, to));
+        let limits = [exponent(&mut rng, -1.0, 2.0), exponent(&mut rng, 3.0, 7.0)];
+        let mut waypoints = vec![0.0; 3];
+        for _ in 0..20 {
+            let size = exponent(&mut rng, -3.0, 6.9);
+            for _ in 0..3 {
+                waypoints.push(waypoints[waypoints.len() - 3] + rng.uniform_in(-size, size));
+            }
+        }
+        assert_polyline_is_timed(&waypoints, 3, 5e-4, limits);
+    }
+}
+
 #[test]
 fn mistakes_are_named() {
     let two = names(2);

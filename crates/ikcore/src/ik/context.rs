@@ -3,6 +3,7 @@
 use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
+use crate::math::sampling_range;
 use crate::objective::{Bounds, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
@@ -133,10 +134,16 @@ impl<'a> SolveContext<'a> {
 /// The position limits as a box. Velocity limits do not matter for a single configuration.
 fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     let Some(limits) = limits else {
-        return Ok(Bounds::from_ranges(robot.joints().iter().map(|joint| (joint.lower, joint.upper))));
+        return Ok(open_box(robot.joints().iter().map(|joint| (joint.lower, joint.upper))));
     };
     let remedy = "a single configuration has no motion; leave it out";
     limits.require_for(robot)?;
     limits.require_none(&[Field::Acceleration, Field::Jerk], "solve", remedy)?;
-    limits.position_box()
+    let given = limits.position_box()?;
+    Ok(open_box(given.lower().iter().copied().zip(given.upper().iter().copied())))
+}
+
+/// The box of these (lower, upper) (rad, m), open where a limit is too large to mean anything.
+fn open_box(ranges: impl Iterator<Item = (f64, f64)>) -> Bounds {
+    Bounds::from_ranges(ranges.map(|(lower, upper)| sampling_range::opened(lower, upper)))
 }

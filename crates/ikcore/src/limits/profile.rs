@@ -53,7 +53,8 @@ pub enum Profile {
     Constant(f64),
     /// A sinusoid.
     Sinusoid(Sinusoid),
-    /// Values `step` seconds apart from t = 0, with linear interpolation; the last one is held.
+    /// Values `step` seconds apart from t = 0 on, linear in between, the last one held. Between a finite and an infinite
+    /// value the finite one holds.
     Sampled {
         /// Time between values (s).
         step: f64,
@@ -72,7 +73,7 @@ impl Profile {
                 let last = values.len() - 1;
                 let place = (t / step).clamp(0.0, last as f64);
                 let (below, share) = (place as usize, place.fract());
-                if share == 0.0 { values[below] } else { values[below] + share * (values[below + 1] - values[below]) }
+                if share == 0.0 { values[below] } else { between(values[below], values[below + 1], share) }
             }
         }
     }
@@ -138,6 +139,16 @@ impl Profile {
     }
 }
 
+/// The value at `share` of the way from one sample to the next. Next to a sample without a limit the finite one holds up
+/// to it, because no straight line leads to infinity.
+fn between(before: f64, after: f64, share: f64) -> f64 {
+    match (before.is_finite(), after.is_finite()) {
+        (true, true) => before + share * (after - before),
+        (false, true) => after,
+        (_, false) => before,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -145,6 +156,18 @@ mod tests {
 
     fn dense_minimum(profile: &Profile, from: f64, to: f64) -> f64 {
         (0..=20_000).map(|i| profile.at(from + (to - from) * f64::from(i) / 20_000.0)).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn infinite_samples_lift_the_limit_at_their_times_only() {
+        let open = Profile::Sampled { step: 0.5, values: vec![f64::INFINITY; 3] };
+        assert_eq!(
+            (open.at(0.2), open.at(0.5), open.smallest(0.1, 0.4).1),
+            (f64::INFINITY, f64::INFINITY, f64::INFINITY)
+        );
+        let opening = Profile::Sampled { step: 0.5, values: vec![1.0, 2.0, f64::INFINITY, f64::INFINITY, 3.0] };
+        assert_eq!([0.25, 0.75, 1.0, 1.25, 1.75].map(|t| opening.at(t)), [1.5, 2.0, f64::INFINITY, f64::INFINITY, 3.0]);
+        assert_eq!(opening.smallest(0.6, 0.9).1, 2.0);
     }
 
     proptest! {

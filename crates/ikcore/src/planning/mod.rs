@@ -18,12 +18,14 @@
 //! | `tpbso` | both problems as published by Wang et al. (2019) |
 //! | `planar_arm` | closed-form inverse kinematics of planar arms, with the redundancy as a parameter |
 //! | `search` | runs a solver on the cost of a plan and records its progress |
+//! | `deadline` | the wall-clock budget of a plan |
 //! | `deviation` | the distance of the tip from its path |
 //! | `collision_checks` | margins, collision errors and certifiable motions, shared by planners with obstacles |
 
 mod along_path;
 mod collision_checks;
 mod cost;
+mod deadline;
 mod deviation;
 mod endpoint;
 mod minmax;

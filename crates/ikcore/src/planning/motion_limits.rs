@@ -70,7 +70,8 @@ impl MotionLimits {
     /// Range of positions that a search may use for a joint (rad, m): its limits, or half a turn to either side without
     /// them.
     pub(crate) fn finite_range(&self, joint: usize) -> (f64, f64) {
-        sampling_range::finite(self.lower[joint], self.upper[joint], PI)
+        let (lower, upper) = sampling_range::opened(self.lower[joint], self.upper[joint]);
+        sampling_range::finite(lower, upper, PI)
     }
 
     /// Time (s) of the slowest joint through its range, at full speed or from rest to rest at full acceleration.

@@ -61,8 +61,8 @@ impl Joint {
         Self { velocity, ..self }
     }
 
-    /// The finite range from which random configurations are drawn; unlimited sides end one turn, or 2 m, from the
-    /// other limit.
+    /// The finite range from which random configurations are drawn: one turn, or 2 m, wide on an open side. A limit beyond
+    /// 1e6 turns (6.28e6 rad or m) counts as open.
     pub fn sampling_range(&self) -> (f64, f64) {
         self.sampling_range_within(self.lower, self.upper)
     }
@@ -70,6 +70,7 @@ impl Joint {
     /// [`sampling_range`](Self::sampling_range) under other limits (rad or m).
     pub(crate) fn sampling_range_within(&self, lower: f64, upper: f64) -> (f64, f64) {
         let reach = if self.kind.turns() { std::f64::consts::PI } else { UNLIMITED_SLIDE };
+        let (lower, upper) = sampling_range::opened(lower, upper);
         sampling_range::finite(lower, upper, reach)
     }
 

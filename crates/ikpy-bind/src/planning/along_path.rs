@@ -28,7 +28,8 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///         uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
 ///     objective: quantity to minimise, "time" or "joint_travel".
 ///     accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
-///         decides how many points of the path the motion passes. None: a thousandth of the path's extent; for "tpbso" 4 %.
+///         decides how many points of the path the motion passes. None: a thousandth of the path's extent, plus
+///         the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %.
 ///     solver: solver of the search of "timed"; None: differential evolution. `TPBSO` has a solver of its own.
 ///     stop: budgets; None: the method's own.
 ///     seed: seed of the random draws; the same seed gives the same bits.

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::obstacle::{Scene, Sweep};
 use crate::planning::collision_checks::{RESERVE, TimedMotion, as_lines, refuse_collision, scene, too_near};
-use crate::planning::{Endpoint, Improvement, MotionLimits, Plan, PointToPointOptions};
+use crate::planning::{Cost, Endpoint, Improvement, MotionLimits, Plan, PointToPointOptions};
 use crate::rng;
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
@@ -23,7 +23,7 @@ const FEW_PAIRS: usize = 3;
 const TRIES: usize = 400;
 /// Intervals of a straight line at whose ends its penetration is measured.
 const INTERVALS: usize = 16;
-/// Number of paths searched, of which the quickest is taken.
+/// Paths that are searched, of which the cheapest is taken.
 const PATHS: u64 = 4;
 /// How often blends are narrowed before the motion stops at every corner instead.
 const NARROWINGS: usize = 12;
@@ -48,11 +48,15 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
         open.extend(search.random_pairs(PAIRS, TRIES, is_open, monitor)?);
     }
     let limits = search.limits;
-    let mut trees =
-        TreeSearch::new(&scene, limits, margin + RESERVE, options.stop.map_or(BUDGET, |stop| stop.max_evaluations));
+    let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
+    let mut trees = TreeSearch::new(&scene, limits, margin + RESERVE, budget, search.deadline);
     let certified = match open.is_empty() {
+        true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),
         true => Certified::Nothing(Status::Stalled),
-        false => best_path(&mut trees, limits, &open, options.seed, margin, monitor)?,
+        false => {
+            sort_by_cost(&mut open, search, options.objective)?;
+            PathSearch { trees: &mut trees, search, options, margin }.best(&open, monitor)?
+        }
     };
     search.evaluations += trees.sweep.examined();
     let (trajectory, ended) = match certified {
@@ -84,43 +88,66 @@ enum Certified {
     Nothing(Status),
 }
 
-/// Returns the quickest collision-free straight motion between `open` pairs; else the quickest of several paths around
-/// obstacles.
-fn best_path(
-    trees: &mut TreeSearch,
-    limits: &MotionLimits,
-    open: &[EndPair],
-    seed: u64,
+/// Sorts pairs by the cost of the straight motion between them. By time they are sorted already.
+fn sort_by_cost(open: &mut Vec<EndPair>, search: &PairSearch, objective: Cost) -> Result<()> {
+    if objective == Cost::Time {
+        return Ok(());
+    }
+    let cost = |pair: EndPair| Ok((objective.of(search.robot, &straight(&pair, search.limits)?), pair));
+    let mut by_cost = open.drain(..).map(cost).collect::<Result<Vec<(f64, EndPair)>>>()?;
+    by_cost.sort_by(|one, other| one.0.total_cmp(&other.0));
+    open.extend(by_cost.into_iter().map(|(_, pair)| pair));
+    Ok(())
+}
+
+/// What a search for a certified motion needs.
+struct PathSearch<'s, 'a> {
+    trees: &'s mut TreeSearch<'a>,
+    search: &'s PairSearch<'a>,
+    options: &'s PointToPointOptions,
     margin: f64,
-    monitor: &mut dyn Monitor,
-) -> Result<Certified> {
-    for pair in open {
-        if trees.is_clear(&pair.start, &pair.end) {
-            let trajectory = straight(pair, limits)?;
-            if keeps_clear(trees, &trajectory, margin) {
-                return Ok(Certified::Motion(trajectory));
+}
+
+impl PathSearch<'_, '_> {
+    /// The first straight motion between `open` pairs that is free of collisions; else the cheapest of some paths around
+    /// obstacles.
+    fn best(self, open: &[EndPair], monitor: &mut dyn Monitor) -> Result<Certified> {
+        let Self { trees, search, options, margin } = self;
+        let limits = search.limits;
+        for pair in open {
+            if search.deadline.is_over() {
+                return Ok(Certified::Nothing(Status::BudgetSpent));
+            }
+            if trees.is_clear(&pair.start, &pair.end) {
+                let trajectory = straight(pair, limits)?;
+                if keeps_clear(trees, &trajectory, margin) {
+                    return Ok(Certified::Motion(trajectory));
+                }
             }
         }
-    }
-    // The ends of all pairs that share the start of the quickest: any of them will do.
-    let start = &open[0].start;
-    let ends: Vec<Vec<f64>> = open.iter().filter(|pair| pair.start == *start).map(|pair| pair.end.to_vec()).collect();
-    let mut best: Option<Trajectory> = None;
-    for attempt in 1..=PATHS {
-        let mut rng = rng::stream(seed, attempt);
-        let path = match trees.connect(start, &ends, &mut rng, monitor) {
-            Connection::Found(path) => trees.shorten(path, &mut rng, monitor),
-            Connection::NotFound => break,
-            Connection::Interrupted => {
-                return Ok(best.map_or(Certified::Nothing(Status::Interrupted), Certified::Motion));
+        // The ends of all pairs that share the start of the cheapest: any of them will do.
+        let start = &open[0].start;
+        let ends: Vec<Vec<f64>> =
+            open.iter().filter(|pair| pair.start == *start).map(|pair| pair.end.to_vec()).collect();
+        let mut best: Option<(f64, Trajectory)> = None;
+        let motion = |best: (f64, Trajectory)| Certified::Motion(best.1);
+        for attempt in 1..=PATHS {
+            let mut rng = rng::stream(options.seed, attempt);
+            let path = match trees.connect(start, &ends, &mut rng, monitor) {
+                Connection::Found(path) => trees.shorten(path, &mut rng, monitor),
+                Connection::NotFound => break,
+                Connection::Interrupted => {
+                    return Ok(best.map_or(Certified::Nothing(Status::Interrupted), motion));
+                }
+            };
+            let trajectory = timed(trees, &path, limits, margin)?;
+            let cost = options.objective.of(search.robot, &trajectory);
+            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                best = Some((cost, trajectory));
             }
-        };
-        let trajectory = timed(trees, &path, limits, margin)?;
-        if best.as_ref().is_none_or(|best| trajectory.duration() < best.duration()) {
-            best = Some(trajectory);
         }
+        Ok(best.map_or(Certified::Nothing(Status::BudgetSpent), motion))
     }
-    Ok(best.map_or(Certified::Nothing(Status::BudgetSpent), Certified::Motion))
 }
 
 /// A smooth timing of a collision-free path: with blends as wide as can be certified, or else with a stop at each corner.
@@ -128,6 +155,9 @@ fn timed(trees: &mut TreeSearch, path: &JointPolyline, limits: &MotionLimits, ma
     let stopping = path.with_stops(limits)?;
     let mut shares = vec![1.0; path.0.len()];
     for _ in 0..NARROWINGS {
+        if trees.deadline.is_over() {
+            break;
+        }
         let Some(blended) = path.with_blends(limits, &shares).transpose()? else { break };
         if blended.duration() >= stopping.duration() {
             break;
@@ -201,6 +231,6 @@ fn finish(
         violations,
         status,
         evaluations,
-        elapsed: search.stopwatch.elapsed(),
+        elapsed: search.deadline.elapsed(),
     })
 }

@@ -5,10 +5,10 @@ use super::pair_search::PairSearch;
 use super::straight_line_plan::without_obstacles;
 use crate::error::{Error, Result};
 use crate::planning::collision_checks::can_collide;
+use crate::planning::deadline::Deadline;
 use crate::planning::{Endpoint, MotionLimits, Plan, PointToPointOptions};
 use crate::robot::Robot;
 use crate::solver::Monitor;
-use crate::solver::Stopwatch;
 
 const METHOD: &str = "method=\"minmax\"";
 
@@ -20,10 +20,10 @@ pub(crate) fn point_to_point(
     options: &PointToPointOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
-    let stopwatch = Stopwatch::start();
+    let deadline = Deadline::start(options.stop.as_ref());
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     require_pace(robot, &limits)?;
-    let mut search = PairSearch::new(robot, &limits, [start, end], options.seed, stopwatch)?;
+    let mut search = PairSearch::new(robot, &limits, [start, end], options.seed, deadline)?;
     if can_collide(robot, &options.obstacles) {
         among_obstacles::plan(&mut search, options, monitor)
     } else {

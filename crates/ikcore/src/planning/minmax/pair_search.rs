@@ -6,10 +6,10 @@ use crate::error::{Error, Result};
 use crate::ik::{Solution, SolveOptions, solve};
 use crate::limits::{Field, Limits, Profile};
 use crate::objective::Point;
+use crate::planning::deadline::Deadline;
 use crate::planning::{Endpoint, MotionLimits};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
-use crate::solver::Stopwatch;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
 
@@ -20,10 +20,13 @@ pub(super) struct PairSearch<'a> {
     pub ends: [&'a Endpoint; 2],
     pub rng: LazyRng,
     pub evaluations: usize,
-    pub stopwatch: Stopwatch,
+    pub deadline: Deadline,
     pub seed: u64,
     pub position_limits: Limits,
 }
+
+/// Evaluations that random starts may cost in all, so that ends without a free configuration take a fraction of a second.
+const RANDOM_EVALUATIONS: usize = 500_000;
 
 /// Names of the two ends in messages.
 pub(super) const NAMES: [&str; 2] = ["start", "end"];
@@ -36,7 +39,7 @@ impl<'a> PairSearch<'a> {
         limits: &'a MotionLimits,
         ends: [&'a Endpoint; 2],
         seed: u64,
-        stopwatch: Stopwatch,
+        deadline: Deadline,
     ) -> Result<Self> {
         let constant = |values: &[f64]| values.iter().map(|value| Profile::Constant(*value)).collect();
         let position_limits = Limits::of(robot)
@@ -47,7 +50,7 @@ impl<'a> PairSearch<'a> {
                 position_limits.require_inside(name, 0.0, q)?;
             }
         }
-        Ok(Self { robot, limits, ends, rng: rng::stream(seed, 0), evaluations: 0, stopwatch, seed, position_limits })
+        Ok(Self { robot, limits, ends, rng: rng::stream(seed, 0), evaluations: 0, deadline, seed, position_limits })
     }
 
     /// Returns up to twice `count` pairs, the quickest first: half from random starts, half from the quickest pairs of
@@ -59,7 +62,7 @@ impl<'a> PairSearch<'a> {
         let given = self.ends.iter().all(|end| matches!(end, Endpoint::Configuration(_)));
         let mut pairs: Vec<EndPair> = vec![];
         for attempt in 0..if given { 1 } else { count } {
-            if attempt > 0 && !monitor.keep_going() {
+            if attempt > 0 && (self.deadline.is_over() || !monitor.keep_going()) {
                 break;
             }
             let Some(first) = self.configuration(0, None, attempt, monitor)? else { continue };
@@ -73,8 +76,11 @@ impl<'a> PairSearch<'a> {
                 pairs.push(pair);
             }
         }
-        if !given {
+        if !given && !self.deadline.is_over() {
             for pair in self.branches(count, monitor)? {
+                if self.deadline.is_over() {
+                    break;
+                }
                 let pair = self.improved(pair, monitor);
                 if pairs.iter().all(|known| !known.is_same(&pair)) {
                     pairs.push(pair);
@@ -85,8 +91,8 @@ impl<'a> PairSearch<'a> {
         Ok(pairs)
     }
 
-    /// Returns up to `count` pairs accepted by `accept`, not improved, from up to `tries` random starts, the quickest
-    /// first.
+    /// Up to `count` pairs that `accept` takes, not improved, from up to `tries` random starts or [`RANDOM_EVALUATIONS`]; the
+    /// quickest first.
     ///
     /// # Errors
     /// None if [`pairs`](Self::pairs) has found some.
@@ -98,8 +104,10 @@ impl<'a> PairSearch<'a> {
         monitor: &mut dyn Monitor,
     ) -> Result<Vec<EndPair>> {
         let mut pairs: Vec<EndPair> = vec![];
+        let last_evaluation = self.evaluations + RANDOM_EVALUATIONS;
         for attempt in 1..=tries {
-            if pairs.len() == count || !monitor.keep_going() {
+            let is_spent = self.evaluations >= last_evaluation || self.deadline.is_over();
+            if pairs.len() == count || is_spent || !monitor.keep_going() {
                 break;
             }
             let Some(first) = self.configuration(0, None, attempt, monitor)? else { continue };

@@ -4,6 +4,7 @@
 use super::line_timing::JointPolyline;
 use crate::obstacle::{Edge, Scene, Sweep};
 use crate::planning::MotionLimits;
+use crate::planning::deadline::Deadline;
 use crate::rng::LazyRng;
 use crate::solver::Monitor;
 
@@ -21,7 +22,10 @@ pub(super) enum Connection {
 /// Length of an edge while a tree grows: the norm of the joint displacements, relative to their ranges.
 const STRIDE: f64 = 0.08;
 
-/// The search: scene, margin, ranges and budget.
+/// Comparisons of nodes for each configuration of the budget: about as much work again.
+const COMPARISONS: usize = 500;
+
+/// The search, and what it keeps to.
 pub(super) struct TreeSearch<'a> {
     pub scene: &'a Scene<'a>,
     pub sweep: Sweep<'a>,
@@ -31,15 +35,25 @@ pub(super) struct TreeSearch<'a> {
     pub ranges: Vec<(f64, f64)>,
     /// Total number of configurations that may be examined.
     pub budget: usize,
+    /// Time that the search may take.
+    pub deadline: Deadline,
     /// Ends of edges refused before the edge was examined.
     refused: usize,
+    /// Nodes compared with a goal to find the nearest.
+    compared: usize,
 }
 
 impl<'a> TreeSearch<'a> {
-    pub(super) fn new(scene: &'a Scene<'a>, limits: &MotionLimits, margin: f64, budget: usize) -> Self {
+    pub(super) fn new(
+        scene: &'a Scene<'a>,
+        limits: &MotionLimits,
+        margin: f64,
+        budget: usize,
+        deadline: Deadline,
+    ) -> Self {
         let joints = scene.robot().joints().iter().enumerate();
         let ranges = joints.map(|(j, joint)| joint.sampling_range_within(limits.lower[j], limits.upper[j])).collect();
-        Self { scene, sweep: Sweep::new(scene), margin, ranges, budget, refused: 0 }
+        Self { scene, sweep: Sweep::new(scene), margin, ranges, budget, deadline, refused: 0, compared: 0 }
     }
 
     /// Whether the straight line is collision-free.
@@ -51,9 +65,13 @@ impl<'a> TreeSearch<'a> {
         self.sweep.check(&Edge { from, to }, [0.0, 1.0], self.margin).is_ok()
     }
 
-    /// Whether the budget is spent. Refused ends have their own budget: if nothing is clear, no edge is ever examined.
+    /// Whether a budget is spent. Refused ends have one of their own: where nothing is clear, no edge is ever examined. So
+    /// have comparisons of nodes: large trees that cannot grow spend their time on these.
     fn is_spent(&self) -> bool {
-        self.sweep.examined() >= self.budget || self.refused >= self.budget
+        let comparisons = self.budget.saturating_mul(COMPARISONS);
+        let counts =
+            self.sweep.examined() >= self.budget || self.refused >= self.budget || self.compared >= comparisons;
+        counts || self.deadline.is_over()
     }
 
     /// Squared distance, with joint displacements relative to their ranges.
@@ -99,6 +117,7 @@ impl<'a> TreeSearch<'a> {
 
     /// Grows `tree` towards `goal` by up to `strides` edges; returns the last node reached, `None` if it cannot grow.
     fn grow(&mut self, tree: &mut Tree, goal: &[f64], strides: usize) -> Option<usize> {
+        self.compared += tree.nodes.len();
         let distances = tree.nodes.iter().map(|node| self.squared_distance(node, goal)).enumerate();
         let (mut at, _) = distances.min_by(|one, other| one.1.total_cmp(&other.1))?;
         let mut reached = None;
@@ -150,7 +169,8 @@ impl<'a> TreeSearch<'a> {
         let last = points.len() - 1;
         let (mut i, mut kept) = (0, vec![points[0].clone()]);
         while i < last {
-            let farthest = (i + 2..=last).rev().find(|k| self.is_clear(&points[i], &points[*k]));
+            let farthest =
+                (i + 2..=last).rev().find(|k| !self.deadline.is_over() && self.is_clear(&points[i], &points[*k]));
             i = farthest.unwrap_or(i + 1);
             kept.push(points[i].clone());
         }
@@ -213,7 +233,7 @@ mod tests {
         let (robot, obstacles) = (arm(), [obstacle]);
         let limits = MotionLimits::new(&robot, None, "this test").unwrap();
         let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
-        let mut search = TreeSearch::new(&scene, &limits, MARGIN, budget);
+        let mut search = TreeSearch::new(&scene, &limits, MARGIN, budget, Deadline::start(None));
         let (start, end) = ([-0.8, 0.0], [0.8, 0.0]);
         let mut rng = rng::stream(1, 0);
         let found = search.connect(&start, &[end.to_vec()], &mut rng, monitor);

@@ -40,7 +40,7 @@ pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monito
         violations,
         status,
         evaluations,
-        elapsed: search.stopwatch.elapsed(),
+        elapsed: search.deadline.elapsed(),
     })
 }
 

@@ -18,8 +18,11 @@ pub struct JointPath {
     joints: Vec<String>,
     /// Path parameters of the starts of all pieces, and of the end of the last.
     breaks: Vec<f64>,
-    /// Coefficients of powers of s since the start of the piece: by piece, then by power, then by joint, because a grid
-    /// point needs one power of all joints.
+    /// How far the parameter goes in each piece. Differences of `breaks` would lose the digits of a short piece that
+    /// begins far along the path.
+    lengths: Vec<f64>,
+    /// Of s since the piece began: piece by piece, within it power by power, within that joint by joint, because a grid
+    /// point asks for one power of all joints.
     coefficients: Vec<f64>,
 }
 
@@ -41,15 +44,16 @@ impl PathEnd {
 }
 
 impl JointPath {
-    /// A path of pieces that were already checked.
-    pub(super) fn from_parts(joints: Vec<String>, breaks: Vec<f64>, coefficients: Vec<f64>) -> Self {
-        Self { joints, breaks, coefficients }
+    /// A path of pieces that were checked before.
+    pub(super) fn from_parts(joints: Vec<String>, breaks: Vec<f64>, lengths: Vec<f64>, coefficients: Vec<f64>) -> Self {
+        Self { joints, breaks, lengths, coefficients }
     }
 
     /// Concatenates paths, each of which starts where the previous one ends; at least one.
     pub(in crate::planning) fn joined(paths: impl IntoIterator<Item = Self>) -> Option<Self> {
         paths.into_iter().reduce(|mut all, next| {
             all.breaks.extend(&next.breaks[1..]);
+            all.lengths.extend(&next.lengths);
             all.coefficients.extend(&next.coefficients);
             all
         })
@@ -72,7 +76,7 @@ impl JointPath {
 
     /// Length of a piece in the path parameter.
     pub fn length(&self, piece: usize) -> f64 {
-        self.breaks[piece + 1] - self.breaks[piece]
+        self.lengths[piece]
     }
 
     /// Coefficients of all joints in a piece, for the powers 1, s, s^2 and s^3.
@@ -182,9 +186,20 @@ impl JointPath {
     }
 }
 
-/// Checks that a path can join these waypoints: at least two rows, one finite position per joint, no row equal to the
-/// previous one. Returns the number of rows.
+/// Err unless these are waypoints of a spline: at least two finite rows, none like the one before. Returns their number.
 pub(super) fn check_waypoints(joints: &[String], waypoints: &[f64]) -> Result<usize> {
+    let (n, rows) = (joints.len(), waypoint_rows(joints, waypoints)?);
+    match (1..rows).find(|row| waypoints[(row - 1) * n..row * n] == waypoints[row * n..(row + 1) * n]) {
+        None => Ok(rows),
+        Some(row) => {
+            let problem = format!("waypoint {row} is the same as waypoint {}: leave one of them out", row - 1);
+            Err(Error::InvalidPath { problem })
+        }
+    }
+}
+
+/// Number of waypoints; Err unless these are at least two rows of one finite position a joint.
+pub(super) fn waypoint_rows(joints: &[String], waypoints: &[f64]) -> Result<usize> {
     let n = joints.len();
     if n == 0 {
         return Err(Error::InvalidPath { problem: "it needs at least 1 joint".into() });
@@ -198,11 +213,5 @@ pub(super) fn check_waypoints(joints: &[String], waypoints: &[f64]) -> Result<us
         return Err(Error::WrongLength { what: "waypoints".into(), expected: "at least 2".into(), got: rows });
     }
     require_finite("waypoints", waypoints, |i| format!("joint '{}' of row {}", joints[i % n], i / n))?;
-    match (1..rows).find(|row| waypoints[(row - 1) * n..row * n] == waypoints[row * n..(row + 1) * n]) {
-        None => Ok(rows),
-        Some(row) => {
-            let problem = format!("waypoint {row} is the same as waypoint {}: leave one of them out", row - 1);
-            Err(Error::InvalidPath { problem })
-        }
-    }
+    Ok(rows)
 }

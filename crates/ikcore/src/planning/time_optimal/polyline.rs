@@ -1,29 +1,44 @@
 //! Straight lines between waypoints, with corners rounded by parabolas.
 
-use super::joint_path::{JointPath, check_waypoints};
+use super::joint_path::{JointPath, waypoint_rows};
 use crate::error::{Error, Result};
+use crate::math::vector::squared_distance;
+
+/// Distance below which two waypoints count as one, and a line between two blends as none, relative to the extent of the
+/// waypoints: the time for it would be lost to rounding.
+const NEGLIGIBLE: f64 = 1e-12;
 
 impl JointPath {
-    /// Straight lines through `waypoints` (rad or m, one row of all joints per point). Each corner is replaced by a
-    /// parabola from `blend` before it to `blend` after it (Euclidean distance in joint space; at most half of a line),
-    /// which passes the corner at a distance of at most `blend` / 2. With `blend` zero the joints stop at each corner.
+    /// Straight lines through `waypoints` (rad or m; one row of all joints a point), with each corner cut from `blend`
+    /// before it to `blend` after it (Euclidean distance in joint space; at most half of a line) by a parabola, which
+    /// passes the corner at `blend` / 2 at the most. With `blend` zero the joints stop at each corner. A waypoint that repeats
+    /// the one before it, to 1e-12 of the path's extent, is left out.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::InvalidPath`] if a waypoint repeats the previous one,
+    /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::InvalidPath`] where all waypoints are the same,
     /// [`Error::OutOfRange`] for `blend`.
     pub fn polyline(joints: Vec<String>, waypoints: &[f64], blend: f64) -> Result<Self> {
-        let rows = check_waypoints(&joints, waypoints)?;
+        waypoint_rows(&joints, waypoints)?;
         if !(blend >= 0.0 && blend.is_finite()) {
             return Err(Error::out_of_range("blend", "zero or more and finite", blend));
         }
-        let n = joints.len();
-        let legs: Vec<Leg> = (1..rows).map(|row| Leg::new(&waypoints[(row - 1) * n..(row + 1) * n])).collect();
-        let mut pieces = Pieces { breaks: vec![0.0], coefficients: Vec::new() };
+        let rows: Vec<&[f64]> = waypoints.chunks_exact(joints.len()).collect();
+        let negligible = NEGLIGIBLE * extent(&rows);
+        let corners = distinct(&rows, negligible);
+        if corners.len() < 2 {
+            let problem = "all waypoints are the same: give at least two that differ".into();
+            return Err(Error::InvalidPath { problem });
+        }
+        let legs: Vec<Leg> = corners.windows(2).map(|ends| Leg::new(ends[0], ends[1])).collect();
+        let mut pieces = Pieces { breaks: vec![0.0], lengths: Vec::new(), coefficients: Vec::new() };
         let mut cut_before = 0.0;
         for (i, leg) in legs.iter().enumerate() {
             let next = legs.get(i + 1);
-            let cut = next.map_or(0.0, |next| blend.min(0.5 * leg.length).min(0.5 * next.length));
-            pieces.push_line(leg, cut_before, leg.length - cut);
+            let widest = next.map_or(0.0, |next| blend.min(0.5 * leg.length).min(0.5 * next.length));
+            let cut = if widest > negligible { widest } else { 0.0 };
+            if leg.length - cut - cut_before > negligible {
+                pieces.push_line(leg, cut_before, leg.length - cut);
+            }
             if let Some(next) = next
                 && cut > 0.0
             {
@@ -31,8 +46,29 @@ impl JointPath {
             }
             cut_before = cut;
         }
-        Ok(Self::from_parts(joints, pieces.breaks, pieces.coefficients))
+        Ok(Self::from_parts(joints, pieces.breaks, pieces.lengths, pieces.coefficients))
     }
+}
+
+/// The largest distance of a row from the first.
+fn extent(rows: &[&[f64]]) -> f64 {
+    rows.iter().map(|row| squared_distance(row, rows[0])).fold(0.0, f64::max).sqrt()
+}
+
+/// The rows farther than `negligible` from the one kept before; the first and the last stay where they are.
+fn distinct<'a>(rows: &[&'a [f64]], negligible: f64) -> Vec<&'a [f64]> {
+    let far = |one: &[f64], other: &[f64]| squared_distance(one, other).sqrt() > negligible;
+    let mut kept = vec![rows[0]];
+    for row in &rows[1..] {
+        if far(row, kept[kept.len() - 1]) {
+            kept.push(row);
+        }
+    }
+    if kept.len() > 1 {
+        kept.pop();
+        kept.push(rows[rows.len() - 1]);
+    }
+    kept
 }
 
 /// One straight line.
@@ -43,9 +79,7 @@ struct Leg {
 }
 
 impl Leg {
-    /// From its two ends, stored consecutively.
-    fn new(ends: &[f64]) -> Self {
-        let (start, end) = ends.split_at(ends.len() / 2);
+    fn new(start: &[f64], end: &[f64]) -> Self {
         let difference: Vec<f64> = end.iter().zip(start).map(|(end, start)| end - start).collect();
         let length = difference.iter().map(|d| d * d).sum::<f64>().sqrt();
         Self { start: start.to_vec(), direction: difference.iter().map(|d| d / length).collect(), length }
@@ -59,14 +93,13 @@ impl Leg {
 /// The path under construction; its parameter is the length of the polyline.
 struct Pieces {
     breaks: Vec<f64>,
+    lengths: Vec<f64>,
     coefficients: Vec<f64>,
 }
 
 impl Pieces {
     fn push_line(&mut self, leg: &Leg, from: f64, to: f64) {
-        if to > from {
-            self.push(to - from, leg.at(from), leg, leg.direction.iter().map(|_| 0.0));
-        }
+        self.push(to - from, leg.at(from), leg, leg.direction.iter().map(|_| 0.0));
     }
 
     /// q(s) = q(corner - cut) + s d_in + s^2 (d_out - d_in) / (4 cut): its slope turns from d_in to d_out.
@@ -78,6 +111,7 @@ impl Pieces {
     fn push(&mut self, length: f64, start: impl Iterator<Item = f64>, leg: &Leg, squares: impl Iterator<Item = f64>) {
         let begin = self.breaks[self.breaks.len() - 1];
         self.breaks.push(begin + length);
+        self.lengths.push(length);
         self.coefficients.extend(start);
         self.coefficients.extend_from_slice(&leg.direction);
         self.coefficients.extend(squares);

@@ -46,7 +46,9 @@ impl JointPath {
                 }
             }
         }
-        Ok(Self::from_parts(joints, spline.knots().to_vec(), coefficients))
+        let breaks = spline.knots().to_vec();
+        let lengths = breaks.windows(2).map(|ends| ends[1] - ends[0]).collect();
+        Ok(Self::from_parts(joints, breaks, lengths, coefficients))
     }
 }
 

@@ -10,8 +10,9 @@
 //! | `redundant_motion` | configurations along the path, and their free offsets |
 //! | `null_space` | joint motions that leave the tip in place |
 //! | `projection` | the nearest configuration that reaches a target |
-//! | `interpolation` | splines through configurations, dense enough to stay on the path |
-//! | `timed_cost` | the duration as a function of the offsets |
+//! | `interpolation` | splines through configurations, fine enough to keep to the path |
+//! | `timed_cost` | the duration as a function of the choice |
+//! | `unreachable` | the points that no configuration reaches, for the error |
 
 mod interpolation;
 mod null_space;
@@ -19,5 +20,6 @@ mod projection;
 mod redundant_motion;
 mod timed_cost;
 mod timed_planner;
+mod unreachable;
 
 pub(super) use timed_planner::along_path;

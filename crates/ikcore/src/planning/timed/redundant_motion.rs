@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 use super::interpolation::JointWaypoints;
 use super::null_space::{null_space, turned};
 use super::projection::project;
+use super::unreachable::unreachable_points;
 use crate::error::{Error, Result};
 use crate::math::MAX_DOF;
 use crate::math::cubic_spline::CubicSpline;
@@ -54,7 +55,8 @@ impl<'a> RedundantMotion<'a> {
     /// The arm on `path`.
     ///
     /// # Errors
-    /// [`Error::Unreachable`] names the first point that no motion from any start reached.
+    /// [`Error::Unreachable`] names the points that no configuration reaches, or else the first place that no motion from
+    /// any start reached.
     pub(super) fn new(robot: &'a Robot, tip_path: &'a TipPath, start: Option<&[f64]>, seed: u64) -> Result<Self> {
         let joints = robot.joints();
         let knots = tip_path.knots(INTERVALS);
@@ -70,7 +72,10 @@ impl<'a> RedundantMotion<'a> {
             linearization: Linearization::default(),
         };
         motion.nominal.rows = match start {
-            Some(q) => motion.follow(q).map_err(|lost| motion.error(&lost))?,
+            Some(q) => match motion.follow(q) {
+                Ok(nominal) => nominal,
+                Err(lost) => return Err(motion.error(&lost, seed)?),
+            },
             None => motion.shortest(seed)?,
         };
         motion.bases = motion.self_motions();
@@ -164,12 +169,16 @@ impl<'a> RedundantMotion<'a> {
         }
         match (best, farthest) {
             (Some((_, nominal)), _) => Ok(nominal),
-            (None, Some(lost)) => Err(self.error(&lost)),
+            (None, Some(lost)) => Err(self.error(&lost, seed)?),
             (None, None) => Err(Error::InvalidPath { problem: "no start was tried".into() }),
         }
     }
 
-    fn error(&self, lost: &Lost) -> Error {
+    /// Names the points that cannot be reached at all; where there are none, the place where the best motion ended.
+    fn error(&self, lost: &Lost, seed: u64) -> Result<Error> {
+        if let Some(error) = unreachable_points(self.robot, self.tip_path, seed)? {
+            return Ok(error);
+        }
         let problem = if lost.missed > 0.0 {
             let unit = match self.targets[lost.point] {
                 Target::Position(_) => "m",
@@ -179,7 +188,7 @@ impl<'a> RedundantMotion<'a> {
         } else {
             "only another branch of configurations does, and the arm cannot jump to it".into()
         };
-        Error::Unreachable { what: self.tip_path.place(self.nominal.knots[lost.point]), problem }
+        Ok(Error::Unreachable { what: self.tip_path.place(self.nominal.knots[lost.point]), problem })
     }
 
     /// Follows all points from `start`, each from the previous one.
