@@ -56,6 +56,7 @@
 //! | 8 | [`tracking`], [`planning`], [`posture`], [`batch`] |
 
 pub mod batch;
+mod closed_form;
 pub mod error;
 pub mod ik;
 pub mod kinematics;

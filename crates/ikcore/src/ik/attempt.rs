@@ -78,7 +78,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
     }
 
     /// Descends once from `q` to the end; whether that solved, and the best point.
-    fn descend(&mut self, descent: &LevenbergMarquardt, q: Point) -> (bool, Point) {
+    pub fn descend(&mut self, descent: &LevenbergMarquardt, q: Point) -> (bool, Point) {
         if self.budget.is_spent() {
             return (false, q);
         }
@@ -90,7 +90,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
     }
 
     /// The nearest of a few descents towards a target that cannot be reached.
-    fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64]) -> Point {
+    pub fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64]) -> Point {
         let mut best: Option<(f64, Point)> = None;
         let mut x = Point::from_slice(x0);
         for approach in 0..APPROACHES {

@@ -65,7 +65,7 @@ impl Chain {
     }
 
     /// Constant frames of the moving elements, each seen from the one before.
-    pub(super) fn moving_frames(&self) -> impl Iterator<Item = Frame> {
+    pub fn moving_frames(&self) -> impl Iterator<Item = Frame> {
         (0..self.moving).map(|stage| self.stages.frame(stage))
     }
 }
