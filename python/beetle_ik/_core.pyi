@@ -171,6 +171,8 @@ class Robot:
     def velocity_limit(self) -> _Array:
         """Velocity limits (n,) (rad/s, m/s); inf if unknown, 0 for a locked joint."""
     @property
+    def closed_form(self) -> str: ...
+    @property
     def limits(self) -> Limits:
         """All limits of the robot."""
     def with_tool(self, tool: _Pose) -> Robot:
@@ -1324,8 +1326,9 @@ def solve_all(
     target: _Pose,
     *,
     start: ArrayLike | None = None,
-    limit: int = 16,
-    separation: float = 0.1,
+    limit: int | None = None,
+    separation: float | None = None,
+    turns: bool = False,
     task: Task | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
@@ -1386,6 +1389,10 @@ class SolutionSet:
     @property
     def q(self) -> _Array:
         """The configurations (k, n) (rad, m), inside the limits."""
+    @property
+    def complete(self) -> bool: ...
+    @property
+    def singular(self) -> bool: ...
     @property
     def miss(self) -> Solution | None:
         """The best `Solution` that misses the target, if no solution was found; otherwise None."""

@@ -222,7 +222,8 @@ fn a_family_of_solutions_is_reported_with_one_of_them() {
     let kr210 = robot("kr210");
     let q = [0.3, -0.5, 0.4, 0.9, 0.0, 0.5];
     let narrow = kr210.with_limits(|j, joint| (joint.lower, joint.upper) = (q[j] - 0.1, q[j] + 0.1)).unwrap();
-    let found = all(&narrow, &pose_at(&narrow, &q), &from(&q));
+    let found = solve_all(&narrow, &pose_at(&narrow, &q), &from(&q), &mut Unattended).unwrap();
+    assert!(found.solutions.iter().all(|solution| solution.error.position <= 1e-6 && solution.error.rotation <= 1e-6));
     assert!(!found.solutions.is_empty() && found.singular && !found.complete, "{}", found.message());
 }
 
@@ -230,17 +231,24 @@ fn a_family_of_solutions_is_reported_with_one_of_them() {
 fn poses_out_of_reach_are_proven_so() {
     for name in ["ur5e", "ur10", "kr210"] {
         let robot = robot(name);
-        // Inside the ball that the arm can reach, but not with this orientation.
-        let q = vec![0.3, -0.2, 0.1, 0.2, 0.4, 0.5];
-        let mut tip = robot.fk(&q).unwrap();
-        let far = robot.reach(&[-9.0; 6], &[9.0; 6]).radius;
-        tip.translation.vector = tip.translation.vector.normalize() * 0.99 * far;
-        let found = all(&robot, &Target::from(&tip), &AllOptions::default());
-        assert_eq!((found.status(), found.complete), (Status::OutOfReach, true), "{name}: {}", found.message());
-        let says = found.message();
-        assert!(says.starts_with("no solution; best miss: as near as possible, "), "{says}");
-        let end = "(no configuration has this pose): move or turn the target into reach, or move the base";
-        assert!(says.ends_with(end), "{says}");
+        // Inside the ball that the arm can reach, but with orientations that would have the wrist farther out.
+        let far = robot.reach(&[-9.0; 6], &[9.0; 6]);
+        let mut unreachable = 0;
+        for rpy in [[0.0, 0.0, 0.0], [PI, 0.0, 0.0], [0.0, Q, 0.0], [0.0, -Q, 0.0], [0.0, 0.0, PI], [Q, 0.0, 0.0]] {
+            let [x, y, z] = far.center;
+            let target = Target::from(&pose::from_rpy(rpy, [x + 0.97 * far.radius, y, z]));
+            let found = all(&robot, &target, &AllOptions::default());
+            assert!(found.complete, "{name}: {}", found.message());
+            if found.solutions.is_empty() {
+                unreachable += 1;
+                let says = found.message();
+                assert_eq!(found.status(), Status::OutOfReach, "{says}");
+                assert!(says.starts_with("no solution; best miss: as near as possible, "), "{says}");
+                let end = "(no configuration has this pose): move or turn the target into reach, or move the base";
+                assert!(says.ends_with(end), "{says}");
+            }
+        }
+        assert!(unreachable > 0, "{name}");
     }
 }
 

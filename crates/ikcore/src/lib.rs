@@ -47,7 +47,7 @@
 //! |---|---|
 //! | 0 | [`error`], [`rng`], [`math`], [`stored`], `wording` |
 //! | 1 | [`kinematics`], [`path`], [`trajectory`], [`objective`] |
-//! | 2 | [`starts`] |
+//! | 2 | [`starts`], `closed_form` |
 //! | 3 | [`robot`] |
 //! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
 //! | 5 | [`task`], [`solver`] |

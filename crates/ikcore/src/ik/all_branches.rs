@@ -87,10 +87,12 @@ impl AllBranches {
             self.solutions.push(attempt.solution(Status::Solved, q));
             return self;
         }
-        let obstruction = match branches.qs.len() {
-            0 => "no configuration has this pose".into(),
-            1 => "its one solution is outside the limits".into(),
-            count => format!("all {count} solutions are outside the limits"),
+        let beyond = attempt.problem.beyond_reach(attempt.context.bounds());
+        let obstruction = match (branches.qs.len(), beyond) {
+            (0, Some(beyond)) => beyond.to_string(),
+            (0, None) => "no configuration has this pose".into(),
+            (1, _) => "its one solution is outside the limits".into(),
+            (count, _) => format!("all {count} solutions are outside the limits"),
         };
         self.miss = Some(Solution { obstruction, ..attempt.solution(Status::OutOfReach, q) });
         self

@@ -2,7 +2,8 @@
 //!
 //! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds everything that
 //! one target needs: problem, random numbers, monitor, `budget`. `nearest` and `best` choose among several solutions,
-//! `goal_descent` moves one along its self-motion, `solve_all` collects them (`all_branches` by the closed form), `side_by_side` solves four at once for batches.
+//! `goal_descent` moves one along its self-motion, `solve_all` collects them (`all_branches` by the closed form),
+//! `side_by_side` solves four at once for batches.
 //! Why a target was missed is a matter of [`problem`](crate::problem).
 
 mod all_branches;

@@ -1,6 +1,9 @@
 //! Other bases in Bernstein's: tables made when the program is compiled.
 
-use super::{DEGREE, QUARTER};
+/// Largest degree of the ordinary polynomial.
+pub(super) const DEGREE: usize = 16;
+/// Half the length of a quarter circle, as tangent of half the angle: tan(pi/8).
+pub(super) const QUARTER: f64 = 0.414_213_562_373_095_03;
 
 /// Bernstein coefficients, on the quarter circle round zero, of (1 + x^2)^n cos k q and (1 + x^2)^n sin k q.
 pub(super) struct Basis<const TERMS: usize> {

@@ -1,6 +1,6 @@
 //! Intervals of the half-angle tangent and Bernstein coefficients on them.
 
-use super::DEGREE;
+use super::basis::DEGREE;
 use crate::closed_form::angle::Angle;
 
 /// An interval of x with the Bernstein coefficients there.

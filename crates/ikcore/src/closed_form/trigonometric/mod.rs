@@ -9,7 +9,7 @@ mod interval;
 mod sampler;
 
 use crate::closed_form::angle::Angle;
-use basis::Basis;
+use basis::{Basis, DEGREE, QUARTER};
 use interval::{Interval, bracketed_by_coefficients, half_angle, halves, variations};
 use sampler::{MOST_SAMPLED, Sampler};
 
@@ -19,10 +19,6 @@ const HALVINGS: u32 = 26;
 const MOST_INTERVALS: usize = 600;
 /// Over how much of the circle (rad) rounding may spread a double zero.
 const SPREAD: f64 = 1e-5;
-/// Largest degree of the ordinary polynomial.
-const DEGREE: usize = 16;
-/// Half the length of a quarter circle, as tangent of half the angle: tan(pi/8).
-const QUARTER: f64 = 0.414_213_562_373_095_03;
 
 /// Angles where a polynomial vanishes.
 #[derive(Debug, Clone, Copy)]

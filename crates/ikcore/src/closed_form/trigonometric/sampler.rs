@@ -1,7 +1,6 @@
 //! A polynomial sampled anew on an interval where it is small.
 
-use super::DEGREE;
-use super::basis::chebyshev_in_bernstein;
+use super::basis::{DEGREE, chebyshev_in_bernstein};
 use super::interval::{Interval, half_angle};
 use crate::closed_form::angle::Angle;
 

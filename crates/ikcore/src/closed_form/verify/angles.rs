@@ -8,7 +8,7 @@ use crate::math::arctangent::angle_of;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::real::{One, Real};
 
-/// JointAxis values of eight candidates from `first` on, angles in (-pi, pi].
+/// Joint values of eight candidates from `first` on, angles in (-pi, pi].
 #[inline(always)]
 pub fn angles<A: Arithmetic, const N: usize>(
     slides: &[bool; N],

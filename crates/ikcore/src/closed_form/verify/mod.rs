@@ -11,8 +11,8 @@ use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, by_instructions};
 use residuals::{FixedFrames, LANES};
 
-/// Candidates with a larger residual (m, rad) are polished: beside singular poses a residual within [`polish::TOLERANCE`] leaves more than
-/// that in the angles.
+/// Candidates with a larger residual (m, rad) are polished: beside singular poses a residual within [`polish::TOLERANCE`]
+/// leaves more than that in the angles.
 const GOOD: f64 = 1e-12;
 
 /// Branches nearer to each other than this in every joint (rad, m) are one: a double root.

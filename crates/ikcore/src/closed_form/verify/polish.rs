@@ -11,9 +11,10 @@ pub const TOLERANCE: f64 = 1e-10;
 
 const ITERATIONS: usize = 24;
 
-/// JointAxis values near `q` that bring the tip to `target`, if Newton's method gets there.
+/// Joint values near `q` that bring the tip to `target`, if Newton's method gets there.
 ///
-/// Each step adds one to `evaluations`. Damped by the squared error: beside a double root the Jacobian is singular, and the step must stay short.
+/// Each step adds one to `evaluations`. Damped by the squared error: beside a double root the Jacobian is singular, and the step
+/// must stay short.
 pub fn polished<const N: usize>(
     chain: &AxisChain<N>,
     target: &Frame,
