@@ -1,11 +1,11 @@
-//! Targets by the default solver: random and reachable, without a start, within the robot's limits; the best posture at
-//! such poses; and what the index of starts costs to build.
+//! Targets by the default solver: random and reachable, without a start, within the robot's limits; all solutions and the
+//! best posture at such poses; and what the index of starts costs to build.
 
 use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use ikcore::ik::{Prefer, SolveOptions, solve};
+use ikcore::ik::{AllOptions, Prefer, SolveOptions, solve, solve_all};
 use ikcore::manipulability::Motion;
 use ikcore::math::Frame;
 use ikcore::rng;
@@ -48,6 +48,25 @@ fn targets(c: &mut Criterion) {
                 });
             });
         }
+    }
+}
+
+fn all_solutions(c: &mut Criterion) {
+    let mut group = c.benchmark_group("all solutions");
+    group.throughput(Throughput::Elements(TARGETS));
+    for name in ["ur5e", "ur10", "kr210"] {
+        let robot = named(name);
+        let goals =
+            robot.random_configurations(TARGETS as usize, &mut rng::stream(1, 0)).expect("they fit into memory");
+        let targets: Vec<_> = goals.chunks_exact(robot.dof()).map(|q| Target::Pose(robot.tip(q))).collect();
+        let options = AllOptions::default();
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                for target in &targets {
+                    black_box(solve_all(&robot, target, &options, &mut Unattended).expect("solutions"));
+                }
+            });
+        });
     }
 }
 
@@ -95,6 +114,6 @@ criterion_group! {
         .sample_size(20)
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(2));
-    targets = targets, best_postures, index
+    targets = targets, all_solutions, best_postures, index
 }
 criterion_main!(benches);

@@ -2,8 +2,8 @@
 All solutions of a six-joint arm
 ================================
 
-An arm with six joints has a finite number of solutions for a pose, modulo whole turns. ``solve_all`` searches for them
-until a hundred in a row are known already.
+An arm with six joints has a finite number of solutions for a pose, modulo whole turns. ``solve_all`` returns all of
+them where the arm has a closed form, and ``complete`` says that none is missing.
 """
 
 import matplotlib.pyplot as plt
@@ -15,6 +15,7 @@ robot = bik.Robot.named("ur5e")
 target = bik.pose([0.4, 0.2, 0.3], rpy=[np.pi, 0.0, 0.5])
 start = np.array([0.8, -1.5, -1.5, -1.6, 1.6, -1.3])
 solutions = bik.solve_all(robot, target, start=start)
+print(robot.closed_form)
 print(solutions.message)
 for solution in solutions:
     print(np.round(solution.q, 3), f"{np.linalg.norm(solution.q - start):.2f} rad from the start")

@@ -172,6 +172,11 @@ class Robot:
     def velocity_limit(self) -> _Array:
         """Velocity limits (n,) (rad/s, m/s); inf if unknown, 0 for a locked joint."""
     @property
+    def closed_form(self) -> str:
+        """The structure that the closed form of the inverse kinematics rests on, and how many solutions a pose has at most, such as
+        "spherical wrist; at most 8 solutions"; or "none: " and the reason. Decided at the first call.
+        """
+    @property
     def limits(self) -> Limits:
         """All limits of the robot."""
     def with_tool(self, tool: _Pose) -> Robot:
@@ -374,7 +379,7 @@ class Status(IntEnum):
     - `INTERRUPTED`: Stopped on request before the end.
     - `LOST`: A track that did not stay within its tolerance.
     - `INVALID`: An item of a batch with an invalid target or start; it was not solved.
-    - `OUT_OF_REACH`: Provably out of reach: the target is farther away than the arm is long, or off its plane.
+    - `OUT_OF_REACH`: Provably out of reach: the target is farther away than the arm is long, off its plane, or without a solution in closed form.
     - `PLANT_FAILED`: The plant raised an error or returned something other than a position; the run ended with what was recorded.
     - `BELOW_THRESHOLD`: The solver's own threshold was met before the tolerances were.
     - `OUTSIDE_LIMITS`: The search converged outside the limits, and whole turns do not bring it inside; the best configuration inside is kept.
@@ -1333,8 +1338,9 @@ def solve_all(
     target: _Pose,
     *,
     start: ArrayLike | None = None,
-    limit: int = 16,
-    separation: float = 0.1,
+    limit: int | None = None,
+    separation: float | None = None,
+    turns: bool = False,
     task: Task | None = None,
     solver: _Solver | None = None,
     position_tolerance: float = 1e-6,
@@ -1343,7 +1349,10 @@ def solve_all(
     stop: Stop | None = None,
     seed: int = 0,
 ) -> SolutionSet:
-    """Searches for distinct solutions until a hundred in a row are known already, or the budget is spent.
+    """Returns all solutions of a pose where the arm has a closed form (`Robot.closed_form`), and searches for distinct ones elsewhere.
+
+    The closed form serves whole poses with the default solver and no weights or region. `SolutionSet.complete` says whether it is
+    proven that no solution is missing. The search ends when a hundred solutions in a row are known already, or the budget is spent.
 
     Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
     start is given. A redundant arm has infinitely many solutions: those returned are at least `separation` apart.
@@ -1352,21 +1361,24 @@ def solve_all(
         robot: the arm.
         target: pose (4, 4), or position (3,) (m).
         start: (n,); solutions are sorted by |q - start| (rad, m). None: they stay in the order in which they were found.
-        limit: largest number of solutions to return.
-        separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns.
+        limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
+        separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
+            a closed form are returned, those of a search differ by 0.1.
+        turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
         task: which part of the target counts, one of `tasks`; None: all of it.
         solver: the solver; None: Levenberg-Marquardt from many starts.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
         limits: position limits; None: the robot's.
-        stop: budgets of the whole search; None: as for `solve`.
+        stop: budgets of the whole search; None: as for `solve`. A closed form ignores them.
         seed: seed of the random draws; the same seed gives the same bits.
 
     Returns:
         A `SolutionSet`. If no solution is found, it is empty, and `miss` is the best configuration.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, or a target that is not a rigid transform.
+        InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
+            configurations.
         LimitError: a start outside the limits.
     """
 
@@ -1395,6 +1407,14 @@ class SolutionSet:
     @property
     def q(self) -> _Array:
         """The configurations (k, n) (rad, m), inside the limits."""
+    @property
+    def complete(self) -> bool:
+        """Whether it is proven that no other solution exists inside the limits, whole turns aside; False where a search found them, and
+        where `limit` or `separation` left some out.
+        """
+    @property
+    def singular(self) -> bool:
+        """Whether the pose is singular, so that one solution at least stands for a family in which a joint is free."""
     @property
     def miss(self) -> Solution | None:
         """The best `Solution` that misses the target, if no solution was found; otherwise None."""

@@ -101,6 +101,16 @@ def test_solve_reaches_a_position_and_a_pose() -> None:
     assert posed["rotation_error"] <= 1e-6
 
 
+def test_all_solutions_and_whether_any_is_missing() -> None:
+    arguments = ("solve", "ur10", "--position", "0.5,0.2,0.4", "--rpy", "0,1.5,0", "--all")
+    found = run_json(*arguments)
+    assert (len(found["q"]), found["complete"], found["status"]) == (8, True, "SOLVED")
+    shown = run(*arguments).stdout
+    assert "8 distinct solutions, no others inside the limits" in shown
+    assert "axes 2 to 4 parallel; at most 8 solutions" in shown
+    assert shown.count("q [rad, m]: ") == 8
+
+
 def test_out_of_reach_is_computed_and_exits_with_1() -> None:
     result = run("solve", "planar5", "--position", "9,0,0")
     assert result.exit_code == 1

@@ -41,7 +41,7 @@ fn planar_optima_are_those_of_the_scan() {
 /// the limits or all the way round.
 fn scan(robot: &Robot, target: &Target) -> f64 {
     let measure = Manipulability::of(robot, Motion::Pose);
-    let options = AllOptions { limit: 200, separation: 0.3, ..AllOptions::default() };
+    let options = AllOptions { limit: Some(200), separation: Some(0.3), ..AllOptions::default() };
     let found = solve_all(robot, target, &options, &mut Unattended).unwrap();
     let mut largest = 0.0_f64;
     for solution in &found.solutions {

@@ -159,16 +159,16 @@ fn limit_keeps_the_nearest_and_a_miss_is_returned() {
     let robot = robot("iiwa14");
     let q = [0.3, 0.5, -0.2, 0.9, 0.4, -0.6, 0.1];
     let each = SolveOptions { start: Some(q.to_vec()), ..SolveOptions::default() };
-    let options = AllOptions { each, limit: 3, ..AllOptions::default() };
+    let options = AllOptions { each, limit: Some(3), ..AllOptions::default() };
     let found = solve_all(&robot, &pose_at(&robot, &q), &options, &mut Unattended).unwrap();
     assert_eq!((found.solutions.len(), found.message()), (3, "3 distinct solutions".into()));
     let far = Target::from(&pose::translation(3.0, 0.0, 0.5));
     let found = solve_all(&robot, &far, &options, &mut Unattended).unwrap();
     assert!(found.solutions.is_empty() && found.miss.is_some());
     assert!(found.message().starts_with("no solution; best miss: as near as possible, "), "{}", found.message());
-    let zero = AllOptions { limit: 0, ..options.clone() };
+    let zero = AllOptions { limit: Some(0), ..options.clone() };
     assert_eq!(message(solve_all(&robot, &far, &zero, &mut Unattended)), "limit must be at least 1, got 0");
-    let negative = AllOptions { separation: -1.0, ..options };
+    let negative = AllOptions { separation: Some(-1.0), ..options };
     let says = message(solve_all(&robot, &far, &negative, &mut Unattended));
     assert_eq!(says, "separation must be positive and finite, got -1");
 }

@@ -19,7 +19,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("wording", &[]),
     ("kinematics", &[]),
     ("starts", &["kinematics"]),
-    ("robot", &["kinematics", "starts"]),
+    ("closed_form", &["kinematics"]),
+    ("robot", &["kinematics", "starts", "closed_form"]),
     ("load", &["kinematics", "robot"]),
     ("path", &[]),
     ("trajectory", &[]),
@@ -31,7 +32,10 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("solver", &["objective"]),
     ("problem", &["kinematics", "starts", "robot", "task", "limits", "objective"]),
     ("minimize", &["objective", "solver"]),
-    ("ik", &["kinematics", "robot", "objective", "limits", "manipulability", "task", "solver", "problem"]),
+    (
+        "ik",
+        &["kinematics", "closed_form", "robot", "objective", "limits", "manipulability", "task", "solver", "problem"],
+    ),
     ("batch", &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik"]),
     ("posture", &["robot", "objective", "manipulability", "task", "solver", "ik"]),
     (

@@ -48,7 +48,7 @@
 //! |---|---|
 //! | 0 | [`error`], [`rng`], [`math`], [`stored`], `wording` |
 //! | 1 | [`kinematics`], [`path`], [`trajectory`], [`objective`] |
-//! | 2 | [`starts`] |
+//! | 2 | [`starts`], `closed_form` |
 //! | 3 | [`robot`] |
 //! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
 //! | 5 | [`task`], [`solver`] |
@@ -57,6 +57,7 @@
 //! | 8 | [`tracking`], [`planning`], [`posture`], [`batch`] |
 
 pub mod batch;
+mod closed_form;
 pub mod error;
 pub mod ik;
 pub mod kinematics;

@@ -47,6 +47,19 @@ outcome! {
 
 #[pymethods]
 impl PySolutionSet {
+    /// Whether it is proven that no other solution exists inside the limits, whole turns aside; False where a search found them, and
+    /// where `limit` or `separation` left some out.
+    #[getter]
+    fn complete(&self) -> bool {
+        self.core.complete
+    }
+
+    /// Whether the pose is singular, so that one solution at least stands for a family in which a joint is free.
+    #[getter]
+    fn singular(&self) -> bool {
+        self.core.singular
+    }
+
     /// The best `Solution` that misses the target, if no solution was found; otherwise None.
     #[getter]
     fn miss(&self, py: Python<'_>) -> Option<PySolution> {
@@ -96,7 +109,10 @@ impl PySolutionSet {
     }
 }
 
-/// Searches for distinct solutions until a hundred in a row are known already, or the budget is spent.
+/// Returns all solutions of a pose where the arm has a closed form (`Robot.closed_form`), and searches for distinct ones elsewhere.
+///
+/// The closed form serves whole poses with the default solver and no weights or region. `SolutionSet.complete` says whether it is
+/// proven that no solution is missing. The search ends when a hundred solutions in a row are known already, or the budget is spent.
 ///
 /// Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
 /// start is given. A redundant arm has infinitely many solutions: those returned are at least `separation` apart.
@@ -105,24 +121,27 @@ impl PySolutionSet {
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m).
 ///     start: (n,); solutions are sorted by |q - start| (rad, m). None: they stay in the order in which they were found.
-///     limit: largest number of solutions to return.
-///     separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns.
+///     limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
+///     separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
+///         a closed form are returned, those of a search differ by 0.1.
+///     turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
 ///     task: which part of the target counts, one of `tasks`; None: all of it.
 ///     solver: the solver; None: Levenberg-Marquardt from many starts.
 ///     position_tolerance: largest position error (m).
 ///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
 ///     limits: position limits; None: the robot's.
-///     stop: budgets of the whole search; None: as for `solve`.
+///     stop: budgets of the whole search; None: as for `solve`. A closed form ignores them.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///
 /// Returns:
 ///     A `SolutionSet`. If no solution is found, it is empty, and `miss` is the best configuration.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, or a target that is not a rigid transform.
+///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
+///         configurations.
 ///     LimitError: a start outside the limits.
 #[pyfunction]
-#[pyo3(signature = (robot, target, *, start=None, limit=16, separation=0.1, task=None, solver=None,
+#[pyo3(signature = (robot, target, *, start=None, limit=None, separation=None, turns=false, task=None, solver=None,
                     position_tolerance=1e-6, rotation_tolerance=1e-6, limits=None, stop=None, seed=0))]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_all(
@@ -130,8 +149,9 @@ pub fn solve_all(
     robot: &PyRobot,
     target: &Bound<'_, PyAny>,
     start: Option<&Bound<'_, PyAny>>,
-    limit: i128,
-    separation: f64,
+    limit: Option<i128>,
+    separation: Option<f64>,
+    turns: bool,
     task: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
     position_tolerance: f64,
@@ -145,7 +165,8 @@ pub fn solve_all(
     let asked =
         SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals: None, prefer: "any", stop, seed };
     let each = asked.read(start.map(|start| vector("start", start)).transpose()?, resolved)?;
-    let options = AllOptions { each, limit: count("limit", limit)?, separation };
+    let limit = limit.map(|limit| count("limit", limit)).transpose()?;
+    let options = AllOptions { each, limit, separation, turns };
     let core = watched(py, None, |watcher| ik::solve_all(&robot.core, &target, &options, watcher))?;
     PySolutionSet::new(py, core, robot.core.dof(), in_force)
 }

@@ -1,10 +1,10 @@
 """`beetle-ik solve`: inverse kinematics of one target."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from .. import Robot, Solution, Stop, pose
+from .. import Robot, Solution, SolutionSet, Stop, pose, solve_all
 from .. import solve as solve_target
 from .options import (
     AsJson,
@@ -33,6 +33,9 @@ def solve(
     rotation_tolerance: Annotated[float, typer.Option(help="Allowed rotation error in rad.")] = 1e-6,
     max_evaluations: Annotated[int | None, typer.Option(help="Budget: evaluations of the forward kinematics.")] = None,
     seed: Seed = 0,
+    every: Annotated[
+        bool, typer.Option("--all", help="All solutions, nearest to the start first, and whether any is missing.")
+    ] = False,
     urdf: UrdfFile = None,
     tip: TipLink = None,
     base: BaseLink = None,
@@ -41,18 +44,42 @@ def solve(
     """Inverse kinematics: joint positions for a position or a pose of the tip."""
     arm = load_robot(robot, urdf, base, tip)
     point = numbers("--position", position, 3)
-    solution = solve_target(
-        arm,
-        point if rpy is None else pose(point, rpy=numbers("--rpy", rpy, 3)),
-        start=None if start is None else numbers("--start", start),
-        solver=None if solver is None else make_solver(solver),
-        position_tolerance=position_tolerance,
-        rotation_tolerance=rotation_tolerance,
-        stop=None if max_evaluations is None else Stop(max_evaluations=max_evaluations),
-        seed=seed,
-    )
+    target = point if rpy is None else pose(point, rpy=numbers("--rpy", rpy, 3))
+    options: dict[str, Any] = {
+        "start": None if start is None else numbers("--start", start),
+        "solver": None if solver is None else make_solver(solver),
+        "position_tolerance": position_tolerance,
+        "rotation_tolerance": rotation_tolerance,
+        "stop": None if max_evaluations is None else Stop(max_evaluations=max_evaluations),
+        "seed": seed,
+    }
+    if every:
+        found = solve_all(arm, target, **options)
+        _show_all(arm, found, as_json)
+        raise typer.Exit(0 if found.success else 1)
+    solution = solve_target(arm, target, **options)
     _show(arm, solution, rpy is not None, as_json)
     raise typer.Exit(0 if solution.success else 1)
+
+
+def _show_all(robot: Robot, found: SolutionSet, as_json: bool) -> None:
+    if as_json:
+        fields = ("q", "success", "message", "complete", "singular", "evaluations", "elapsed")
+        print_json(
+            {"robot": robot.name, "status": found.status.name} | {field: getattr(found, field) for field in fields}
+        )
+        return
+    print_pairs(
+        f"{robot.name}: {found.message}",
+        [
+            ("closed form", robot.closed_form),
+            ("complete", "yes" if found.complete else "not proven"),
+            ("evaluations", str(found.evaluations)),
+            ("time [ms]", f"{1e3 * found.elapsed:.3g}"),
+        ],
+    )
+    for q in found.q:
+        typer.echo(f"q [rad, m]: {as_argument(q)}")
 
 
 def _show(robot: Robot, solution: Solution, oriented: bool, as_json: bool) -> None:

@@ -4,11 +4,12 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use super::all_branches::{AllBranches, all_branches};
 use super::attempt::Attempt;
 use super::context::SolveContext;
 use super::solution::Solution;
 use super::solve_options::SolveOptions;
-use super::whole_turns::bring_near;
+use super::whole_turns::{all_turns, bring_near, count_of_turns};
 use crate::error::{Error, Result, require_positive};
 use crate::math::vector::distance;
 use crate::objective::{Bounds, Point};
@@ -20,21 +21,25 @@ use crate::task::Target;
 /// Consecutive known solutions after which the search ends.
 const PATIENCE: usize = 100;
 
-/// Options of [`solve_all`].
-#[derive(Debug, Clone)]
-pub struct AllOptions {
-    /// Options of each solve. Its budgets apply to the whole search.
-    pub each: SolveOptions,
-    /// Largest number of solutions to return.
-    pub limit: usize,
-    /// Solutions count as the same if every joint differs by less than this (rad, m), apart from whole turns.
-    pub separation: f64,
-}
+/// How many solutions a search collects, and how far apart, unless asked otherwise.
+const COLLECTED: usize = 16;
+const APART: f64 = 0.1;
 
-impl Default for AllOptions {
-    fn default() -> Self {
-        Self { each: SolveOptions::default(), limit: 16, separation: 0.1 }
-    }
+/// The most configurations that whole turns are to make of one pose.
+const MOST_TURNED: f64 = 10_000.0;
+
+/// How to look for all solutions.
+#[derive(Debug, Clone, Default)]
+pub struct AllOptions {
+    /// How to solve. Its budgets apply to the whole search; a closed form takes no search.
+    pub each: SolveOptions,
+    /// Largest number of solutions to return. None: all of a closed form, 16 of a search.
+    pub limit: Option<usize>,
+    /// Solutions count as the same where every joint differs by less (rad, m), whole turns aside. None: all of a closed form
+    /// are returned, those of a search differ by 0.1.
+    pub separation: Option<f64>,
+    /// Return each solution at all whole turns inside the limits.
+    pub turns: bool,
 }
 
 /// Distinct solutions, and how the search ended.
@@ -44,6 +49,10 @@ pub struct SolutionSet {
     pub solutions: Vec<Solution>,
     /// The best miss if there is no solution.
     pub miss: Option<Solution>,
+    /// It is proven that there is no other solution inside the limits, whole turns aside.
+    pub complete: bool,
+    /// The pose is singular: one solution at least stands for a family, in which a joint is free.
+    pub singular: bool,
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
     /// Time taken.
@@ -60,30 +69,36 @@ impl SolutionSet {
 
     /// The number of solutions, or why there are none.
     pub fn message(&self) -> String {
-        match (self.solutions.len(), &self.miss) {
-            (0, Some(miss)) => format!("no solution; best miss: {}", miss.message()),
+        let count = match (self.solutions.len(), &self.miss) {
+            (0, Some(miss)) => return format!("no solution; best miss: {}", miss.message()),
             (1, _) => "1 solution".into(),
             (count, _) => format!("{count} distinct solutions"),
-        }
+        };
+        let complete = if self.complete { ", no others inside the limits" } else { "" };
+        let singular = if self.singular { "; the pose is singular: a family counts as one solution" } else { "" };
+        format!("{count}{complete}{singular}")
     }
 }
 
-/// Searches for distinct solutions until a hundred in a row are already known, or the budget is spent.
+/// Returns all solutions of a pose where the arm has a closed form ([`Robot::closed_form`]); otherwise looks for distinct
+/// solutions until a hundred in a row were known already, or the budget is spent.
 ///
-/// Each joint is shifted by whole turns to be nearest to the start or, without one, to the middle of its limits. A
-/// redundant arm has infinitely many solutions; those returned differ by at least the separation.
+/// The closed form serves whole poses with the default solver, without weights, region or goals.
+///
+/// Each solution is returned at the whole turns nearest to the start or, without one, to the middle of the limits. A redundant
+/// arm has infinitely many solutions: those returned are at least the separation apart.
 ///
 /// # Errors
-/// Any [`enum@Error`] for wrong input.
+/// Any [`enum@Error`] for wrong input; [`Error::Contradiction`] where whole turns make more than 10,000 configurations.
 pub fn solve_all(
     robot: &Robot,
     target: &Target,
     options: &AllOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<SolutionSet> {
-    let AllOptions { each, limit, separation } = options;
-    require_positive("separation", *separation)?;
-    if *limit == 0 {
+    let AllOptions { each, limit, separation, turns } = options;
+    separation.map_or(Ok(()), |separation| require_positive("separation", separation))?;
+    if *limit == Some(0) {
         return Err(Error::out_of_range("limit", "at least 1", 0.0));
     }
     let context = SolveContext::new(robot, each)?;
@@ -92,13 +107,57 @@ pub fn solve_all(
     start.map_or(Ok(()), |q| context.check_start(q))?;
     let mut problem = context.problem(&target);
     let mut rng = rng::stream(each.seed, 0);
-    Ok(search(Attempt::new(&context, &mut problem, &mut rng, monitor), start, options))
+    let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
+    let reference = start.map_or_else(|| middle(context.robot(), context.bounds()), Point::from);
+    let branches = all_branches(&mut attempt, &reference);
+    let limit = limit.unwrap_or(if branches.is_some() { usize::MAX } else { COLLECTED });
+    let mut found = match branches {
+        Some(branches) => by_closed_form(&attempt, branches, *separation),
+        None => search(&mut attempt, start, &reference, limit, separation.unwrap_or(APART)),
+    };
+    if *turns {
+        found.solutions = at_all_turns(&context, found.solutions)?;
+    }
+    if let Some(start) = start {
+        found.solutions.sort_by(|a, b| distance(&a.q, start).total_cmp(&distance(&b.q, start)));
+    }
+    found.complete &= found.solutions.len() <= limit;
+    found.solutions.truncate(limit);
+    found.elapsed = attempt.budget.elapsed();
+    Ok(found)
 }
 
-fn search(mut attempt: Attempt<'_, '_>, start: Option<&[f64]>, options: &AllOptions) -> SolutionSet {
+/// The solutions of the closed form, thinned out where a separation is asked for.
+fn by_closed_form(attempt: &Attempt<'_, '_>, branches: AllBranches, separation: Option<f64>) -> SolutionSet {
+    let AllBranches { solutions: all, miss, complete, singular } = branches;
+    let count = all.len();
+    let mut solutions = Vec::<Solution>::with_capacity(count);
+    for solution in all {
+        let known = |apart| is_known(attempt.context.robot(), &solutions, &solution.q, apart);
+        if !separation.is_some_and(known) {
+            solutions.push(solution);
+        }
+    }
+    SolutionSet {
+        complete: complete && solutions.len() == count,
+        solutions,
+        miss,
+        singular,
+        evaluations: attempt.budget.evaluations,
+        elapsed: attempt.budget.elapsed(),
+        interrupted: false,
+    }
+}
+
+fn search(
+    attempt: &mut Attempt<'_, '_>,
+    start: Option<&[f64]>,
+    reference: &[f64],
+    limit: usize,
+    separation: f64,
+) -> SolutionSet {
     let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
     let mut x0 = attempt.first_start(start);
-    let reference = start.map_or_else(|| middle(robot, bounds), Point::from);
     let (mut solutions, mut known) = (Vec::<Solution>::new(), 0);
     let mut interrupted = false;
     let last = loop {
@@ -107,15 +166,15 @@ fn search(mut attempt: Attempt<'_, '_>, start: Option<&[f64]>, options: &AllOpti
         if solution.status != Status::Solved {
             break Some(solution);
         }
-        bring_near(robot, bounds, &reference, &mut solution.q);
-        if solutions.iter().any(|other| is_same(robot, &other.q, &solution.q, options.separation)) {
+        bring_near(robot, bounds, reference, &mut solution.q);
+        if is_known(robot, &solutions, &solution.q, separation) {
             known += 1;
         } else {
             known = 0;
             solutions.push(solution);
         }
-        // Without a start any solutions are enough; with one, the nearest are required, and they may come last.
-        let enough = start.is_none() && solutions.len() == options.limit;
+        // Without a start any solutions will do; with one, the nearest are wanted, and they may come last.
+        let enough = start.is_none() && solutions.len() == limit;
         // Runs may be too short to poll the monitor.
         interrupted = !attempt.monitor.keep_going();
         if interrupted || known == PATIENCE || enough || attempt.budget.is_spent() {
@@ -123,14 +182,28 @@ fn search(mut attempt: Attempt<'_, '_>, start: Option<&[f64]>, options: &AllOpti
         }
         attempt.next_start(&mut x0);
     };
-    if let Some(start) = start {
-        solutions.sort_by(|a, b| distance(&a.q, start).total_cmp(&distance(&b.q, start)));
-    }
-    solutions.truncate(options.limit);
     interrupted |= last.as_ref().is_some_and(|solution| solution.status == Status::Interrupted);
     let miss = last.filter(|_| solutions.is_empty());
     let (evaluations, elapsed) = (attempt.budget.evaluations, attempt.budget.elapsed());
-    SolutionSet { solutions, miss, evaluations, elapsed, interrupted }
+    SolutionSet { solutions, miss, complete: false, singular: false, evaluations, elapsed, interrupted }
+}
+
+/// Each solution at all whole turns inside the limits.
+fn at_all_turns(context: &SolveContext<'_>, solutions: Vec<Solution>) -> Result<Vec<Solution>> {
+    let (robot, bounds) = (context.robot(), context.bounds());
+    let count: f64 = solutions.iter().map(|solution| count_of_turns(robot, bounds, &solution.q)).sum();
+    if count > MOST_TURNED {
+        return Err(Error::Contradiction {
+            problem: format!(
+                "turns=True makes {count} configurations; at most {MOST_TURNED} are allowed: narrow the limits"
+            ),
+        });
+    }
+    let turned = |solution: &Solution| {
+        let all = all_turns(robot, bounds, &solution.q);
+        all.into_iter().map(|q| Solution { q, ..solution.clone() }).collect::<Vec<_>>()
+    };
+    Ok(solutions.iter().flat_map(turned).collect())
 }
 
 /// The middle of the ranges that joints are sampled from.
@@ -144,13 +217,11 @@ fn middle(robot: &Robot, bounds: &Bounds) -> Point {
         .collect()
 }
 
-/// Whether no joint differs by `separation`, apart from whole turns.
-fn is_same(robot: &Robot, a: &[f64], b: &[f64], separation: f64) -> bool {
-    (0..a.len()).all(|j| {
-        let difference = a[j] - b[j];
-        let turn = std::f64::consts::TAU;
-        let apart =
-            if robot.repeats_every_turn(j) { difference - turn * (difference / turn).round() } else { difference };
-        apart.abs() < separation
-    })
+/// Whether no joint differs by `separation` from one of the `solutions`, whole turns aside.
+fn is_known(robot: &Robot, solutions: &[Solution], q: &[f64], separation: f64) -> bool {
+    let apart = |j: usize, other: &Solution| {
+        let difference = other.q[j] - q[j];
+        robot.turn_period(j).map_or(difference, |turn| difference - turn * (difference / turn).round())
+    };
+    solutions.iter().any(|other| (0..q.len()).all(|j| apart(j, other).abs() < separation))
 }

@@ -44,6 +44,12 @@ impl Frame {
         std::array::from_fn(|k| A::mul_add(z[k], v[2], A::mul_add(y[k], v[1], x[k] * v[0])))
     }
 
+    /// Rotates a vector from the base into this frame: R'v.
+    #[inline(always)]
+    pub(crate) fn turn_back(&self, v: &[f64; 3]) -> [f64; 3] {
+        self.axes.map(|axis| axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2])
+    }
+
     /// Maps a point from this frame into the base: R p + t.
     #[inline(always)]
     pub(crate) fn place<A: Arithmetic>(&self, p: &[f64; 3]) -> [f64; 3] {

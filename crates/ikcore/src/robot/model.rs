@@ -1,14 +1,17 @@
 //! The robot: immutable, validated once, shared between threads without locks.
 
+use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
 use super::description::{Description, Element};
 use super::joint::Joint;
 use super::link_capsule::Bodies;
+use crate::closed_form::{ArmBranches, ClosedFormArm, NoClosedForm};
 use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::Chain;
 use crate::kinematics::kernels::Kernels;
 use crate::kinematics::{Reach, TaskRank};
+use crate::math::arithmetic::Baseline;
 use crate::math::{Frame, Pose, pose};
 use crate::rng::LazyRng;
 use crate::starts::Starts;
@@ -34,6 +37,8 @@ pub struct Robot {
     start_index: Arc<OnceLock<StartIndex>>,
     /// Computed at first use.
     task_rank: OnceLock<TaskRank>,
+    /// Decided at first use; copies that differ in base and tool share it.
+    closed_form: Arc<OnceLock<std::result::Result<ClosedFormArm, NoClosedForm>>>,
 }
 
 impl PartialEq for Robot {
@@ -62,6 +67,7 @@ impl Robot {
             chain: Arc::new(chain),
             start_index: Arc::default(),
             task_rank: OnceLock::new(),
+            closed_form: Arc::default(),
         })
     }
 
@@ -107,7 +113,7 @@ impl Robot {
     pub fn with_base(&self, base: Pose) -> Result<Self> {
         let base = pose::checked("base", base)?;
         let robot = Self::assembled(self.description.clone(), base, self.tool, self.bodies.clone())?;
-        Ok(Self { start_index: self.start_index.clone(), ..robot })
+        Ok(Self { start_index: self.start_index.clone(), closed_form: self.closed_form.clone(), ..robot })
     }
 
     /// The same robot with its tip at `tool`, relative to the tip link.
@@ -117,7 +123,7 @@ impl Robot {
     pub fn with_tool(&self, tool: Pose) -> Result<Self> {
         let tool = pose::checked("tool", tool)?;
         let robot = Self::assembled(self.description.clone(), self.base, tool, self.bodies.clone())?;
-        Ok(Self { start_index: self.start_index.clone(), ..robot })
+        Ok(Self { start_index: self.start_index.clone(), closed_form: self.closed_form.clone(), ..robot })
     }
 
     /// The same robot with other joint limits; `change` gets each joint with its index.
@@ -139,7 +145,16 @@ impl Robot {
         self.joints()[joint].kind.turns() && scales.into_iter().all(|(turn, slide)| turn.fract() == 0.0 && slide == 0.0)
     }
 
-    /// Checks that `q` has one finite entry per joint; `what` names it in the message.
+    /// The smallest change of joint `joint` that leaves the pose of every link unchanged; None where there is none.
+    pub(crate) fn turn_period(&self, joint: usize) -> Option<f64> {
+        let mut driven = self.chain.motions[..self.chain.moving].iter().filter(|motion| motion.joint == joint);
+        match (driven.next(), driven.next()) {
+            (Some(only), None) if only.turn_scale != 0.0 => Some(TAU / only.turn_scale.abs()),
+            _ => self.repeats_every_turn(joint).then_some(TAU),
+        }
+    }
+
+    /// Err unless `q` has one finite entry per joint; `what` names it in the message.
     pub fn check(&self, what: &str, q: &[f64]) -> Result<()> {
         if q.len() != self.dof() {
             let expected = format!("{} joints", self.dof());
@@ -196,6 +211,35 @@ impl Robot {
     /// Starts for a solve to `position` (m), at any orientation.
     pub fn starts_near_position(&self, position: &[f64; 3]) -> Starts<'_> {
         self.start_index().near_position(&self.chain, position)
+    }
+
+    /// The structure that the closed form of the inverse kinematics rests on and how many solutions it allows, or "none: " and
+    /// the reason. Decided at the first call.
+    pub fn closed_form(&self) -> String {
+        match self.closed_form_or_reason() {
+            Ok(form) => form.structure(),
+            Err(NoClosedForm::Joints(count)) => format!("none: {count} joints; closed forms are for 6"),
+            Err(NoClosedForm::Drives { joint, axes }) => {
+                format!("none: joint '{}' drives {axes} axes", self.joints()[*joint].name)
+            }
+            Err(NoClosedForm::Rank(rank)) => format!("none: the tip moves in {rank} of 6 directions"),
+            Err(NoClosedForm::Sliding) => "none: no method fits these sliding joints".into(),
+        }
+    }
+
+    /// All configurations that bring the tip to `pose`, limits aside; None without a closed form.
+    pub(crate) fn branches(&self, pose: &Frame) -> Option<ArmBranches> {
+        let form = self.closed_form_or_reason().as_ref().ok()?;
+        let (base, tool) = (Frame::from(&self.base), Frame::from(&self.tool));
+        let flange = base.inverse().then::<Baseline>(pose).then::<Baseline>(&tool.inverse());
+        Some(form.solve(&flange))
+    }
+
+    fn closed_form_or_reason(&self) -> &std::result::Result<ClosedFormArm, NoClosedForm> {
+        self.closed_form.get_or_init(|| {
+            let chain = self.description.folded(&Pose::identity(), &Pose::identity());
+            ClosedFormArm::new(&chain, self.dof(), self.task_rank().pose)
+        })
     }
 
     fn start_index(&self) -> &StartIndex {

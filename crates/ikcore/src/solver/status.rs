@@ -49,7 +49,7 @@ statuses! {
     Lost = 7, "LOST": "A track that did not stay within its tolerance.";
     Invalid = 8, "INVALID": "An item of a batch with an invalid target or start; it was not solved.";
     OutOfReach = 9, "OUT_OF_REACH":
-        "Provably out of reach: the target is farther away than the arm is long, or off its plane.";
+        "Provably out of reach: the target is farther away than the arm is long, off its plane, or without a solution in closed form.";
     PlantFailed = 10, "PLANT_FAILED":
         "The plant raised an error or returned something other than a position; the run ended with what was recorded.";
     BelowThreshold = 11, "BELOW_THRESHOLD": "The solver's own threshold was met before the tolerances were.";

@@ -100,6 +100,13 @@ impl PyRobot {
         row(py, self.core.joints().iter().map(|joint| joint.velocity).collect())
     }
 
+    /// The structure that the closed form of the inverse kinematics rests on, and how many solutions a pose has at most, such as
+    /// "spherical wrist; at most 8 solutions"; or "none: " and the reason. Decided at the first call.
+    #[getter]
+    fn closed_form(&self) -> String {
+        self.core.closed_form()
+    }
+
     /// All limits of the robot.
     #[getter]
     pub fn limits(&self, py: Python<'_>) -> PyResult<Py<PyLimits>> {

@@ -1,0 +1,78 @@
+//! An angle as its cosine and sine: what closed forms find, before any arctangent is taken.
+
+use super::vector::{Vector, add_scaled, cross, dot, scaled, sub};
+use crate::math::Frame;
+
+/// A rotation about a known axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Angle {
+    /// Cosine of the angle.
+    pub cos: f64,
+    /// Sine of the angle.
+    pub sin: f64,
+}
+
+impl Angle {
+    /// By zero.
+    pub const NONE: Self = Self { cos: 1.0, sin: 0.0 };
+
+    /// By `angle` (rad).
+    pub fn by(angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Self { cos, sin }
+    }
+
+    /// Towards the point (x, y) of the plane; [`Self::NONE`] at the origin.
+    #[inline(always)]
+    pub fn towards(x: f64, y: f64) -> Self {
+        let square = x * x + y * y;
+        if square > 0.0 {
+            let inverse = 1.0 / square.sqrt();
+            Self { cos: x * inverse, sin: y * inverse }
+        } else {
+            Self::NONE
+        }
+    }
+
+    /// The angle (rad), in (-pi, pi].
+    #[inline(always)]
+    pub fn angle(self) -> f64 {
+        self.sin.atan2(self.cos)
+    }
+
+    /// The opposite rotation.
+    #[inline(always)]
+    pub fn back(self) -> Self {
+        Self { cos: self.cos, sin: -self.sin }
+    }
+
+    /// Half a turn more.
+    #[inline(always)]
+    pub fn opposite(self) -> Self {
+        Self { cos: -self.cos, sin: -self.sin }
+    }
+
+    /// This rotation and another about the same axis.
+    #[inline(always)]
+    pub fn and(self, other: Self) -> Self {
+        Self { cos: self.cos * other.cos - self.sin * other.sin, sin: self.sin * other.cos + self.cos * other.sin }
+    }
+
+    /// Turned by a sign: about the opposite axis where it is negative.
+    #[inline(always)]
+    pub fn signed(self, sign: f64) -> Self {
+        Self { cos: self.cos, sin: sign * self.sin }
+    }
+
+    /// `v` turned about the unit vector `axis` (Rodrigues).
+    #[inline(always)]
+    pub fn about(self, axis: &Vector, v: &Vector) -> Vector {
+        let turned = add_scaled(&scaled(v, self.cos), &cross(axis, v), self.sin);
+        add_scaled(&turned, axis, (1.0 - self.cos) * dot(axis, v))
+    }
+    /// The displacement that turns about the line through `point` along the unit vector `axis`.
+    pub fn about_line(self, axis: &Vector, point: &Vector) -> Frame {
+        let axes = Frame::IDENTITY.axes.map(|e| self.about(axis, &e));
+        Frame { axes, origin: sub(point, &self.about(axis, point)) }
+    }
+}

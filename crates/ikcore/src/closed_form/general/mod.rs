@@ -1,0 +1,275 @@
+//! Six revolute joints of any geometry: all of at most sixteen solutions.
+//!
+//! The loop E1 ... E6 = H says that the line of axis 2 goes the same way round both sides:
+//!
+//! E5 E6 H^-1 E1 (line 2) = E4^-1 E3^-1 (line 2).
+//!
+//! The fourteen functions of a line ([`line`]) turn this into fourteen equations, linear in the eight products of (1, cos, sin) of
+//! q6 and q1, which are eliminated, and in those of q3 and q4, with coefficients linear in cos q5 and sin q5. The dialytic method
+//! ([`dialytic`]) leaves a determinant: a trigonometric polynomial in q5 of degree eight, whose at most sixteen zeros on the unit
+//! circle are found together.
+//!
+//! Raghavan and Roth (1990) hide q3 instead, and eliminate q1 and q2; Manocha and Canny (1994) solve for it as an eigenvalue. With
+//! the pose between the two angles eliminated, the determinant does not vanish identically for arms whose neighbouring axes meet or
+//! are parallel; sampled on the circle, it is free of their spurious factor, since its degree is known.
+
+mod dialytic;
+mod elimination;
+mod line;
+
+use crate::closed_form::angle::Angle;
+use crate::closed_form::axis_chain::JointAxis;
+use crate::closed_form::trigonometric::Polynomial;
+use crate::closed_form::vector::{Vector, perpendicular, scaled, sub};
+use crate::math::Frame;
+use crate::math::arithmetic::Baseline;
+use dialytic::{EQUATIONS, LoopCoefficients, PRODUCTS, determinant, null_pairs};
+use elimination::{COLUMNS, Elimination, ROWS};
+use line::LineFunctions;
+
+/// Degree of the determinant in cosine and sine.
+const DEGREE: usize = 8;
+/// Samples of the determinant round the circle: enough for the degree, and for a look at the next one.
+const SAMPLES: usize = 20;
+/// Largest noise, relative to the size of the polynomial, with which zeros are proven.
+const NOISE: f64 = 1e-6;
+/// The determinant's rounding may be so many times the coefficient beyond its degree.
+const SAFETY: f64 = 30.0;
+
+/// Turns by which the samples are moved for [`General::spread`]; the second by about half a step.
+const SPREAD: [Angle; 2] = [Angle::NONE, Angle { cos: 0.9889645119420956, sin: 0.1481526041591332 }];
+
+/// cos q = (1 - x^2)/(1 + x^2), sin q = 2x/(1 + x^2): the products of 1, cos, sin in powers of x, times 1 + x^2.
+const HALF_ANGLE: [[f64; 3]; 3] = [[1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0]];
+
+/// A general arm, prepared.
+#[derive(Debug, Clone)]
+pub struct General {
+    axes: [Vector; 6],
+    /// Points on the axes, in units of the arm's size, from a point on axis 5.
+    points: [Vector; 6],
+    centre: Vector,
+    size: f64,
+    /// LineFunctions 2 as joint 1 moves it: still, cosine, sine.
+    first: [LineFunctions; 3],
+    /// The right side, turned back by q5: still, cosine, sine, one column a product of q3 and q4 in powers of half-angle tangents.
+    right: [[[f64; PRODUCTS]; ROWS]; 3],
+    /// The right side in products of cosines and sines.
+    products: [[f64; ROWS]; 9],
+    circle: [Angle; SAMPLES],
+    /// Taken from tip to base, which hides q2.
+    reversed: bool,
+}
+
+/// What the search for zeros found besides candidates.
+#[derive(Debug, Clone, Copy)]
+pub struct Account {
+    /// Zeros that may be real angles; no more branches exist.
+    pub zeros: usize,
+    /// The zeros settled, and the determinant had the degree it should.
+    pub sound: bool,
+    /// Zeros that two branches share.
+    pub shared: usize,
+}
+
+impl General {
+    /// For any six joints that turn; `size` is a length of the size of the arm (m).
+    pub fn new(joints: &[JointAxis; 6], size: f64) -> Self {
+        let axes = joints.map(|joint| joint.axis);
+        let centre = joints[4].nearest_to(&joints[3].point);
+        let points = joints.map(|joint| scaled(&sub(&joint.nearest_to(&centre), &centre), 1.0 / size));
+        let second = LineFunctions::new(&axes[1], &points[1]);
+        let back = |k: usize, line: &LineFunctions| line.turning(&scaled(&axes[k], -1.0), &points[k]);
+        let mut right = [[[0.0; PRODUCTS]; ROWS]; 3];
+        let mut products = [[0.0; ROWS]; 9];
+        for (i, line) in back(2, &second).iter().enumerate() {
+            for (j, line) in back(3, line).iter().enumerate() {
+                products[3 * i + j] = line.numbers();
+                let parts = line.turning(&scaled(&axes[4], -1.0), &[0.0; 3]);
+                for (part, right) in parts.iter().zip(&mut right) {
+                    let numbers = part.numbers();
+                    for row in 0..ROWS {
+                        for k in 0..PRODUCTS {
+                            right[row][k] += numbers[row] * HALF_ANGLE[i][k / 3] * HALF_ANGLE[j][k % 3];
+                        }
+                    }
+                }
+            }
+        }
+        let step = std::f64::consts::TAU / SAMPLES as f64;
+        Self {
+            axes,
+            points,
+            centre,
+            size,
+            first: second.turning(&axes[0], &points[0]),
+            right,
+            products,
+            circle: std::array::from_fn(|k| Angle::by(step * k as f64)),
+            reversed: false,
+        }
+    }
+
+    /// The same from tip to base.
+    pub fn reversed(joints: &[JointAxis; 6], size: f64) -> Self {
+        let backwards = std::array::from_fn(|k| {
+            let joint = &joints[5 - k];
+            JointAxis::turning(scaled(&joint.axis, -1.0), joint.point)
+        });
+        Self { reversed: true, ..Self::new(&backwards, size) }
+    }
+
+    /// Hands candidates near all joint angles whose displacements make `goal` to `found`.
+    pub fn solve(&self, goal: &Frame, mut found: impl FnMut([Angle; 6])) -> Account {
+        if self.reversed {
+            self.solve_forward(&goal.inverse(), |[a, b, c, d, e, f]| found([f, e, d, c, b, a]))
+        } else {
+            self.solve_forward(goal, found)
+        }
+    }
+
+    /// Hands over candidates for angles spread round the circle, zeros or not: for poses at which the determinant is too small
+    /// over a part of the circle to tell its zeros.
+    pub fn spread(&self, goal: &Frame, mut found: impl FnMut([Angle; 6])) {
+        if self.reversed {
+            self.spread_forward(&goal.inverse(), |[a, b, c, d, e, f]| found([f, e, d, c, b, a]));
+        } else {
+            self.spread_forward(goal, found);
+        }
+    }
+
+    fn spread_forward(&self, goal: &Frame, mut found: impl FnMut([Angle; 6])) {
+        let goal = self.local(goal);
+        let (left, constant) = self.left(&goal);
+        let elimination = Elimination::new(left);
+        let equations = self.equations(&elimination, &constant);
+        for turn in &self.circle {
+            for part in SPREAD {
+                let q5 = turn.and(part);
+                let (pairs, count) = null_pairs(&combined(&equations, q5));
+                for [q3, q4] in &pairs[..count] {
+                    found(self.others(&goal, &elimination, &constant, [*q3, *q4, q5]));
+                }
+            }
+        }
+    }
+
+    fn solve_forward(&self, goal: &Frame, mut found: impl FnMut([Angle; 6])) -> Account {
+        let goal = self.local(goal);
+        let (left, constant) = self.left(&goal);
+        let elimination = Elimination::new(left);
+        let equations = self.equations(&elimination, &constant);
+        let (polynomial, beyond) = self.polynomial(&equations);
+        let noise = (SAFETY * beyond).max(1e-15 * polynomial.size());
+        let mut value = |q5: Angle| determinant(&combined(&equations, q5)) * (0.5 * SAMPLES as f64);
+        let zeros = polynomial.zeros_by_samples::<{ 2 * DEGREE }>(noise, &mut value);
+        let mut shared = 0;
+        for q5 in zeros.iter() {
+            let (pairs, count) = null_pairs(&combined(&equations, *q5));
+            shared += count - 1;
+            for [q3, q4] in &pairs[..count] {
+                found(self.others(&goal, &elimination, &constant, [*q3, *q4, *q5]));
+            }
+        }
+        let sound = zeros.settled && noise <= NOISE * polynomial.size();
+        Account { zeros: zeros.possible, sound, shared }
+    }
+
+    /// The displacement seen from the centre, in units of the arm's size.
+    fn local(&self, goal: &Frame) -> Frame {
+        let origin = scaled(&sub(&goal.place::<Baseline>(&self.centre), &self.centre), 1.0 / self.size);
+        Frame { origin, ..*goal }
+    }
+
+    /// E6 H^-1 E1 (line 2): columns for the products of q6 and q1 other than one, and the column for one.
+    fn left(&self, goal: &Frame) -> ([[f64; ROWS]; COLUMNS], [f64; ROWS]) {
+        let back = goal.inverse();
+        let mut columns = [[0.0; ROWS]; COLUMNS];
+        let mut constant = [0.0; ROWS];
+        for (j, line) in self.first.iter().enumerate() {
+            for (i, line) in line.moved(&back).turning(&self.axes[5], &self.points[5]).iter().enumerate() {
+                match 3 * i + j {
+                    0 => constant = line.numbers(),
+                    k => columns[k - 1] = line.numbers(),
+                }
+            }
+        }
+        (columns, constant)
+    }
+
+    /// Six equations in the products of q3 and q4: the parts that stay, go with cos q5, and with sin q5.
+    fn equations(&self, elimination: &Elimination, constant: &[f64; ROWS]) -> [LoopCoefficients; 3] {
+        let rows = elimination.annihilators();
+        let mut equations = [[[0.0; PRODUCTS]; EQUATIONS]; 3];
+        for (equations, right) in equations.iter_mut().zip(&self.right) {
+            for (equation, row) in equations.iter_mut().zip(&rows) {
+                for (factor, right) in row.iter().zip(right) {
+                    (0..PRODUCTS).for_each(|k| equation[k] += factor * right[k]);
+                }
+            }
+        }
+        for (equation, row) in equations[0].iter_mut().zip(&rows) {
+            let one: f64 = (0..ROWS).map(|k| row[k] * constant[k]).sum();
+            (0..PRODUCTS).for_each(|k| equation[k] -= one * HALF_ANGLE[0][k / 3] * HALF_ANGLE[0][k % 3]);
+        }
+        equations
+    }
+
+    /// The determinant over q5, and the size of its next coefficient, which would be zero without rounding.
+    fn polynomial(&self, equations: &[LoopCoefficients; 3]) -> (Polynomial<{ DEGREE + 1 }>, f64) {
+        let (mut cosines, mut sines) = ([0.0; DEGREE + 2], [0.0; DEGREE + 2]);
+        for (sample, q5) in self.circle.iter().enumerate() {
+            let value = determinant(&combined(equations, *q5));
+            for k in 0..DEGREE + 2 {
+                let multiple = self.circle[sample * k % SAMPLES];
+                cosines[k] += value * multiple.cos;
+                sines[k] += value * multiple.sin;
+            }
+        }
+        cosines[0] *= 0.5;
+        let beyond = cosines[DEGREE + 1].hypot(sines[DEGREE + 1]);
+        let within = |all: [f64; DEGREE + 2]| std::array::from_fn(|k| all[k]);
+        (Polynomial { cosines: within(cosines), sines: within(sines) }, beyond)
+    }
+
+    /// The other joints for q3, q4 and q5: q6 and q1 from the products eliminated, q2 from the rotation left.
+    fn others(&self, goal: &Frame, elimination: &Elimination, constant: &[f64; ROWS], known: [Angle; 3]) -> [Angle; 6] {
+        let [q3, q4, q5] = known;
+        let [h1, h2, h3, h4, h5, h6] = &self.axes;
+        let mut right = [0.0; ROWS];
+        for (i, a) in [1.0, q3.cos, q3.sin].iter().enumerate() {
+            for (j, b) in [1.0, q4.cos, q4.sin].iter().enumerate() {
+                (0..ROWS).for_each(|k| right[k] += a * b * self.products[3 * i + j][k]);
+            }
+        }
+        let right = self.turned_back(q5, &right);
+        let unknown = elimination.solve(std::array::from_fn(|k| right[k] - constant[k]));
+        // Products are numbered 3 i + j with i for q6 and j for q1, without the first.
+        let q1 = Angle::towards(unknown[0], unknown[1]);
+        let q6 = Angle::towards(unknown[2], unknown[5]);
+        // E2 = E1^-1 H E6^-1 E5^-1 E4^-1 E3^-1, on a vector across axis 2.
+        let mark = perpendicular(h2);
+        let mut v = mark;
+        for (turn, axis) in [(q3, h3), (q4, h4), (q5, h5), (q6, h6)] {
+            v = turn.back().about(axis, &v);
+        }
+        let q2 =
+            crate::closed_form::subproblem::onto_point(h2, &mark, &q1.back().about(h1, &goal.turn::<Baseline>(&v)));
+        [q1, q2, q3, q4, q5, q6]
+    }
+
+    /// The fourteen numbers turned by -q5 about axis 5, which runs through the centre.
+    fn turned_back(&self, q5: Angle, numbers: &[f64; ROWS]) -> [f64; ROWS] {
+        let mut turned = *numbers;
+        for first in [0, 3, 8, 11] {
+            let v = [numbers[first], numbers[first + 1], numbers[first + 2]];
+            turned[first..first + 3].copy_from_slice(&q5.back().about(&self.axes[4], &v));
+        }
+        turned
+    }
+}
+
+fn combined(equations: &[LoopCoefficients; 3], q5: Angle) -> LoopCoefficients {
+    let [still, cosine, sine] = equations;
+    std::array::from_fn(|i| std::array::from_fn(|k| still[i][k] + q5.cos * cosine[i][k] + q5.sin * sine[i][k]))
+}

@@ -1,0 +1,196 @@
+//! Three revolute joints that carry a point to a given point: the arm of a robot with a spherical wrist (Pieper 1968).
+
+use crate::closed_form::angle::Angle;
+use crate::closed_form::subproblem::{Linear, QuadraticForm, angle_to_plane, distance_to_point, onto_point, two_axes};
+use crate::closed_form::vector::{Vector, add, cross, dot, norm, perpendicular, scaled, sub};
+
+use crate::closed_form::axis_chain::JointAxis;
+use crate::closed_form::structure::Pair;
+
+/// Angles of three joints.
+pub type Three = [Angle; 3];
+
+/// At most four sets of three angles.
+#[derive(Debug, Clone, Copy)]
+pub struct Arms {
+    sets: [Three; 4],
+    count: usize,
+    /// A joint is free in one of the sets at least.
+    pub free: bool,
+    /// The method cannot tell whether there are others.
+    pub unsettled: bool,
+}
+
+impl Arms {
+    /// No set.
+    pub const NONE: Self = Self { sets: [[Angle::NONE; 3]; 4], count: 0, free: false, unsettled: false };
+
+    /// Adds a set; ignored when full.
+    #[inline(always)]
+    pub fn push(&mut self, set: Three) {
+        if self.count < 4 {
+            self.sets[self.count] = set;
+            self.count += 1;
+        }
+    }
+
+    /// The order of joints from the other end.
+    #[inline(always)]
+    pub fn reverse(&mut self) {
+        self.sets[..self.count].iter_mut().for_each(|set| set.reverse());
+    }
+}
+
+impl std::ops::Deref for Arms {
+    type Target = [Three];
+
+    #[inline(always)]
+    fn deref(&self) -> &[Three] {
+        &self.sets[..self.count]
+    }
+}
+
+/// Three axes and how two neighbours among them lie.
+#[derive(Debug, Clone, Copy)]
+pub struct ThreeAxes {
+    axes: [Vector; 3],
+    /// Points on the axes; those of axes that meet are one.
+    points: [Vector; 3],
+    case: Case,
+    /// Solved from the far end: the inverse motion carries the goal to the point.
+    mirrored: bool,
+    /// Below this a lever counts as zero (m).
+    floor: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Case {
+    FirstTwoParallel,
+    FirstTwoMeet,
+    General,
+}
+
+impl ThreeAxes {
+    /// Decides the method from how the neighbours lie; `size` is a length of the size of the arm (m).
+    pub fn new(joints: &[JointAxis; 3], first: Pair, last: Pair, size: f64) -> Self {
+        let (case, mirrored) = match (first, last) {
+            (_, Pair::Parallel) => (Case::FirstTwoParallel, true),
+            (Pair::Parallel, _) => (Case::FirstTwoParallel, false),
+            (Pair::Meet(_), _) => (Case::FirstTwoMeet, false),
+            (_, Pair::Meet(_)) => (Case::FirstTwoMeet, true),
+            _ => (Case::General, false),
+        };
+        let mut points = joints.map(|joint| joint.point);
+        match (case, mirrored, first, last) {
+            (Case::FirstTwoMeet, false, Pair::Meet(at), _) => (points[0], points[1]) = (at, at),
+            (Case::FirstTwoMeet, true, _, Pair::Meet(at)) => (points[1], points[2]) = (at, at),
+            _ => {}
+        }
+        let mut axes = joints.map(|joint| joint.axis);
+        if mirrored {
+            axes = [scaled(&axes[2], -1.0), scaled(&axes[1], -1.0), scaled(&axes[0], -1.0)];
+            points.reverse();
+        }
+        Self { axes, points, case, mirrored, floor: 1e-11 * size }
+    }
+
+    /// All angles that carry `point` to `goal`.
+    #[inline(always)]
+    pub fn reach(&self, point: &Vector, goal: &Vector) -> Arms {
+        let (point, goal) = if self.mirrored { (goal, point) } else { (point, goal) };
+        let [p1, p2, p3] = &self.points;
+        // rot1 (b + rot2 (c + rot3 w)) = a.
+        let (a, b, c, w) = (sub(goal, p1), sub(p2, p1), sub(p3, p2), sub(point, p3));
+        let mut arms = match self.case {
+            Case::FirstTwoParallel => self.parallel(&a, &b, &c, &w),
+            Case::FirstTwoMeet => self.meeting(&a, &c, &w),
+            Case::General => self.general(&a, &b, &c, &w),
+        };
+        if self.mirrored {
+            arms.reverse();
+        }
+        arms
+    }
+
+    /// Axis 1 parallel to axis 2: the height along them gives q3, the distance q2.
+    #[inline(always)]
+    fn parallel(&self, a: &Vector, b: &Vector, c: &Vector, w: &Vector) -> Arms {
+        let [h1, h2, h3] = &self.axes;
+        let mut arms = Arms::NONE;
+        let height = dot(h1, &sub(&sub(a, b), c));
+        let q3 = angle_to_plane(h1, h3, w, height, self.floor);
+        arms.free |= q3.free;
+        for q3 in q3.iter() {
+            let u = add(c, &q3.about(h3, w));
+            // In the plane across the axes, where the heights cannot disturb the distance.
+            let (flat_a, flat_b, flat_u) = (cross(h1, a), cross(h1, b), cross(h1, &u));
+            let lever = norm(b);
+            let q2 = distance_to_point(h2, &flat_u, &scaled(&flat_b, -1.0), dot(&flat_a, &flat_a), self.floor * lever);
+            arms.free |= q2.free;
+            for q2 in q2.iter() {
+                let v = add(b, &q2.about(h2, &u));
+                arms.push([onto_point(h1, &v, a), *q2, *q3]);
+            }
+        }
+        arms
+    }
+
+    /// Axes 1 and 2 meet (b = 0): the distance from there gives q3, subproblem 2 the others.
+    #[inline(always)]
+    fn meeting(&self, a: &Vector, c: &Vector, w: &Vector) -> Arms {
+        let [h1, h2, h3] = &self.axes;
+        let mut arms = Arms::NONE;
+        let q3 = distance_to_point(h3, w, &scaled(c, -1.0), dot(a, a), self.floor * norm(c));
+        arms.free |= q3.free;
+        for q3 in q3.iter() {
+            let u = add(c, &q3.about(h3, w));
+            // rot2 u = rot1' a.
+            let (q2, back) = two_axes(h2, &u, h1, a, self.floor);
+            arms.free |= q2.free;
+            for (q2, back) in q2.iter().zip(&back) {
+                arms.push([back.back(), *q2, *q3]);
+            }
+        }
+        arms
+    }
+
+    /// Axes 1 and 2 skew (subproblem 5): distance and height are linear in rot2 u, whose length then is a quadratic form in q3.
+    fn general(&self, a: &Vector, b: &Vector, c: &Vector, w: &Vector) -> Arms {
+        let [h1, h2, h3] = &self.axes;
+        let mut arms = Arms::NONE;
+        let (e1, e2) = (perpendicular(h2), cross(h2, &perpendicular(h2)));
+        // u = c + rot3 w, as constant + cosine cos q3 + sine sin q3.
+        let along = scaled(h3, dot(h3, w));
+        let (constant, cosine, sine) = (add(c, &along), sub(w, &along), cross(h3, w));
+        let component = |n: &Vector| -> Linear { [dot(n, &constant), dot(n, &cosine), dot(n, &sine)] };
+        let z = component(h2);
+        // |u|^2 is linear too: |c|^2 + |w|^2 + 2 c'rot3 w.
+        let square: Linear = [dot(c, c) + dot(w, w) + 2.0 * dot(c, &along), 2.0 * dot(c, &cosine), 2.0 * dot(c, &sine)];
+        // b'rot2 u = (|a|^2 - |b|^2 - |u|^2)/2 and h1'rot2 u = h1'(a - b), both without their parts along h2.
+        let (bz, hz) = (dot(b, h2), dot(h1, h2));
+        let k1: Linear = std::array::from_fn(|k| {
+            let one = if k == 0 { 0.5 * (dot(a, a) - dot(b, b)) } else { 0.0 };
+            one - 0.5 * square[k] - bz * z[k]
+        });
+        let k2: Linear = std::array::from_fn(|k| if k == 0 { dot(h1, &sub(a, b)) } else { 0.0 } - hz * z[k]);
+        let m = [[dot(b, &e1), dot(b, &e2)], [dot(h1, &e1), dot(h1, &e2)]];
+        let inverse = 1.0 / (m[0][0] * m[1][1] - m[0][1] * m[1][0]);
+        let y1: Linear = std::array::from_fn(|k| inverse * (m[1][1] * k1[k] - m[0][1] * k2[k]));
+        let y2: Linear = std::array::from_fn(|k| inverse * (m[0][0] * k2[k] - m[1][0] * k1[k]));
+        let mut form = QuadraticForm::default();
+        form.add_product(1.0, &y1, &y1);
+        form.add_product(1.0, &y2, &y2);
+        form.add_product(1.0, &z, &z);
+        form.add_linear(&square.map(|s| -s));
+        let zeros = form.zeros();
+        arms.unsettled = zeros.free;
+        for q3 in zeros.iter() {
+            let at = |p: &Linear| p[0] + p[1] * q3.cos + p[2] * q3.sin;
+            let u = add(c, &q3.about(h3, w));
+            let reached = add(&scaled(&e1, at(&y1)), &scaled(&e2, at(&y2)));
+            let q2 = onto_point(h2, &u, &reached);
+            arms.push([onto_point(h1, &add(b, &q2.about(h2, &u)), a), q2, *q3]);
+        }
+        arms
+    }
+}

@@ -1,0 +1,271 @@
+//! Six revolute joints: which method fits, decided once, and all branches for a pose.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+use crate::closed_form::angle::Angle;
+use crate::closed_form::axis_chain::{AxisChain, AxisMotion, JointAxis};
+use crate::closed_form::branches::{Branches, Candidates};
+use crate::closed_form::general::General;
+use crate::closed_form::spherical_wrist::SphericalWrist;
+use crate::closed_form::structure::{EXACT, NEARLY, three_meet, three_parallel};
+use crate::closed_form::three_parallel::ThreeParallel;
+use crate::closed_form::verify::{Verifier, verified};
+use crate::math::Frame;
+use crate::math::arithmetic::Baseline;
+
+/// The structure of a chain of six revolute joints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Structure {
+    /// Axes `first` to `first` + 2, counted from 1, meet in one point.
+    ThreeMeet {
+        /// The first of them.
+        first: usize,
+        /// Only nearly.
+        nearly: bool,
+    },
+    /// Axes `first` to `first` + 2, counted from 1, are parallel.
+    ThreeParallel {
+        /// The first of them.
+        first: usize,
+        /// Only nearly.
+        nearly: bool,
+    },
+    /// Neither: up to sixteen solutions.
+    General,
+    /// Joints slide, and no method fits.
+    Unsolved,
+}
+
+impl fmt::Display for Structure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let nearly = |nearly: &bool| if *nearly { "nearly " } else { "" };
+        let proven = |nearly: &bool| if *nearly { "solutions not proven complete" } else { "at most 8 solutions" };
+        match self {
+            Self::ThreeMeet { first: 4, nearly: n } => write!(f, "{}spherical wrist; {}", nearly(n), proven(n)),
+            Self::ThreeMeet { first: 1, nearly: n } => write!(f, "{}spherical shoulder; {}", nearly(n), proven(n)),
+            Self::ThreeMeet { first, nearly: n } => {
+                write!(f, "axes {first} to {} {}meet; {}", first + 2, nearly(n), proven(n))
+            }
+            Self::ThreeParallel { first, nearly: n } => {
+                write!(f, "axes {first} to {} {}parallel; {}", first + 2, nearly(n), proven(n))
+            }
+            Self::General => write!(f, "general; at most 16 solutions"),
+            Self::Unsolved => write!(f, "no closed form"),
+        }
+    }
+}
+
+/// The method for a chain of six revolute joints.
+#[derive(Debug, Clone)]
+pub struct ClosedForm {
+    chain: AxisChain<6>,
+    structure: Structure,
+    method: Method,
+    verifier: Verifier<6>,
+    back: Frame,
+    size: f64,
+}
+
+#[derive(Debug, Clone)]
+#[allow(clippy::large_enum_variant)]
+enum Method {
+    Spherical(SphericalWrist),
+    Parallel(ThreeParallel),
+    /// The loop is opened elsewhere for every pose, and the structure found there.
+    Opened {
+        at: usize,
+        tolerance: f64,
+    },
+    /// Both ways, the better one first.
+    General(Box<[General; 2]>),
+    None,
+}
+
+impl ClosedForm {
+    /// Decides the method from the numbers of the chain.
+    pub fn new(chain: &AxisChain<6>) -> Self {
+        let size = chain.size();
+        let (structure, method) = decide(&chain.joints, size);
+        let nearly = matches!(
+            structure,
+            Structure::ThreeMeet { nearly: true, .. } | Structure::ThreeParallel { nearly: true, .. }
+        );
+        let worth_polishing = if nearly { 30.0 * NEARLY * size.max(1.0) } else { 1e-3 };
+        let verifier = Verifier::new(chain, worth_polishing);
+        let mut form = Self { chain: *chain, structure, method, verifier, back: chain.tip.inverse(), size };
+        if !matches!(structure, Structure::General | Structure::Unsolved) && !form.finds_samples() {
+            // Axes that coincide, say, defeat the method of a structure: it is checked before it is trusted.
+            let turning = chain.joints.iter().all(|joint| joint.motion == AxisMotion::Turns);
+            (form.structure, form.method) =
+                if turning { general(&chain.joints, size) } else { (Structure::Unsolved, Method::None) };
+        }
+        form.order_ways();
+        form
+    }
+
+    /// Whether the method finds configurations spread evenly again.
+    fn finds_samples(&self) -> bool {
+        samples().all(|q| {
+            let found = self.solve(&self.chain.tip_at(&q));
+            let near = |set: &[f64; 6]| set.iter().zip(&q).all(|(a, b)| (Angle::by(a - b).cos - 1.0).abs() < 1e-6);
+            found.iter().any(near) || found.singular && !found.is_empty()
+        })
+    }
+
+    /// Puts the better way of the general method first.
+    fn order_ways(&mut self) {
+        if let Method::General(ways) = &self.method {
+            let [first, second] = [0, 1].map(|way| self.trouble(&ways[way]));
+            if second < first
+                && let Method::General(ways) = &mut self.method
+            {
+                ways.swap(0, 1);
+            }
+        }
+    }
+
+    /// How often one way of the general method leaves something open.
+    fn trouble(&self, way: &General) -> usize {
+        let mut trouble = 0;
+        for q in samples() {
+            let target = self.chain.tip_at(&q);
+            let mut found = Branches::none();
+            let account = way.solve(&target.then::<Baseline>(&self.back), |candidate| {
+                self.verifier.add(&target, &candidate, &mut found);
+            });
+            let proven = account.sound && found.len() >= account.zeros;
+            trouble += account.shared + 4 * usize::from(!proven);
+        }
+        trouble
+    }
+
+    /// What the method rests on.
+    pub fn structure(&self) -> Structure {
+        self.structure
+    }
+
+    /// All joint angles, in (-pi, pi], that bring the tip to `target`.
+    #[inline]
+    pub fn solve(&self, target: &Frame) -> Branches<6> {
+        let mut candidates = Candidates::new();
+        let goal = target.then::<Baseline>(&self.back);
+        match &self.method {
+            Method::Spherical(method) => method.solve(&goal, &mut candidates),
+            Method::Parallel(method) => method.solve(&goal, &mut candidates),
+            Method::Opened { at, tolerance } => self.solve_opened(&goal, *at, *tolerance, &mut candidates),
+            Method::General(ways) => return self.solve_general(ways, &goal, target),
+            Method::None => return Branches::none(),
+        }
+        let mut found = verified(&self.verifier, target, &candidates);
+        found.complete = match self.structure {
+            Structure::ThreeMeet { nearly, .. } | Structure::ThreeParallel { nearly, .. } => {
+                !nearly && !candidates.unsettled
+            }
+            // Decided above.
+            Structure::General | Structure::Unsolved => found.complete,
+        };
+        found
+    }
+
+    /// One way, and the other too where the first does not prove that nothing is missing.
+    fn solve_general(&self, ways: &[General; 2], goal: &Frame, target: &Frame) -> Branches<6> {
+        let mut found = Branches::none();
+        for way in ways {
+            let account = way.solve(goal, |candidate| self.verifier.add(target, &candidate, &mut found));
+            // No more branches than zeros: as many of both leave none to be found.
+            found.complete = account.sound && found.len() >= account.zeros;
+            if found.complete {
+                return found;
+            }
+        }
+        self.search_further(ways, goal, target, &mut found);
+        found
+    }
+
+    /// What Newton's method finds beyond the zeros.
+    #[cold]
+    fn search_further(&self, ways: &[General; 2], goal: &Frame, target: &Frame, found: &mut Branches<6>) {
+        for way in ways {
+            way.spread(goal, |candidate| self.verifier.add(target, &candidate, found));
+        }
+    }
+
+    /// The structure lies elsewhere in the loop that chain and pose close: opens it after `at` joints.
+    fn solve_opened(&self, goal: &Frame, at: usize, tolerance: f64, candidates: &mut Candidates<6>) {
+        let joints = AxisChain::rotated(&self.chain.joints, goal, at);
+        let mut turned = Candidates::new();
+        match self.structure {
+            Structure::ThreeMeet { .. } => match three_meet(&joints[3..], self.size, 4.0 * tolerance) {
+                Some(centre) => {
+                    SphericalWrist::new(&joints, &centre, self.size, tolerance).solve(goal, &mut turned);
+                }
+                None => turned.unsettled = true,
+            },
+            _ => ThreeParallel::new(&joints, self.size, tolerance).solve(goal, &mut turned),
+        }
+        candidates.count = turned.count;
+        (candidates.singular, candidates.unsettled) = (turned.singular, turned.unsettled);
+        for k in 0..6 {
+            candidates.cos[(k + at) % 6] = turned.cos[k];
+            candidates.sin[(k + at) % 6] = turned.sin[k];
+        }
+    }
+}
+
+fn decide(joints: &[JointAxis; 6], size: f64) -> (Structure, Method) {
+    if joints.iter().any(|joint| joint.motion == AxisMotion::Slides) {
+        return decide_sliding(joints, size);
+    }
+    for tolerance in [EXACT, NEARLY] {
+        let nearly = tolerance == NEARLY;
+        for first in [4, 1, 2, 3] {
+            let Some(centre) = three_meet(&joints[first - 1..first + 2], size, tolerance) else { continue };
+            let method = match first {
+                4 => Method::Spherical(SphericalWrist::new(joints, &centre, size, tolerance)),
+                1 => Method::Spherical(SphericalWrist::shoulder(joints, &centre, size, tolerance)),
+                // Opened after the three, they are the last.
+                _ => Method::Opened { at: (first + 2) % 6, tolerance },
+            };
+            return (Structure::ThreeMeet { first, nearly }, method);
+        }
+        for first in [2, 3, 1, 4] {
+            if !three_parallel(&joints[first - 1..first + 2], size, tolerance) {
+                continue;
+            }
+            let method = match first {
+                2 => Method::Parallel(ThreeParallel::new(joints, size, tolerance)),
+                // Opened one joint before the three, they are the second to fourth.
+                _ => Method::Opened { at: (first + 4) % 6, tolerance },
+            };
+            return (Structure::ThreeParallel { first, nearly }, method);
+        }
+    }
+    general(joints, size)
+}
+
+fn general(joints: &[JointAxis; 6], size: f64) -> (Structure, Method) {
+    (Structure::General, Method::General(Box::new([General::new(joints, size), General::reversed(joints, size)])))
+}
+
+/// A few configurations spread evenly: multiples of irrational numbers, as turns.
+fn samples() -> impl Iterator<Item = [f64; 6]> {
+    let roots = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0_f64].map(f64::sqrt);
+    (1..=8).map(move |sample| roots.map(|root| TAU * (f64::from(sample) * root).fract() - PI))
+}
+
+/// Only spherical wrists on arms that slide have a method.
+fn decide_sliding(joints: &[JointAxis; 6], size: f64) -> (Structure, Method) {
+    let wrist = &joints[3..];
+    if wrist.iter().all(|joint| joint.motion == AxisMotion::Turns) {
+        for tolerance in [EXACT, NEARLY] {
+            let method = three_meet(wrist, size, tolerance)
+                .and_then(|centre| SphericalWrist::sliding(joints, &centre, size, tolerance));
+            if let Some(method) = method {
+                let structure = Structure::ThreeMeet { first: 4, nearly: tolerance == NEARLY };
+                return (structure, Method::Spherical(method));
+            }
+        }
+    }
+    (Structure::Unsolved, Method::None)
+}

@@ -1,0 +1,107 @@
+//! Six revolute joints of which the last three meet: the wrist centre gives the first three angles, the rotation left the
+//! others. At most eight solutions (Pieper 1968).
+
+use crate::closed_form::angle::Angle;
+use crate::closed_form::axis_chain::{AxisMotion, JointAxis};
+use crate::closed_form::branches::Candidates;
+use crate::closed_form::position::{Three, ThreeAxes};
+use crate::closed_form::sliding_arm::SlidingArm;
+use crate::closed_form::structure::Pair;
+use crate::closed_form::vector::Vector;
+use crate::closed_form::wrist::{Pointing, Wrist};
+use crate::math::Frame;
+use crate::math::arithmetic::Baseline;
+
+/// The first three joints.
+#[derive(Debug, Clone, Copy)]
+enum Arm {
+    Turning(ThreeAxes),
+    Sliding(SlidingArm),
+}
+
+/// An arm with a spherical wrist, prepared.
+#[derive(Debug, Clone, Copy)]
+pub struct SphericalWrist {
+    arm: Arm,
+    wrist: Wrist,
+    axes: [Vector; 3],
+    slides: [bool; 3],
+    centre: Vector,
+    /// The chain was taken from tip to base: its first three axes meet.
+    reversed: bool,
+}
+
+impl SphericalWrist {
+    /// For joints whose last three axes meet at `centre`; `size` is a length of the size of the arm (m).
+    pub fn new(joints: &[JointAxis; 6], centre: &Vector, size: f64, tolerance: f64) -> Self {
+        let [a, b, c, d, e, f] = *joints;
+        let pair = |first: &JointAxis, second: &JointAxis| Pair::of(first, second, size, tolerance);
+        Self {
+            arm: Arm::Turning(ThreeAxes::new(&[a, b, c], pair(&a, &b), pair(&b, &c), size)),
+            wrist: Wrist::new(&[d.axis, e.axis, f.axis]),
+            axes: [a.axis, b.axis, c.axis],
+            slides: [a, b, c].map(|joint| joint.motion == AxisMotion::Slides),
+            centre: *centre,
+            reversed: false,
+        }
+    }
+
+    /// The same where joints before the wrist slide; `None` where no method fits.
+    pub fn sliding(joints: &[JointAxis; 6], centre: &Vector, size: f64, tolerance: f64) -> Option<Self> {
+        let arm = SlidingArm::new(&[joints[0], joints[1], joints[2]], size, tolerance)?;
+        Some(Self { arm: Arm::Sliding(arm), ..Self::new(joints, centre, size, tolerance) })
+    }
+
+    /// For joints whose first three axes meet at `centre`: the same, from tip to base.
+    pub fn shoulder(joints: &[JointAxis; 6], centre: &Vector, size: f64, tolerance: f64) -> Self {
+        let backwards = std::array::from_fn(|k| {
+            let joint = &joints[5 - k];
+            JointAxis::turning(joint.axis.map(|entry| -entry), joint.point)
+        });
+        Self { reversed: true, ..Self::new(&backwards, centre, size, tolerance) }
+    }
+
+    /// All joint angles whose displacements make `goal`.
+    #[inline(always)]
+    pub fn solve(&self, goal: &Frame, found: &mut Candidates<6>) {
+        // Reversed: E6^-1 ... E1^-1 = H^-1, and a negative axis turns E^-1 into E.
+        if self.reversed {
+            self.solve_forward(&goal.inverse(), found, |arm, wrist| {
+                [wrist[2], wrist[1], wrist[0], arm[2], arm[1], arm[0]]
+            });
+        } else {
+            self.solve_forward(goal, found, |arm, wrist| [arm[0], arm[1], arm[2], wrist[0], wrist[1], wrist[2]]);
+        }
+    }
+
+    #[inline(always)]
+    fn solve_forward(&self, goal: &Frame, found: &mut Candidates<6>, order: impl Fn(&Three, &Three) -> [Angle; 6]) {
+        let reached = goal.place::<Baseline>(&self.centre);
+        let arms = match &self.arm {
+            Arm::Turning(arm) => arm.reach(&self.centre, &reached),
+            Arm::Sliding(arm) => arm.reach(&self.centre, &reached),
+        };
+        found.singular |= arms.free;
+        found.unsettled |= arms.unsettled;
+        let pointing = self.wrist.pointing(goal);
+        for arm in arms.iter() {
+            let left = Pointing { end: self.undone(arm, &pointing.end), mark: self.undone(arm, &pointing.mark) };
+            let wrists = self.wrist.turns(&left);
+            found.singular |= wrists.aligned;
+            wrists.sets[..wrists.count].iter().for_each(|wrist| found.push(&order(arm, wrist)));
+        }
+    }
+
+    /// rot3' rot2' rot1' v.
+    #[inline(always)]
+    fn undone(&self, arm: &Three, v: &Vector) -> Vector {
+        let mut v = *v;
+        for ((turn, axis), slides) in arm.iter().zip(&self.axes).zip(self.slides) {
+            if slides {
+                continue;
+            }
+            v = turn.back().about(axis, &v);
+        }
+        v
+    }
+}

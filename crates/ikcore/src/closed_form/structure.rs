@@ -1,0 +1,98 @@
+//! How neighbouring axes of a chain lie: parallel, meeting, skew; read from its numbers once.
+
+use crate::closed_form::axis_chain::JointAxis;
+use crate::closed_form::vector::{Vector, add, add_scaled, cross, dot, norm, scaled, sub};
+
+/// How far from parallel (rad) or from meeting (as a fraction of the arm's size) axes may be.
+///
+/// Robot descriptions print angles with eleven digits or so: what is left then is polished away.
+pub const EXACT: f64 = 1e-9;
+
+/// The same for arms that were decomposable before they were calibrated: the closed form only gives starts.
+pub const NEARLY: f64 = 5e-3;
+
+/// How two axes lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pair {
+    /// Parallel, in the same or the opposite sense.
+    Parallel,
+    /// They meet at this point.
+    Meet(Vector),
+    /// Neither.
+    Skew,
+}
+
+impl Pair {
+    /// How the axes of two joints that turn lie; lengths are compared with `size` (m).
+    pub fn of(first: &JointAxis, second: &JointAxis, size: f64, tolerance: f64) -> Self {
+        let normal = cross(&first.axis, &second.axis);
+        let sine = norm(&normal);
+        if sine <= tolerance {
+            return Self::Parallel;
+        }
+        let between = sub(&second.point, &first.point);
+        if dot(&between, &normal).abs() > tolerance * size * sine {
+            return Self::Skew;
+        }
+        // The feet of the common normal; the middle, where they differ by rounding.
+        let foot = |joint: &JointAxis, other: &JointAxis, from: &Vector| {
+            let along = cross(&other.axis, &normal);
+            add_scaled(&joint.point, &joint.axis, dot(from, &along) / dot(&joint.axis, &along))
+        };
+        let feet = [foot(first, second, &between), foot(second, first, &scaled(&between, -1.0))];
+        Self::Meet(scaled(&add(&feet[0], &feet[1]), 0.5))
+    }
+}
+
+/// Whether three axes in a row meet in one point.
+pub fn three_meet(joints: &[JointAxis], size: f64, tolerance: f64) -> Option<Vector> {
+    let [first, second, third] = joints else { return None };
+    let Pair::Meet(point) = Pair::of(first, second, size, tolerance) else { return None };
+    let parallel = Pair::of(second, third, size, tolerance) == Pair::Parallel;
+    let off = norm(&sub(&third.nearest_to(&point), &point));
+    (!parallel && off <= tolerance * size).then_some(point)
+}
+
+/// Whether three axes in a row are parallel, and no two of them one line.
+pub fn three_parallel(joints: &[JointAxis], size: f64, tolerance: f64) -> bool {
+    let parallel = |a: &JointAxis, b: &JointAxis| Pair::of(a, b, size, tolerance) == Pair::Parallel;
+    let apart = |a: &JointAxis, b: &JointAxis| norm(&sub(&b.nearest_to(&a.point), &a.point)) > 1e-3 * size;
+    let [first, second, third] = joints else { return false };
+    parallel(first, second)
+        && parallel(second, third)
+        && parallel(first, third)
+        && apart(first, second)
+        && apart(second, third)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn joint(axis: Vector, point: Vector) -> JointAxis {
+        JointAxis::turning(crate::closed_form::vector::unit(&axis), point)
+    }
+
+    #[test]
+    fn pairs_by_their_numbers() {
+        let first = joint([0.0, 0.0, 1.0], [0.0; 3]);
+        let meets = joint([0.0, 1.0, 1.0], [0.0, 0.5, 1.5]);
+        match Pair::of(&first, &meets, 1.0, EXACT) {
+            Pair::Meet(at) => assert!(norm(&sub(&at, &[0.0, 0.0, 1.0])) < 1e-15),
+            other => panic!("{other:?}"),
+        }
+        assert_eq!(Pair::of(&first, &joint([0.0, 1.0, 1.0], [1e-6, 0.5, 1.5]), 1.0, EXACT), Pair::Skew);
+        assert!(matches!(Pair::of(&first, &joint([0.0, 1.0, 1.0], [1e-6, 0.5, 1.5]), 1.0, NEARLY), Pair::Meet(_)));
+        assert_eq!(Pair::of(&first, &joint([0.0, 0.0, -1.0], [1.0, 0.5, 1.5]), 1.0, EXACT), Pair::Parallel);
+    }
+
+    #[test]
+    fn a_wrist_and_a_bundle() {
+        let at = [0.3, 0.1, 0.9];
+        let wrist = [joint([1.0, 0.2, 0.0], at), joint([0.0, 1.0, 0.0], at), joint([0.3, 0.0, 1.0], at)];
+        let found = three_meet(&wrist, 1.0, EXACT).expect("they meet");
+        assert!(norm(&sub(&found, &at)) < 1e-15);
+        let bundle = [0.0, 0.5, 1.1].map(|x| joint([0.0, 1.0, 0.0], [x, 0.0, 0.0]));
+        assert!(three_parallel(&bundle, 1.0, EXACT) && !three_parallel(&wrist, 1.0, EXACT));
+    }
+}

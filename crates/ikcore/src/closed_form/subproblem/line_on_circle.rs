@@ -1,0 +1,63 @@
+//! The equation a cos q + b sin q = c: a line that meets the unit circle. Subproblems 2, 3 and 4 come down to it.
+
+use super::{CLAMP, Turns};
+use crate::closed_form::angle::Angle;
+
+/// The angles with a cos q + b sin q = c.
+///
+/// Where a and b are both below `floor`, the angle is free if c is below it too, and there is none otherwise.
+#[inline(always)]
+pub fn line_on_circle(a: f64, b: f64, c: f64, floor: f64) -> Turns<2> {
+    let square = a * a + b * b;
+    if square <= floor * floor {
+        return if c.abs() <= floor { Turns::FREE } else { Turns::NONE };
+    }
+    // (r - c) (r + c), since r^2 - c^2 cancels where the line touches the circle.
+    let radius = square.sqrt();
+    with_radicand(a, b, c, (radius - c) * (radius + c))
+}
+
+/// The same with r^2 - c^2 known better than by subtraction, r^2 = a^2 + b^2.
+#[inline(always)]
+pub fn with_radicand(a: f64, b: f64, c: f64, radicand: f64) -> Turns<2> {
+    let square = a * a + b * b;
+    let mut turns = Turns::NONE;
+    if radicand < -CLAMP * square {
+        return turns;
+    }
+    // `towards` divides by the hypotenuse: a clamped root lands on the circle.
+    if radicand <= 0.0 {
+        turns.push(Angle::towards(a * c, b * c));
+        return turns;
+    }
+    let (root, inverse) = (radicand.sqrt(), 1.0 / square);
+    turns.push(Angle { cos: (a * c - b * root) * inverse, sin: (b * c + a * root) * inverse });
+    turns.push(Angle { cos: (a * c + b * root) * inverse, sin: (b * c - a * root) * inverse });
+    turns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_angles_on_the_line() {
+        for k in 0..98 {
+            let angle = 0.0628 * f64::from(k) - 3.0;
+            let (a, b) = (0.7, -1.9);
+            let c = a * angle.cos() + b * angle.sin();
+            let found = line_on_circle(a, b, c, 1e-12);
+            assert_eq!(found.len(), 2);
+            assert!(found.iter().all(|t| (a * t.cos + b * t.sin - c).abs() < 1e-15 * 10.0));
+            assert!(found.iter().any(|t| (t.angle() - angle).abs() < 1e-7));
+        }
+    }
+
+    #[test]
+    fn a_line_just_outside_touches_once_and_one_far_outside_never() {
+        assert_eq!(line_on_circle(1.0, 0.0, 1.0 + 1e-10, 1e-12).len(), 1);
+        assert_eq!(line_on_circle(1.0, 0.0, 1.0 + 1e-8, 1e-12).len(), 0);
+        assert!(line_on_circle(1e-14, 0.0, 1e-14, 1e-12).free);
+        assert_eq!(line_on_circle(1e-14, 0.0, 1.0, 1e-12).len(), 0);
+    }
+}

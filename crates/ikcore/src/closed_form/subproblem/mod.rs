@@ -1,0 +1,56 @@
+//! The canonical subproblems: rotations about known axes that carry known points where they must go.
+//!
+//! Numbered as in Elias and Wen, "IK-Geo: Unified Robot Inverse Kinematics Using Subproblem Decomposition" (arXiv 2211.05737);
+//! 1 to 3 go back to Paden and Kahan. All results are [`Angle`]s, so that no arctangent is taken before a branch is verified.
+//! A square root whose radicand is slightly negative is taken as zero ([`CLAMP`]): the branch is kept as a double root, and
+//! forward kinematics decides whether it is a solution.
+
+mod angle_to_plane;
+mod line_on_circle;
+mod onto_point;
+mod quadratic_form;
+
+pub use angle_to_plane::{angle_to_plane, distance_to_point};
+pub use line_on_circle::{line_on_circle, with_radicand};
+pub use onto_point::{onto_point, two_axes};
+pub use quadratic_form::{Linear, QuadraticForm, two_linear_equations};
+
+use crate::closed_form::angle::Angle;
+
+/// Largest negative radicand, relative to its terms, that counts as a double root.
+pub const CLAMP: f64 = 1e-9;
+
+/// At most `N` rotations.
+#[derive(Debug, Clone, Copy)]
+pub struct Turns<const N: usize> {
+    turns: [Angle; N],
+    count: usize,
+    /// Every angle is a solution; the one listed stands for all.
+    pub free: bool,
+}
+
+impl<const N: usize> Turns<N> {
+    /// No solution.
+    pub const NONE: Self = Self { turns: [Angle::NONE; N], count: 0, free: false };
+
+    /// Every angle: zero stands for all.
+    pub const FREE: Self = Self { turns: [Angle::NONE; N], count: 1, free: true };
+
+    /// Adds a solution; ignored when full.
+    #[inline(always)]
+    pub fn push(&mut self, turn: Angle) {
+        if self.count < N {
+            self.turns[self.count] = turn;
+            self.count += 1;
+        }
+    }
+}
+
+impl<const N: usize> std::ops::Deref for Turns<N> {
+    type Target = [Angle];
+
+    #[inline(always)]
+    fn deref(&self) -> &[Angle] {
+        &self.turns[..self.count]
+    }
+}

@@ -1,0 +1,76 @@
+//! A quadratic equation in cosine and sine of one angle: what subproblems 5 and 6 come down to.
+
+use super::Turns;
+use crate::closed_form::angle::Angle;
+use crate::closed_form::trigonometric::Polynomial;
+
+/// Rounding of the coefficients, relative to their size: zeros that it can hide or merge are listed as one.
+const NOISE: f64 = 1e-13;
+
+/// w' F w = 0 for w = (1, cos q, sin q): a conic that meets the unit circle in at most four points.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct QuadraticForm {
+    /// Upper triangle: 11, 1c, 1s, cc, cs, ss.
+    entries: [f64; 6],
+}
+
+/// constant + cos * cos q + sin * sin q.
+pub type Linear = [f64; 3];
+
+impl QuadraticForm {
+    /// Adds factor * p * q.
+    #[inline(always)]
+    pub fn add_product(&mut self, factor: f64, p: &Linear, q: &Linear) {
+        let e = &mut self.entries;
+        e[0] += factor * (p[0] * q[0]);
+        e[1] += factor * (p[0] * q[1] + p[1] * q[0]);
+        e[2] += factor * (p[0] * q[2] + p[2] * q[0]);
+        e[3] += factor * (p[1] * q[1]);
+        e[4] += factor * (p[1] * q[2] + p[2] * q[1]);
+        e[5] += factor * (p[2] * q[2]);
+    }
+
+    /// Adds the linear function p.
+    #[inline(always)]
+    pub fn add_linear(&mut self, p: &Linear) {
+        (0..3).for_each(|k| self.entries[k] += p[k]);
+    }
+
+    /// The angles of its zeros on the unit circle, double roots included; marked as free where they are not surely all.
+    pub fn zeros(&self) -> Turns<4> {
+        let [one, c, s, cc, cs, ss] = self.entries;
+        // cos^2 = (1 + cos 2q)/2, sin^2 = (1 - cos 2q)/2, cos sin = (sin 2q)/2.
+        let cosines = [one + 0.5 * (cc + ss), c, 0.5 * (cc - ss)];
+        let polynomial = Polynomial { cosines, sines: [0.0, s, 0.5 * cs] };
+        let zeros = polynomial.zeros::<4>(NOISE * polynomial.size());
+        let mut turns = Turns::NONE;
+        zeros.iter().for_each(|root| turns.push(*root));
+        // The form vanishes everywhere, or to a high order.
+        turns.free = !zeros.settled;
+        turns
+    }
+}
+
+/// Subproblem 6: (x, y) with m (cos y, sin y) = r(x), where both entries of r are linear in (1, cos x, sin x).
+///
+/// Solves for x; y follows as the direction of m^-1 r(x), which the result's second part holds. `None` where m is singular.
+pub fn two_linear_equations(m: &[[f64; 2]; 2], r: &[Linear; 2]) -> Option<(Turns<4>, [Angle; 4])> {
+    let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    if determinant == 0.0 || !determinant.is_finite() {
+        return None;
+    }
+    let inverse = 1.0 / determinant;
+    let cosine: Linear = std::array::from_fn(|k| inverse * (m[1][1] * r[0][k] - m[0][1] * r[1][k]));
+    let sine: Linear = std::array::from_fn(|k| inverse * (m[0][0] * r[1][k] - m[1][0] * r[0][k]));
+    let mut form = QuadraticForm::default();
+    form.add_product(1.0, &cosine, &cosine);
+    form.add_product(1.0, &sine, &sine);
+    form.add_linear(&[-1.0, 0.0, 0.0]);
+    let x = form.zeros();
+    let mut y = [Angle::NONE; 4];
+    for (x, y) in x.iter().zip(&mut y) {
+        let at = |p: &Linear| p[0] + p[1] * x.cos + p[2] * x.sin;
+        *y = Angle::towards(at(&cosine), at(&sine));
+    }
+    Some((x, y))
+}

@@ -1,0 +1,95 @@
+//! No candidate becomes a branch without forward kinematics: residuals, polishing where they ask for it, duplicates.
+
+mod angles;
+mod polish;
+mod residuals;
+
+use crate::closed_form::angle::Angle;
+use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
+use crate::closed_form::branches::{Branches, Candidates};
+use crate::math::Frame;
+use crate::math::arithmetic::{Arithmetic, by_instructions};
+use residuals::{FixedFrames, LANES};
+
+/// Candidates with a larger residual (m, rad) are polished: beside singular poses a residual within [`polish::TOLERANCE`]
+/// leaves more than that in the angles.
+const GOOD: f64 = 1e-12;
+
+/// Branches nearer to each other than this in every joint (rad, m) are one: a double root.
+const SAME: f64 = 1e-6;
+
+/// A chain prepared for checking candidates.
+#[derive(Debug, Clone, Copy)]
+pub struct Verifier<const N: usize> {
+    chain: AxisChain<N>,
+    frames: FixedFrames<N>,
+    slides: [bool; N],
+    /// Candidates with larger residuals (m, rad) are not worth polishing.
+    worth_polishing: f64,
+}
+
+impl<const N: usize> Verifier<N> {
+    /// For candidates off by at most `worth_polishing` (m, rad).
+    pub fn new(chain: &AxisChain<N>, worth_polishing: f64) -> Self {
+        let slides = std::array::from_fn(|k| chain.joints[k].motion == AxisMotion::Slides);
+        Self { chain: *chain, frames: FixedFrames::new(chain), slides, worth_polishing }
+    }
+
+    /// Adds the branch near a candidate, if there is one.
+    pub fn add(&self, target: &Frame, candidate: &[Angle; N], found: &mut Branches<N>) {
+        self.accept_polished(target, candidate.map(Angle::angle), found);
+    }
+
+    #[inline(always)]
+    fn branches_by<A: Arithmetic>(&self, target: &Frame, candidates: &Candidates<N>) -> Branches<N> {
+        let mut found = Branches::none();
+        found.singular = candidates.singular;
+        found.evaluations = candidates.count;
+        let mut first = 0;
+        while first < candidates.count {
+            let residuals = residuals::residuals::<A, N>(&self.frames, &self.slides, target, candidates, first);
+            let angles = angles::angles::<A, N>(&self.slides, candidates, first);
+            for lane in 0..LANES.min(candidates.count - first) {
+                let set = std::array::from_fn(|k| angles[k][lane]);
+                self.accept(target, residuals[lane], set, &mut found);
+            }
+            first += LANES;
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn accept(&self, target: &Frame, residual: f64, set: [f64; N], found: &mut Branches<N>) {
+        if residual <= GOOD {
+            push_new(set, &self.slides, found);
+        } else if residual <= self.worth_polishing {
+            self.accept_polished(target, set, found);
+        }
+    }
+
+    #[cold]
+    fn accept_polished(&self, target: &Frame, set: [f64; N], found: &mut Branches<N>) {
+        if let Some(set) = polish::polished(&self.chain, target, set, &mut found.evaluations) {
+            push_new(set, &self.slides, found);
+        }
+    }
+}
+
+by_instructions! {
+    /// The candidates that bring the tip to `target`, as joint values.
+    pub fn verified(verifier: &Verifier<6>, target: &Frame, candidates: &Candidates<6>) -> Branches<6> {
+        verifier.branches_by::<A>(target, candidates)
+    }
+}
+
+/// Adds a branch unless it is there already.
+#[inline(always)]
+fn push_new<const N: usize>(set: [f64; N], slides: &[bool; N], found: &mut Branches<N>) {
+    let near = |a: f64, b: f64, slides: bool| {
+        let apart = (a - b).abs();
+        apart < SAME || !slides && std::f64::consts::TAU - apart < SAME
+    };
+    if !found.iter().any(|other| (0..N).all(|k| near(other[k], set[k], slides[k]))) {
+        found.push(set);
+    }
+}

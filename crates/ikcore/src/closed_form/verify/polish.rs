@@ -1,0 +1,113 @@
+//! Newton's method from a candidate that forward kinematics finds a little off.
+
+use super::residuals::difference;
+use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
+use crate::closed_form::vector::{Vector, add, cross, scaled, sub};
+use crate::math::Frame;
+use crate::math::arithmetic::Baseline;
+
+/// Largest residual of a branch, position (m) and rotation (rad).
+pub const TOLERANCE: f64 = 1e-10;
+
+const ITERATIONS: usize = 24;
+
+/// Joint values near `q` that bring the tip to `target`, if Newton's method gets there.
+///
+/// Each step adds one to `evaluations`. Damped by the squared error: beside a double root the Jacobian is singular, and the step
+/// must stay short.
+pub fn polished<const N: usize>(
+    chain: &AxisChain<N>,
+    target: &Frame,
+    mut q: [f64; N],
+    evaluations: &mut usize,
+) -> Option<[f64; N]> {
+    let mut last = f64::INFINITY;
+    let mut best = (f64::INFINITY, q);
+    for _ in 0..ITERATIONS {
+        *evaluations += 1;
+        let (tip, columns) = jacobian(chain, &q);
+        let residual = difference(&tip, target);
+        if residual < best.0 {
+            best = (residual, q);
+        }
+        // Beyond the tolerance while it still pays.
+        if !(residual.is_finite()) || residual <= TOLERANCE && residual > 0.1 * last || residual < 1e-14 {
+            break;
+        }
+        last = residual;
+        let error = error(&tip, target);
+        let square = error.iter().map(|e| e * e).sum::<f64>();
+        let step = damped_step(&columns, &error, 1e-3 * square.min(1.0) + 1e-16);
+        (0..N).for_each(|k| q[k] += step[k]);
+    }
+    (best.0 <= TOLERANCE).then(|| {
+        std::array::from_fn(
+            |k| if chain.joints[k].motion == AxisMotion::Turns { wrapped(best.1[k]) } else { best.1[k] },
+        )
+    })
+}
+
+/// The same angle in (-pi, pi].
+fn wrapped(angle: f64) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    let rest = angle.rem_euclid(TAU);
+    if rest > PI { rest - TAU } else { rest }
+}
+
+/// Position (m) and rotation (rad) from tip to target.
+fn error(tip: &Frame, target: &Frame) -> [f64; 6] {
+    let [px, py, pz] = sub(&target.origin, &tip.origin);
+    let sum = (0..3).fold([0.0; 3], |sum: Vector, k| add(&sum, &cross(&tip.axes[k], &target.axes[k])));
+    let [rx, ry, rz] = scaled(&sum, 0.5);
+    [px, py, pz, rx, ry, rz]
+}
+
+/// The tip and its geometric Jacobian, one column a joint.
+fn jacobian<const N: usize>(chain: &AxisChain<N>, q: &[f64; N]) -> (Frame, [[f64; 6]; N]) {
+    let mut moved = [Frame::IDENTITY; N];
+    let mut sum = Frame::IDENTITY;
+    for k in 0..N {
+        moved[k] = sum;
+        sum = sum.then::<Baseline>(&chain.joints[k].displacement(q[k]));
+    }
+    let tip = sum.then::<Baseline>(&chain.tip);
+    let columns = std::array::from_fn(|k| {
+        let joint = chain.joints[k].moved(&moved[k]);
+        let [hx, hy, hz] = joint.axis;
+        match joint.motion {
+            AxisMotion::Turns => {
+                let [vx, vy, vz] = cross(&joint.axis, &sub(&tip.origin, &joint.point));
+                [vx, vy, vz, hx, hy, hz]
+            }
+            AxisMotion::Slides => [hx, hy, hz, 0.0, 0.0, 0.0],
+        }
+    });
+    (tip, columns)
+}
+
+/// (J'J + damping) step = J'error, by Cholesky's method.
+fn damped_step<const N: usize>(columns: &[[f64; 6]; N], error: &[f64; 6], damping: f64) -> [f64; N] {
+    let product = |a: &[f64; 6], b: &[f64; 6]| (0..6).map(|k| a[k] * b[k]).sum::<f64>();
+    let mut factor = [[0.0; N]; N];
+    let mut step: [f64; N] = std::array::from_fn(|k| product(&columns[k], error));
+    for i in 0..N {
+        for j in 0..=i {
+            let mut sum = product(&columns[i], &columns[j]) + if i == j { damping } else { 0.0 };
+            for k in 0..j {
+                sum -= factor[i][k] * factor[j][k];
+            }
+            factor[i][j] = if i == j { sum.max(1e-30).sqrt() } else { sum / factor[j][j] };
+        }
+        for k in 0..i {
+            step[i] -= factor[i][k] * step[k];
+        }
+        step[i] /= factor[i][i];
+    }
+    for i in (0..N).rev() {
+        for k in i + 1..N {
+            step[i] -= factor[k][i] * step[k];
+        }
+        step[i] /= factor[i][i];
+    }
+    step
+}

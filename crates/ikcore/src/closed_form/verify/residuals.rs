@@ -1,0 +1,111 @@
+//! Forward kinematics of several candidates side by side.
+
+use crate::closed_form::axis_chain::AxisChain;
+use crate::closed_form::branches::Candidates;
+use crate::closed_form::vector::{Vector, cross, dot, perpendicular};
+use crate::math::Frame;
+use crate::math::arithmetic::Arithmetic;
+use crate::math::arithmetic::Baseline;
+
+/// Candidates checked together.
+pub const LANES: usize = 8;
+
+type Lanes = [f64; LANES];
+
+/// The chain with every joint about its own z axis: constant frames before each joint, and the tip after the last.
+#[derive(Debug, Clone, Copy)]
+pub struct FixedFrames<const N: usize> {
+    before: [Frame; N],
+    tip: Frame,
+}
+
+impl<const N: usize> FixedFrames<N> {
+    pub fn new(chain: &AxisChain<N>) -> Self {
+        let at = chain.joints.map(|joint| along(&joint.axis, &joint.point));
+        let before = std::array::from_fn(|k| if k == 0 { at[0] } else { at[k - 1].inverse().then::<Baseline>(&at[k]) });
+        Self { before, tip: at[N - 1].inverse().then::<Baseline>(&chain.tip) }
+    }
+}
+
+/// Largest entry by which tip position, x axis and z axis miss the target, for eight candidates from `first` on.
+///
+/// Runs from tip to base, so that only the three vectors compared are carried.
+#[inline(always)]
+pub fn residuals<A: Arithmetic, const N: usize>(
+    frames: &FixedFrames<N>,
+    slides: &[bool; N],
+    target: &Frame,
+    candidates: &Candidates<N>,
+    first: usize,
+) -> Lanes {
+    let tip = &frames.tip;
+    let mut carried = [tip.origin, tip.axes[0], tip.axes[2]].map(|v| v.map(|entry| [entry; LANES]));
+    for k in (0..N).rev() {
+        let (mut cos, mut sin) = ([0.0; LANES], [0.0; LANES]);
+        cos.copy_from_slice(&candidates.cos[k][first..first + LANES]);
+        sin.copy_from_slice(&candidates.sin[k][first..first + LANES]);
+        if slides[k] {
+            for w in 0..LANES {
+                carried[0][2][w] += sin[w];
+            }
+        } else {
+            for v in &mut carried {
+                turn::<A>(v, &cos, &sin);
+            }
+        }
+        let frame = &frames.before[k];
+        carried[0] = turned::<A>(frame, &carried[0], &frame.origin);
+        carried[1] = turned::<A>(frame, &carried[1], &[0.0; 3]);
+        carried[2] = turned::<A>(frame, &carried[2], &[0.0; 3]);
+    }
+    let mut worst = [0.0; LANES];
+    for (v, goal) in carried.iter().zip([&target.origin, &target.axes[0], &target.axes[2]]) {
+        for k in 0..3 {
+            for w in 0..LANES {
+                let off = (v[k][w] - goal[k]).abs();
+                worst[w] = if off > worst[w] { off } else { worst[w] };
+            }
+        }
+    }
+    // NaN compares as not larger: it must not pass.
+    for w in 0..LANES {
+        let sum = carried[0][0][w] + carried[1][0][w] + carried[2][0][w];
+        worst[w] = if sum.is_finite() { worst[w] } else { f64::INFINITY };
+    }
+    worst
+}
+
+/// A frame at `point` whose z axis is `axis`.
+fn along(axis: &Vector, point: &Vector) -> Frame {
+    let x = perpendicular(axis);
+    Frame { axes: [x, cross(axis, &x), *axis], origin: *point }
+}
+
+#[inline(always)]
+fn turn<A: Arithmetic>(v: &mut [Lanes; 3], cos: &Lanes, sin: &Lanes) {
+    for w in 0..LANES {
+        let (x, y) = (v[0][w], v[1][w]);
+        v[0][w] = A::mul_add(cos[w], x, -(sin[w] * y));
+        v[1][w] = A::mul_add(sin[w], x, cos[w] * y);
+    }
+}
+
+/// R v + origin.
+#[inline(always)]
+fn turned<A: Arithmetic>(frame: &Frame, v: &[Lanes; 3], origin: &[f64; 3]) -> [Lanes; 3] {
+    let mut out = [[0.0; LANES]; 3];
+    for k in 0..3 {
+        let (a, b, c, o) = (frame.axes[0][k], frame.axes[1][k], frame.axes[2][k], origin[k]);
+        for w in 0..LANES {
+            out[k][w] = A::mul_add(a, v[0][w], A::mul_add(b, v[1][w], A::mul_add(c, v[2][w], o)));
+        }
+    }
+    out
+}
+
+/// Largest entry by which position and axes of two frames differ.
+pub fn difference(a: &Frame, b: &Frame) -> f64 {
+    let entry = |p: &[f64; 3], q: &[f64; 3]| (0..3).fold(0.0, |most: f64, k| most.max((p[k] - q[k]).abs()));
+    debug_assert!(dot(&a.axes[0], &a.axes[0]) > 0.0);
+    (0..3).fold(entry(&a.origin, &b.origin), |most, k| most.max(entry(&a.axes[k], &b.axes[k])))
+}

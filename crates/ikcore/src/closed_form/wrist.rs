@@ -1,0 +1,168 @@
+//! Three revolute joints that make a rotation: the spherical wrist.
+
+use crate::closed_form::angle::Angle;
+use crate::closed_form::subproblem::{Turns, onto_point, with_radicand};
+use crate::closed_form::vector::{Vector, cross, dot, perpendicular};
+use crate::math::Frame;
+use crate::math::arithmetic::Baseline;
+
+/// Below this sine of the angle between the outer axes (rad), they count as aligned: only the sum or difference of their
+/// angles matters.
+pub const ALIGNED: f64 = 1e-10;
+
+/// The middle joint of a wrist: angles q with outer' rot(axis, q) inner = outer' goal.
+#[derive(Debug, Clone, Copy)]
+pub struct Bend {
+    outer: Vector,
+    /// a cos q + b sin q + constant = outer' goal.
+    a: f64,
+    b: f64,
+    constant: f64,
+    /// 1 - cos of the smallest angle between outer and goal, 1 + cos of the largest.
+    margins: [f64; 2],
+}
+
+impl Bend {
+    /// `inner` turns about `axis`; all are unit vectors.
+    pub fn new(outer: &Vector, axis: &Vector, inner: &Vector) -> Self {
+        let across = cross(axis, inner);
+        let (a, b) = (dot(&cross(axis, outer), &across), dot(outer, &across));
+        let constant = dot(outer, axis) * dot(axis, inner);
+        let radius = a.hypot(b);
+        // Rounding of constants that are exactly one must not open a gap.
+        let margin = |m: f64| if m.abs() < 4e-16 { 0.0 } else { m };
+        Self {
+            outer: *outer,
+            a,
+            b,
+            constant,
+            margins: [margin(1.0 - (constant + radius)), margin(1.0 + (constant - radius))],
+        }
+    }
+
+    /// The angles for a unit vector `goal`, and the sine of the angle between `outer` and `goal`.
+    ///
+    /// The radicand r^2 - (outer'goal - constant)^2 is the product of the cosines' distances from both ends; either is small
+    /// where the wrist is straight, and then it comes from |outer x goal| and not from a cosine near one.
+    #[inline(always)]
+    pub fn angles(&self, goal: &Vector) -> (Turns<2>, f64) {
+        let cosine = dot(&self.outer, goal);
+        let normal = cross(&self.outer, goal);
+        let square = dot(&normal, &normal);
+        let (below_one, above_minus_one) = if cosine > 0.0 {
+            (square / (1.0 + cosine), 1.0 + cosine)
+        } else {
+            (1.0 - cosine, square / (1.0 - cosine))
+        };
+        let radicand = (below_one - self.margins[0]) * (above_minus_one - self.margins[1]);
+        (with_radicand(self.a, self.b, cosine - self.constant, radicand), square.sqrt())
+    }
+}
+
+/// A wrist: three axes of which neither neighbours are parallel.
+#[derive(Debug, Clone, Copy)]
+pub struct Wrist {
+    axes: [Vector; 3],
+    bend: Bend,
+    /// A unit vector across the last axis.
+    mark: Vector,
+    /// The middle axis is at right angles to both others: the second set of angles follows from the first.
+    square: bool,
+}
+
+/// Where a rotation takes the last axis of a wrist and the mark across it.
+#[derive(Debug, Clone, Copy)]
+pub struct Pointing {
+    /// The last axis.
+    pub end: Vector,
+    /// The mark.
+    pub mark: Vector,
+}
+
+/// The at most two sets of angles of a wrist.
+#[derive(Debug, Clone, Copy)]
+pub struct WristTurns {
+    /// The sets; only the first `count` count.
+    pub sets: [[Angle; 3]; 2],
+    /// How many there are.
+    pub count: usize,
+    /// The outer axes are aligned: one set stands for a family.
+    pub aligned: bool,
+}
+
+impl Wrist {
+    /// By the axes, in order.
+    pub fn new(axes: &[Vector; 3]) -> Self {
+        let right_angle = |a: &Vector, b: &Vector| dot(a, b).abs() < 1e-12;
+        Self {
+            axes: *axes,
+            bend: Bend::new(&axes[0], &axes[1], &axes[2]),
+            mark: perpendicular(&axes[2]),
+            square: right_angle(&axes[0], &axes[1]) && right_angle(&axes[1], &axes[2]),
+        }
+    }
+
+    /// Where the rotation of `goal` takes this wrist.
+    #[inline(always)]
+    pub fn pointing(&self, goal: &Frame) -> Pointing {
+        Pointing { end: goal.turn::<Baseline>(&self.axes[2]), mark: goal.turn::<Baseline>(&self.mark) }
+    }
+
+    /// All angles with rot1 rot2 rot3 = the rotation that points the wrist so, where rotations act on the zero configuration.
+    #[inline(always)]
+    pub fn turns(&self, goal: &Pointing) -> WristTurns {
+        let (bends, sine) = self.bend.angles(&goal.end);
+        let mut found = WristTurns { sets: [[Angle::NONE; 3]; 2], count: 0, aligned: sine < ALIGNED };
+        let wanted = if found.aligned { bends.len().min(1) } else { bends.len() };
+        for q2 in &bends[..wanted] {
+            found.sets[found.count] = if self.square && found.count == 1 {
+                // Half a turn of the first joint turns the middle axis round; half a turn of the last makes up for it.
+                let [q1, _, q3] = &found.sets[0];
+                [q1.opposite(), *q2, q3.opposite()]
+            } else {
+                self.with_bend(goal, *q2, found.aligned)
+            };
+            found.count += 1;
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn with_bend(&self, goal: &Pointing, q2: Angle, aligned: bool) -> [Angle; 3] {
+        let [h1, h2, h3] = &self.axes;
+        let q1 = if aligned { Angle::NONE } else { onto_point(h1, &q2.about(h2, h3), &goal.end) };
+        let seen = q2.back().about(h2, &q1.back().about(h1, &goal.mark));
+        [q1, q2, onto_point(h3, &self.mark, &seen)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_form::vector::{norm, sub, unit};
+
+    fn rotation(axes: &[Vector; 3], turns: [Angle; 3]) -> Frame {
+        axes.iter().zip(turns).fold(Frame::IDENTITY, |sum, (h, t)| sum.then::<Baseline>(&t.about_line(h, &[0.0; 3])))
+    }
+
+    #[test]
+    fn right_angled_and_slanted_wrists_bent_by_any_angle() {
+        let slanted = [[0.0, 0.0, 1.0], unit(&[0.0, 0.7, 0.7]), unit(&[0.3, 0.1, 0.9])];
+        let equal = [[0.0, 0.0, 1.0], unit(&[0.0, 0.7, 0.7]), [0.0, 0.0, 1.0]];
+        let square = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        for axes in [square, slanted, equal] {
+            let wrist = Wrist::new(&axes);
+            for bend in [1.3, -0.4, 1e-3, 1e-6, 1e-9, -3e-8, 3.1, 0.0] {
+                let goal = rotation(&axes, [Angle::by(0.7), Angle::by(bend), Angle::by(-1.9)]);
+                let found = wrist.turns(&wrist.pointing(&goal));
+                assert!(found.count >= 1, "{bend}");
+                for set in &found.sets[..found.count] {
+                    let reached = rotation(&axes, *set);
+                    for k in 0..3 {
+                        assert!(norm(&sub(&reached.axes[k], &goal.axes[k])) < 1e-14, "{axes:?} {bend}");
+                    }
+                }
+            }
+        }
+    }
+}

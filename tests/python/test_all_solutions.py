@@ -1,0 +1,79 @@
+"""`solve_all` in closed form, as seen from Python."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import beetle_ik as bik
+
+UR = bik.Robot.named("ur10")
+Q = np.array([0.4, -1.2, 1.1, -1.3, 0.9, 0.2])
+POSE = UR.fk(Q)
+
+
+@pytest.mark.parametrize(
+    ("robot", "closed_form"),
+    [
+        (UR, "axes 2 to 4 parallel; at most 8 solutions"),
+        (bik.Robot.named("kr210"), "spherical wrist; at most 8 solutions"),
+        (bik.Robot.named("panda"), "none: 7 joints; closed forms are for 6"),
+        (bik.Robot.planar([1.0] * 6), "none: the tip moves in 3 of 6 directions"),
+    ],
+)
+def test_the_closed_form_is_told(robot: bik.Robot, closed_form: str) -> None:
+    assert robot.closed_form == closed_form
+
+
+def test_the_set_is_complete_and_exact() -> None:
+    found = bik.solve_all(UR, POSE, start=Q)
+    assert (len(found), found.complete, found.singular) == (8, True, False)
+    assert found.message == "8 distinct solutions, no others inside the limits"
+    np.testing.assert_allclose(UR.fk(found.q), np.broadcast_to(POSE, (8, 4, 4)), rtol=0, atol=1e-10)
+    np.testing.assert_allclose(found[0].q, Q, atol=1e-9)
+
+
+def test_whole_turns_on_request() -> None:
+    found = bik.solve_all(UR, POSE, start=Q, turns=True)
+    assert found.complete
+    assert len(found) > 100
+    assert len(np.unique(found.q.round(6), axis=0)) == len(found)
+    assert ((UR.lower <= found.q) & (found.q <= UR.upper)).all()
+    np.testing.assert_allclose(UR.fk(found.q), np.broadcast_to(POSE, (len(found), 4, 4)), rtol=0, atol=1e-9)
+    nearest = bik.solve_all(UR, POSE, start=Q, turns=True, limit=5)
+    assert not nearest.complete
+    np.testing.assert_array_equal(nearest.q, found.q[:5])
+
+
+def test_too_many_turns_are_refused() -> None:
+    wide = bik.Limits(lower=-60.0, upper=60.0)
+    with pytest.raises(bik.InvalidInputError, match=r"^turns=True makes \d+ configurations; at most 10000 are allowed"):
+        bik.solve_all(UR, POSE, start=Q, turns=True, limits=wide)
+
+
+def test_what_is_left_out_is_not_called_complete() -> None:
+    assert not bik.solve_all(UR, POSE, limit=3).complete
+    assert not bik.solve_all(UR, POSE, separation=3.0).complete
+    assert not bik.solve_all(UR, POSE, solver=bik.MultiStart(bik.NewtonRaphson())).complete
+    assert not bik.solve_all(UR, POSE[:3, 3], limit=3).complete
+
+
+def test_a_singular_pose_is_reported() -> None:
+    q = np.array([0.4, -1.2, 1.1, -1.3, 0.0, 0.2])
+    found = bik.solve_all(UR, UR.fk(q), start=q)
+    assert found.singular
+    assert found.message.endswith("; the pose is singular: a family counts as one solution")
+
+
+def test_out_of_reach_is_proven() -> None:
+    pose = bik.pose([1.2, 0.0, 0.1], rpy=[0.0, -1.5, 0.0])
+    found = bik.solve_all(UR, pose)
+    assert (len(found), found.status, found.complete) == (0, bik.Status.OUT_OF_REACH, True)
+    assert "(no configuration has this pose): move or turn the target into reach" in found.message
+
+
+def test_completeness_is_pickled() -> None:
+    for found in (bik.solve_all(UR, POSE), bik.solve_all(UR, POSE, limit=2)):
+        copy = pickle.loads(pickle.dumps(found))
+        assert (copy.complete, copy.singular, copy.message) == (found.complete, found.singular, found.message)
+        np.testing.assert_array_equal(copy.q, found.q)
