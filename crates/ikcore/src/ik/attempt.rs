@@ -77,7 +77,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         self.explained(if solved { Status::Solved } else { status }, q)
     }
 
-    /// Descends once from `q` to the end; whether that solved, and the best point.
+    /// Descends once from `q` until convergence; returns whether that solved the target, and the best point.
     pub fn descend(&mut self, descent: &LevenbergMarquardt, q: Point) -> (bool, Point) {
         if self.budget.is_spent() {
             return (false, q);
@@ -89,7 +89,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (evaluator.best().solved, Point::from_slice(&evaluator.best().x))
     }
 
-    /// The nearest of a few descents towards a target that cannot be reached.
+    /// The best of a few descents towards a target that cannot be reached.
     pub fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64]) -> Point {
         let mut best: Option<(f64, Point)> = None;
         let mut x = Point::from_slice(x0);

@@ -76,13 +76,14 @@ impl<'a> SolveContext<'a> {
         self.options
     }
 
-    /// Whether nothing but the pose and the limits decides what a solution is, and how to find it is left to us.
+    /// Whether only pose and limits define a solution, and the choice of solver is ours.
     pub(super) fn asks_for_pose_alone(&self, target: &Target) -> bool {
         let plain = self.criterion.components.is_none() && self.criterion.region.is_none() && self.goals.is_empty();
         matches!(target, Target::Pose(_)) && plain && self.options.solver == AnySolver::default()
     }
 
-    /// The default solver's descent where it can run side by side: nothing follows it and no clock runs.
+    /// The descent of the default solver if it can run side by side: without goals or preferences after it, and without
+    /// a time limit.
     pub(crate) fn side_by_side_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
         let alone = self.options.prefer == Prefer::Any && self.goals.is_empty();
         let descent = self.options.solver.restarted_descent();

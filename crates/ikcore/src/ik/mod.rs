@@ -1,10 +1,10 @@
 //! Inverse kinematics: one solution of a target, or all of them.
 //!
-//! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds everything that
-//! one target needs: problem, random numbers, monitor, `budget`. `nearest` and `best` choose among several solutions,
-//! `goal_descent` moves one along its self-motion, `solve_all` collects them (`all_branches` by the closed form),
-//! `side_by_side` solves four at once for batches.
-//! Why a target was missed is a matter of [`problem`](crate::problem).
+//! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds the state of
+//! one target: problem, random numbers, monitor, `budget`. `nearest` and `best` choose among several solutions,
+//! `goal_descent` moves a solution along its self-motion, `solve_all` collects solutions (`all_branches` by the closed
+//! form), `side_by_side` solves four targets at once for batches. [`problem`](crate::problem) explains why a target was
+//! missed.
 
 mod all_branches;
 mod attempt;

@@ -65,7 +65,7 @@ impl Chain {
         padded(self.moving)
     }
 
-    /// Constant frames of the moving elements, each seen from the one before.
+    /// Constant frames of the moving elements, each relative to the previous one.
     pub fn moving_frames(&self) -> impl Iterator<Item = Frame> {
         (0..self.moving).map(|stage| self.stages.frame(stage))
     }
