@@ -189,8 +189,9 @@ class Robot:
         """Returns a copy with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps the present ones."""
     @property
     def capsules(self) -> list[tuple[str, _Array, _Array, float]]:
-        """Collision capsules of the links, each (link, a, b, radius): all points within the radius (m) of the segment from a (3,)
-        to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a URDF.
+        """Collision capsules of the links, each (link, a, b, radius). A capsule is all points within the radius (m) of the
+        segment from a (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a
+        URDF.
         """
     def with_capsules(
         self, capsules: list[tuple[str, ArrayLike, ArrayLike, float]] | None = None, *, radius: float | None = None

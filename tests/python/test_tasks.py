@@ -285,7 +285,7 @@ def solve(**options: object) -> bik.Solution:
         (
             lambda: bik.Tracker(IIWA, Q, dt=0.1, solver=bik.BAS(), goals=goals.Centring()),
             Invalid,
-            "goals beside the path are served by the library's own rule and by WeightedPseudoInverse: leave solver out",
+            "goals need the library's own rule, with solver left out, or WeightedPseudoInverse",
         ),
         (lambda: bik.solve_all(IIWA, POSE, limit=0), Invalid, "limit must be at least 1, got 0"),
         (

@@ -193,8 +193,8 @@ fn a_track_that_is_held_says_where() {
     }
     assert_eq!(
         record.message(),
-        "from t = 0 s on held in its region in 33 of 100 steps, up to 0.05000 m away, and else in the band of \
-         1.000e-6 m: move the target into the region, or widen the region"
+        "in the band of 1.000e-6 m from t = 0 s on, except in 33 of 100 steps, in which its region held the tip up to \
+         0.05000 m away: move the target into the region, or widen the region"
     );
 }
 

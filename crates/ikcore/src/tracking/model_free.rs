@@ -161,7 +161,7 @@ impl ModelFreeRecord {
             Status::Solved | Status::Interrupted => message,
             _ => format!(
                 "{message}. Over the second half the error was {} (root mean square): a position_tolerance below what the \
-                 sensor and the controller can keep is never met, and of a late sensor the controller must be told by \
+                 sensor and the controller can keep is never met; if the sensor is late, give the controller its \
                  sensor_delay",
                 TipError { position: self.settled_error(), rotation: settled(&self.track.rotation_error) }
             ),

@@ -272,8 +272,8 @@ impl Record {
             let held = self.step_status[joined..].iter().filter(|status| **status == Status::HeldInRegion).count();
             let advice = self.status.advice();
             return format!(
-                "from t = {since} s on held in its region in {held} of {last} steps, up to {worst} away, and else in the \
-                 band of {band}: {advice}"
+                "in the band of {band} from t = {since} s on, except in {held} of {last} steps, in which its region held the tip \
+                 up to {worst} away: {advice}"
             );
         }
         let outside = self.step_status[joined..].iter().filter(|status| **status != Status::Solved).count();

@@ -36,8 +36,7 @@ impl TrackOptions {
     /// Checks that the rule supports the goals, and the robot too.
     pub(super) fn check_goals(&self, robot: &Robot) -> Result<()> {
         if !self.goals.is_empty() && !self.rule.serves_goals() {
-            let problem = "goals beside the path are served by the library's own rule and by WeightedPseudoInverse: leave \
-                           solver out";
+            let problem = "goals need the library's own rule, with solver left out, or WeightedPseudoInverse";
             return Err(Error::Contradiction { problem: problem.into() });
         }
         self.goals.iter().try_for_each(|goal| goal.validate(robot))

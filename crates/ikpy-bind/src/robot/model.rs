@@ -114,8 +114,9 @@ impl PyRobot {
         Ok(limits.clone_ref(py))
     }
 
-    /// Collision capsules of the links, each (link, a, b, radius): all points within the radius (m) of the segment from a (3,)
-    /// to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a URDF.
+    /// Collision capsules of the links, each (link, a, b, radius). A capsule is all points within the radius (m) of the
+    /// segment from a (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a
+    /// URDF.
     #[getter]
     fn capsules<'py>(&self, py: Python<'py>) -> Vec<Capsule<'py>> {
         let capsules = self.core.capsules().iter();
