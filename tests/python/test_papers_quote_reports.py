@@ -347,7 +347,77 @@ PSO_QUOTES = [
     pso_quote("on the same servos | 3.97 mrad", "controllers", milliradians(6)),
 ]  # fmt: skip
 
-QUOTES = CHENG_QUOTES + YUAN_QUOTES + KHAN_QUOTES + PSO_QUOTES
+# --- Wang et al. 2019 ---------------------------------------------------------------------------
+
+WANG, WANG_PAGE = "wang2019", "docs/papers/wang2019.md"
+FREE, AS_PUBLISHED = "chosen by all", "both positive"
+
+
+def wang_quote(text: str, table: str, values: Callable[[Rows], Iterable[float]]) -> Quote:
+    return Quote(page=WANG_PAGE, text=text, report=WANG, table=table, values=values)
+
+
+def elbow_quote(text: str, elbows: str) -> Quote:
+    """A row of the page: number of links, bound, our plan, mean of TPBSO, mean of the best search."""
+    columns = ("links", "bound [s]", "ours [s]", "TPBSO [s] mean", "its mean [s] mean")
+    links = re.findall(r"\d+", text)[0]
+
+    def values(table: Rows) -> Iterable[float]:
+        row = next(row for row in table if (row["links"], row["elbows"]) == (links, elbows))
+        return [float(row[column]) for column in columns]
+
+    return wang_quote(text, "nearest", values)
+
+
+def tuned_quote(text: str) -> Quote:
+    """A row of the page: number of links, then the mean times of the tuned searches."""
+    links = re.findall(r"\d+", text)[0]
+
+    def values(table: Rows) -> Iterable[float]:
+        asked = ("equal evaluations, equal tuning", "least time", links)
+        means = {
+            row["search"]: float(row["cost [s, rad] measured mean"])
+            for row in table
+            if (row["contest"], row["objective"], row["links"]) == asked
+        }
+        return [int(links), *(means[search] for search in ("TPBSO", "PSO", "GA", "DE"))]
+
+    return wang_quote(text, "point_to_point", values)
+
+
+def gain(path: str) -> Callable[[Rows], Iterable[float]]:
+    """How many times as fast the motion is whose redundancy and timing are found together."""
+
+    def values(table: Rows) -> Iterable[float]:
+        costs = {
+            row["search"]: float(row["cost [s, rad] mean"])
+            for row in table
+            if (row["path"], row["objective"]) == (path, "least time")
+        }
+        together = costs["redundancy and timing together"]
+        return [min(costs[search] for search in ("TPBSO", "PSO", "GA", "DE")) / together]
+
+    return values
+
+
+WANG_QUOTES = [
+    elbow_quote("| 2 links, elbows free | 0.740 s | 0.889 s | 0.882 s | 0.876 s |", FREE),
+    elbow_quote("| 3 links | 0.591 s | 0.710 s | 0.954 s | 0.731 s |", FREE),
+    elbow_quote("| 4 links | 0.520 s | 0.625 s | 0.947 s | 0.750 s |", FREE),
+    elbow_quote("| 5 links | 0.470 s | 0.565 s | 0.971 s | 0.880 s |", FREE),
+    elbow_quote("| 2 links, elbows as in the paper | 1.021 s | 1.227 s | 1.259 s | 1.207 s |", AS_PUBLISHED),
+    elbow_quote("| 3 links | 0.696 s | 0.837 s | 1.167 s | 0.913 s |", AS_PUBLISHED),
+    elbow_quote("| 4 links | 0.564 s | 0.678 s | 1.210 s | 0.901 s |", AS_PUBLISHED),
+    elbow_quote("| 5 links | 0.486 s | 0.584 s | 1.282 s | 1.038 s |", AS_PUBLISHED),
+    tuned_quote("| 2 links | 1.259 | 1.234 | 1.228 | 1.207 |"),
+    tuned_quote("| 3 links | 1.167 | 1.139 | 1.191 | 0.913 |"),
+    tuned_quote("| 4 links | 1.210 | 1.138 | 1.087 | 0.901 |"),
+    tuned_quote("| 5 links | 1.282 | 1.183 | 1.194 | 1.038 |"),
+    wang_quote("2.7 times (pentagram", "along_path", gain("pentagram")),
+    wang_quote("2.0 times (closed curve", "along_path", gain("closed curve")),
+]
+
+QUOTES = CHENG_QUOTES + YUAN_QUOTES + KHAN_QUOTES + PSO_QUOTES + WANG_QUOTES
 
 
 @pytest.mark.parametrize("quote", QUOTES, ids=lambda quote: f"{Path(quote.page).stem}: {quote.text}")
