@@ -60,7 +60,7 @@ impl SlidingArm {
         Some(Self { axes, points, case, mirrored, floor })
     }
 
-    /// All joint values that carry `point` to `goal`. A slide's value stands in the sine of its turn.
+    /// All joint values that carry `point` to `goal`. The value of a slide is in the sine of its turn.
     pub fn reach(&self, point: &Vector, goal: &Vector) -> Arms {
         let (point, goal) = if self.mirrored { (goal, point) } else { (point, goal) };
         let [p1, p2, _] = &self.points;
@@ -128,7 +128,7 @@ impl SlidingArm {
     }
 }
 
-/// A displacement as it stands in a set of turns.
+/// A displacement of a slide, in a set of turns.
 fn slid(value: f64) -> Angle {
     Angle { cos: 1.0, sin: value }
 }

@@ -149,7 +149,7 @@ fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     Ok(open_box(given.lower().iter().copied().zip(given.upper().iter().copied())))
 }
 
-/// The box of these (lower, upper) (rad, m), open where a limit is too large to mean anything.
+/// The box of these (lower, upper) (rad, m), open beyond limits that count as none.
 fn open_box(ranges: impl Iterator<Item = (f64, f64)>) -> Bounds {
     Bounds::from_ranges(ranges.map(|(lower, upper)| sampling_range::opened(lower, upper)))
 }

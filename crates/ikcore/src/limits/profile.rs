@@ -53,7 +53,7 @@ pub enum Profile {
     Constant(f64),
     /// A sinusoid.
     Sinusoid(Sinusoid),
-    /// Values `step` seconds apart from t = 0 on, linear in between, the last one held. Between a finite and an infinite
+    /// Values `step` seconds apart from t = 0, with linear interpolation; the last one is held. Between a finite and an infinite
     /// value the finite one holds.
     Sampled {
         /// Time between values (s).

@@ -10,7 +10,7 @@ pub fn opened(lower: f64, upper: f64) -> (f64, f64) {
     (if lower < -UNLIMITED { f64::NEG_INFINITY } else { lower }, if upper > UNLIMITED { f64::INFINITY } else { upper })
 }
 
-/// The range itself where it is finite; an open side reaches 2 `reach` from the other bound, or `reach` from zero.
+/// The range itself if it is finite; an unbounded side ends 2 `reach` from the other bound, or `reach` from zero.
 pub fn finite(lower: f64, upper: f64, reach: f64) -> (f64, f64) {
     match (lower.is_finite(), upper.is_finite()) {
         (true, true) => (lower, upper),

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::solver::{Stop, Stopwatch};
 
-/// Time since a plan was begun, and the time that it may take.
+/// The time since a plan began, and its limit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Deadline {
     stopwatch: Stopwatch,

@@ -33,7 +33,7 @@ const DEGREE: usize = 8;
 const SAMPLES: usize = 20;
 /// Largest noise, relative to the size of the polynomial, with which zeros are proven.
 const NOISE: f64 = 1e-6;
-/// The determinant's rounding may be so many times the coefficient beyond its degree.
+/// Bound on the determinant's rounding, as a multiple of the coefficient beyond its degree.
 const SAFETY: f64 = 30.0;
 
 /// Turns by which the samples are moved for [`General::spread`]; the second by about half a step.

@@ -23,7 +23,7 @@ const FEW_PAIRS: usize = 3;
 const TRIES: usize = 400;
 /// Intervals of a straight line at whose ends its penetration is measured.
 const INTERVALS: usize = 16;
-/// Paths that are searched, of which the cheapest is taken.
+/// Number of paths searched, of which the cheapest is taken.
 const PATHS: u64 = 4;
 /// How often blends are narrowed before the motion stops at every corner instead.
 const NARROWINGS: usize = 12;
@@ -100,7 +100,7 @@ fn sort_by_cost(open: &mut Vec<EndPair>, search: &PairSearch, objective: Cost) -
     Ok(())
 }
 
-/// What a search for a certified motion needs.
+/// The search for a certified motion.
 struct PathSearch<'s, 'a> {
     trees: &'s mut TreeSearch<'a>,
     search: &'s PairSearch<'a>,
@@ -109,7 +109,7 @@ struct PathSearch<'s, 'a> {
 }
 
 impl PathSearch<'_, '_> {
-    /// The first straight motion between `open` pairs that is free of collisions; else the cheapest of some paths around
+    /// Returns the first collision-free straight motion between `open` pairs; else the cheapest of several paths around
     /// obstacles.
     fn best(self, open: &[EndPair], monitor: &mut dyn Monitor) -> Result<Certified> {
         let Self { trees, search, options, margin } = self;

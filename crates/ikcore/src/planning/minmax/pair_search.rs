@@ -91,8 +91,8 @@ impl<'a> PairSearch<'a> {
         Ok(pairs)
     }
 
-    /// Up to `count` pairs that `accept` takes, not improved, from up to `tries` random starts or [`RANDOM_EVALUATIONS`]; the
-    /// quickest first.
+    /// Returns up to `count` pairs accepted by `accept`, not improved, from up to `tries` random starts or
+    /// [`RANDOM_EVALUATIONS`]; the quickest first.
     ///
     /// # Errors
     /// None if [`pairs`](Self::pairs) has found some.

@@ -25,7 +25,7 @@ const STRIDE: f64 = 0.08;
 /// Comparisons of nodes for each configuration of the budget: about as much work again.
 const COMPARISONS: usize = 500;
 
-/// The search, and what it keeps to.
+/// The search: scene, margin, ranges and budgets.
 pub(super) struct TreeSearch<'a> {
     pub scene: &'a Scene<'a>,
     pub sweep: Sweep<'a>,
@@ -65,8 +65,8 @@ impl<'a> TreeSearch<'a> {
         self.sweep.check(&Edge { from, to }, [0.0, 1.0], self.margin).is_ok()
     }
 
-    /// Whether a budget is spent. Refused ends have one of their own: where nothing is clear, no edge is ever examined. So
-    /// have comparisons of nodes: large trees that cannot grow spend their time on these.
+    /// Whether a budget is spent. Refused ends have their own: if nothing is clear, no edge is ever examined. So do
+    /// comparisons of nodes, on which large trees that cannot grow spend their time.
     fn is_spent(&self) -> bool {
         let comparisons = self.budget.saturating_mul(COMPARISONS);
         let counts =

@@ -18,11 +18,11 @@ pub struct JointPath {
     joints: Vec<String>,
     /// Path parameters of the starts of all pieces, and of the end of the last.
     breaks: Vec<f64>,
-    /// How far the parameter goes in each piece. Differences of `breaks` would lose the digits of a short piece that
+    /// Length of each piece in the parameter. Differences of `breaks` would lose the digits of a short piece that
     /// begins far along the path.
     lengths: Vec<f64>,
-    /// Of s since the piece began: piece by piece, within it power by power, within that joint by joint, because a grid
-    /// point asks for one power of all joints.
+    /// Coefficients of powers of s since the start of the piece: by piece, then by power, then by joint, because a grid
+    /// point needs one power of all joints.
     coefficients: Vec<f64>,
 }
 
@@ -44,7 +44,7 @@ impl PathEnd {
 }
 
 impl JointPath {
-    /// A path of pieces that were checked before.
+    /// A path of pieces that were already checked.
     pub(super) fn from_parts(joints: Vec<String>, breaks: Vec<f64>, lengths: Vec<f64>, coefficients: Vec<f64>) -> Self {
         Self { joints, breaks, lengths, coefficients }
     }
@@ -186,7 +186,8 @@ impl JointPath {
     }
 }
 
-/// Err unless these are waypoints of a spline: at least two finite rows, none like the one before. Returns their number.
+/// Checks that these are waypoints of a spline: at least two finite rows, none equal to the previous one. Returns their
+/// number.
 pub(super) fn check_waypoints(joints: &[String], waypoints: &[f64]) -> Result<usize> {
     let (n, rows) = (joints.len(), waypoint_rows(joints, waypoints)?);
     match (1..rows).find(|row| waypoints[(row - 1) * n..row * n] == waypoints[row * n..(row + 1) * n]) {
@@ -198,7 +199,7 @@ pub(super) fn check_waypoints(joints: &[String], waypoints: &[f64]) -> Result<us
     }
 }
 
-/// Number of waypoints; Err unless these are at least two rows of one finite position a joint.
+/// Checks that these are at least two rows with one finite position per joint. Returns their number.
 pub(super) fn waypoint_rows(joints: &[String], waypoints: &[f64]) -> Result<usize> {
     let n = joints.len();
     if n == 0 {

@@ -9,10 +9,10 @@ use crate::math::vector::squared_distance;
 const NEGLIGIBLE: f64 = 1e-12;
 
 impl JointPath {
-    /// Straight lines through `waypoints` (rad or m; one row of all joints a point), with each corner cut from `blend`
-    /// before it to `blend` after it (Euclidean distance in joint space; at most half of a line) by a parabola, which
-    /// passes the corner at `blend` / 2 at the most. With `blend` zero the joints stop at each corner. A waypoint that repeats
-    /// the one before it, to 1e-12 of the path's extent, is left out.
+    /// Straight lines through `waypoints` (rad or m, one row of all joints per point). Each corner is replaced by a
+    /// parabola from `blend` before it to `blend` after it (Euclidean distance in joint space; at most half of a line),
+    /// which passes the corner at a distance of at most `blend` / 2. With `blend` zero the joints stop at each corner. A
+    /// waypoint that repeats the previous one, to 1e-12 of the path's extent, is left out.
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::InvalidPath`] where all waypoints are the same,

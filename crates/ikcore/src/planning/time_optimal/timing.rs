@@ -65,7 +65,7 @@ pub(crate) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOpti
     }
 }
 
-/// Spans below this share of the duration are rounded so much, as differences of times, that a motion may leave its limits.
+/// Below this fraction of the duration, the rounding of times may make a span exceed its limits.
 const SHORT: f64 = 1e-8;
 
 /// Relative excess of a limit that rounding may leave.
@@ -99,8 +99,8 @@ fn excess(largest: f64, limit: f64) -> f64 {
     if limit > 0.0 { largest / limit } else { 1.0 }
 }
 
-/// Duration (s) of the fastest motion from rest to rest on a grid of about `segments` segments: quick, for comparing many
-/// paths. Position limits are left to the caller.
+/// Returns the duration (s) of the fastest motion from rest to rest on a grid of about `segments` segments: a quick
+/// estimate to compare many paths. Position limits are left to the caller.
 ///
 /// # Errors
 /// None in practice: a motion from rest to rest always exists.

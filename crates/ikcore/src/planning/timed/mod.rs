@@ -10,8 +10,8 @@
 //! | `redundant_motion` | configurations along the path, and their free offsets |
 //! | `null_space` | joint motions that leave the tip in place |
 //! | `projection` | the nearest configuration that reaches a target |
-//! | `interpolation` | splines through configurations, fine enough to keep to the path |
-//! | `timed_cost` | the duration as a function of the choice |
+//! | `interpolation` | splines through configurations, dense enough to stay on the path |
+//! | `timed_cost` | the duration as a function of the offsets |
 //! | `unreachable` | the points that no configuration reaches, for the error |
 
 mod interpolation;

@@ -93,12 +93,12 @@ impl TipPath {
         &self.point_shares
     }
 
-    /// Path parameters of the points that messages number: those given, none of a path in time.
+    /// Path parameters of the given points, which messages number; none for a path in time.
     pub fn numbered_points(&self) -> &[f64] {
         if self.times.is_none() { &self.point_shares } else { &[] }
     }
 
-    /// The ends of its straight segments (m).
+    /// End points of the straight segments (m).
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }
