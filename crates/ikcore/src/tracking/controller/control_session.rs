@@ -187,16 +187,16 @@ impl ControlSession {
         self.measurements += 1;
         if first {
             self.running.begin(&self.target, &tip);
-            return Ok(Some(self.end_tick()));
+        } else {
+            let tick = ControlTick { target: &self.target, bounds: &self.tick_box.bounds };
+            if self.running.observe(tick, &tip) == TickProgress::GoOn {
+                self.stage = Stage::Within;
+                return Ok(None);
+            }
+            self.before.copy_from_slice(&self.q);
+            self.q.copy_from_slice(self.running.accepted());
+            self.ticks += 1;
         }
-        let tick = ControlTick { target: &self.target, bounds: &self.tick_box.bounds };
-        if self.running.observe(tick, &tip) == TickProgress::GoOn {
-            self.stage = Stage::Within;
-            return Ok(None);
-        }
-        self.before.copy_from_slice(&self.q);
-        self.q.copy_from_slice(self.running.accepted());
-        self.ticks += 1;
         Ok(Some(self.end_tick()))
     }
 
