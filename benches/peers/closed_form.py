@@ -58,8 +58,8 @@ class Ssik(Adapter):
     name = "ssik"
     distribution = "ssik"
     settings = (
-        "its own module for the arm or one by `ssik build`, solve(..., allow_rescue=False): the rescue of a target, rarely "
-        "asked for, can take seconds; one solution: max_solutions=1, all: enumerate_windings=False"
+        "its own module for the arm or one by `ssik build`, solve(..., allow_rescue=False): the rescue of a target, "
+        "rarely asked for, can take seconds; one solution: max_solutions=1, all: enumerate_windings=False"
     )
 
     def __init__(self, chain: Chain, tolerance: float) -> None:
