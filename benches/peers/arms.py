@@ -38,7 +38,8 @@ def _chain(name: str, import_path: str, scratch: Path) -> Chain:
     link = module.BASE_LINK
     ET.SubElement(robot, "link", name=link)
     for i, joint in enumerate(_joints(module)):
-        before, axis, (lower, upper), after = joint
+        before, axis, limits, after = joint
+        lower, upper = limits or (-np.pi, np.pi)
         turning = _add(robot, f"joint_{i + 1}", "revolute", link, f"turning_{i + 1}", before)
         ET.SubElement(turning, "axis", xyz=_text(axis))
         ET.SubElement(turning, "limit", lower=repr(lower), upper=repr(upper), velocity="1", effort="0")
@@ -50,7 +51,7 @@ def _chain(name: str, import_path: str, scratch: Path) -> Chain:
     return Chain(name, path, module.BASE_LINK, module.EE_LINK, import_path)
 
 
-def _joints(module: Any) -> Iterable[tuple[np.ndarray, np.ndarray, tuple[float, float], np.ndarray]]:
+def _joints(module: Any) -> Iterable[tuple[np.ndarray, np.ndarray, tuple[float, float] | None, np.ndarray]]:
     """Placement before the joint, axis, limits and placement after it, of each joint."""
     return zip(module._JOINT_T_LEFTS, module._JOINT_AXES, module._JOINT_LIMITS, module._JOINT_T_RIGHTS, strict=True)
 
