@@ -2,7 +2,7 @@
 
     python benches/all_solutions.py --arms ur5e kr6_r900 xarm6 --poses 10000 --descents 200 --out DIR
 
-The arms are those whose geometry `ssik` carries, so that most are in no catalog of ours, and those of `--robots`.
+By default the arms are some whose geometry `ssik` carries, most of which are in no catalog of ours.
 Times: one pose a call, alternating and in a row. Complete: against the union of what the others find and of random
 descents, each of their solutions verified by Pinocchio's forward kinematics and inside the limits before it counts.
 """
@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 from peers import arms, closed_form, completeness, restarting
 from peers.adapter import Adapter, load
-from peers.chain import Chain, load_chains
+from peers.chain import Chain
 from peers.measure import Calls, interleave
 from peers.report import plain_section, write_table
 
@@ -51,10 +51,7 @@ def main() -> None:
     arguments.out.mkdir(parents=True, exist_ok=True)
     measured = Measured()
     with tempfile.TemporaryDirectory() as scratch:
-        chains = arms.carried_chains(arguments.arms, Path(scratch))
-        if arguments.robots:
-            chains += load_chains(arguments.robots, Path(scratch))
-        for chain in chains:
+        for chain in arms.chosen(arguments, Path(scratch)):
             print(f"{chain.name} ({chain.dof} joints)", flush=True)
             measure(chain, arguments, measured)
             write(measured, arguments.out)
@@ -64,9 +61,7 @@ def main() -> None:
 def parse_arguments() -> argparse.Namespace:
     """What to measure, and where the results go."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    every = (*arms.SIX_JOINTS, *arms.SEVEN_JOINTS)
-    parser.add_argument("--arms", nargs="*", default=every, help="names of arms that ssik carries")
-    parser.add_argument("--robots", type=Path, help="directory of URDF files as well, as for compare.py")
+    arms.add_arguments(parser, arms=(*arms.SIX_JOINTS, *arms.SEVEN_JOINTS))
     parser.add_argument("--timed", type=int, default=500, help="poses an arm that are timed (default: 500)")
     parser.add_argument("--poses", type=int, default=1000, help="poses an arm that are searched (default: 1000)")
     parser.add_argument("--descents", type=int, default=200, help="random descents a pose (default: 200)")

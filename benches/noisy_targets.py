@@ -1,6 +1,6 @@
 """Live targets that jump and are noisy: `Tracker` beside what others command, tick by tick.
 
-    python benches/noisy_targets.py --robots DIR --arms panda ur5 iiwa14 --out DIR
+    python benches/noisy_targets.py --arms franka_panda ur5e iiwa14 --out DIR
 
 Three parts, on the same targets for all: jumps of 0.2 m under noise (settling, deviation from the straight way, shaking
 at rest, time a tick), a smooth path without noise (lag), and a noisy stream of 60 Hz (lag, error, acceleration, jerk).
@@ -22,9 +22,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from peers import beetle_movers, differential_movers, motion, planned_movers
+from peers import arms, beetle_movers, differential_movers, motion, planned_movers
 from peers.adapter import load
-from peers.chain import Chain, load_chains
+from peers.chain import Chain
 from peers.figures import plot_jumps
 from peers.live_targets import (
     JUMP,
@@ -82,12 +82,10 @@ def main() -> None:
     arguments.out.mkdir(parents=True, exist_ok=True)
     measured = Measured()
     with tempfile.TemporaryDirectory() as scratch:
-        chains = {chain.name: chain for chain in load_chains(arguments.robots, Path(scratch))}
-        for name in arguments.arms:
-            chain = chains[name]
+        for chain in arms.chosen(arguments, Path(scratch)):
             for jerk in JERKS:
                 for dt in arguments.ticks:
-                    print(f"{name}, {1e3 * dt:g} ms, jerk {limit_name(jerk)}", flush=True)
+                    print(f"{chain.name}, {1e3 * dt:g} ms, jerk {limit_name(jerk)}", flush=True)
                     setting = Setting(dt, VELOCITY, ACCELERATION, jerk)
                     measure_jumps(chain, setting, arguments, measured)
                     measure_smooth(chain, setting, measured)
@@ -99,13 +97,7 @@ def main() -> None:
 def parse_arguments() -> argparse.Namespace:
     """What to measure, and where the results go."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument(
-        "--robots",
-        type=Path,
-        default=Path(__file__).parents[2] / "shared" / "robots",
-        help="directory of URDF files, as for compare.py",
-    )
-    parser.add_argument("--arms", nargs="+", default=["panda", "ur5", "iiwa14"], help="names of the files to take")
+    arms.add_arguments(parser, arms=("franka_panda", "ur5e", "iiwa14"))
     parser.add_argument("--ticks", nargs="+", type=float, default=TICKS, help="tick lengths (s)")
     parser.add_argument("--noises", nargs="+", type=float, default=NOISES, help="standard deviations (m and rad)")
     parser.add_argument("--jumps", type=int, default=3, help="jumps an arm (default: 3)")

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import argparse
 import importlib
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
-from .chain import Chain
+from .chain import Chain, load_chains, some_mass
 
 # Every structure that has a closed form, and arms without one.
 SIX_JOINTS = (
@@ -22,8 +23,28 @@ SIX_JOINTS = (
 SEVEN_JOINTS = ("franka_panda", "fr3", "iiwa7", "iiwa14", "gen3", "xarm7", "rizon4")
 
 
-def carried_chains(names: Iterable[str], scratch: Path) -> list[Chain]:
+def add_arguments(parser: argparse.ArgumentParser, *, arms: Iterable[str] = (), robots: Iterable[Path] = ()) -> None:
+    """The options that say which arms are measured."""
+    parser.add_argument("--arms", nargs="*", default=arms, help="names of arms that ssik carries")
+    parser.add_argument(
+        "--robots",
+        nargs="*",
+        type=Path,
+        default=robots,
+        help="URDF files or directories of them; a robots.json beside them may give base and tip: "
+        "{NAME: {base: LINK, tip: LINK}}",
+    )
+
+
+def chosen(arguments: argparse.Namespace, scratch: Path) -> list[Chain]:
+    """The chains that the options name, with files in `scratch`."""
+    return [*carried_chains(arguments.arms, scratch), *load_chains(arguments.robots, scratch)]
+
+
+def carried_chains(names: Collection[str], scratch: Path) -> list[Chain]:
     """The chains of these arms, with files in `scratch`."""
+    if not names:
+        return []
     import ssik
 
     paths = {arm.name.removesuffix("_ik"): arm.import_path for arm in ssik.list_arms()}
@@ -33,19 +54,22 @@ def carried_chains(names: Iterable[str], scratch: Path) -> list[Chain]:
 
 
 def _chain(name: str, import_path: str, scratch: Path) -> Chain:
+    """Write the arm with every joint about its own z axis, which all readers of URDF understand."""
     module = importlib.import_module(import_path)
     robot = ET.Element("robot", name=name)
     link = module.BASE_LINK
     ET.SubElement(robot, "link", name=link)
+    placement = np.eye(4)
     for i, joint in enumerate(_joints(module)):
         before, axis, limits, after = joint
         lower, upper = limits or (-np.pi, np.pi)
-        turning = _add(robot, f"joint_{i + 1}", "revolute", link, f"turning_{i + 1}", before)
-        ET.SubElement(turning, "axis", xyz=_text(axis))
-        ET.SubElement(turning, "limit", lower=repr(lower), upper=repr(upper), velocity="1", effort="0")
-        last = i + 1 == module.DOF
-        link = module.EE_LINK if last else f"link_{i + 1}"
-        _add(robot, f"fixed_{i + 1}", "fixed", f"turning_{i + 1}", link, after)
+        turn = np.eye(4)
+        turn[:3, :3] = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis).matrix()
+        moving = _add(robot, f"joint_{i + 1}", "revolute", link, f"moved_{i + 1}", placement @ before @ turn)
+        ET.SubElement(moving, "axis", xyz="0 0 1")
+        ET.SubElement(moving, "limit", lower=repr(lower), upper=repr(upper), velocity="1", effort="0")
+        link, placement = f"moved_{i + 1}", turn.T @ after
+    _add(robot, "to_tip", "fixed", link, module.EE_LINK, placement)
     path = scratch / f"{name}.urdf"
     ET.ElementTree(robot).write(path)
     return Chain(name, path, module.BASE_LINK, module.EE_LINK, import_path)
@@ -57,17 +81,13 @@ def _joints(module: Any) -> Iterable[tuple[np.ndarray, np.ndarray, tuple[float, 
 
 
 def _add(robot: ET.Element, name: str, kind: str, parent: str, child: str, placement: np.ndarray) -> ET.Element:
-    """A joint and the link that it carries."""
+    """A joint and the link that it carries, with the mass that simulators insist on."""
     joint = ET.SubElement(robot, "joint", name=name, type=kind)
     ET.SubElement(joint, "parent", link=parent)
     ET.SubElement(joint, "child", link=child)
-    ET.SubElement(
-        joint,
-        "origin",
-        xyz=_text(placement[:3, 3]),
-        rpy=_text(pin.rpy.matrixToRpy(np.ascontiguousarray(placement[:3, :3]))),
-    )
-    ET.SubElement(robot, "link", name=child)
+    rotation = pin.rpy.matrixToRpy(np.ascontiguousarray(placement[:3, :3]))
+    ET.SubElement(joint, "origin", xyz=_text(placement[:3, 3]), rpy=_text(rotation))
+    ET.SubElement(robot, "link", name=child).append(some_mass())
     return joint
 
 
