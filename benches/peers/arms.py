@@ -63,8 +63,7 @@ def _chain(name: str, import_path: str, scratch: Path) -> Chain:
     for i, joint in enumerate(_joints(module)):
         before, axis, limits, after = joint
         lower, upper = limits or (-np.pi, np.pi)
-        turn = np.eye(4)
-        turn[:3, :3] = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis).matrix()
+        turn = _frame_about(axis)
         moving = _add(robot, f"joint_{i + 1}", "revolute", link, f"moved_{i + 1}", placement @ before @ turn)
         ET.SubElement(moving, "axis", xyz="0 0 1")
         ET.SubElement(moving, "limit", lower=repr(lower), upper=repr(upper), velocity="1", effort="0")
@@ -73,6 +72,16 @@ def _chain(name: str, import_path: str, scratch: Path) -> Chain:
     path = scratch / f"{name}.urdf"
     ET.ElementTree(robot).write(path)
     return Chain(name, path, module.BASE_LINK, module.EE_LINK, import_path)
+
+
+def _frame_about(axis: np.ndarray) -> np.ndarray:
+    """A frame (4, 4) at the origin whose z axis is this one."""
+    z = axis / np.linalg.norm(axis)
+    x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
+    x /= np.linalg.norm(x)
+    frame = np.eye(4)
+    frame[:3, :3] = np.column_stack([x, np.cross(z, x), z])
+    return frame
 
 
 def _joints(module: Any) -> Iterable[tuple[np.ndarray, np.ndarray, tuple[float, float] | None, np.ndarray]]:
