@@ -143,7 +143,7 @@ def measure_completeness(
     ]
     measured.complete.append([chain.name, robot.closed_form, *map(str, counts)])
     for number, q in verdict.missing[:SHOWN]:
-        smallest = np.linalg.svd(completeness.jacobian(chain, q), compute_uv=False)[-1]
+        smallest = completeness.smallest_singular_value(chain, q)
         measured.missing.append(
             f"- {chain.name}, pose {number}{' (said complete)' if said[number] else ''}: {q.tolist()}, "
             f"smallest singular value {smallest:.2g}"

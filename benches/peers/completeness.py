@@ -43,16 +43,18 @@ def judge(chain: Chain, targets: np.ndarray, ours: list[np.ndarray], theirs: lis
         verdict.known += len(union)
         verdict.found_again += int(again)
         for q in union[(distances >= SAME).all(axis=1)]:
-            _note(chain, target, number, q, good, verdict)
+            polished = polish(chain, target, q)  # within the tolerance of a pose it may be far from its solution
+            if polished is None or (apart(polished[None], good) < SAME).any():
+                verdict.known -= 1
+            else:
+                smallest = smallest_singular_value(chain, polished)
+                (verdict.singular if smallest < SINGULAR else verdict.missing).append((number, polished))
     return verdict
 
 
-def _note(chain: Chain, target: np.ndarray, number: int, q: np.ndarray, good: np.ndarray, verdict: Verdict) -> None:
-    """Look again with the candidate polished: within the tolerance of a pose it may be far from its solution."""
-    polished = polish(chain, target, q)
-    if polished is not None and (apart(polished[None], good) >= SAME).all():
-        smallest = np.linalg.svd(jacobian(chain, polished), compute_uv=False)[-1]
-        (verdict.singular if smallest < SINGULAR else verdict.missing).append((number, polished))
+def smallest_singular_value(chain: Chain, q: np.ndarray) -> float:
+    """Of the Jacobian, m and rad mixed."""
+    return float(np.linalg.svd(jacobian(chain, q), compute_uv=False)[-1])
 
 
 def apart(some: np.ndarray, others: np.ndarray) -> np.ndarray:
