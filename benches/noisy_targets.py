@@ -25,7 +25,14 @@ import numpy as np
 from peers import arms, beetle_movers, differential_movers, motion, planned_movers
 from peers.adapter import load
 from peers.chain import Chain
-from peers.figures import plot_jumps
+from peers.live_report import (
+    OVER_NOISE_COLUMNS,
+    SUMMARY_COLUMNS,
+    over_noise_lines,
+    plot_over_noise,
+    rows,
+    summary_lines,
+)
 from peers.live_targets import (
     JUMP,
     PERIOD,
@@ -91,7 +98,7 @@ def main() -> None:
                     measure_smooth(chain, setting, measured)
                 measure_stream(chain, Setting(STREAM_TICK, VELOCITY, ACCELERATION, jerk), measured)
             write(measured, arguments.out)
-    print(f"wrote jumps.csv, smooth.csv, stream.csv, noisy_targets.md and noisy_targets.png to {arguments.out}")
+    print(f"wrote the tables, noisy_targets.md and noisy_targets.png to {arguments.out}")
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -232,7 +239,15 @@ def write(measured: Measured, out: Path) -> None:
     write_table(out / "smooth.csv", SMOOTH_COLUMNS, measured.smooth)
     write_table(out / "stream.csv", STREAM_COLUMNS, measured.stream)
     (out / "noisy_targets.md").write_text(markdown(measured), encoding="utf-8")
-    plot_jumps(measured.jumps, JUMP_COLUMNS, out / "noisy_targets.png")
+    over_noise = over_noise_lines(rows(JUMP_COLUMNS, measured.jumps))
+    write_table(out / "over_noise.csv", OVER_NOISE_COLUMNS, over_noise)
+    write_table(out / "summary.csv", SUMMARY_COLUMNS, summarised(measured))
+    plot_over_noise(over_noise, out / "noisy_targets.png")
+
+
+def summarised(measured: Measured) -> list[list[str]]:
+    """The lines of the short table."""
+    return summary_lines(rows(JUMP_COLUMNS, measured.jumps), rows(SMOOTH_COLUMNS, measured.smooth))
 
 
 def markdown(measured: Measured) -> str:
@@ -247,6 +262,7 @@ def markdown(measured: Measured) -> str:
         plain_section(
             "Libraries and settings", ["library", "settings"], [[each.name, each.settings] for each in every]
         ),
+        plain_section("Medians over arms and ticks", SUMMARY_COLUMNS, summarised(measured)),
         plain_section(f"Jumps of {JUMP:g} m", JUMP_COLUMNS, measured.jumps),
         plain_section(f"A smooth path, {RADIUS:g} m and {PERIOD:g} s a turn", SMOOTH_COLUMNS, measured.smooth),
         plain_section(
