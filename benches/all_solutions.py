@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from peers import arms, closed_form, completeness, restarting
+from peers import arms, closed_form, completeness, restarting, solutions_report
 from peers.adapter import Adapter, load
 from peers.chain import Chain
 from peers.measure import Calls, interleave
@@ -55,7 +55,7 @@ def main() -> None:
             print(f"{chain.name} ({chain.dof} joints)", flush=True)
             measure(chain, arguments, measured)
             write(measured, arguments.out)
-    print(f"wrote times.csv, complete.csv and all_solutions.md to {arguments.out}")
+    print(f"wrote summary.csv, times.csv, complete.csv and all_solutions.md to {arguments.out}")
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -80,7 +80,7 @@ def measure(chain: Chain, arguments: argparse.Namespace, measured: Measured) -> 
 
 
 TIMES_COLUMNS = [
-    *("robot", "structure", "order", "library", "median_us", "mean_us", "p99_us", "time_over_ours"),
+    *("robot", "joints", "structure", "order", "library", "median_us", "mean_us", "p99_us", "time_over_ours"),
     *("solutions_a_pose", "poses_without", "poses_with_more_than_ours"),
 ]
 
@@ -100,7 +100,7 @@ def measure_times(chain: Chain, adapters: list[Adapter], poses: int, measured: M
         for name, mine in times.items():
             figures = [np.median(mine), mine.mean(), np.quantile(mine, 0.99), mine.mean() / times[ours].mean()]
             held = [counts[name].mean(), (counts[name] == 0).sum(), (counts[name] > counts[ours]).sum()]
-            row = [chain.name, structure, order, name, *(f"{value:.4g}" for value in (*figures, *held))]
+            row = [chain.name, str(chain.dof), structure, order, name, *(f"{value:.4g}" for value in (*figures, *held))]
             measured.times.append(row)
 
 
@@ -153,12 +153,15 @@ def measure_completeness(
 def write(measured: Measured, out: Path) -> None:
     """The tables and the report."""
     write_table(out / "times.csv", TIMES_COLUMNS, measured.times)
+    summary = solutions_report.summary_lines([dict(zip(TIMES_COLUMNS, line, strict=True)) for line in measured.times])
+    write_table(out / "summary.csv", solutions_report.SUMMARY_COLUMNS, summary)
     write_table(out / "complete.csv", COMPLETE_COLUMNS, measured.complete)
     settings = [[library.name, library.settings] for library in LIBRARIES]
     sections = [
         "# All solutions\n\nPoses of configurations drawn uniformly inside the limits. Solutions count that reach the "
         f"pose within {completeness.REACHED:g} m and rad inside the limits, each once, whole turns aside.\n",
         plain_section("Libraries and settings", ["library", "settings"], settings),
+        plain_section("In short", solutions_report.SUMMARY_COLUMNS, summary),
         plain_section("Times", TIMES_COLUMNS, measured.times),
         plain_section("Complete", COMPLETE_COLUMNS, measured.complete),
         "Missing:\n",

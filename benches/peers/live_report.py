@@ -112,7 +112,7 @@ def plot_over_noise(lines: list[list[str]], path: Path) -> None:
         axes.set(xscale="log", ylabel=label, xlabel="standard deviation of the noise [m, rad] (leftmost: none)")
         axes.grid(alpha=0.3)
     panels[0].set(ylim=(0.0, None))
-    panels[1].set(yscale="symlog")
+    panels[1].set_yscale("symlog", linthresh=1e-2)
     panels[1].legend(fontsize="x-small")
     figure.savefig(path, dpi=150)
     plt.close(figure)
