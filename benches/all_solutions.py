@@ -72,6 +72,8 @@ def parse_arguments() -> argparse.Namespace:
 def measure(chain: Chain, arguments: argparse.Namespace, measured: Measured) -> None:
     """Times and counts on one arm; whether they are complete where the solutions are finitely many."""
     adapters, missing = load(LIBRARIES, chain, TOLERANCE)
+    if reason := missing.get(restarting.BeetleIk.name):
+        raise SystemExit(f"{chain.name}: {reason}")
     measured.notes += [f"- {name}, {chain.name}: {reason}" for name, reason in missing.items()]
     if arguments.timed:
         measure_times(chain, adapters, arguments.timed, measured)
