@@ -22,6 +22,7 @@ import beetle_ik as bik
 
 SLACK = 1e-9  # relative
 ROUNDING = 8.0 * np.finfo(float).eps  # of a finite difference, relative to the joint angles
+HISTORY = 3  # configurations up to the start: as many as a third difference needs
 KINDS = ("velocity", "acceleration", "jerk")
 
 
@@ -32,6 +33,7 @@ class Outcome:
     streams: int = 0
     ticks: int = 0
     refused: int = 0  # targets with NaN
+    moving: int = 0  # streams that began in motion
     stops: int = 0
     stopping_ticks: int = 0
     excess: dict[str, float] = field(default_factory=lambda: dict.fromkeys((*KINDS, "position"), 0.0))
@@ -51,13 +53,14 @@ def main() -> None:
         "streams",
         "ticks",
         "refused",
+        "moving",
         "stops",
         "stopping_ticks",
         *outcomes["jumps"].excess,
         "complaints",
     ]
     lines = [
-        [name, each.streams, each.ticks, each.refused, each.stops, each.stopping_ticks]
+        [name, each.streams, each.ticks, each.refused, each.moving, each.stops, each.stopping_ticks]
         + [f"{value:.1e}" for value in each.excess.values()]
         + [len(each.complaints)]
         for name, each in outcomes.items()
@@ -85,14 +88,15 @@ def run(ticks: int, seed: int) -> dict[str, Outcome]:
 def follow(stream: Stream, label: str, outcome: Outcome) -> None:
     """Run one stream to its end, stop the arm, and check every tick."""
     tracker = bik.Tracker(stream.robot, stream.start, dt=stream.dt, limits=bik.Limits(**stream.limits))
-    commanded = [stream.start]
+    commanded = _begin(tracker, stream)
+    outcome.moving += commanded[0] is not stream.start
     for target in stream.targets:
         if target is not None and np.isnan(target).any():
             outcome.refused += _refuses(tracker, target)
         else:
             commanded.append(tracker.step(target).q)
     outcome.streams += 1
-    outcome.ticks += len(commanded) - 1
+    outcome.ticks += len(commanded) - HISTORY
     stopped = _stop(tracker, stream)
     outcome.stops += 1
     outcome.stopping_ticks += len(stopped)
@@ -105,6 +109,20 @@ def follow(stream: Stream, label: str, outcome: Outcome) -> None:
             outcome.complaints.append(
                 f"{label}: {kind} beyond its limit by {excess:.2g} of it; {stream.limits}, dt {stream.dt:g}"
             )
+
+
+def _begin(tracker: bik.Tracker, stream: Stream) -> list[np.ndarray]:
+    """The configurations up to the start, of an arm in motion if it could still stop inside its limits."""
+    at_rest = [stream.start] * HISTORY
+    if stream.moving is None:
+        return at_rest
+    qd, qdd = stream.moving
+    try:
+        tracker.reset(stream.start, qd=qd, qdd=qdd)
+    except bik.BeetleIkError:
+        return at_rest
+    before = stream.start - stream.dt * qd
+    return [before - stream.dt * (qd - stream.dt * qdd), before, stream.start]
 
 
 def _refuses(tracker: bik.Tracker, target: np.ndarray) -> int:
@@ -126,16 +144,19 @@ def _stop(tracker: bik.Tracker, stream: Stream) -> list[np.ndarray]:
 
 
 def excesses(stream: Stream, q: np.ndarray) -> dict[str, float]:
-    """By how much each finite difference exceeds its limit, relative to it and beyond rounding; at most 0 is kept."""
+    """By how much each finite difference exceeds its limit, relative to it and beyond rounding; at most 0 is kept.
+
+    The first `HISTORY` rows of `q` are the configurations up to the start.
+    """
     dt, rounding = stream.dt, ROUNDING * np.abs(q).max()
-    moved = np.vstack([np.tile(q[0], (3, 1)), q])  # at rest before
-    found = {"position": _outside(stream, q)}
+    ticks = len(q) - HISTORY
+    found = {"position": _outside(stream, q[HISTORY - 1 :])}
     for order, kind in enumerate(KINDS, 1):
         limit = stream.limits.get(kind)
         if limit is None:
             continue
-        rates = np.abs(np.diff(moved, order, axis=0))[-(len(q) - 1) :]
-        bounds = lowest(limit, dt, len(rates)) * dt**order
+        rates = np.abs(np.diff(q, order, axis=0))[-ticks:]
+        bounds = lowest(limit, dt, ticks) * dt**order
         found[kind] = float(((rates - rounding) / bounds).max()) - 1.0
     return found
 

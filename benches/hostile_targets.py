@@ -28,6 +28,7 @@ class Stream:
     dt: float
     limits: dict[str, Any]  # arguments of `Limits`
     targets: list[np.ndarray | None]
+    moving: tuple[np.ndarray, np.ndarray] | None = None  # velocity and acceleration at the start, if the arm can stop
 
 
 def draw(name: str, random: np.random.Generator) -> Stream:
@@ -37,7 +38,9 @@ def draw(name: str, random: np.random.Generator) -> Stream:
     start = lower + (upper - lower) * random.uniform(0.05, 0.95, robot.dof)
     limits = _limits(robot, start, random)
     targets = list(TARGETS[name](robot, start, int(random.integers(*LENGTHS)), random))
-    return Stream(name, robot, start, float(random.choice(TICKS)), limits, targets)
+    moving = random.uniform(-2.0, 2.0, robot.dof), random.uniform(-5.0, 5.0, robot.dof)
+    dt = float(random.choice(TICKS))
+    return Stream(name, robot, start, dt, limits, targets, moving if random.random() < 0.5 else None)
 
 
 def _limits(robot: bik.Robot, start: np.ndarray, random: np.random.Generator) -> dict[str, Any]:
