@@ -1,10 +1,10 @@
-"""Hostile streams for `Tracker`: does every tick keep its limits, and can the arm always be stopped?
+"""Hostile streams for `Tracker`: is every tick inside its limits, and can the arm always stop?
 
     python benches/hostile_streams.py --ticks 1000000 --seed 0 --out DIR
 
 Random arms, limits, tick lengths and targets: jumps, noise, dropouts, far out of reach, the edge of reach, singular
 configurations, targets that turn back or are NaN. Finite differences of the commanded joint angles are held against the
-limits; at the end of each stream the arm is told to stop, and must come to rest within the time that it names.
+limits. At the end of each stream `Tracker.stop` is called, and the arm must rest after the time that it returns.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ KINDS = ("velocity", "acceleration", "jerk")
 
 @dataclass
 class Outcome:
-    """What the streams of one name did; excess is relative to the limit, beyond rounding."""
+    """Counts over the streams of one kind, and the largest excess over a limit: relative to it, rounding deducted."""
 
     streams: int = 0
     ticks: int = 0
@@ -41,7 +41,7 @@ class Outcome:
 
 
 def main() -> None:
-    """Run so many ticks and write down what they did."""
+    """Runs the streams, prints the table and writes it to a file."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--ticks", type=int, default=1_000_000, help="ticks in all (default: 1,000,000)")
     parser.add_argument("--seed", type=int, default=0)
@@ -75,7 +75,7 @@ def main() -> None:
 
 
 def run(ticks: int, seed: int) -> dict[str, Outcome]:
-    """Streams of every kind in turn until so many ticks are done."""
+    """Runs streams of all kinds, one after the other, up to the given number of ticks."""
     outcomes = {name: Outcome() for name in TARGETS}
     number = 0
     while sum(each.ticks for each in outcomes.values()) < ticks:
@@ -86,7 +86,7 @@ def run(ticks: int, seed: int) -> dict[str, Outcome]:
 
 
 def follow(stream: Stream, label: str, outcome: Outcome) -> None:
-    """Run one stream to its end, stop the arm, and check every tick."""
+    """Runs one stream, stops the arm, and checks every tick."""
     tracker = bik.Tracker(stream.robot, stream.start, dt=stream.dt, limits=bik.Limits(**stream.limits))
     commanded = _begin(tracker, stream)
     outcome.moving += commanded[0] is not stream.start
@@ -102,7 +102,7 @@ def follow(stream: Stream, label: str, outcome: Outcome) -> None:
     outcome.stopping_ticks += len(stopped)
     q = np.array([*commanded, *stopped])
     if len(stopped) and not np.array_equal(q[-1], q[-2]):
-        outcome.complaints.append(f"{label}: does not rest after its stop")
+        outcome.complaints.append(f"{label}: still moves after its stop")
     for kind, excess in excesses(stream, q).items():
         outcome.excess[kind] = max(outcome.excess[kind], excess)
         if excess > SLACK:
@@ -112,7 +112,7 @@ def follow(stream: Stream, label: str, outcome: Outcome) -> None:
 
 
 def _begin(tracker: bik.Tracker, stream: Stream) -> list[np.ndarray]:
-    """The configurations up to the start, of an arm in motion if it could still stop inside its limits."""
+    """Starts in motion if the stream asks for it and the arm can stop; returns the configurations up to the start."""
     at_rest = [stream.start] * HISTORY
     if stream.moving is None:
         return at_rest
@@ -126,7 +126,7 @@ def _begin(tracker: bik.Tracker, stream: Stream) -> list[np.ndarray]:
 
 
 def _refuses(tracker: bik.Tracker, target: np.ndarray) -> int:
-    """A target that is not a number must be refused and leave the tracker as it was."""
+    """Checks that a target with NaN is refused and leaves the tracker unchanged; returns 1."""
     before = tracker.q, tracker.time
     try:
         tracker.step(target)
@@ -138,13 +138,13 @@ def _refuses(tracker: bik.Tracker, target: np.ndarray) -> int:
 
 
 def _stop(tracker: bik.Tracker, stream: Stream) -> list[np.ndarray]:
-    """Stop the arm, and let it rest for two ticks more."""
+    """Stops the arm; the last two ticks must be at rest."""
     ticks = round(tracker.stop() / stream.dt) + 2
     return [tracker.step(None).q for _ in range(ticks)]
 
 
 def excesses(stream: Stream, q: np.ndarray) -> dict[str, float]:
-    """By how much each finite difference exceeds its limit, relative to it and beyond rounding; at most 0 is kept.
+    """Returns the largest excess of each finite difference over its limit, relative to it, rounding deducted.
 
     The first `HISTORY` rows of `q` are the configurations up to the start.
     """
@@ -168,7 +168,7 @@ def _outside(stream: Stream, q: np.ndarray) -> float:
 
 
 def lowest(limit: Any, dt: float, ticks: int) -> np.ndarray:
-    """The smallest value of a limit over each tick: (ticks, 1) or (ticks, n)."""
+    """Returns the smallest value of a limit over each tick: (ticks, 1) or (ticks, n)."""
     if not isinstance(limit, bik.Sinusoid):
         return np.tile(np.atleast_1d(limit), (ticks, 1))
     time = dt * np.arange(ticks + 1)
