@@ -115,7 +115,8 @@ impl PySolutionSet {
 /// proven that no solution is missing. The search ends when a hundred solutions in a row are known already, or the budget is spent.
 ///
 /// Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
-/// start is given. A redundant arm has infinitely many solutions: those returned are at least `separation` apart.
+/// start is given. A redundant arm has infinitely many solutions. With a closed form, those at `redundancy` values of its parameter
+/// are returned; found by search, they are at least `separation` apart.
 ///
 /// Args:
 ///     robot: the arm.
@@ -124,6 +125,8 @@ impl PySolutionSet {
 ///     limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
 ///     separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
 ///         a closed form are returned, those of a search differ by 0.1.
+///     redundancy: number of values of the parameter at which a redundant arm with a closed form is solved, spread over those that its
+///         limits allow. 0: its solutions are searched for.
 ///     turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
 ///     task: which part of the target counts, one of `tasks`; None: all of it.
 ///     solver: the solver; None: Levenberg-Marquardt from many starts.
@@ -141,7 +144,7 @@ impl PySolutionSet {
 ///         configurations.
 ///     LimitError: a start outside the limits.
 #[pyfunction]
-#[pyo3(signature = (robot, target, *, start=None, limit=None, separation=None, turns=false, task=None, solver=None,
+#[pyo3(signature = (robot, target, *, start=None, limit=None, separation=None, redundancy=16, turns=false, task=None, solver=None,
                     position_tolerance=1e-6, rotation_tolerance=1e-6, limits=None, stop=None, seed=0))]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_all(
@@ -151,6 +154,7 @@ pub fn solve_all(
     start: Option<&Bound<'_, PyAny>>,
     limit: Option<i128>,
     separation: Option<f64>,
+    redundancy: i128,
     turns: bool,
     task: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
@@ -166,7 +170,8 @@ pub fn solve_all(
         SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals: None, prefer: "any", stop, seed };
     let each = asked.read(start.map(|start| vector("start", start)).transpose()?, resolved)?;
     let limit = limit.map(|limit| count("limit", limit)).transpose()?;
-    let options = AllOptions { each, limit, separation, turns };
+    let redundancy = count("redundancy", redundancy)?;
+    let options = AllOptions { each, limit, separation, redundancy, turns };
     let core = watched(py, None, |watcher| ik::solve_all(&robot.core, &target, &options, watcher))?;
     PySolutionSet::new(py, core, robot.core.dof(), in_force)
 }

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::closed_form::subproblem::CLAMP;
+
 /// An arc that ends by less before a limit (rad) reaches it: rounding.
 const SLACK: f64 = 1e-9;
 
@@ -38,10 +40,11 @@ impl Wave {
         [least, most]
     }
 
-    /// The arcs on which the wave lies between two bounds. Bounds missed by rounding give an arc without length.
+    /// The arcs on which the wave lies between two bounds. Bounds missed by little give an arc without length: whether the parameter
+    /// there has a configuration is to be tried.
     pub fn arcs_between(&self, [least, most]: [f64; 2]) -> ParameterArcs {
         let Self { base, swing, peak } = *self;
-        let slack = 1e-9 * (base.abs() + swing);
+        let slack = CLAMP * (base.abs() + swing);
         if least > base + swing + slack || most < base - swing - slack {
             return ParameterArcs::NONE;
         }
