@@ -2,9 +2,12 @@
 
 use ikcore::ik::{self, AllOptions};
 use ikcore::stored::{from_bytes, to_bytes};
-use numpy::{PyArrayDyn, PyUntypedArrayMethods};
+use ikcore::task::Target;
+use numpy::PyArrayDyn;
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyIterator, PyList};
+use pyo3::{PyTraverseError, PyVisit};
 
 use crate::convert::{count, table, vector};
 use crate::error::raise;
@@ -17,21 +20,37 @@ use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
-use crate::traversal::traversed;
+use crate::traversal::{Traversed, traversed};
 
 /// The distinct solutions for one target, a sequence of `Solution`.
 #[pyclass(name = "SolutionSet", module = "beetle_ik", frozen, sequence)]
 pub struct PySolutionSet {
     core: ik::SolutionSet,
-    /// The configurations (k, n) (rad, m), inside the limits.
-    #[pyo3(get)]
-    q: Py<PyArrayDyn<f64>>,
+    dof: usize,
+    /// Made when first asked for.
+    q: PyOnceLock<Py<PyArrayDyn<f64>>>,
+    /// What finds the nearest configuration to a target that is proven out of reach, when that is first asked for.
+    unreached: Option<Box<Unreached>>,
+    miss: PyOnceLock<ik::Solution>,
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
 
-traversed!(PySolutionSet: limits);
+traversed!(PySolutionSet: limits, unreached);
+
+/// A target without a solution, and the call that looked for one.
+struct Unreached {
+    robot: Py<PyRobot>,
+    target: Target,
+    options: AllOptions,
+}
+
+impl Traversed for Unreached {
+    fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.robot.traverse(visit)
+    }
+}
 
 outcome! {
     PySolutionSet = |result|
@@ -60,10 +79,19 @@ impl PySolutionSet {
         self.core.singular
     }
 
-    /// The best `Solution` that misses the target, if no solution was found; otherwise None.
+    /// The configurations (k, n) (rad, m), inside the limits.
     #[getter]
-    fn miss(&self, py: Python<'_>) -> Option<PySolution> {
-        self.core.miss.as_ref().map(|miss| PySolution::new(py, miss.clone(), self.limits.clone_ref(py)))
+    fn q(&self, py: Python<'_>) -> PyResult<Py<PyArrayDyn<f64>>> {
+        let rows = || table(py, self.core.solutions.values().to_vec(), &[self.core.solutions.len(), self.dof]);
+        Ok(self.q.get_or_try_init(py, || rows().map(Bound::unbind))?.clone_ref(py))
+    }
+
+    /// The best `Solution` that misses the target, if no solution was found; otherwise None. If the target is proven out of reach, it
+    /// is computed when first asked for.
+    #[getter]
+    fn miss(&self, py: Python<'_>) -> PyResult<Option<PySolution>> {
+        let miss = self.nearest_miss(py)?;
+        Ok(miss.map(|miss| PySolution::new(py, miss.clone(), self.limits.clone_ref(py))))
     }
 
     fn __len__(&self) -> usize {
@@ -72,10 +100,15 @@ impl PySolutionSet {
 
     /// Returns a `Solution`, or a list of them for a slice, a mask or several indices.
     fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let solution = |i: usize| PySolution::new(py, self.core.solutions[i].clone(), self.limits.clone_ref(py));
+        let solution = |i: usize| {
+            let found = self.core.solution(i).expect("an index that was checked");
+            PySolution::new(py, found, self.limits.clone_ref(py))
+        };
         match select("a set", index, self.core.solutions.len())? {
             Selection::One(i) => Ok(Bound::new(py, solution(i))?.into_any()),
-            Selection::Many(rows) => Ok(PyList::new(py, rows.into_iter().map(solution))?.into_any()),
+            Selection::Many(rows) => {
+                Ok(PyList::new(py, rows.into_iter().map(solution).collect::<Vec<_>>())?.into_any())
+            }
         }
     }
 
@@ -89,23 +122,37 @@ impl PySolutionSet {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = pickling::bytes(py, to_bytes("set of solutions", &self.core))?;
-        let dof = self.q.bind(py).shape()[1];
-        pickling::restored_from::<Self>(py, (core, dof, self.limits.clone_ref(py)))
+        let miss = self.nearest_miss(py)?.cloned().map(Box::new);
+        let complete = ik::SolutionSet { miss, ..self.core.clone() };
+        let core = pickling::bytes(py, to_bytes("set of solutions", &complete))?;
+        pickling::restored_from::<Self>(py, (core, self.dof, self.limits.clone_ref(py)))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    fn _restore(py: Python<'_>, bytes: &[u8], dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
-        Self::new(py, from_bytes("set of solutions", bytes).map_err(raise)?, dof, limits)
+    fn _restore(bytes: &[u8], dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
+        Ok(Self::new(from_bytes("set of solutions", bytes).map_err(raise)?, dof, limits, None))
     }
 }
 
 impl PySolutionSet {
-    fn new(py: Python<'_>, core: ik::SolutionSet, dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
-        let rows: Vec<f64> = core.solutions.iter().flat_map(|solution| solution.q.iter().copied()).collect();
-        let q = table(py, rows, &[core.solutions.len(), dof])?.unbind();
-        Ok(Self { core, q, limits })
+    fn new(core: ik::SolutionSet, dof: usize, limits: Py<PyLimits>, unreached: Option<Box<Unreached>>) -> Self {
+        Self { core, dof, q: PyOnceLock::new(), unreached, miss: PyOnceLock::new(), limits }
+    }
+
+    fn nearest_miss(&self, py: Python<'_>) -> PyResult<Option<&ik::Solution>> {
+        match (&self.core.miss, &self.unreached) {
+            (Some(miss), _) => Ok(Some(miss)),
+            (None, None) => Ok(None),
+            (None, Some(unreached)) => self.miss.get_or_try_init(py, || unreached.nearest_miss(py)).map(Some),
+        }
+    }
+}
+
+impl Unreached {
+    fn nearest_miss(&self, py: Python<'_>) -> PyResult<ik::Solution> {
+        let robot = &self.robot.get().core;
+        watched(py, None, |watcher| ik::nearest_miss(robot, &self.target, &self.options, watcher))
     }
 }
 
@@ -137,7 +184,7 @@ impl PySolutionSet {
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///
 /// Returns:
-///     A `SolutionSet`. If no solution is found, it is empty, and `miss` is the best configuration.
+///     A `SolutionSet`. If no solution is found, it is empty, and `miss` is the nearest configuration found.
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
@@ -149,7 +196,7 @@ impl PySolutionSet {
 #[allow(clippy::too_many_arguments)]
 pub fn solve_all(
     py: Python<'_>,
-    robot: &PyRobot,
+    robot: &Bound<'_, PyRobot>,
     target: &Bound<'_, PyAny>,
     start: Option<&Bound<'_, PyAny>>,
     limit: Option<i128>,
@@ -165,6 +212,8 @@ pub fn solve_all(
     seed: i128,
 ) -> PyResult<PySolutionSet> {
     let target = read_target("target", target)?;
+    let owner = robot;
+    let robot = owner.get();
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let asked =
         SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals: None, prefer: "any", stop, seed };
@@ -173,5 +222,7 @@ pub fn solve_all(
     let redundancy = count("redundancy", redundancy)?;
     let options = AllOptions { each, limit, separation, redundancy, turns };
     let core = watched(py, None, |watcher| ik::solve_all(&robot.core, &target, &options, watcher))?;
-    PySolutionSet::new(py, core, robot.core.dof(), in_force)
+    let is_unreached = core.obstruction.is_some();
+    let unreached = is_unreached.then(|| Box::new(Unreached { robot: owner.clone().unbind(), target, options }));
+    Ok(PySolutionSet::new(core, robot.core.dof(), in_force, unreached))
 }

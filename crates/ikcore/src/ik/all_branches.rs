@@ -21,6 +21,9 @@ const NEAR_LIMIT: f64 = 1e-4;
 /// Tolerances (m, rad) beyond which a pose without solutions, and without candidates near one, may still be reached.
 const WIDE: f64 = 1e-5;
 
+/// How many times more values of the parameter are tried where none has a solution.
+const FINER: usize = 4;
+
 /// Values of the parameter between two looks at the monitor.
 const VALUES_BETWEEN_LOOKS: usize = 64;
 
@@ -63,23 +66,34 @@ pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], red
         },
         attempt,
     };
-    let configurations = match robot.family(pose) {
-        Some(family) => taker.sample(&family, redundancy),
-        None => taker.take_all(pose)?,
+    let count = match robot.family(pose) {
+        Some(_) if redundancy == 0 => return None,
+        Some(family) => {
+            taker.sample(&family, redundancy);
+            None
+        }
+        None => Some(taker.take_all(pose)?),
     };
     let mut found = taker.found;
     if found.solutions.is_empty() {
-        if !found.complete {
-            return None;
-        }
-        found.obstruction = Some(match (configurations, attempt.problem.beyond_reach(bounds)) {
-            (0, Some(beyond)) => beyond.to_string(),
-            (0, None) => "no configuration has this pose".into(),
-            (1, _) => "its one solution is outside the limits".into(),
-            (count, _) => format!("all {count} solutions are outside the limits"),
+        found.obstruction = found.complete.then(|| match attempt.problem.beyond_reach(bounds) {
+            Some(beyond) => beyond.to_string(),
+            None => outside(count),
         });
+        // The search goes on from what is left open.
+        found.obstruction.as_ref()?;
     }
     Some(found)
+}
+
+/// Where the solutions of a pose are that has none inside the limits; `count` is None if that is not known.
+fn outside(count: Option<usize>) -> String {
+    match count {
+        None => "no configuration inside the limits has this pose".into(),
+        Some(0) => "no configuration has this pose".into(),
+        Some(1) => "its one solution is outside the limits".into(),
+        Some(count) => format!("all {count} solutions are outside the limits"),
+    }
 }
 
 /// Takes the branches that are inside the limits.
@@ -95,13 +109,22 @@ struct Taker<'a, 'm, 'p> {
 }
 
 impl Taker<'_, '_, '_> {
-    /// Takes those of a redundant arm at `count` values of its parameter. Returns 0: how many there are beyond is not known.
-    fn sample(&mut self, family: &PoseFamily<'_>, count: usize) -> usize {
+    /// Takes those of a redundant arm at `count` values of its parameter, or at more where none of them has a solution.
+    fn sample(&mut self, family: &PoseFamily<'_>, count: usize) {
         let bounds = self.attempt.context.bounds();
         let arcs = family.arcs(bounds.lower(), bounds.upper());
         // Outside the arcs there is none: without arcs the pose is out of reach.
         self.found.complete = arcs.is_empty();
-        for (k, value) in arcs.spread(count).enumerate() {
+        for finer in [1, FINER, FINER * FINER] {
+            self.take_values(family, arcs.spread(count.saturating_mul(finer)));
+            if !self.found.solutions.is_empty() || self.found.interrupted || self.found.complete {
+                break;
+            }
+        }
+    }
+
+    fn take_values(&mut self, family: &PoseFamily<'_>, values: impl Iterator<Item = f64>) {
+        for (k, value) in values.enumerate() {
             if k % VALUES_BETWEEN_LOOKS == VALUES_BETWEEN_LOOKS - 1 && !self.attempt.monitor.keep_going() {
                 self.found.interrupted = true;
                 break;
@@ -113,7 +136,6 @@ impl Taker<'_, '_, '_> {
                 self.take_inside(q, error);
             }
         }
-        0
     }
 
     /// Takes those of an arm that is not redundant. Returns how many there are, limits aside; None without a closed form.
