@@ -188,6 +188,10 @@ class Robot:
     ) -> Robot:
         """Returns a copy with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps the present ones."""
     @property
+    def rated_limits(self) -> Limits:
+        """To be copied."""
+
+    @property
     def capsules(self) -> list[tuple[str, _Array, _Array, float]]:
         """Collision capsules of the links, each (link, a, b, radius). A capsule is all points within the radius (m) of the
         segment from a (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a
@@ -1812,6 +1816,7 @@ def track(
     rotation_tolerance: float = 1e-6,
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
+    ease: bool = False,
     progress: _Progress = None,
 ) -> TrackResult:
     """Follows a path with the tip of the robot, tick by tick, inside the limits.
@@ -2151,6 +2156,7 @@ def plan_point_to_point(
     *,
     start_q: ArrayLike | None = None,
     end_q: ArrayLike | None = None,
+    start_qd: ArrayLike | None = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
@@ -2185,6 +2191,19 @@ def plan_point_to_point(
         LimitError: limits that contradict each other or exclude an end.
         UnsupportedLimit: jerk limits, or limits that vary in time.
     """
+
+def state_to_state(
+    q0: ArrayLike,
+    q1: ArrayLike,
+    limits: Limits,
+    *,
+    qd0: ArrayLike | None = None,
+    qdd0: ArrayLike | None = None,
+    qd1: ArrayLike | None = None,
+    qdd1: ArrayLike | None = None,
+    joint_names: list[str] | None = None,
+) -> Trajectory:
+    """To be copied."""
 
 def time_optimal(
     waypoints_q: ArrayLike,
@@ -2349,6 +2368,9 @@ class Plan:
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:
         """The obstacles, as given."""
+    def retime(self, limits: Limits) -> Plan:
+        """To be copied."""
+
     def plot(self) -> Figure:
         """Draws the arm along its path, the cost over evaluations, and the joint motions with their limits; returns a matplotlib
         figure.

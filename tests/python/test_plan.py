@@ -32,7 +32,9 @@ def test_a_plan_is_at_rest_at_both_ends_and_keeps_the_limits() -> None:
     plan = between()
     assert plan.success
     assert plan.status == bik.Status.SOLVED
-    assert plan.message == f"planned with a duration of {plan.cost:.3f} s"
+    peak = plan.trajectory.max_acceleration().max()
+    assert plan.message.startswith(f"planned with a duration of {plan.cost:.3f} s; without an acceleration limit joint ")
+    assert plan.message.endswith(f" accelerates with up to {peak:.3f} rad/s^2")
     assert plan.cost == plan.trajectory.duration
     q, qd, _ = plan.trajectory.at([0.0, plan.trajectory.duration])
     np.testing.assert_allclose(ARM.fk(q)[:, :3, 3], [START, END], atol=1e-9)
@@ -160,7 +162,7 @@ MISTAKES: list[tuple[Callable[[], Any], str]] = [
     ),
     (
         lambda: between(limits=bik.Limits(velocity=3, jerk=4)),
-        'method="tpbso" cannot honour jerk limits: retime the plan with a jerk limit afterwards',
+        'method="tpbso" cannot honour jerk limits: leave them out, and add them with plan.retime(limits)',
     ),
     (
         lambda: between(limits=bik.Limits(velocity=bik.Sinusoid(mean=2, amplitude=1, angular_frequency=1))),

@@ -26,6 +26,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("trajectory", &[]),
     ("objective", &[]),
     ("limits", &["robot", "objective"]),
+    ("motion", &["limits", "trajectory", "objective"]),
     ("obstacle", &["robot", "objective"]),
     ("manipulability", &["kinematics", "robot"]),
     ("task", &["kinematics", "robot", "manipulability", "objective"]),
@@ -41,6 +42,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     (
         "planning",
         &[
+            "motion",
             "robot",
             "path",
             "trajectory",
@@ -57,6 +59,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     (
         "tracking",
         &[
+            "motion",
             "kinematics",
             "robot",
             "path",
