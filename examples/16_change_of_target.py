@@ -14,8 +14,8 @@ import beetle_ik as bik
 robot = bik.Robot.named("panda")
 limits = bik.Limits(velocity=1.5, acceleration=5.0, jerk=50.0)
 home = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.5, 0.8])
-first = home + [0.8, 0.3, -0.3, 0.4, 0.0, -0.2, 0.5]
-second = home + [-0.4, 0.1, 0.5, -0.3, 0.4, 0.3, -0.6]
+first = home + np.array([0.8, 0.3, -0.3, 0.4, 0.0, -0.2, 0.5])
+second = home + np.array([-0.4, 0.1, 0.5, -0.3, 0.4, 0.3, -0.6])
 
 # %%
 # The arm moves to the first target. After 0.4 s a second one arrives.

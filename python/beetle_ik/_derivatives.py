@@ -17,7 +17,7 @@ def has_continuous_acceleration(trajectory: Trajectory) -> bool:
     for largest in (trajectory.max_velocity(), trajectory.max_acceleration()):
         derivative = derivative[:, :, 1:] * np.arange(1, powers)
         powers -= 1
-        ends = sum(derivative[:, :, k] * spans**k for k in range(powers))
+        ends = np.sum([derivative[:, :, k] * spans**k for k in range(powers)], axis=0)
         jumps = np.abs(ends[:-1] - derivative[1:, :, 0])
         if np.any(jumps > _ROUNDING * largest):
             return False

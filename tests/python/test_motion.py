@@ -1,6 +1,7 @@
 """Motions within jerk limits: state to state, plans with other limits, approaches onto moving paths, exports."""
 
 import json
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from beetle_ik.cli import app
 
 LIMITS = bik.Limits(velocity=1.5, acceleration=5.0, jerk=50.0)
 HOME = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.5, 0.8])
-THERE = HOME + [0.6, 0.2, -0.3, 0.4, 0.0, -0.2, 0.5]
+THERE = HOME + np.array([0.6, 0.2, -0.3, 0.4, 0.0, -0.2, 0.5])
 CIRCLE = bik.paths.circle((0.4, 0.2, 0.4), diameter=0.3, duration=5.0)
 
 
@@ -54,19 +55,17 @@ def test_no_motion_takes_longer_than_that_of_ruckig() -> None:
 
 
 def test_mistakes_are_named() -> None:
-    with pytest.raises(bik.InvalidInputError, match="^q1: expected 7 joints, got 3$"):
+    with pytest.raises(bik.InvalidInputError, match=r"^q1: expected 7 joints, got 3$"):
         bik.state_to_state(HOME, THERE[:3], LIMITS)
-    with pytest.raises(bik.InvalidInputError, match="^qd0 must be finite, but joint 'q2' is NaN$"):
+    with pytest.raises(bik.InvalidInputError, match=r"^qd0 must be finite, but joint 'q2' is NaN$"):
         bik.state_to_state(HOME, THERE, LIMITS, qd0=[0.0, np.nan, 0.0, 0.0, 0.0, 0.0, 0.0])
-    with pytest.raises(bik.UnsupportedLimit, match="^state_to_state cannot honour time-varying velocity limits"):
+    with pytest.raises(bik.UnsupportedLimit, match=r"^state_to_state cannot honour time-varying velocity limits"):
         bik.state_to_state(HOME, THERE, bik.Limits(velocity=bik.Sinusoid(mean=1, amplitude=0.1, angular_frequency=1)))
-    with pytest.raises(bik.InfeasibleError, match="beyond its upper limit"):
+    with pytest.raises(bik.InfeasibleError, match=r"beyond its upper limit"):
         bik.state_to_state([0.98], [0.5], bik.Limits(upper=1.0, acceleration=4.0), qd0=[1.0])
 
 
 def test_a_retimed_plan_keeps_its_path_and_survives_pickling() -> None:
-    import pickle
-
     panda = bik.Robot.named("panda")
     plan = bik.plan_point_to_point(panda, start_q=HOME, end_q=THERE, limits=bik.Limits(acceleration=5.0))
     slow = plan.retime(bik.Limits(velocity=0.5, acceleration=2.0, jerk=20.0))
@@ -106,7 +105,7 @@ def test_an_eased_track_exports_what_was_commanded(tmp_path: Path) -> None:
     message = bik.interop.to_ros(trajectory, joint_names=names)
     assert message["joint_names"][0] == "left_shoulder_pan_joint"
     assert all(len(point["accelerations"]) == 6 for point in message["points"])
-    with pytest.raises(bik.InvalidInputError, match="^joint_names: expected 6, one per joint, got 2$"):
+    with pytest.raises(bik.InvalidInputError, match=r"^joint_names: expected 6, one per joint, got 2$"):
         bik.interop.to_ros(trajectory, joint_names=["a", "b"])
 
 

@@ -33,7 +33,8 @@ def test_a_plan_is_at_rest_at_both_ends_and_keeps_the_limits() -> None:
     assert plan.success
     assert plan.status == bik.Status.SOLVED
     peak = plan.trajectory.max_acceleration().max()
-    assert plan.message.startswith(f"planned with a duration of {plan.cost:.3f} s; without an acceleration limit joint ")
+    planned = f"planned with a duration of {plan.cost:.3f} s; without an acceleration limit joint "
+    assert plan.message.startswith(planned)
     assert plan.message.endswith(f" accelerates with up to {peak:.3f} rad/s^2")
     assert plan.cost == plan.trajectory.duration
     q, qd, _ = plan.trajectory.at([0.0, plan.trajectory.duration])

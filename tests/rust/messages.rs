@@ -64,8 +64,9 @@ fn joint_positions_that_are_not_finite_are_named() {
     assert_eq!(message(iiwa.fk(&q(NAN))), "joint angles must be finite, but joint 'joint_a3' is NaN");
     assert_eq!(message(iiwa.jacobian(&q(INFINITE))), "joint angles must be finite, but joint 'joint_a3' is inf");
     assert_eq!(message(iiwa.link_poses(&q(-INFINITE))), "joint angles must be finite, but joint 'joint_a3' is -inf");
-    let says = "start must be finite, but joint 'joint_3' is NaN";
+    let says = "start must be finite, but joint 'joint_a3' is NaN";
     assert_eq!(solve_says(SolveOptions { start: Some(q(NAN).to_vec()), ..SolveOptions::default() }), says);
+    let says = "start must be finite, but joint 'joint_3' is NaN";
     assert_eq!(track_says(&[0.0, 0.0, NAN, 0.0, 0.0], TrackOptions::default()), says);
 }
 

@@ -190,6 +190,21 @@ fn a_plan_can_begin_at_a_velocity() {
 }
 
 #[test]
+fn an_arm_without_a_shape_can_begin_at_a_velocity_too() {
+    let robot = Robot::named("ur5e").unwrap();
+    let options = PointToPointOptions {
+        limits: Some(with_limits(&robot, &[(Field::Acceleration, 5.0)])),
+        start_velocity: Some(vec![0.5; 6]),
+        ..PointToPointOptions::default()
+    };
+    let [from, to] = [[0.0; 6], [0.4; 6]].map(|q| Endpoint::Configuration(q.to_vec()));
+    let plan = plan_point_to_point(&robot, &from, &to, &options, &mut Unattended).unwrap();
+    // From 0.5 rad/s at 5 rad/s^2 over 0.4 rad: up to sqrt(0.125 + 2) rad/s, and down.
+    let expected = (2.0 * 2.125_f64.sqrt() - 0.5) / 5.0;
+    assert!((plan.cost - expected).abs() < 1e-9 && plan.clearance.is_none(), "{}", plan.cost);
+}
+
+#[test]
 fn errors_name_the_reason_and_the_remedy() {
     let robot = Robot::planar(&[1.0, 1.0]).unwrap();
     let ends = [vec![0.0, 0.5], vec![0.3, 0.2]];

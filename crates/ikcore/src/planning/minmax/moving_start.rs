@@ -39,12 +39,15 @@ pub(super) fn begin(
     check(search, velocity)?;
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
-    let lines = as_lines(search.robot)?;
-    let scene = scene(search.robot, lines.as_ref(), &options.obstacles)?;
-    let (margin, collides) = (options.kept_margin()?, can_collide(search.robot, &options.obstacles));
-    let mut sweep = Sweep::new(&scene);
-    let mut is_free =
-        |motion: &Trajectory| !collides || sweep.check(&TimedMotion(motion), [0.0, motion.duration()], margin).is_ok();
+    let margin = options.kept_margin()?;
+    let collides = can_collide(search.robot, &options.obstacles);
+    let lines = if collides { as_lines(search.robot)? } else { None };
+    let scene = collides.then(|| scene(search.robot, lines.as_ref(), &options.obstacles)).transpose()?;
+    let mut sweep = scene.as_ref().map(Sweep::new);
+    let mut is_free = |motion: &Trajectory| {
+        let check = |sweep: &mut Sweep| sweep.check(&TimedMotion(motion), [0.0, motion.duration()], margin).is_ok();
+        sweep.as_mut().is_none_or(check)
+    };
     let pairs = search.pairs(PAIRS, monitor)?;
     let last = pairs.first().ok_or_else(no_pair)?;
     let direct = |end: &[f64]| state_to_state(&from, &ArmState::at_rest(end), &limits).ok();
@@ -54,7 +57,7 @@ pub(super) fn begin(
         let evaluations = search.evaluations;
         let cost = options.objective.of(search.robot, &trajectory);
         let nearest =
-            collides.then(|| sweep.smallest(&TimedMotion(&trajectory), [0.0, trajectory.duration()])).flatten();
+            sweep.and_then(|mut sweep| sweep.smallest(&TimedMotion(&trajectory), [0.0, trajectory.duration()]));
         return Ok(Beginning::Whole(Plan {
             objective: options.objective,
             cost,
@@ -118,9 +121,10 @@ pub(super) fn end_of(motion: &Trajectory) -> Vec<f64> {
 
 /// A plan from rest, preceded by the stop that leads to it.
 pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, options: &PointToPointOptions) -> Result<Plan> {
-    let lines = as_lines(robot)?;
-    let scene = scene(robot, lines.as_ref(), &options.obstacles)?;
-    let nearest = Sweep::new(&scene).smallest(&TimedMotion(&stop), [0.0, stop.duration()]);
+    let collides = can_collide(robot, &options.obstacles);
+    let lines = if collides { as_lines(robot)? } else { None };
+    let scene = collides.then(|| scene(robot, lines.as_ref(), &options.obstacles)).transpose()?;
+    let nearest = scene.and_then(|scene| Sweep::new(&scene).smallest(&TimedMotion(&stop), [0.0, stop.duration()]));
     let clearance = match (rest.clearance, nearest) {
         (Some(clearance), Some(near)) => Some(clearance.min(near.contact.distance)),
         (clearance, _) => clearance,
