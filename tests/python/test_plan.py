@@ -32,10 +32,7 @@ def test_a_plan_is_at_rest_at_both_ends_and_keeps_the_limits() -> None:
     plan = between()
     assert plan.success
     assert plan.status == bik.Status.SOLVED
-    peak = plan.trajectory.max_acceleration().max()
-    planned = f"planned with a duration of {plan.cost:.3f} s; without an acceleration limit joint "
-    assert plan.message.startswith(planned)
-    assert plan.message.endswith(f" accelerates with up to {peak:.3f} rad/s^2")
+    assert plan.message == f"planned with a duration of {plan.cost:.3f} s"
     assert plan.cost == plan.trajectory.duration
     q, qd, _ = plan.trajectory.at([0.0, plan.trajectory.duration])
     np.testing.assert_allclose(ARM.fk(q)[:, :3, 3], [START, END], atol=1e-9)

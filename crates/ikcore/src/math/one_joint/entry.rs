@@ -5,7 +5,7 @@ use super::motion_state::{MotionState, Rates};
 
 /// The motion that brings a joint inside its limits with the largest jerk (or acceleration), and the state at its end.
 /// Empty for a joint that is inside and can stay there.
-pub fn entry(from: MotionState, rates: &Rates) -> (JointProfile, MotionState) {
+pub(super) fn entry(from: MotionState, rates: &Rates) -> (JointProfile, MotionState) {
     let mut motion = JointProfile::empty();
     let mut state = from;
     let mut go = |state: &mut MotionState, jerk: f64, duration: f64| {

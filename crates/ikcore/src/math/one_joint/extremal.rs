@@ -38,7 +38,7 @@ impl Extremal {
         }
     }
 
-    /// Intervals of possible durations (s), in order: the first ends with the last of up to three.
+    /// Intervals of possible durations (s), at most three, in order; the last has no end.
     pub(super) fn possible(&self) -> Possible {
         let mut found = Possible::new();
         match self {
@@ -48,7 +48,7 @@ impl Extremal {
         found
     }
 
-    /// Durations (s) between which the distance is monotone, up to that of full speed.
+    /// Durations (s) between which the distance is monotone, as far as it is not known to rise.
     pub(super) fn critical_durations(&self) -> Durations {
         let mut found = Durations::new();
         match self {

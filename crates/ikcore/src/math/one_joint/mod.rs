@@ -29,7 +29,6 @@ mod motion_state;
 mod phases;
 mod transfer;
 
-pub use entry::entry;
 pub use joint_profile::{JointProfile, JointSegment};
 pub use motion_state::{MotionState, Rates};
 pub use transfer::Transfer;
