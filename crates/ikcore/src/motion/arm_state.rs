@@ -23,8 +23,9 @@ impl ArmState {
     /// Checks that there are `n` finite values each; `end` (0 or 1) numbers the state in errors.
     pub(super) fn check(&self, end: usize, joints: &[String]) -> Result<()> {
         for (what, values) in [("q", &self.q), ("qd", &self.qd), ("qdd", &self.qdd)] {
-            if values.len() != joints.len() {
-                let expected = format!("{} joints", joints.len());
+            if values.len() != joints.len() || joints.is_empty() {
+                let expected =
+                    if joints.is_empty() { "at least 1 joint".into() } else { format!("{} joints", joints.len()) };
                 return Err(Error::WrongLength { what: format!("{what}{end}"), expected, got: values.len() });
             }
             require_finite(&format!("{what}{end}"), values, |j| format!("joint '{}'", joints[j]))?;
