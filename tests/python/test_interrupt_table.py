@@ -147,6 +147,7 @@ def waypoints(count: int) -> Callable[[], object]:
     return lambda: bik.time_optimal(q, FAST)
 
 
+PLANNED = "a plan has at most some thousand knots"
 CONSTANT = "its work does not grow with any argument"
 ONE = "one configuration of at most 32 joints"
 COPIES = "as fast as its arrays are copied"
@@ -172,9 +173,11 @@ SHORT: dict[str, str] = {
             "Robot.planar", "Robot.named", "Robot.names", "Robot.link_poses", "Robot.with_tool", "Robot.with_base",
             "Robot.with_limits", "Robot.with_capsules", "Robot.with_errors", "Robot.manipulability_gradient",
             "Robot.link_manipulability", "Robot.velocity_ellipsoid", "Tracker", "Tracker.reset", "pose",
+            "state_to_state",
         ],
         ONE,
     ),
+    "Plan.retime": PLANNED,
     **dict.fromkeys(
         ["Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"],
         COPIES,

@@ -27,6 +27,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("trajectory", &[]),
     ("objective", &[]),
     ("limits", &["robot", "objective"]),
+    ("motion", &["limits", "trajectory", "objective"]),
     ("obstacle", &["robot", "objective"]),
     ("manipulability", &["kinematics", "robot"]),
     ("task", &["kinematics", "robot", "manipulability", "objective"]),
@@ -42,6 +43,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     (
         "planning",
         &[
+            "motion",
             "robot",
             "path",
             "trajectory",
@@ -58,6 +60,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     (
         "tracking",
         &[
+            "motion",
             "kinematics",
             "robot",
             "path",

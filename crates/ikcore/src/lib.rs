@@ -51,7 +51,7 @@
 //! | 2 | [`starts`], `closed_form` |
 //! | 3 | [`robot`] |
 //! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
-//! | 5 | [`task`], [`solver`] |
+//! | 5 | [`motion`], [`task`], [`solver`] |
 //! | 6 | [`problem`] |
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
 //! | 8 | [`tracking`], [`planning`], [`posture`], [`batch`] |
@@ -67,6 +67,7 @@ pub mod load;
 pub mod manipulability;
 pub mod math;
 pub mod minimize;
+pub mod motion;
 pub mod objective;
 pub mod obstacle;
 pub mod path;

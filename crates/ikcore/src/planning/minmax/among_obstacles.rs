@@ -235,6 +235,8 @@ fn finish(
         accuracy: None,
         reference: None,
         redundancy: vec![],
+        path: vec![],
+        peak: None,
         violations,
         status,
         evaluations,
