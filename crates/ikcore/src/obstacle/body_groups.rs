@@ -143,9 +143,10 @@ impl BodyGroups {
 impl Group {
     fn new(stages: usize, bodies: &[&Carried]) -> Self {
         let ends = || bodies.iter().flat_map(|body| body.ends.map(Vector3::from));
-        let (low, high) = ends().fold((Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)), |(low, high), end| {
-            (low.inf(&end), high.sup(&end))
-        });
+        let (low, high) = ends()
+            .fold((Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)), |(low, high), end| {
+                (low.inf(&end), high.sup(&end))
+            });
         let center = 0.5 * (low + high);
         let reach = |body: &&Carried| {
             let far = body.ends.map(|end| (Vector3::from(end) - center).norm());

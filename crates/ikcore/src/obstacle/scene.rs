@@ -35,6 +35,9 @@ pub struct Scene<'a> {
     pub(super) pairs: Vec<BodyPair>,
 }
 
+/// Distances that differ by less (m) are equal but for rounding.
+const EQUALLY_NEAR: f64 = 1e-9;
+
 impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::NoCapsules`] if the robot has none, or if some of its collision shapes could not be read;
@@ -92,11 +95,11 @@ impl<'a> Scene<'a> {
     fn nearest_pair(&self, placement: &Placement) -> Option<(f64, BodyPair)> {
         let mut nearest: Option<(f64, BodyPair)> = None;
         for pair in &self.pairs {
-            let enough = nearest.map_or(f64::INFINITY, |(distance, _)| distance);
-            let distance = self.distance(*pair, placement, enough);
-            if distance < enough {
-                nearest = Some((distance, *pair));
-            }
+            let (least, first) = nearest.unwrap_or((f64::INFINITY, *pair));
+            let distance = self.distance(*pair, placement, least);
+            // Of pairs that are equally near, the first counts.
+            let nearer = if distance < least - EQUALLY_NEAR { *pair } else { first };
+            nearest = Some((distance.min(least), nearer));
         }
         nearest
     }
@@ -193,7 +196,9 @@ impl<'a> Scene<'a> {
                 let other = Neighbor::Obstacle(obstacle, self.obstacles[obstacle].name());
                 Contact { link: link(capsule), other, distance }
             }
-            BodyPair::Capsules { near, far } => Contact { link: link(far), other: Neighbor::Link(link(near)), distance },
+            BodyPair::Capsules { near, far } => {
+                Contact { link: link(far), other: Neighbor::Link(link(near)), distance }
+            }
         }
     }
 

@@ -56,12 +56,6 @@ impl Hull {
         self.polyhedron.triangles()
     }
 
-    /// The corner farthest along `direction`.
-    pub(super) fn support(&self, direction: &Vector3<f64>) -> Vector3<f64> {
-        let farther = |p: &&Vector3<f64>, q: &&Vector3<f64>| p.dot(direction).total_cmp(&q.dot(direction));
-        self.corners.iter().max_by(farther).copied().unwrap_or_default()
-    }
-
     /// A ball that holds it.
     pub(super) fn bounding_ball(&self) -> BoundingBall {
         let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;

@@ -17,6 +17,7 @@
 //! | `bounding_tree` | four-way tree of boxes for thousands of pieces |
 //! | `mesh`, `inside_mesh`, `triangle_lanes` | triangle meshes, closed or not |
 //! | `point_cloud`, `grid` | points with a radius, occupied voxels |
+//! | `cover` | covers of meshes by few spheres and capsules |
 //! | `separation` | distance, witness points and normal of a segment and any shape |
 //! | `convex_pair` | distance of two convex shapes |
 //! | `triangles` | triangles for drawing |
@@ -25,6 +26,7 @@ mod body_block;
 mod bounding_tree;
 mod collision_crate;
 mod convex_hull;
+mod cover;
 mod ellipsoid;
 mod geometry;
 mod grid;
@@ -44,12 +46,13 @@ mod triangle;
 mod triangles;
 
 pub(crate) use body_block::{BodyBlock, clear_of_each_other};
-pub(crate) use segment_distance::{LineSegment, distance_between};
-pub(crate) use separation::capsules_nearest;
-pub(crate) use shape_index::ShapeIndex;
 pub use convex_hull::Hull;
+pub use cover::Cover;
 pub use geometry::Geometry;
 pub use grid::Grid;
 pub use mesh::Mesh;
 pub use point_cloud::PointCloud;
+pub(crate) use segment_distance::{LineSegment, distance_between};
+pub(crate) use separation::capsules_nearest;
 pub use shape::{BoundingBall, Shape};
+pub(crate) use shape_index::ShapeIndex;

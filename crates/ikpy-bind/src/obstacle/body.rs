@@ -89,9 +89,7 @@ impl PyObstacle {
             Geometry::ConvexMesh(hull) => ((hull.points().to_vec(),).into_pyobject(py)?, none),
             Geometry::Mesh(mesh) => ((points(py, mesh.vertices())?, faces(py, mesh.faces())?).into_pyobject(py)?, none),
             Geometry::PointCloud(cloud) => ((points(py, cloud.points())?, cloud.radius()).into_pyobject(py)?, none),
-            Geometry::Grid(grid) => {
-                ((grid.origin(), grid.voxel(), occupied(py, grid)?).into_pyobject(py)?, none)
-            }
+            Geometry::Grid(grid) => ((grid.origin(), grid.voxel(), occupied(py, grid)?).into_pyobject(py)?, none),
         })
     }
 }
