@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::checked_shape::BoundingBall;
 use super::collision_crate::Polyhedron;
-use super::shape::BoundingBall;
 use super::tangent::Tangent;
 
 /// The convex hull of some points.

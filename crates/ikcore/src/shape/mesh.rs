@@ -259,8 +259,8 @@ by_instructions! {
 
 #[cfg(test)]
 mod tests {
+    use super::super::checked_shape::Shape;
     use super::super::geometry::Geometry;
-    use super::super::shape::Shape;
     use super::super::triangle::nearest_on_triangle;
     use super::*;
     use crate::rng::{self, LazyRng};

@@ -10,7 +10,7 @@ mod stl;
 use std::path::Path;
 
 use crate::error::{Error, Result, shortened};
-use crate::shape::{Mesh, Shape};
+use crate::shape::Shape;
 
 /// Corners and triangles of a file, or what is wrong with it.
 type Parsed = std::result::Result<Triangles, String>;
@@ -93,12 +93,12 @@ fn number(text: &str) -> std::result::Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::{Geometry, Mesh};
+    use crate::shape::Geometry;
 
-    fn parsed(name: &str, text: &str) -> std::result::Result<(Vec<[f64; 3]>, Vec<[u32; 3]>), String> {
+    fn parsed(name: &str, text: &str) -> Parsed {
         let shape = parse_mesh(name, text.as_bytes(), [1.0; 3]).map_err(|error| error.to_string())?;
         let Geometry::Mesh(mesh) = shape.geometry() else { unreachable!() };
-        Ok((Mesh::vertices(mesh).to_vec(), mesh.faces().to_vec()))
+        Ok(Triangles { vertices: mesh.vertices().to_vec(), faces: mesh.faces().to_vec() })
     }
 
     const CORNERS: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0], [4.0, 5.0, 7.0]];
@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn stl_is_read_as_text_and_binary() {
         let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 2 3\nvertex 4 5 7\nendloop\nendfacet\nendsolid";
-        assert_eq!(parsed("a.STL", text).unwrap(), (CORNERS.to_vec(), vec![[0, 1, 2]]));
+        assert_eq!(parsed("a.STL", text).unwrap(), Triangles { vertices: CORNERS.to_vec(), faces: vec![[0, 1, 2]] });
         // Some binary files begin like text.
         let mut binary = b"solid".to_vec();
         binary.resize(80, b' ');
@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn obj_polygons_become_triangles() {
         let text = "# a\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nvn 0 0 1\nv 0 1 0\nusemtl m\nf 1//1 2/3/4 3 -1\n";
-        let (vertices, faces) = parsed("a.obj", text).unwrap();
+        let Triangles { vertices, faces } = parsed("a.obj", text).unwrap();
         assert_eq!((vertices.len(), faces), (4, vec![[0, 1, 2], [0, 2, 3]]));
     }
 
@@ -145,7 +145,7 @@ mod tests {
         let scene = "<node id=\"one\"><translate>10 0 0</translate><instance_geometry url=\"#g\"/></node><node><scale>2 2 2</scale>\
                      <node><rotate>0 0 1 90</rotate><instance_geometry url=\"#g\"/></node></node>";
         let text = dae("<unit meter=\"0.01\"/><up_axis>Y_UP</up_axis>", scene);
-        let (vertices, faces) = parsed("a.dae", &text).unwrap();
+        let Triangles { vertices, faces } = parsed("a.dae", &text).unwrap();
         let expected = [
             [0.1, 0.0, 0.0],
             [0.11, 0.02, 0.03],

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use super::parts::{extent, principal_axes};
 use crate::error::Result;
+use crate::shape::checked_shape::Shape;
 use crate::shape::collision_crate::Polyhedron;
-use crate::shape::shape::Shape;
 use crate::shape::tangent::nearest_on_segment;
 
 /// A capsule that holds the points it was made for (m).

@@ -9,8 +9,8 @@ mod tightness;
 
 use serde::{Deserialize, Serialize};
 
+use super::checked_shape::Shape;
 use super::mesh::Mesh;
-use super::shape::Shape;
 use crate::error::Result;
 use fit::{FittedCapsule, rough_volume, smallest_capsule};
 use parts::Part;

@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 
 use crate::rng;
 use crate::shape::bounding_tree::Aabb;
+use crate::shape::checked_shape::Shape;
 use crate::shape::geometry::Geometry;
 use crate::shape::mesh::Mesh;
-use crate::shape::shape::Shape;
 use crate::shape::signed_distance::at_right_angles;
 
 /// Points drawn for the volume of the cover.
