@@ -2243,6 +2243,7 @@ def nearest(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = N
     Raises:
         InvalidInputError: a robot without capsules, or an obstacle that is not of `bik.obstacles`.
     """
+
 def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any:
     """Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
     for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
