@@ -82,7 +82,8 @@ impl BodyBlock {
 
     /// Whether two lanes hold the same capsule, as do those that fill a block up.
     fn is_same(&self, lane: usize, other: usize) -> bool {
-        (0..3).all(|k| self.start[k].0[lane] == self.start[k].0[other] && self.along[k].0[lane] == self.along[k].0[other])
+        (0..3)
+            .all(|k| self.start[k].0[lane] == self.start[k].0[other] && self.along[k].0[lane] == self.along[k].0[other])
             && self.radius.0[lane] == self.radius.0[other]
     }
 
