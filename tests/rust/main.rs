@@ -34,5 +34,6 @@ mod time_optimal;
 mod tracking;
 mod tracking_paper;
 mod trajectory;
+mod tree;
 mod urdf;
 mod znnbas;

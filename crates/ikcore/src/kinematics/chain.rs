@@ -119,7 +119,7 @@ impl ChainFolder {
 }
 
 /// A rotation whose z axis is `axis`; exact if the axis is a coordinate axis.
-fn basis_with_z_along(axis: &Vector3<f64>) -> Matrix3<f64> {
+pub(super) fn basis_with_z_along(axis: &Vector3<f64>) -> Matrix3<f64> {
     let helper = if axis.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
     let x = (helper - axis * axis.dot(&helper)).normalize();
     Matrix3::from_columns(&[x, axis.cross(&x), *axis])

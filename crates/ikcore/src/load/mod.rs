@@ -8,3 +8,4 @@ mod planar;
 mod urdf;
 
 pub use dh::{Dh, DhTable};
+pub use urdf::UrdfOptions;

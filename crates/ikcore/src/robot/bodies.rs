@@ -2,12 +2,10 @@
 
 use super::link_capsule::{Bodies, LinkCapsule};
 use super::model::Robot;
-use crate::error::{Error, Result, require_finite, shortened, suggestion};
+use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::{LinkFrame, StageMotion};
-use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::vector::distance;
-use crate::wording::listed;
 
 /// Shorter segments count as points (m).
 const SHORTEST: f64 = 1e-9;
@@ -30,14 +28,7 @@ impl Robot {
     /// [`Error::UnknownLink`], [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius.
     pub fn with_capsules(&self, capsules: Vec<LinkCapsule>) -> Result<Self> {
         for (i, capsule) in capsules.iter().enumerate() {
-            if !self.link_names().any(|name| name == capsule.link) {
-                return Err(Error::UnknownLink {
-                    robot: self.name().into(),
-                    name: shortened(&capsule.link),
-                    suggestion: suggestion(&capsule.link, self.link_names()),
-                    known: listed(self.link_names()),
-                });
-            }
+            self.link_number(&capsule.link)?;
             let ends = [capsule.a, capsule.b];
             require_finite(&format!("capsule {i} of link '{}'", capsule.link), ends.as_flattened(), |k| {
                 format!("coordinate {} of end {}", ["x", "y", "z"][k % 3], ["a", "b"][k / 3])
@@ -83,12 +74,6 @@ impl Robot {
             body + 1
         );
         Error::InvalidRobot { robot: self.name().into(), problem }
-    }
-
-    /// Number of moving elements before a link, and the frame of the link relative to the last of them.
-    pub(crate) fn place_of_link(&self, link: &str) -> Option<(usize, Frame)> {
-        let (found, _) = self.chain().links.iter().zip(self.link_names()).find(|(_, name)| *name == link)?;
-        Some((found.stages, found.offset))
     }
 
     /// Largest rotation (rad) and translation (m) of moving element `stage` when each joint changes by up to `reach`.

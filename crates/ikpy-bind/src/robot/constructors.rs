@@ -1,8 +1,9 @@
 //! Constructors of `Robot`: URDF, Denavit-Hartenberg tables, planar arms, built-in robots.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use ikcore::load::{Dh, DhTable};
+use ikcore::load::{Dh, DhTable, UrdfOptions};
 use ikcore::robot::{JointKind, Robot};
 use pyo3::prelude::*;
 
@@ -19,6 +20,8 @@ impl PyRobot {
     ///     path_or_xml: a file, or text that contains "<".
     ///     base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
     ///     tip: link at the end of the chain; None: the only leaf.
+    ///     hold: values (rad, m) of joints beside the chain, such as {"finger_joint": 0.04}; the others are held at zero, or at
+    ///         the limit nearest to it.
     ///
     /// Joints may be revolute, continuous, prismatic, fixed or mimic. Collision spheres, cylinders, capsules and boxes become
     /// `capsules` that enclose them; visuals, meshes and unknown tags are ignored, and so is `safety_controller`. A missing
@@ -28,11 +31,12 @@ impl PyRobot {
     ///     UrdfError: not XML, no joint, a cycle, two roots, a zero axis, or several leaves and no `tip`.
     ///     UnknownNameError: no link of that name; the message lists them.
     #[staticmethod]
-    #[pyo3(signature = (path_or_xml, *, base=None, tip=None))]
+    #[pyo3(signature = (path_or_xml, *, base=None, tip=None, hold=None))]
     fn from_urdf(
         path_or_xml: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = crate::convert::optional_text)] base: Option<&str>,
         #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
+        hold: Option<BTreeMap<String, f64>>,
     ) -> PyResult<Self> {
         let source = match path_or_xml.extract::<String>() {
             Ok(text) => text,
@@ -44,7 +48,9 @@ impl PyRobot {
                 }
             },
         };
-        Robot::from_urdf(&source, base, tip).map(Self::from).map_err(raise)
+        let hold = hold.unwrap_or_default().into_iter().collect();
+        let options = UrdfOptions { base: base.map(str::to_owned), tip: tip.map(str::to_owned), hold };
+        Robot::from_urdf_with(&source, &options).map(Self::from).map_err(raise)
     }
 
     /// Makes a robot from Denavit-Hartenberg parameters, one row per joint.

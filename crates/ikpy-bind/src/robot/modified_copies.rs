@@ -1,5 +1,7 @@
 //! Modified copies of a robot: other tool, base, limits, capsules, or random errors.
 
+use std::collections::BTreeMap;
+
 use ikcore::rng;
 use ikcore::robot::{Joint, LinkCapsule};
 use pyo3::prelude::*;
@@ -37,6 +39,16 @@ impl PyRobot {
             joint.velocity = velocity.as_ref().map_or(joint.velocity, |values| values[i]);
         };
         self.core.with_limits(change).map(Self::from).map_err(raise)
+    }
+
+    /// Returns a copy with joints beside the chain held elsewhere, such as `with_held({"finger_joint": 0.04})` (rad, m).
+    ///
+    /// Raises:
+    ///     UnknownNameError: no held joint of that name; the message lists them.
+    ///     LimitError: a value outside the limits of the joint.
+    fn with_held(&self, hold: BTreeMap<String, f64>) -> PyResult<Self> {
+        let held = hold.iter().map(|(name, value)| (name.as_str(), *value));
+        self.core.with_held(held).map(Self::from).map_err(raise)
     }
 
     /// Returns a copy with collision capsules: either one of `radius` (m) along each link, or the given ones, each (link, a,

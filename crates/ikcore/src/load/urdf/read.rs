@@ -1,5 +1,6 @@
 //! `Robot::from_urdf`: from a file or its text to a robot.
 
+use std::borrow::Cow;
 use std::string::FromUtf8Error;
 
 use super::chain;
@@ -7,6 +8,19 @@ use super::document::Document;
 use super::tree::Tree;
 use crate::error::{Error, Result, shortened};
 use crate::robot::Robot;
+
+/// How a URDF becomes a robot.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct UrdfOptions {
+    /// Link at the start of the chain; `None`: the root.
+    pub base: Option<String>,
+    /// Link at the end of the chain; `None`: the only leaf below the base.
+    pub tip: Option<String>,
+    /// Values of joints beside the chain (rad, m); the others are held at zero or at the limit nearest to it.
+    pub hold: Vec<(String, f64)>,
+    /// An SRDF, as a file or text, for [`with_srdf`](Robot::with_srdf).
+    pub srdf: Option<String>,
+}
 
 impl Robot {
     /// Reads a robot from a URDF file, or from the XML itself (a string that contains `<`).
@@ -18,6 +32,10 @@ impl Robot {
     /// the master's; a master that is not on the chain becomes an independent joint at the position of its first mimic
     /// joint. Only joints on the chain, and masters, are checked: an unsupported gripper does not prevent loading an
     /// arm.
+    ///
+    /// The links beside the chain are kept ([`all_link_names`](Robot::all_link_names)), and their joints
+    /// [held](Robot::held_joints) at zero or at the limit nearest to it; mimic joints beside the chain follow their masters.
+    /// Floating, planar and spherical joints beside the chain stay in their origin.
     ///
     /// Limits: a revolute or prismatic joint with neither `lower` nor `upper` is unlimited (URDF's default of zero for
     /// both would lock it); if one is given, the other is zero, as URDF specifies. Without `velocity` the speed is
@@ -32,28 +50,50 @@ impl Robot {
     /// [`Error::UnknownLink`] and [`Error::AmbiguousTip`] for base and tip; those of
     /// [`ChainBuilder::build`](crate::robot::ChainBuilder::build) for impossible limits.
     pub fn from_urdf(path_or_xml: &str, base: Option<&str>, tip: Option<&str>) -> Result<Self> {
-        let document = if path_or_xml.contains('<') {
-            Document::parse(path_or_xml)?
-        } else {
-            Document::parse(&read(path_or_xml)?)?
-        };
+        let owned = |name: Option<&str>| name.map(str::to_owned);
+        Self::from_urdf_with(path_or_xml, &UrdfOptions { base: owned(base), tip: owned(tip), ..UrdfOptions::default() })
+    }
+
+    /// [`from_urdf`](Self::from_urdf) with further options.
+    ///
+    /// # Errors
+    /// Those of [`from_urdf`](Self::from_urdf), [`with_held`](Self::with_held) and [`with_srdf`](Self::with_srdf).
+    pub fn from_urdf_with(path_or_xml: &str, options: &UrdfOptions) -> Result<Self> {
+        let document = Document::parse(&text_of(path_or_xml, read_urdf)?)?;
         let tree = Tree::new(&document)?;
-        let base = match base {
+        let base = match &options.base {
             Some(name) => tree.link(name)?,
             None => tree.root(),
         };
-        let tip = match tip {
+        let tip = match &options.tip {
             Some(name) => tree.link(name)?,
             None => tree.only_leaf_below(base)?,
         };
-        chain::build(&document, base, &tree.path(base, tip)?)
+        let robot = chain::build(&document, &tree, base, tip)?;
+        let robot = match &options.hold[..] {
+            [] => robot,
+            hold => robot.with_held(hold.iter().map(|(joint, value)| (joint.as_str(), *value)))?,
+        };
+        match &options.srdf {
+            None => Ok(robot),
+            Some(srdf) => robot.with_srdf(srdf),
+        }
     }
 }
 
-fn read(path: &str) -> Result<String> {
+/// The text itself if it contains `<`, otherwise that of the file.
+pub(super) fn text_of(path_or_xml: &str, read: impl Fn(&str) -> Result<String>) -> Result<Cow<'_, str>> {
+    if path_or_xml.contains('<') { Ok(Cow::Borrowed(path_or_xml)) } else { read(path_or_xml).map(Cow::Owned) }
+}
+
+pub(super) fn read(path: &str) -> Result<String> {
     let bytes =
         std::fs::read(path).map_err(|error| Error::Unreadable { path: shortened(path), problem: error.to_string() })?;
-    let text = String::from_utf8(bytes).map_err(|error| not_utf8(&error))?;
+    String::from_utf8(bytes).map_err(|error| not_utf8(&error))
+}
+
+fn read_urdf(path: &str) -> Result<String> {
+    let text = read(path)?;
     if let Some(stem) = path.strip_suffix(".xacro") {
         let stem = stem.strip_suffix(".urdf").unwrap_or(stem);
         let problem = format!("'{path}' is a xacro file: run `xacro {path} > {stem}.urdf` and load the result");
