@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::segment_distance::LineSegment;
 use crate::math::{Frame, MAX_DOF};
 use crate::robot::Robot;
+use crate::shape::LineSegment;
 
 /// Frames reached after 0, 1, 2, ... moving elements.
 pub(super) type Frames = [Frame; MAX_DOF + 1];

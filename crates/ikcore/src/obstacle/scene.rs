@@ -1,26 +1,16 @@
 //! A robot among obstacles: pairs of bodies that can touch, and their distances.
 
-use std::fmt;
-
 use nalgebra::Vector3;
 
-use super::link_displacement::{Frames, displacement};
-use super::segment_distance::{LineSegment, distance_between, distance_to_obstacle};
-use super::shape::Obstacle;
+use super::body_groups::BodyGroups;
+use super::carried::{Carried, Placement, carried};
+use super::contact::{Contact, NearestContact, Neighbor};
+use super::link_displacement::displacement;
 use crate::error::{Error, Result};
-use crate::math::arithmetic::NoFma;
 use crate::math::{Frame, MAX_DOF};
 use crate::robot::{Joint, Robot};
+use crate::shape::{Shape, capsules_nearest, distance_between};
 use crate::wording::listed;
-
-/// A capsule of the robot, seen from the moving element that carries it.
-#[derive(Debug, Clone)]
-struct Carried {
-    link: String,
-    stages: usize,
-    ends: [[f64; 3]; 2],
-    radius: f64,
-}
 
 /// Two things that could touch.
 #[derive(Debug, Clone, Copy)]
@@ -29,35 +19,6 @@ pub(super) enum BodyPair {
     Obstacle { capsule: usize, obstacle: usize },
     /// Two capsules of the robot; `near` is nearer to the base.
     Capsules { near: usize, far: usize },
-}
-
-/// The body that a link is near.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Body {
-    /// The obstacle of this index, and its kind.
-    Obstacle(usize, &'static str),
-    /// Another link.
-    Link(String),
-}
-
-/// A link, the body it is near, and their distance.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Contact {
-    /// The link.
-    pub link: String,
-    /// The body that it is near to.
-    pub other: Body,
-    /// Distance between their surfaces (m); negative by how deep they reach into each other.
-    pub distance: f64,
-}
-
-impl fmt::Display for Body {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Obstacle(index, name) => write!(f, "obstacle {index} ({name})"),
-            Self::Link(name) => write!(f, "link '{name}'"),
-        }
-    }
 }
 
 /// The capsules of a robot, the obstacles, and the pairs of bodies that must not touch.
@@ -69,26 +30,20 @@ impl fmt::Display for Body {
 pub struct Scene<'a> {
     robot: &'a Robot,
     carried: Vec<Carried>,
-    obstacles: &'a [Obstacle],
+    groups: BodyGroups,
+    obstacles: &'a [Shape],
     pub(super) pairs: Vec<BodyPair>,
-}
-
-/// Where everything is at one configuration.
-#[derive(Debug, Clone)]
-pub(super) struct Placement {
-    pub frames: Frames,
-    pub segments: Vec<LineSegment>,
 }
 
 impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::NoCapsules`] if the robot has none, or if some of its collision shapes could not be read;
     /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane.
-    pub fn new(robot: &'a Robot, obstacles: &'a [Obstacle]) -> Result<Self> {
+    pub fn new(robot: &'a Robot, obstacles: &'a [Shape]) -> Result<Self> {
         if robot.capsules().is_empty() || !robot.unread_collision_shapes().is_empty() {
             return Err(no_capsules(robot));
         }
-        if let Some(i) = obstacles.iter().position(Obstacle::is_flat)
+        if let Some(i) = obstacles.iter().position(Shape::is_flat)
             && !moves_in_plane(robot)
         {
             let problem = format!(
@@ -98,14 +53,14 @@ impl<'a> Scene<'a> {
             );
             return Err(Error::InvalidObstacle { problem });
         }
-        let carried = robot.capsules().iter().filter_map(|capsule| {
-            let (stages, offset) = robot.place_of_link(&capsule.link)?;
-            let ends = [capsule.a, capsule.b].map(|end| offset.place::<NoFma>(&end));
-            Some(Carried { link: capsule.link.clone(), stages, ends, radius: capsule.radius })
-        });
-        let carried = carried.collect();
-        let mut scene = Self { robot, carried, obstacles, pairs: vec![] };
+        let carried = carried(robot);
+        let groups = BodyGroups::new(&carried, obstacles);
+        let mut scene = Self { robot, carried, groups, obstacles, pairs: vec![] };
         scene.pairs = scene.self_pairs();
+        scene.groups.forbid_contacts(scene.pairs.iter().filter_map(|pair| match pair {
+            BodyPair::Capsules { near, far } => Some([*near, *far]),
+            BodyPair::Obstacle { .. } => None,
+        }));
         let moving = (0..scene.carried.len()).filter(|i| scene.carried[*i].stages > 0);
         let with_obstacles = moving
             .flat_map(|capsule| (0..obstacles.len()).map(move |obstacle| BodyPair::Obstacle { capsule, obstacle }));
@@ -116,6 +71,7 @@ impl<'a> Scene<'a> {
     /// The same scene, but links may cross each other, as in a planar arm.
     pub fn without_self_collision(mut self) -> Self {
         self.pairs.retain(|pair| matches!(pair, BodyPair::Obstacle { .. }));
+        self.groups.allow_contacts();
         self
     }
 
@@ -130,10 +86,19 @@ impl<'a> Scene<'a> {
     /// [`Error::WrongLength`] or [`Error::NotFinite`].
     pub fn nearest(&self, q: &[f64]) -> Result<Option<Contact>> {
         self.robot.check("joint angles", q)?;
-        let placement = self.place(q);
-        let distances = self.pairs.iter().map(|pair| (self.distance(*pair, &placement, f64::INFINITY), *pair));
-        let nearest = distances.min_by(|one, other| one.0.total_cmp(&other.0));
-        Ok(nearest.map(|(distance, pair)| self.contact(pair, distance)))
+        Ok(self.nearest_pair(&self.place(q)).map(|(distance, pair)| self.contact(pair, distance)))
+    }
+
+    fn nearest_pair(&self, placement: &Placement) -> Option<(f64, BodyPair)> {
+        let mut nearest: Option<(f64, BodyPair)> = None;
+        for pair in &self.pairs {
+            let enough = nearest.map_or(f64::INFINITY, |(distance, _)| distance);
+            let distance = self.distance(*pair, placement, enough);
+            if distance < enough {
+                nearest = Some((distance, *pair));
+            }
+        }
+        nearest
     }
 
     /// The smallest distance (m) at `q` (n,); infinite if nothing can touch.
@@ -152,10 +117,72 @@ impl<'a> Scene<'a> {
         qs.chunks(self.robot.dof()).map(|q| self.clearance(q)).collect()
     }
 
-    /// Whether everything is at least `margin` (m) apart at `q`.
-    pub fn is_clear(&self, q: &[f64], margin: f64) -> bool {
+    /// The nearest pair at `q` (n,) with its place, and the derivative of its distance by the joints; `None` if nothing can
+    /// touch.
+    ///
+    /// # Errors
+    /// As [`nearest`](Self::nearest).
+    pub fn nearest_contact(&self, q: &[f64]) -> Result<Option<NearestContact>> {
+        self.robot.check("joint angles", q)?;
         let placement = self.place(q);
-        self.pairs.iter().all(|pair| self.distance(*pair, &placement, margin) >= margin)
+        let Some((distance, pair)) = self.nearest_pair(&placement) else { return Ok(None) };
+        let (point, normal, first) = match pair {
+            BodyPair::Obstacle { capsule, obstacle } => {
+                let radius = self.carried[capsule].radius;
+                let (point, normal) = self.obstacles[obstacle].nearest_to_capsule(&placement.segments[capsule], radius);
+                (point, normal, 0)
+            }
+            BodyPair::Capsules { near, far } => {
+                let [own, other] = [far, near].map(|i| (&placement.segments[i], self.carried[i].radius));
+                let (point, normal) = capsules_nearest(own, other);
+                (point, normal, self.carried[near].stages)
+            }
+        };
+        let moved = match pair {
+            BodyPair::Obstacle { capsule, .. } => self.carried[capsule].stages,
+            BodyPair::Capsules { far, .. } => self.carried[far].stages,
+        };
+        // Screws count only moving elements; the last may be left out if they move nothing.
+        let mut gradient = vec![0.0; self.robot.dof()];
+        for screw in self.robot.screws(q).iter().take(moved).skip(first) {
+            let [x, y, z, ..] = screw.column(&point.into());
+            gradient[screw.joint] += normal.dot(&Vector3::new(x, y, z));
+        }
+        let contact = self.contact(pair, distance);
+        Ok(Some(NearestContact { contact, point: point.into(), normal: normal.into(), gradient }))
+    }
+
+    /// Whether everything is at least `margin` >= 0 (m) apart at `q`, which has one finite entry per joint. Never true for
+    /// bodies that are nearer.
+    pub fn is_clear(&self, q: &[f64], margin: f64) -> bool {
+        let mut frames = [Frame::IDENTITY; MAX_DOF + 1];
+        self.robot.write_stage_frames(q, &mut frames);
+        self.groups.are_clear(&frames, self.obstacles, margin)
+    }
+
+    /// [`is_clear`](Self::is_clear) at each of the configurations stored one after another, four at a time.
+    ///
+    /// # Errors
+    /// As [`nearest`](Self::nearest), or [`Error::OutOfRange`] for a negative margin.
+    pub fn which_are_clear(&self, qs: &[f64], margin: f64) -> Result<Vec<bool>> {
+        if !(margin >= 0.0 && margin.is_finite()) {
+            return Err(Error::out_of_range("margin", "zero or more and finite", margin));
+        }
+        let n = self.robot.dof();
+        qs.chunks(n).try_for_each(|q| self.robot.check("joint angles", q))?;
+        let mut clear = Vec::with_capacity(qs.len() / n);
+        let mut frames = [[Frame::IDENTITY; MAX_DOF + 1]; 4];
+        for four in qs.chunks(4 * n) {
+            let count = four.len() / n;
+            for (i, frames) in frames.iter_mut().enumerate() {
+                // Lanes without a configuration repeat the last one.
+                let i = i.min(count - 1);
+                self.robot.write_stage_frames(&four[i * n..(i + 1) * n], frames);
+            }
+            let lanes = self.groups.four_are_clear(&frames, self.obstacles, margin).0;
+            clear.extend(lanes[..count].iter().map(|lane| *lane == 1.0));
+        }
+        Ok(clear)
     }
 
     /// The contact of a pair that is `distance` apart (m).
@@ -163,28 +190,21 @@ impl<'a> Scene<'a> {
         let link = |capsule: usize| self.carried[capsule].link.clone();
         match pair {
             BodyPair::Obstacle { capsule, obstacle } => {
-                let other = Body::Obstacle(obstacle, self.obstacles[obstacle].name());
+                let other = Neighbor::Obstacle(obstacle, self.obstacles[obstacle].name());
                 Contact { link: link(capsule), other, distance }
             }
-            BodyPair::Capsules { near, far } => Contact { link: link(far), other: Body::Link(link(near)), distance },
+            BodyPair::Capsules { near, far } => Contact { link: link(far), other: Neighbor::Link(link(near)), distance },
         }
     }
 
     pub(super) fn place(&self, q: &[f64]) -> Placement {
-        let mut placement = Placement {
-            frames: [Frame::IDENTITY; MAX_DOF + 1],
-            segments: vec![[Vector3::zeros(); 2]; self.carried.len()],
-        };
+        let mut placement = Placement::of(self.carried.len());
         self.place_into(q, &mut placement);
         placement
     }
 
     pub(super) fn place_into(&self, q: &[f64], placement: &mut Placement) {
-        self.robot.write_stage_frames(q, &mut placement.frames);
-        for (segment, carried) in placement.segments.iter_mut().zip(&self.carried) {
-            let frame = &placement.frames[carried.stages];
-            *segment = carried.ends.map(|end| frame.place::<NoFma>(&end).into());
-        }
+        placement.update(self.robot, &self.carried, q);
     }
 
     /// A lower bound of the distance between the surfaces of a pair (m), exact to 1e-9 where it is below `enough`.
@@ -192,7 +212,7 @@ impl<'a> Scene<'a> {
         match pair {
             BodyPair::Obstacle { capsule, obstacle } => {
                 let radius = self.carried[capsule].radius;
-                distance_to_obstacle(&placement.segments[capsule], &self.obstacles[obstacle], enough + radius) - radius
+                self.obstacles[obstacle].distance_to_segment(&placement.segments[capsule], enough + radius) - radius
             }
             BodyPair::Capsules { near, far } => {
                 let radii = self.carried[near].radius + self.carried[far].radius;

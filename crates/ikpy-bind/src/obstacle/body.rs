@@ -2,24 +2,27 @@
 
 use ikcore::math::Pose;
 use ikcore::nalgebra::Matrix3;
-use ikcore::obstacle::{Obstacle, Shape};
+use ikcore::shape::{Geometry, Shape};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
-use crate::convert::{Array, table};
+use crate::convert::{Array, counted, table};
 use crate::hash::content_hash;
 use crate::options::NewArguments;
 
-/// The base class of obstacles: a convex body, fixed in the frame of the robot's base.
+use super::large::{faces, occupied, points};
+
+/// The base class of obstacles: a shape, fixed in the frame of the robot's base.
 #[pyclass(name = "Obstacle", module = "beetle_ik.obstacles", frozen, eq, subclass)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyObstacle {
-    pub(super) core: Obstacle,
+    pub(super) core: Shape,
 }
 
 #[pymethods]
 impl PyObstacle {
-    /// Triangles of the surface (t, 3, 3) (m), for drawing. The corners of triangles lie on the surface.
+    /// Triangles of the surface (t, 3, 3) (m), for drawing. Their corners lie on the surface; a half-space is a square of 4 m,
+    /// a point cloud octahedra about at most 2,000 of its points.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         let triangles = self.core.triangles();
@@ -28,17 +31,36 @@ impl PyObstacle {
     }
 
     fn __repr__(&self) -> String {
-        let arguments = match self.core.shape() {
-            Shape::Sphere { center, radius } => format!("{center:?}, {radius:?}"),
-            Shape::Box { pose, size } => {
+        let arguments = match self.core.geometry() {
+            Geometry::Sphere { center, radius } => format!("{center:?}, {radius:?}"),
+            Geometry::Box { pose, size } => {
                 format!("{:?}, {size:?}{}", point_of(pose), rotation_text(pose))
             }
-            Shape::Capsule { a, b, radius } => format!("{a:?}, {b:?}, {radius:?}"),
-            Shape::Ellipsoid { pose, semi_axes } => {
+            Geometry::Capsule { a, b, radius } => format!("{a:?}, {b:?}, {radius:?}"),
+            Geometry::Ellipsoid { pose, semi_axes } => {
                 format!("{:?}, {semi_axes:?}{}", point_of(pose), rotation_text(pose))
             }
-            Shape::Ellipse { center, semi_axes, angle } => format!("{center:?}, {semi_axes:?}, angle={angle:?}"),
-            Shape::ConvexMesh(hull) => format!("{:?}", hull.points()),
+            Geometry::Ellipse { center, semi_axes, angle } => format!("{center:?}, {semi_axes:?}, angle={angle:?}"),
+            Geometry::Cylinder { center, axis, radius, length } => {
+                format!("{center:?}, {axis:?}, {radius:?}, {length:?}")
+            }
+            Geometry::HalfSpace { normal, offset } => format!("{normal:?}, {offset:?}"),
+            Geometry::ConvexMesh(hull) => format!("{:?}", hull.points()),
+            Geometry::Mesh(mesh) => format!(
+                "{}, {}{}",
+                counted(mesh.vertices().len(), "vertex"),
+                counted(mesh.faces().len(), "face"),
+                if mesh.is_closed() { ", closed" } else { ", open" }
+            ),
+            Geometry::PointCloud(cloud) => {
+                format!("{}, radius={:?}", counted(cloud.points().len(), "point"), cloud.radius())
+            }
+            Geometry::Grid(grid) => {
+                let [x, y, z] = grid.counts();
+                let occupied = grid.occupied().iter().filter(|occupied| **occupied).count();
+                let voxel = grid.voxel();
+                format!("{:?}, {voxel:?}, {x} x {y} x {z} voxels, {occupied} occupied", grid.origin())
+            }
         };
         format!("obstacles.{}({arguments})", self.core.name())
     }
@@ -50,17 +72,26 @@ impl PyObstacle {
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let none = PyDict::new(py);
         let turned = |pose: &Pose| rotation_rows(pose).map(|rows| [("rotation", rows)].into_py_dict(py)).transpose();
-        Ok(match self.core.shape() {
-            Shape::Sphere { center, radius } => ((*center, *radius).into_pyobject(py)?, none),
-            Shape::Box { pose, size } => ((point_of(pose), *size).into_pyobject(py)?, turned(pose)?.unwrap_or(none)),
-            Shape::Capsule { a, b, radius } => ((*a, *b, *radius).into_pyobject(py)?, none),
-            Shape::Ellipsoid { pose, semi_axes } => {
+        Ok(match self.core.geometry() {
+            Geometry::Sphere { center, radius } => ((*center, *radius).into_pyobject(py)?, none),
+            Geometry::Box { pose, size } => ((point_of(pose), *size).into_pyobject(py)?, turned(pose)?.unwrap_or(none)),
+            Geometry::Capsule { a, b, radius } => ((*a, *b, *radius).into_pyobject(py)?, none),
+            Geometry::Ellipsoid { pose, semi_axes } => {
                 ((point_of(pose), *semi_axes).into_pyobject(py)?, turned(pose)?.unwrap_or(none))
             }
-            Shape::Ellipse { center, semi_axes, angle } => {
+            Geometry::Ellipse { center, semi_axes, angle } => {
                 ((*center, *semi_axes).into_pyobject(py)?, [("angle", *angle)].into_py_dict(py)?)
             }
-            Shape::ConvexMesh(hull) => ((hull.points().to_vec(),).into_pyobject(py)?, none),
+            Geometry::Cylinder { center, axis, radius, length } => {
+                ((*center, *axis, *radius, *length).into_pyobject(py)?, none)
+            }
+            Geometry::HalfSpace { normal, offset } => ((*normal, *offset).into_pyobject(py)?, none),
+            Geometry::ConvexMesh(hull) => ((hull.points().to_vec(),).into_pyobject(py)?, none),
+            Geometry::Mesh(mesh) => ((points(py, mesh.vertices())?, faces(py, mesh.faces())?).into_pyobject(py)?, none),
+            Geometry::PointCloud(cloud) => ((points(py, cloud.points())?, cloud.radius()).into_pyobject(py)?, none),
+            Geometry::Grid(grid) => {
+                ((grid.origin(), grid.voxel(), occupied(py, grid)?).into_pyobject(py)?, none)
+            }
         })
     }
 }
