@@ -3,9 +3,9 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::Scene;
-use ikcore::shape::Shape;
 use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::robot::Robot;
+use ikcore::shape::Shape;
 use ikcore::solver::Unattended;
 use ikcore::task::Target;
 

@@ -85,7 +85,7 @@ HELD = "joints that it holds: finger"
         (
             lambda: arm([0.1]),  # type: ignore[arg-type]
             bik.InvalidInputError,
-            "hold must be a dict of joint names and values (rad, m), got a list of length 1",
+            "hold must be a dict of joint names and values (rad, m), got [0.1]",
         ),
         (
             lambda: arm().fk([0, 0], link="lft"),

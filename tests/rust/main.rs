@@ -21,6 +21,7 @@ mod messages;
 mod minimize;
 mod model_free;
 mod obstacle;
+mod pairs;
 mod path;
 mod planning;
 mod point_to_point;

@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::Frame;
-use ikcore::shape::Shape;
 use ikcore::path::{Path, Plane, Polyline, Waypoints};
 use ikcore::planning::{
     AlongPathOptions, Cost, Elbow, Endpoint, Plan, PlanarArm, PointToPointMethod, PointToPointOptions, TipPath, Tpbso,
@@ -12,6 +11,7 @@ use ikcore::planning::{
 };
 use ikcore::rng;
 use ikcore::robot::Robot;
+use ikcore::shape::Shape;
 use ikcore::solver::TrialUpdate;
 use ikcore::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Schedule, Status, Stop, Unattended};
 use ikcore::task::Target;

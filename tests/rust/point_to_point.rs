@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 use ikcore::ik::{AllOptions, solve_all};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::obstacle::Scene;
-use ikcore::shape::Shape;
 use ikcore::planning::{Cost, Endpoint, Plan, PointToPointMethod, PointToPointOptions, Tpbso, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
+use ikcore::shape::Shape;
 use ikcore::solver::{Status, Stop, Unattended};
 use ikcore::task::{Target, Tolerance};
 

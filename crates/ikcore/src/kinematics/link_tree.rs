@@ -9,7 +9,6 @@ use super::chain::{Chain, LinkFrame, StageMotion, basis_with_z_along};
 use super::jacobian::Columns;
 use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
-use crate::math::so3::cross;
 use crate::math::{Frame, MAX_DOF, Pose, pose};
 
 /// A moving element of a branch.
@@ -71,28 +70,47 @@ impl LinkTree {
         frames[*stages].then::<NoFma>(offset)
     }
 
-    /// The moving elements that carry frame number `frame`, the outermost first: the number of the frame that each moves, and
-    /// its motion.
+    /// The moving elements between frame number `frame` and frame number `below` that carries it, the outermost first: the number
+    /// of the frame that each moves, and its motion.
+    #[inline]
     pub fn carriers<'a>(
         &'a self,
         chain: &'a Chain,
         frame: usize,
+        below: usize,
     ) -> impl Iterator<Item = (usize, &'a StageMotion)> + use<'a> {
         let mut at = frame;
         std::iter::from_fn(move || {
-            let moved = (at > 0).then_some(at)?;
+            let moved = (at > below).then_some(at)?;
+            at = self.parent(moved);
             let motion = match moved.checked_sub(self.moving + 1) {
-                None => {
-                    at -= 1;
-                    &chain.motions[moved - 1]
-                }
-                Some(branch) => {
-                    at = self.branches[branch].parent;
-                    &self.branches[branch].motion
-                }
+                None => &chain.motions[moved - 1],
+                Some(branch) => &self.branches[branch].motion,
             };
             Some((moved, motion))
         })
+    }
+
+    /// Number of the frame that frame number `frame` > 0 moves on.
+    fn parent(&self, frame: usize) -> usize {
+        match frame.checked_sub(self.moving + 1) {
+            None => frame - 1,
+            Some(branch) => self.branches[branch].parent,
+        }
+    }
+
+    /// Number of the last frame that carries both of these.
+    #[inline]
+    pub fn meeting(&self, one: usize, other: usize) -> usize {
+        if one.max(other) <= self.moving {
+            return one.min(other);
+        }
+        let (mut one, mut other) = (one, other);
+        while one != other {
+            // A frame comes after the one that it moves on.
+            (one, other) = (one.min(other), self.parent(one.max(other)));
+        }
+        one
     }
 
     /// Writes the geometric Jacobian of a link into `columns`, as [`jacobian`](super::jacobian) does for the tip, and returns the
@@ -100,12 +118,11 @@ impl LinkTree {
     pub fn link_jacobian(&self, chain: &Chain, link: usize, frames: &[Frame], columns: &mut Columns) -> Frame {
         let frame = self.link_frame(link, frames);
         columns.fill([0.0; 6]);
-        for (moved, motion) in self.carriers(chain, self.links[link].stages) {
-            let Frame { axes: [_, _, axis], origin } = &frames[moved];
-            let moment = cross(axis, &std::array::from_fn(|k| frame.origin[k] - origin[k]));
-            let column = &mut columns[motion.joint];
+        for (moved, motion) in self.carriers(chain, self.links[link].stages, 0) {
+            let velocity = motion.velocity(&frames[moved], &frame.origin);
+            let (axis, column) = (&frames[moved].axes[2], &mut columns[motion.joint]);
             for k in 0..3 {
-                column[k] += motion.turn_scale * moment[k] + motion.slide_scale * axis[k];
+                column[k] += velocity[k];
                 column[3 + k] += motion.turn_scale * axis[k];
             }
         }

@@ -7,7 +7,6 @@ use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 use super::carried::Carried;
-use super::link_displacement::Frames;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, by_instructions};
 use crate::math::f64x4::F64x4;
@@ -61,7 +60,7 @@ type Placed = SmallVec<[BodyBlock; BLOCKS]>;
 type Balls = SmallVec<[BodyBlock; GROUPS / 4]>;
 
 impl BodyGroups {
-    /// Groups of `carried`. Bodies that no joint moves are not compared with `obstacles`.
+    /// Groups of `carried`, among `obstacles`.
     pub fn new(carried: &[Carried], obstacles: &[Shape]) -> Self {
         let mut stages: Vec<usize> = carried.iter().map(|body| body.stages).collect();
         stages.sort_unstable_by(|one, other| other.cmp(one));
@@ -109,18 +108,18 @@ impl BodyGroups {
     }
 
     /// Whether everything stays at least `margin` >= 0 (m) apart with the moving elements at `frames`.
-    pub fn are_clear(&self, frames: &Frames, obstacles: &[Shape], margin: f64) -> bool {
+    pub fn are_clear(&self, frames: &[Frame], obstacles: &[Shape], margin: f64) -> bool {
         are_clear(self, frames, obstacles, margin)
     }
 
-    /// In each lane 1 if everything is clear with the moving elements at these four sets of frames, else 0.
-    pub fn four_are_clear(&self, frames: &[Frames; 4], obstacles: &[Shape], margin: f64) -> F64x4 {
+    /// In each lane 1 if everything is clear with the moving elements at `frames`, four configurations side by side, else 0.
+    pub fn four_are_clear(&self, frames: &[Frame<F64x4>], obstacles: &[Shape], margin: f64) -> F64x4 {
         four_are_clear(self, frames, obstacles, margin)
     }
 
     /// The balls around all groups, four in a block.
     #[inline(always)]
-    fn balls<A: Arithmetic>(&self, frames: &Frames) -> Balls {
+    fn balls<A: Arithmetic>(&self, frames: &[Frame]) -> Balls {
         let mut balls = Balls::new();
         for (i, group) in self.groups.iter().enumerate() {
             if i % 4 == 0 {
@@ -143,9 +142,10 @@ impl BodyGroups {
 impl Group {
     fn new(stages: usize, bodies: &[&Carried]) -> Self {
         let ends = || bodies.iter().flat_map(|body| body.ends.map(Vector3::from));
-        let (low, high) = ends().fold((Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)), |(low, high), end| {
-            (low.inf(&end), high.sup(&end))
-        });
+        let (low, high) = ends()
+            .fold((Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)), |(low, high), end| {
+                (low.inf(&end), high.sup(&end))
+            });
         let center = 0.5 * (low + high);
         let reach = |body: &&Carried| {
             let far = body.ends.map(|end| (Vector3::from(end) - center).norm());
@@ -184,7 +184,7 @@ impl Group {
 }
 
 by_instructions! {
-    fn are_clear(all: &BodyGroups, frames: &Frames, obstacles: &[Shape], margin: f64) -> bool {
+    fn are_clear(all: &BodyGroups, frames: &[Frame], obstacles: &[Shape], margin: f64) -> bool {
         let balls = all.balls::<A>(frames);
         let ball = |i: usize| {
             let block = &balls[i / 4];
@@ -192,10 +192,9 @@ by_instructions! {
         };
         // For each group the obstacles that its ball is near to.
         let mut near: SmallVec<[(usize, usize); 32]> = SmallVec::new();
-        let moving = |group: usize| all.groups[group].stages > 0;
         match &all.index {
             Some(index) => {
-                for group in (0..all.groups.len()).filter(|group| moving(*group)) {
+                for group in 0..all.groups.len() {
                     let (center, radius) = ball(group);
                     index.near_ball(&center, radius + margin, |obstacle| near.push((group, obstacle)));
                 }
@@ -206,7 +205,7 @@ by_instructions! {
                         let clear = shape.clear_lanes::<A>(block, margin).0;
                         for lane in 0..4 {
                             let group = 4 * i + lane;
-                            if clear[lane] == 0.0 && group < all.groups.len() && moving(group) {
+                            if clear[lane] == 0.0 && group < all.groups.len() {
                                 near.push((group, obstacle));
                             }
                         }
@@ -247,12 +246,12 @@ by_instructions! {
 }
 
 by_instructions! {
-    fn four_are_clear(all: &BodyGroups, frames: &[Frames; 4], obstacles: &[Shape], margin: f64) -> F64x4 {
+    fn four_are_clear(all: &BodyGroups, frames: &[Frame<F64x4>], obstacles: &[Shape], margin: f64) -> F64x4 {
         let mut clear = F64x4::splat(1.0);
-        let at = |group: &Group| Frame::<F64x4>::of([0, 1, 2, 3].map(|i| &frames[i][group.stages]));
+        let at = |group: &Group| frames[group.stages];
         // In each lane 1 unless a ball is near to something and the lane still matters.
         let settled = |balls_clear: F64x4, clear: &F64x4| (0..4).all(|k| balls_clear.0[k] == 1.0 || clear.0[k] == 0.0);
-        for group in all.groups.iter().filter(|group| group.stages > 0) {
+        for group in &all.groups {
             let at = at(group);
             let ball = BodyBlock::ball_at::<A>(&at, &group.center, group.radius);
             for shape in obstacles {

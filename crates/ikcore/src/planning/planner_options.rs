@@ -7,8 +7,8 @@ use super::motion_limits::MotionLimits;
 use super::tpbso::Tpbso;
 use crate::error::{Error, Result};
 use crate::limits::Limits;
-use crate::shape::Shape;
 use crate::robot::Robot;
+use crate::shape::Shape;
 use crate::solver::{AnySolver, DerivativeFree, Stop};
 
 /// Methods of point-to-point planning.

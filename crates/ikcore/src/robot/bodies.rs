@@ -3,7 +3,7 @@
 use super::link_capsule::{Bodies, LinkCapsule};
 use super::model::Robot;
 use crate::error::{Error, Result, require_finite};
-use crate::kinematics::chain::{LinkFrame, StageMotion};
+use crate::kinematics::chain::LinkFrame;
 use crate::math::arithmetic::NoFma;
 use crate::math::vector::distance;
 
@@ -74,13 +74,6 @@ impl Robot {
             body + 1
         );
         Error::InvalidRobot { robot: self.name().into(), problem }
-    }
-
-    /// Largest rotation (rad) and translation (m) of moving element `stage` when each joint changes by up to `reach`.
-    #[inline]
-    pub(crate) fn stage_travel(&self, stage: usize, reach: &[f64]) -> [f64; 2] {
-        let StageMotion { joint, turn_scale, slide_scale, .. } = self.chain().motions[stage];
-        [turn_scale.abs() * reach[joint], slide_scale.abs() * reach[joint]]
     }
 }
 

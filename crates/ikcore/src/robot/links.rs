@@ -3,14 +3,19 @@
 use super::model::Robot;
 use std::collections::HashMap;
 
+use smallvec::SmallVec;
+
 use super::off_chain::HeldJoint;
 use crate::error::{Error, Result, shortened, suggestion};
 use crate::kinematics::Columns;
-use crate::kinematics::chain::LinkFrame;
+use crate::kinematics::chain::{LinkFrame, StageMotion};
 use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
 use crate::math::{Frame, MAX_DOF, Pose};
 use crate::wording::listed;
+
+/// The frames of all moving elements: MAX_DOF + 1 on the stack, more of them (mimic joints beside the chain) on the heap.
+pub(crate) type FrameBuffer = SmallVec<[Frame; 36]>;
 
 impl Robot {
     /// Names of all links: those of the chain, base to tip, then those that branch off it, parents first.
@@ -71,7 +76,7 @@ impl Robot {
         let mut poses = Vec::with_capacity(16 * n);
         let mut append = |frame: &Frame| poses.extend(frame.then::<NoFma>(offset).rows());
         let mut lanes = vec![F64x4::ZERO; self.dof()];
-        let mut four = vec![Frame::of([&Frame::IDENTITY; 4]); self.tree().frames()];
+        let mut four = self.frame_buffer_four();
         let groups = qs.chunks_exact(4 * self.dof());
         let rest = groups.remainder();
         for group in groups {
@@ -157,18 +162,38 @@ impl Robot {
     }
 
     /// The frames of all moving elements at `q`: 0 is the base, then those of the chain, then those of the branches.
-    fn frames(&self, q: &[f64]) -> Vec<Frame> {
+    fn frames(&self, q: &[f64]) -> FrameBuffer {
         let mut frames = self.frame_buffer();
         self.write_frames(q, &mut frames);
         frames
     }
 
     /// Room for [`write_frames`](Self::write_frames).
-    pub(crate) fn frame_buffer(&self) -> Vec<Frame> {
-        vec![Frame::IDENTITY; self.tree().frames()]
+    #[inline]
+    pub(crate) fn frame_buffer(&self) -> FrameBuffer {
+        FrameBuffer::from_elem(Frame::IDENTITY, self.tree().frames())
+    }
+
+    /// Room for [`write_frames_four`](Self::write_frames_four).
+    pub(crate) fn frame_buffer_four(&self) -> Vec<Frame<F64x4>> {
+        vec![Frame::of([&Frame::IDENTITY; 4]); self.tree().frames()]
+    }
+
+    /// The moving elements between a frame and one below that carries it, the outermost first: the number of the frame that each
+    /// moves, and its motion.
+    #[inline]
+    pub(crate) fn carriers(&self, frame: usize, below: usize) -> impl Iterator<Item = (usize, &StageMotion)> {
+        self.tree().carriers(self.chain(), frame, below)
+    }
+
+    /// Number of the last frame that carries both of these.
+    #[inline]
+    pub(crate) fn meeting_frame(&self, one: usize, other: usize) -> usize {
+        self.tree().meeting(one, other)
     }
 
     /// Writes the frames of all moving elements at `q`.
+    #[inline]
     pub(crate) fn write_frames(&self, q: &[f64], frames: &mut [Frame]) {
         if let Some(chain) = frames.first_chunk_mut() {
             self.write_stage_frames(q, chain);

@@ -10,11 +10,13 @@
 //! | `kinematics`, `batched` | kinematics of one configuration, and of many |
 //! | `links` | kinematics of any link |
 //! | `link_capsule`, `bodies` | capsules on the links |
+//! | `attached` | things that a link carries |
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
 //! | `stance` | named configurations |
 //! | `serialization` | robots as bytes |
 
+mod attached;
 mod batched;
 mod bodies;
 mod builder;
@@ -25,10 +27,10 @@ mod link_capsule;
 mod links;
 mod manufacturing_errors;
 mod model;
+mod off_chain;
 mod pair_rule;
 mod pair_sampling;
 mod pairs;
-mod off_chain;
 mod parts;
 mod serialization;
 mod stance;
@@ -39,6 +41,7 @@ pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
 pub(crate) use link_capsule::Bodies;
 pub use link_capsule::LinkCapsule;
+pub(crate) use links::FrameBuffer;
 pub use model::Robot;
 pub use stance::Stance;
 

@@ -291,8 +291,12 @@ impl Robot {
 
     /// The same robot with other branches.
     pub(crate) fn with_off_chain(&self, off_chain: OffChain) -> Result<Self> {
-        let robot = Self::assembled(Parts { off_chain: Arc::new(off_chain), ..self.parts.clone() })?;
-        Ok(self.lend_to(robot))
+        self.with_parts_beside_chain(Parts { off_chain: Arc::new(off_chain), ..self.parts.clone() })
+    }
+
+    /// The robot of these parts, whose chain is that of this one.
+    pub(super) fn with_parts_beside_chain(&self, parts: Parts) -> Result<Self> {
+        Self::assembled(parts).map(|robot| self.lend_to(robot))
     }
 
     pub(super) fn bodies(&self) -> &Bodies {

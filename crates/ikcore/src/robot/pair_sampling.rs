@@ -6,6 +6,7 @@ use std::collections::HashSet;
 use nalgebra::Vector3;
 
 use super::joint::Joint;
+use super::links::FrameBuffer;
 use super::model::Robot;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
@@ -76,7 +77,7 @@ struct Sampling<'a> {
     carriers: Vec<Carrier>,
     /// Indices of carriers.
     pairs: Vec<[usize; 2]>,
-    frames: Vec<Frame>,
+    frames: FrameBuffer,
 }
 
 impl<'a> Sampling<'a> {

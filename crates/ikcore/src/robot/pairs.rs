@@ -1,8 +1,8 @@
 //! Pairs of links that are tested against each other.
 
 use super::model::Robot;
-use super::pair_sampling;
 use super::pair_rule::PairRule;
+use super::pair_sampling;
 use super::stance::Stance;
 use crate::error::{Error, Result};
 
@@ -72,11 +72,14 @@ impl Robot {
                 });
                 known.collect::<Vec<_>>()
             };
-            match &self.parts().pairs {
+            let mut tested = match &self.parts().pairs {
                 PairRule::Given(pairs) => of(pairs),
                 PairRule::AllBut(pairs) => pair_sampling::all_but(self, &of(pairs)),
                 PairRule::Sampled => pair_sampling::that_can_touch(self),
-            }
+            };
+            let may_touch = of(&self.parts().may_touch);
+            tested.retain(|pair| !may_touch.contains(pair));
+            tested
         })
     }
 }

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::description::Description;
 use super::link_capsule::Bodies;
+use super::off_chain::OffChain;
 use super::pair_rule::PairRule;
 use super::stance::Stance;
-use super::off_chain::OffChain;
 use crate::error::Result;
 use crate::math::Pose;
 
@@ -24,6 +24,8 @@ pub(crate) struct Parts {
     pub bodies: Bodies,
     /// Which links are tested against each other.
     pub pairs: PairRule,
+    /// Pairs of links that may touch, whatever the rule.
+    pub may_touch: Vec<[String; 2]>,
     /// Named configurations.
     pub stances: Vec<Stance>,
 }
@@ -32,7 +34,16 @@ impl Parts {
     /// A chain with nothing else.
     pub fn of(description: Description) -> Self {
         let (base, tool) = (Pose::identity(), Pose::identity());
-        Self { description, off_chain: Arc::default(), base, tool, bodies: Bodies::default(), pairs: PairRule::default(), stances: vec![] }
+        Self {
+            description,
+            off_chain: Arc::default(),
+            base,
+            tool,
+            bodies: Bodies::default(),
+            pairs: PairRule::default(),
+            may_touch: vec![],
+            stances: vec![],
+        }
     }
 
     /// Checks all assumptions of the kernels.

@@ -28,7 +28,8 @@ pub(crate) struct BodyBlock {
 
 impl BodyBlock {
     /// Four points at the origin.
-    pub const SPHERES: Self = Self { start: [F64x4::ZERO; 3], along: [F64x4::ZERO; 3], radius: F64x4::ZERO, spheres: true };
+    pub const SPHERES: Self =
+        Self { start: [F64x4::ZERO; 3], along: [F64x4::ZERO; 3], radius: F64x4::ZERO, spheres: true };
 
     /// The same capsules, given in `frame`.
     #[inline(always)]
@@ -108,7 +109,9 @@ impl Shape {
                 let [first, last] = [start.dot(normal), (start + along).dot(normal)];
                 at_least(first.smaller(last) - Four::splat(*offset), enough)
             }
-            Geometry::Box { pose, size } => solid_clear(&BoxLanes::new(pose, size), start, along, enough, block.spheres),
+            Geometry::Box { pose, size } => {
+                solid_clear(&BoxLanes::new(pose, size), start, along, enough, block.spheres)
+            }
             Geometry::Cylinder { center, axis, radius, length } => {
                 let cylinder = CylinderLanes::new(center, axis, *radius, *length);
                 solid_clear(&cylinder, start, along, enough, block.spheres)

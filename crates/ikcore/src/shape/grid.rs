@@ -5,8 +5,8 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
-use super::segment_lanes::{TOUCHING, to_box};
 use super::segment_distance::{Approach, by_tangents};
+use super::segment_lanes::{TOUCHING, to_box};
 use super::tangent::Tangent;
 use crate::math::arithmetic::by_instructions;
 use crate::math::f64x4::F64x4;
@@ -267,7 +267,9 @@ mod tests {
 
     #[test]
     fn mistakes_in_a_grid_are_named() {
-        let problem = |voxel: f64, count: usize| Shape::grid([0.0; 3], voxel, [2, 1, 1], vec![false; count]).unwrap_err().to_string();
+        let problem = |voxel: f64, count: usize| {
+            Shape::grid([0.0; 3], voxel, [2, 1, 1], vec![false; count]).unwrap_err().to_string()
+        };
         assert_eq!(problem(0.1, 3), "occupied voxels: expected 2 x 1 x 1 voxels, got 3");
         assert_eq!(problem(0.1, 2), "a grid needs at least one occupied voxel, got none");
         assert_eq!(problem(0.0, 2), "voxel of the grid must be positive and finite, got 0");

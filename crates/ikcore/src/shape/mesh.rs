@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 
 use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
 use super::inside_mesh::{is_closed, winding};
-use super::segment_lanes::{NearestShare, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
 use super::segment_distance::Approach;
+use super::segment_lanes::{NearestShare, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
 use super::tangent::Tangent;
 use super::triangle::nearest_on_triangle;
 use crate::math::arithmetic::{Arithmetic, by_instructions};
@@ -211,8 +211,7 @@ impl Leaf {
 
     #[inline(always)]
     fn nearest<A: Arithmetic>(&self, start: &[f64; 3], along: &[f64; 3], is_point: bool) -> NearestShare<Four<A>> {
-        let triangle =
-            TriangleLanes::new(Vec3::of(&self.corner), Vec3::of(&self.edges[0]), Vec3::of(&self.edges[1]));
+        let triangle = TriangleLanes::new(Vec3::of(&self.corner), Vec3::of(&self.edges[0]), Vec3::of(&self.edges[1]));
         let start = Vec3::splat(start);
         if is_point {
             let squared = point_to_triangle(start, &triangle);

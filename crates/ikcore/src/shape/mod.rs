@@ -44,12 +44,12 @@ mod triangle;
 mod triangles;
 
 pub(crate) use body_block::{BodyBlock, clear_of_each_other};
-pub(crate) use segment_distance::{LineSegment, distance_between};
-pub(crate) use separation::capsules_nearest;
-pub(crate) use shape_index::ShapeIndex;
 pub use convex_hull::Hull;
 pub use geometry::Geometry;
 pub use grid::Grid;
 pub use mesh::Mesh;
 pub use point_cloud::PointCloud;
+pub(crate) use segment_distance::{LineSegment, distance_between};
+pub(crate) use separation::capsules_nearest;
 pub use shape::{BoundingBall, Shape};
+pub(crate) use shape_index::ShapeIndex;

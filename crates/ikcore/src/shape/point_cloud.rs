@@ -5,8 +5,8 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
-use super::segment_lanes::to_point;
 use super::segment_distance::Approach;
+use super::segment_lanes::to_point;
 use super::tangent::Tangent;
 use crate::math::arithmetic::by_instructions;
 use crate::math::f64x4::F64x4;

@@ -71,7 +71,11 @@ impl Geometry {
             }
             Self::HalfSpace { normal, offset } => {
                 let [first, last] = [a, b].map(|end| Vector3::from(*normal).dot(end) - offset);
-                if first <= last { Approach { distance: first, share: 0.0 } } else { Approach { distance: last, share: 1.0 } }
+                if first <= last {
+                    Approach { distance: first, share: 0.0 }
+                } else {
+                    Approach { distance: last, share: 1.0 }
+                }
             }
             Self::Box { pose, size } => {
                 let local = [a, b].map(|end| pose.inverse_transform_point(&(*end).into()).coords);
@@ -94,11 +98,7 @@ impl Geometry {
 
 /// Where the signed distance of a convex set with these tangents is lowest: never more than the truth, and at most
 /// [`ACCURACY`] less unless it is at least `enough`.
-pub(super) fn by_tangents(
-    [a, b]: &LineSegment,
-    tangent: impl Fn(&Vector3<f64>) -> Tangent,
-    enough: f64,
-) -> Approach {
+pub(super) fn by_tangents([a, b]: &LineSegment, tangent: impl Fn(&Vector3<f64>) -> Tangent, enough: f64) -> Approach {
     let along = b - a;
     let touch = |share: f64| {
         let tangent = tangent(&(a + share * along));
@@ -160,10 +160,8 @@ pub(super) fn between(one: &LineSegment, other: &LineSegment) -> Approach {
         let share = nearest_share(p, p_end, end);
         Approach { distance: (p + share * u - end).norm(), share }
     };
-    let of_one = |end: &Vector3<f64>, share: f64| Approach {
-        distance: (nearest_on_segment(q, q_end, end) - end).norm(),
-        share,
-    };
+    let of_one =
+        |end: &Vector3<f64>, share: f64| Approach { distance: (nearest_on_segment(q, q_end, end) - end).norm(), share };
     let ends = [of_one(p, 0.0), of_one(p_end, 1.0), to_one(q), to_one(q_end)];
     ends.into_iter().fold(crossing, |best, next| if next.distance < best.distance { next } else { best })
 }

@@ -184,9 +184,12 @@ impl Shape {
         require_point("far corner of the grid", &far)?;
         let grid = Grid::new(origin, voxel, counts, occupied);
         let Some(grid) = grid else {
-            return Err(Error::InvalidObstacle { problem: "a grid needs at least one occupied voxel, got none".into() });
+            return Err(Error::InvalidObstacle {
+                problem: "a grid needs at least one occupied voxel, got none".into(),
+            });
         };
-        let corners: Vec<[f64; 3]> = grid.blocks().iter().flat_map(|block| [block.lower.into(), block.upper.into()]).collect();
+        let corners: Vec<[f64; 3]> =
+            grid.blocks().iter().flat_map(|block| [block.lower.into(), block.upper.into()]).collect();
         let bounds = ball_about(&corners, 0.0);
         Ok(Self::made(Geometry::Grid(Arc::new(grid)), bounds))
     }

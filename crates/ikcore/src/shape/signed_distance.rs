@@ -133,8 +133,9 @@ mod tests {
                 let h = 1e-5;
                 for k in 0..3 {
                     let step = Vector3::from_fn(|i, _| if i == k { h } else { 0.0 });
-                    let slope =
-                        (shape.geometry().tangent(&(at + step)).value - shape.geometry().tangent(&(at - step)).value) / (2.0 * h);
+                    let slope = (shape.geometry().tangent(&(at + step)).value
+                        - shape.geometry().tangent(&(at - step)).value)
+                        / (2.0 * h);
                     assert!((slope - normal[k]).abs() < 1e-3, "{}: {slope} for {}", shape.name(), normal[k]);
                 }
             }
@@ -172,7 +173,8 @@ mod tests {
         assert_eq!((ball.value, ball.normal.norm()), (-0.5, 1.0));
         let cuboid = Shape::cuboid([0.0; 3], [2.0, 4.0, 6.0], None).unwrap().geometry().tangent(&Vector3::zeros());
         assert_eq!((cuboid.value, cuboid.normal.x.abs()), (-1.0, 1.0));
-        let ellipsoid = Shape::ellipsoid([0.0; 3], [0.2, 0.3, 0.4], None).unwrap().geometry().tangent(&Vector3::zeros());
+        let ellipsoid =
+            Shape::ellipsoid([0.0; 3], [0.2, 0.3, 0.4], None).unwrap().geometry().tangent(&Vector3::zeros());
         assert!((ellipsoid.value + 0.2).abs() < 1e-9 && (ellipsoid.normal.x.abs() - 1.0).abs() < 1e-6);
     }
 }

@@ -31,7 +31,9 @@ impl Shape {
                 let turn = Rotation3::rotation_between(&Vector3::z(), &(b - a)).unwrap_or_else(Rotation3::identity);
                 ball(|u| (if u.z > 0.0 { b } else { a } + *radius * (turn * u)).into())
             }
-            Geometry::Ellipsoid { pose, semi_axes } => ball(|u| placed(pose, u.component_mul(&Vector3::from(*semi_axes)))),
+            Geometry::Ellipsoid { pose, semi_axes } => {
+                ball(|u| placed(pose, u.component_mul(&Vector3::from(*semi_axes))))
+            }
             Geometry::Box { pose, size } => cuboid(pose, &(0.5 * Vector3::from(*size))),
             Geometry::Ellipse { center, semi_axes, angle } => {
                 let rim = |i: usize| {
@@ -131,6 +133,10 @@ fn octahedron(center: &[f64; 3], radius: f64) -> Vec<Triangle> {
 }
 
 fn of_block(block: &Aabb) -> Vec<Triangle> {
-    let pose = Pose::translation(0.5 * (block.lower.x + block.upper.x), 0.5 * (block.lower.y + block.upper.y), 0.5 * (block.lower.z + block.upper.z));
+    let pose = Pose::translation(
+        0.5 * (block.lower.x + block.upper.x),
+        0.5 * (block.lower.y + block.upper.y),
+        0.5 * (block.lower.z + block.upper.z),
+    );
     cuboid(&pose, &(0.5 * (block.upper - block.lower)))
 }

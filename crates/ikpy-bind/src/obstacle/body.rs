@@ -16,7 +16,7 @@ use super::large::{faces, occupied, points};
 #[pyclass(name = "Obstacle", module = "beetle_ik.obstacles", frozen, eq, subclass)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyObstacle {
-    pub(super) core: Shape,
+    pub core: Shape,
 }
 
 #[pymethods]
@@ -89,9 +89,7 @@ impl PyObstacle {
             Geometry::ConvexMesh(hull) => ((hull.points().to_vec(),).into_pyobject(py)?, none),
             Geometry::Mesh(mesh) => ((points(py, mesh.vertices())?, faces(py, mesh.faces())?).into_pyobject(py)?, none),
             Geometry::PointCloud(cloud) => ((points(py, cloud.points())?, cloud.radius()).into_pyobject(py)?, none),
-            Geometry::Grid(grid) => {
-                ((grid.origin(), grid.voxel(), occupied(py, grid)?).into_pyobject(py)?, none)
-            }
+            Geometry::Grid(grid) => ((grid.origin(), grid.voxel(), occupied(py, grid)?).into_pyobject(py)?, none),
         })
     }
 }

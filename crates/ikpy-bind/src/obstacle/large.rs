@@ -144,11 +144,7 @@ pub struct PyGrid {
 #[pymethods]
 impl PyGrid {
     #[new]
-    fn new(
-        origin: &Bound<'_, PyAny>,
-        voxel: f64,
-        occupied: &Bound<'_, PyAny>,
-    ) -> PyResult<PyClassInitializer<Self>> {
+    fn new(origin: &Bound<'_, PyAny>, voxel: f64, occupied: &Bound<'_, PyAny>) -> PyResult<PyClassInitializer<Self>> {
         let origin = point("origin", origin)?;
         let (counts, occupied) = read_occupied(occupied)?;
         made(Shape::grid(origin, voxel, counts, occupied), Self { origin: Coordinates(origin), voxel })

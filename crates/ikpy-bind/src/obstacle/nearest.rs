@@ -57,7 +57,12 @@ impl PyNearest {
 
     fn __repr__(&self) -> String {
         let contact = &self.core.contact;
-        format!("Nearest(body={:?}, other={:?}, distance={:?})", contact.link, contact.other.to_string(), contact.distance)
+        format!(
+            "Nearest(body={:?}, other={:?}, distance={:?})",
+            contact.link,
+            contact.other.to_string(),
+            contact.distance
+        )
     }
 }
 

@@ -37,9 +37,10 @@ pub(super) fn build(document: &Document, tree: &Tree, base: &str, tip: &str) -> 
         chain.link(step::far_link(document, *at));
     }
     let robot = chain.build()?;
-    let bodies = bodies(document, robot.link_names());
     let off_chain = off_chain::of(document, tree, &robot, couplings, &index_in_q)?;
-    robot.with_off_chain(off_chain).map(|robot| robot.with_bodies(bodies))
+    let robot = robot.with_off_chain(off_chain)?;
+    let bodies = bodies(document, robot.all_link_names());
+    Ok(robot.with_bodies(bodies))
 }
 
 /// Collects the capsules of the links with these names.

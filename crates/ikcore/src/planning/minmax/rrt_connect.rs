@@ -217,9 +217,9 @@ impl Tree {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::Shape;
     use crate::rng;
     use crate::robot::Robot;
+    use crate::shape::Shape;
     use crate::solver::Unattended;
 
     const MARGIN: f64 = 0.01;
