@@ -119,10 +119,10 @@ class _Reader:
         yield from _joint(f"{name}/body", "fixed", at, name, place)
 
     def _kind(self, joint: int) -> str:
-        kinds, kind = self.mujoco.mjtJoint, self.model.jnt_type[joint]
-        if kind == kinds.mjJNT_HINGE:
+        kind = self.mujoco.mjtJoint(self.model.jnt_type[joint])
+        if kind.name == "mjJNT_HINGE":
             return "revolute" if self.model.jnt_limited[joint] else "continuous"
-        return {kinds.mjJNT_SLIDE: "prismatic", kinds.mjJNT_BALL: "spherical"}.get(kind, "floating")
+        return {"mjJNT_SLIDE": "prismatic", "mjJNT_BALL": "spherical"}.get(kind.name, "floating")
 
     def _attributes(self, joint: int) -> list[str]:
         """Returns axis, limits and coupling of a hinge or slide; nothing for others."""
@@ -156,18 +156,18 @@ class _Reader:
 
     def _collisions(self, body: int) -> Iterator[str]:
         """Yields the geoms that collide."""
-        model, kinds = self.model, self.mujoco.mjtGeom
+        model = self.model
         for geom in np.flatnonzero(model.geom_bodyid == body):
             if not (model.geom_contype[geom] or model.geom_conaffinity[geom]):
                 continue
             size = [float(length) for length in model.geom_size[geom]]
             shape = {
-                kinds.mjGEOM_SPHERE: f"<sphere radius='{size[0]!r}'/>",
-                kinds.mjGEOM_CAPSULE: f"<capsule radius='{size[0]!r}' length='{2 * size[1]!r}'/>",
-                kinds.mjGEOM_CYLINDER: f"<cylinder radius='{size[0]!r}' length='{2 * size[1]!r}'/>",
-                kinds.mjGEOM_BOX: f"<box size='{_numbers(2 * np.array(size))}'/>",
-                kinds.mjGEOM_ELLIPSOID: "<ellipsoid/>",
-            }.get(model.geom_type[geom], "<mesh/>")
+                "mjGEOM_SPHERE": f"<sphere radius='{size[0]!r}'/>",
+                "mjGEOM_CAPSULE": f"<capsule radius='{size[0]!r}' length='{2 * size[1]!r}'/>",
+                "mjGEOM_CYLINDER": f"<cylinder radius='{size[0]!r}' length='{2 * size[1]!r}'/>",
+                "mjGEOM_BOX": f"<box size='{_numbers(2 * np.array(size))}'/>",
+                "mjGEOM_ELLIPSOID": "<ellipsoid/>",
+            }.get(self.mujoco.mjtGeom(model.geom_type[geom]).name, "<mesh/>")
             place = pose(model.geom_pos[geom], wxyz=model.geom_quat[geom])
             yield f"<collision>{_origin(place)}<geometry>{shape}</geometry></collision>"
 

@@ -408,7 +408,7 @@ def test_mujoco_models_keep_their_kinematics(mujoco: object, tip: str | None, tm
     ("more", "equality", "options", "problem"),
     [
         ("<body name='b'><geom size='1'/></body>", "", {},
-         "MuJoCo model: robot 'arm' ends in 2 links: say which one is the tip; leaves, by number of joints: lower (3), "
+         "robot 'arm' ends in 2 links: say which one is the tip; leaves, by number of joints: lower (3), "
          "b (0)"),
         ("<body name='b'><geom size='1'/><freejoint name='f'/></body>", "", {"tip": "b"},
          "MuJoCo model: joint 'f' is floating, and a chain takes only revolute, continuous, prismatic, fixed and mimic "
