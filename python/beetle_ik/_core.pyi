@@ -2036,11 +2036,13 @@ class Step:
 
 @disjoint_base
 class Obstacle:
-    """The base class of obstacles: a convex body, fixed in the frame of the robot's base."""
+    """The base class of obstacles: a shape, fixed in the frame of the robot's base."""
 
     @property
     def triangles(self) -> _Array:
-        """Triangles of the surface (t, 3, 3) (m), for drawing. The corners of triangles lie on the surface."""
+        """Triangles of the surface (t, 3, 3) (m), for drawing. Their corners lie on the surface; a half-space is a square of 4 m,
+        a point cloud octahedra about at most 2,000 of its points.
+        """
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -2086,6 +2088,38 @@ class Capsule(Obstacle):
         """Radius (m)."""
 
 @final
+class Cylinder(Obstacle):
+    """A cylinder with flat ends: centre (3,), axis (3,) of any length, radius and length (m)."""
+
+    def __new__(cls, center: ArrayLike, axis: ArrayLike, radius: float, length: float) -> Cylinder: ...
+    @property
+    def center(self) -> _Array:
+        """Centre (3,) (m)."""
+    @property
+    def axis(self) -> _Array:
+        """Axis (3,), of unit length."""
+    @property
+    def radius(self) -> float:
+        """Radius (m)."""
+    @property
+    def length(self) -> float:
+        """Length along the axis (m)."""
+
+@final
+class HalfSpace(Obstacle):
+    """All points x with normal . x <= offset, for a normal (3,) of unit length: `HalfSpace([0, 0, 1], 0.0)` is a floor. A
+    normal of another length is scaled; `offset` (m) is not.
+    """
+
+    def __new__(cls, normal: ArrayLike, offset: float) -> HalfSpace: ...
+    @property
+    def normal(self) -> _Array:
+        """Outward normal (3,), of unit length."""
+    @property
+    def offset(self) -> float:
+        """Distance of the surface from the origin, along the normal (m)."""
+
+@final
 class Ellipsoid(Obstacle):
     """An ellipsoid: centre (3,), lengths of the semi-axes (3,) (m), and their rotation (3, 3)."""
 
@@ -2126,9 +2160,96 @@ class ConvexMesh(Obstacle):
     def points(self) -> _Array:
         """The points as given (k, 3) (m)."""
 
+@final
+class Mesh(Obstacle):
+    """A mesh of triangles: vertices (k, 3) (m) and faces (t, 3), indices of vertices. It need not be convex. If it is closed,
+    its inside counts too; else it is a surface without thickness.
+    """
+
+    def __new__(cls, vertices: ArrayLike, faces: ArrayLike) -> Mesh: ...
+    @property
+    def vertices(self) -> _Array:
+        """The vertices (k, 3) (m)."""
+    @property
+    def faces(self) -> NDArray[np.uint32]:
+        """The faces (t, 3): indices of vertices."""
+    @property
+    def closed(self) -> bool:
+        """Whether the mesh encloses a volume: every edge belongs to two triangles that run along it in opposite directions."""
+
+@final
+class PointCloud(Obstacle):
+    """Balls of one `radius` (m) about points (k, 3) (m), such as from a depth camera."""
+
+    def __new__(cls, points: ArrayLike, radius: float) -> PointCloud: ...
+    @property
+    def points(self) -> _Array:
+        """The points (k, 3) (m)."""
+    @property
+    def radius(self) -> float:
+        """Radius of the ball about each point (m)."""
+
+@final
+class Grid(Obstacle):
+    """The occupied voxels of a grid: cubes with edges of `voxel` (m), the first with its lowest corner at `origin` (3,) (m).
+    `occupied` is a boolean array (nx, ny, nz).
+    """
+
+    def __new__(cls, origin: ArrayLike, voxel: float, occupied: ArrayLike) -> Grid: ...
+    @property
+    def origin(self) -> _Array:
+        """Lowest corner of the first voxel (3,) (m)."""
+    @property
+    def voxel(self) -> float:
+        """Edge of a voxel (m)."""
+    @property
+    def occupied(self) -> NDArray[np.bool_]:
+        """Whether each voxel is occupied (nx, ny, nz)."""
+
+@final
+class Nearest:
+    """The nearest two bodies at a configuration, from `obstacles.nearest`."""
+
+    @property
+    def body(self) -> str:
+        """The link of the robot."""
+    @property
+    def other(self) -> str:
+        """What it is near to: "obstacle 0 (Box)" or "link 'panda_link0'"."""
+    @property
+    def distance(self) -> float:
+        """Distance between their surfaces (m); negative by how deep they reach into each other."""
+    @property
+    def point(self) -> _Array:
+        """The nearest point of the link (3,) (m), in the frame of the robot's base. That of the other body is
+        `point - distance * normal`.
+        """
+    @property
+    def normal(self) -> _Array:
+        """Unit vector (3,) from the other body to the link, along which the distance grows fastest."""
+    @property
+    def gradient(self) -> _Array:
+        """Derivative of the distance by each joint (n,) (m/rad, m/m)."""
+
+def nearest(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Nearest | None:
+    """Returns the two bodies that are nearest to each other: a link and an obstacle, or two links; the deepest overlap if
+    bodies overlap. None if nothing can touch. The pairs and the meaning of the distance are those of `clearance`.
+
+    Args:
+        robot: an arm with capsules.
+        q: joint positions (n,) (rad, m).
+        obstacles: obstacles in the frame of the robot's base.
+
+    Raises:
+        InvalidInputError: a robot without capsules, or an obstacle that is not of `bik.obstacles`.
+    """
 def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any:
     """Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
     for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
+
+    Never more than the true distance, and at most 1e-9 m less. Where a capsule reaches into an obstacle, the depth is that of
+    the deepest point of its axis, plus its radius: to the surface of a closed mesh (to 1 % or 0.1 mm), in the nearest block of
+    voxels of a grid, in the nearest ball of a point cloud. An open mesh has no inside.
 
     Args:
         robot: an arm with capsules.

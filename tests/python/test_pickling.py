@@ -56,6 +56,11 @@ OBSTACLES = [
     bik.obstacles.Capsule([0.1, 0.2, 0.3], [1, 2, 3], 0.25),
     bik.obstacles.Ellipsoid([0.1, 0.2, 0.3], [1, 2, 3], rotation=TURN),
     bik.obstacles.Ellipse([0.1, 0.2], [1, 2], angle=0.7),
+    bik.obstacles.Cylinder([0.1, 0.2, 0.3], [1, 2, 3], 0.25, 0.5),
+    bik.obstacles.HalfSpace([1, 2, 3], 0.25),
+    bik.obstacles.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]),
+    bik.obstacles.PointCloud([[0, 0, 0], [1, 0, 0]], 0.1),
+    bik.obstacles.Grid([0.1, 0.2, 0.3], 0.5, np.array([[[True, False]]])),
     bik.obstacles.ConvexMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
 ]
 METHODS = [

@@ -22,7 +22,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("starts", &["kinematics"]),
     ("closed_form", &["kinematics"]),
     ("robot", &["kinematics", "starts", "closed_form", "shape"]),
-    ("load", &["kinematics", "robot"]),
+    ("load", &["kinematics", "shape", "robot"]),
     ("path", &[]),
     ("trajectory", &[]),
     ("objective", &[]),

@@ -251,10 +251,8 @@ fn a_configuration_is_clear_when_its_nearest_pair_is() {
         with_random_bodies("iiwa14", &mut rng),
     ] {
         for count in [0, 3, 60] {
-            let mut obstacles: Vec<Shape> = (0..count).map(|k| random_obstacle(&mut rng, k % 5)).collect();
-            if count == 60 {
-                let place = |shape: &Shape| shape.bounding_ball().center.map(|x| 2.5 * x);
-                obstacles = obstacles.iter().map(|shape| Shape::sphere(place(shape), 0.05).unwrap()).collect();
+            let mut obstacles: Vec<Shape> = (0..count).map(|k| distant_obstacle(&mut rng, k)).collect();
+            if count > 0 {
                 obstacles.push(Shape::half_space([0.0, 0.0, 1.0], -0.3).unwrap());
             }
             let scene = Scene::new(&robot, &obstacles).unwrap();
@@ -273,6 +271,24 @@ fn a_configuration_is_clear_when_its_nearest_pair_is() {
             assert!(clear > 20 && (near > 20 || count == 0), "{count}: {clear} {near}");
         }
     }
+}
+
+/// A small shape at least 0.5 m from the origin.
+fn distant_obstacle(rng: &mut LazyRng, kind: usize) -> Shape {
+    let mut away = [0.0; 3];
+    rng.direction(&mut away);
+    let far = rng.uniform_in(0.5, 1.2);
+    let center = away.map(|x| far * x);
+    let (end, turn) = (std::array::from_fn(|k| center[k] + 0.1 * away[(k + 1) % 3]), *rotation(rng).matrix());
+    let sizes: [f64; 3] = std::array::from_fn(|_| rng.uniform_in(0.02, 0.15));
+    match kind % 5 {
+        0 => Shape::sphere(center, sizes[0]),
+        1 => Shape::cuboid(center, sizes, Some(turn)),
+        2 => Shape::capsule(center, end, sizes[0]),
+        3 => Shape::cylinder(center, away, sizes[0], sizes[1]),
+        _ => Shape::ellipsoid(center, sizes, Some(turn)),
+    }
+    .unwrap()
 }
 
 /// A robot with spheres and capsules on each link.
@@ -311,7 +327,11 @@ fn a_contact_lies_on_both_surfaces_and_its_gradient_is_the_slope() {
                 let gap = distance(point, point, 0.0, &obstacles[0]);
                 assert!((gap - found.contact.distance).abs() < 1e-6, "{gap} {found:?}");
             }
-            Neighbor::Obstacle(..) => inside += 1,
+            Neighbor::Obstacle(..) => {
+                // Where two faces are equally deep, the distance has a corner.
+                inside += 1;
+                continue;
+            }
         }
         let step = 1e-6;
         for j in 0..7 {

@@ -60,7 +60,7 @@ type Placed = SmallVec<[BodyBlock; BLOCKS]>;
 type Balls = SmallVec<[BodyBlock; GROUPS / 4]>;
 
 impl BodyGroups {
-    /// Groups of `carried`, among `obstacles`.
+    /// Groups of `carried`. Bodies that no joint moves are not compared with `obstacles`.
     pub fn new(carried: &[Carried], obstacles: &[Shape]) -> Self {
         let mut stages: Vec<usize> = carried.iter().map(|body| body.stages).collect();
         stages.sort_unstable_by(|one, other| other.cmp(one));
@@ -192,9 +192,10 @@ by_instructions! {
         };
         // For each group the obstacles that its ball is near to.
         let mut near: SmallVec<[(usize, usize); 32]> = SmallVec::new();
+        let moving = |group: usize| all.groups[group].stages > 0;
         match &all.index {
             Some(index) => {
-                for group in 0..all.groups.len() {
+                for group in (0..all.groups.len()).filter(|group| moving(*group)) {
                     let (center, radius) = ball(group);
                     index.near_ball(&center, radius + margin, |obstacle| near.push((group, obstacle)));
                 }
@@ -205,7 +206,7 @@ by_instructions! {
                         let clear = shape.clear_lanes::<A>(block, margin).0;
                         for lane in 0..4 {
                             let group = 4 * i + lane;
-                            if clear[lane] == 0.0 && group < all.groups.len() {
+                            if clear[lane] == 0.0 && group < all.groups.len() && moving(group) {
                                 near.push((group, obstacle));
                             }
                         }
@@ -251,7 +252,7 @@ by_instructions! {
         let at = |group: &Group| frames[group.stages];
         // In each lane 1 unless a ball is near to something and the lane still matters.
         let settled = |balls_clear: F64x4, clear: &F64x4| (0..4).all(|k| balls_clear.0[k] == 1.0 || clear.0[k] == 0.0);
-        for group in &all.groups {
+        for group in all.groups.iter().filter(|group| group.stages > 0) {
             let at = at(group);
             let ball = BodyBlock::ball_at::<A>(&at, &group.center, group.radius);
             for shape in obstacles {

@@ -24,8 +24,8 @@ pub(super) enum BodyPair {
 
 /// The capsules of a robot, the obstacles, and the pairs of bodies that must not touch.
 ///
-/// All capsules are tested against all obstacles, also those of the base. Links are tested against each other in pairs
-/// ([`Robot::collision_pairs`]).
+/// Capsules that no joint moves are not tested against obstacles: no plan could move them away. Links are tested against
+/// each other in pairs ([`Robot::collision_pairs`]).
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
     robot: &'a Robot,
@@ -34,6 +34,9 @@ pub struct Scene<'a> {
     obstacles: &'a [Shape],
     pub(super) pairs: Vec<BodyPair>,
 }
+
+/// Distances that differ by less (m) are equal but for rounding.
+const EQUALLY_NEAR: f64 = 1e-9;
 
 impl<'a> Scene<'a> {
     /// # Errors
@@ -61,7 +64,8 @@ impl<'a> Scene<'a> {
             BodyPair::Capsules { near, far } => Some([*near, *far]),
             BodyPair::Obstacle { .. } => None,
         }));
-        let with_obstacles = (0..scene.carried.len())
+        let moving = (0..scene.carried.len()).filter(|i| scene.carried[*i].stages > 0);
+        let with_obstacles = moving
             .flat_map(|capsule| (0..obstacles.len()).map(move |obstacle| BodyPair::Obstacle { capsule, obstacle }));
         scene.pairs.extend(with_obstacles.collect::<Vec<_>>());
         Ok(scene)
@@ -91,11 +95,11 @@ impl<'a> Scene<'a> {
     fn nearest_pair(&self, placement: &Placement) -> Option<(f64, BodyPair)> {
         let mut nearest: Option<(f64, BodyPair)> = None;
         for pair in &self.pairs {
-            let enough = nearest.map_or(f64::INFINITY, |(distance, _)| distance);
-            let distance = self.distance(*pair, placement, enough);
-            if distance < enough {
-                nearest = Some((distance, *pair));
-            }
+            let (least, first) = nearest.unwrap_or((f64::INFINITY, *pair));
+            let distance = self.distance(*pair, placement, least);
+            // Of pairs that are equally near, the first counts.
+            let nearer = if distance < least - EQUALLY_NEAR { *pair } else { first };
+            nearest = Some((distance.min(least), nearer));
         }
         nearest
     }

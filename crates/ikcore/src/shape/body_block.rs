@@ -3,9 +3,9 @@
 
 use nalgebra::Vector3;
 
+use super::checked_shape::{ROUNDING, Shape};
 use super::geometry::Geometry;
 use super::segment_lanes::{to_point, to_segment};
-use super::shape::{ROUNDING, Shape};
 use super::solid_lanes::{BoxLanes, CylinderLanes, SolidLanes, segment_bound};
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;

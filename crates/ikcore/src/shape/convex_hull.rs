@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::checked_shape::BoundingBall;
 use super::collision_crate::Polyhedron;
-use super::shape::BoundingBall;
 use super::tangent::Tangent;
 
 /// The convex hull of some points.
@@ -54,12 +54,6 @@ impl Hull {
     /// Corners of the hull's triangles (m), for drawing.
     pub fn triangles(&self) -> Vec<[[f64; 3]; 3]> {
         self.polyhedron.triangles()
-    }
-
-    /// The corner farthest along `direction`.
-    pub(super) fn support(&self, direction: &Vector3<f64>) -> Vector3<f64> {
-        let farther = |p: &&Vector3<f64>, q: &&Vector3<f64>| p.dot(direction).total_cmp(&q.dot(direction));
-        self.corners.iter().max_by(farther).copied().unwrap_or_default()
     }
 
     /// A ball that holds it.

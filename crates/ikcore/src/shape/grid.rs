@@ -215,7 +215,7 @@ fn joined([nx, ny, nz]: [usize; 3], occupied: &[bool]) -> Vec<[[usize; 2]; 3]> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::shape::Shape;
+    use super::super::checked_shape::Shape;
     use super::*;
     use crate::rng::{self, LazyRng};
 

@@ -38,7 +38,7 @@ pub(super) fn winding(point: &Vector3<f64>, corners: &[Vector3<f64>; 3]) -> i32 
         return 0;
     }
     let normal = (b - a).cross(&(c - a));
-    let beyond = (a - point).dot(&normal) * f64::from(normal.x.signum());
+    let beyond = (a - point).dot(&normal) * normal.x.signum();
     if beyond > 0.0 { turns } else { 0 }
 }
 

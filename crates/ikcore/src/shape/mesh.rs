@@ -101,6 +101,16 @@ impl Mesh {
         self.closed
     }
 
+    /// The volume that a closed mesh encloses (m^3); negative if its triangles are inside out.
+    pub fn volume(&self) -> f64 {
+        let origin = Vector3::from(self.vertices[self.faces[0][0] as usize]);
+        let cone = |i: usize| {
+            let [a, b, c] = self.triangle(i).map(|corner| corner - origin);
+            a.dot(&b.cross(&c)) / 6.0
+        };
+        (0..self.faces.len()).map(cone).sum()
+    }
+
     /// The corners of face `i`.
     pub(super) fn triangle(&self, i: usize) -> [Vector3<f64>; 3] {
         self.faces[i].map(|corner| self.vertices[corner as usize].into())
@@ -249,8 +259,8 @@ by_instructions! {
 
 #[cfg(test)]
 mod tests {
+    use super::super::checked_shape::Shape;
     use super::super::geometry::Geometry;
-    use super::super::shape::Shape;
     use super::super::triangle::nearest_on_triangle;
     use super::*;
     use crate::rng::{self, LazyRng};

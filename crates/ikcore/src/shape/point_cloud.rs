@@ -114,7 +114,7 @@ by_instructions! {
 
 #[cfg(test)]
 mod tests {
-    use super::super::shape::Shape;
+    use super::super::checked_shape::Shape;
     use super::super::tangent::nearest_on_segment;
     use super::*;
     use crate::rng;

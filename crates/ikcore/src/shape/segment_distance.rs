@@ -5,9 +5,9 @@
 
 use nalgebra::Vector3;
 
+use super::checked_shape::{ROUNDING, Shape};
 use super::geometry::Geometry;
 use super::segment_lanes::{TOUCHING, to_box};
-use super::shape::{ROUNDING, Shape};
 use super::tangent::{Tangent, nearest_on_segment, nearest_share};
 use crate::math::arithmetic::NoFma;
 use crate::math::real::{One, Real};

@@ -192,5 +192,5 @@ pub(super) fn point_to_triangle<R: Real>(p: Vec3<R>, triangle: &TriangleLanes<R>
     let (a, [ab, ac]) = (triangle.corner, triangle.edges);
     let edges = to_point(a, ab, p).squared.smaller(to_point(a, ac, p).squared);
     let edges = edges.smaller(to_point(a + ab, ac - ab, p).squared);
-    triangle.faced(p, p - p, R::splat(0.0), edges)
+    triangle.faced(p, p, R::splat(0.0), edges)
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::checked_shape::Shape;
 use super::segment_distance::{LineSegment, between};
-use super::shape::Shape;
 use super::tangent::nearest_on_segment;
 
 impl Shape {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
-use super::shape::Shape;
+use super::checked_shape::Shape;
 use crate::math::arithmetic::by_instructions;
 
 /// A tree over the bounding balls of shapes.

@@ -97,7 +97,7 @@ impl Aabb {
 
 #[cfg(test)]
 mod tests {
-    use super::super::shape::Shape;
+    use super::super::checked_shape::Shape;
     use super::*;
     use crate::rng::{self, LazyRng};
 

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::checked_shape::Shape;
 use super::geometry::Geometry;
-use super::shape::Shape;
 use crate::error::Error;
 use crate::math::Pose;
 

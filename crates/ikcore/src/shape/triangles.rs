@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Point3, Rotation3, Vector3};
 
 use super::bounding_tree::Aabb;
+use super::checked_shape::Shape;
 use super::geometry::Geometry;
-use super::shape::Shape;
 use super::signed_distance::at_right_angles;
 use crate::math::Pose;
 
