@@ -5,7 +5,7 @@
 # SI units and radians throughout; results are read-only.
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from typing import Any, Literal, Never, Protocol, TypeAlias, final, overload, type_check_only
 
@@ -80,7 +80,16 @@ class Robot:
 
     def __new__(cls, *_arguments: Never, **_options: Never) -> Robot: ...
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None) -> Robot:
+    def from_urdf(
+        path_or_xml: str | os.PathLike[str],
+        *,
+        base: str | None = None,
+        tip: str | None = None,
+        hold: Mapping[str, float] | None = None,
+        srdf: str | os.PathLike[str] | None = None,
+        collision: Literal["primitives", "fit"] | None = "primitives",
+        package_dirs: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None = None,
+    ) -> Robot:
         """Makes a robot from a URDF file or a string of XML.
 
         Args:
@@ -96,6 +105,20 @@ class Robot:
             UrdfError: not XML, no joint, a cycle, two roots, a zero axis, or several leaves and no `tip`.
             UnknownNameError: no link of that name; the message lists them.
         """
+    @staticmethod
+    def from_mjcf(
+        model: Any, *, base: str | None = None, tip: str | None = None, hold: Mapping[str, float] | None = None
+    ) -> Robot: ...
+    @staticmethod
+    def from_description(
+        name: str,
+        *,
+        base: str | None = None,
+        tip: str | None = None,
+        hold: Mapping[str, float] | None = None,
+        srdf: str | os.PathLike[str] | None = None,
+        collision: Literal["primitives", "fit"] | None = None,
+    ) -> Robot: ...
     @staticmethod
     def from_dh(
         *,
@@ -163,6 +186,18 @@ class Robot:
     def link_names(self) -> list[str]:
         """Names of the links along the chain, base first, tip last."""
     @property
+    def all_link_names(self) -> list[str]: ...
+    @property
+    def held_joints(self) -> dict[str, float]: ...
+    @property
+    def mesh_fits(self) -> list[tuple[str, str, float, float]]: ...
+    @property
+    def unread_collision_shapes(self) -> list[str]: ...
+    @property
+    def collision_pairs(self) -> list[tuple[str, str]]: ...
+    @property
+    def stances(self) -> dict[str, _Array]: ...
+    @property
     def lower(self) -> _Array:
         """Lower position limits (n,) (rad, m); -inf for none."""
     @property
@@ -203,6 +238,12 @@ class Robot:
         Raises:
             UnknownNameError: no link of that name; the message lists them.
         """
+    def with_held(self, hold: Mapping[str, float]) -> Robot: ...
+    def with_attached(
+        self, link: str, shape: Obstacle, *, touch: Sequence[str] | None = None, name: str | None = None
+    ) -> Robot: ...
+    def with_collision_pairs(self, pairs: Sequence[tuple[str, str]]) -> Robot: ...
+    def with_srdf(self, path_or_xml: str | os.PathLike[str]) -> Robot: ...
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot:
         """Returns a copy with random manufacturing errors: each constant offset between two joints changes by up to `length`
         (m), and the zero of each revolute joint by up to `angle` (rad). Use it in a `KinematicPlant` to simulate an arm whose
@@ -221,13 +262,14 @@ class Robot:
         """For `beetle_ik.interop`: joints are (name, kind, lower, upper, velocity), elements ("fixed", pose (4, 4)), ("moving",
         joint, turns, axis (3,), scale, offset) or ("link", name).
         """
-    def fk(self, q: ArrayLike) -> _Array:
+    def fk(self, q: ArrayLike, *, link: str | None = None) -> _Array:
         """Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics."""
     def clip(self, q: ArrayLike) -> _Array:
         """Clips q to the position limits: (n,) for q (n,), (m, n) for q (m, n)."""
     def link_poses(self, q: ArrayLike) -> _Array:
         """Returns the poses of all links at q (n,), in the order of `link_names`: (links, 4, 4)."""
-    def jacobian(self, q: ArrayLike) -> _Array:
+    def all_link_poses(self, q: ArrayLike) -> _Array: ...
+    def jacobian(self, q: ArrayLike, *, link: str | None = None) -> _Array:
         """Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m),
         then angular rows, along the axes of the base.
         """
@@ -2249,6 +2291,7 @@ def nearest(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = N
     Raises:
         InvalidInputError: a robot without capsules, or an obstacle that is not of `bik.obstacles`.
     """
+
 def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any:
     """Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
     for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.

@@ -182,7 +182,7 @@ def _joint(name: str, kind: str, parent: str, child: str, place: Matrix, inner: 
 
 
 def _origin(place: Matrix) -> str:
-    """Returns a pose (4, 4) as an element; the angles keep the rotation to rounding, also at a pitch of a right angle."""
+    """Returns a pose (4, 4) as an element. The angles keep the rotation to rounding, also at a pitch of 90 degrees."""
     yaw = np.arctan2(place[1, 0], place[0, 0])
     sine, cosine = np.sin(yaw), np.cos(yaw)
     pitch = np.arctan2(-place[2, 0], cosine * place[0, 0] + sine * place[1, 0])

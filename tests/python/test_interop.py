@@ -219,7 +219,11 @@ def test_a_dataframe_has_a_column_per_joint_and_derivative() -> None:
             "a table needs pandas: pip install pandas",
         ),
         ("pinocchio", lambda: bik.interop.to_pinocchio(ROBOTS["ur5e"]), "a Pinocchio model needs pin: pip install pin"),
-        ("mujoco", lambda: bik.interop.from_mujoco("<mujoco/>"), "a MuJoCo model needs mujoco: pip install 'beetle-ik[sim]'"),
+        (
+            "mujoco",
+            lambda: bik.interop.from_mujoco("<mujoco/>"),
+            "a MuJoCo model needs mujoco: pip install 'beetle-ik[sim]'",
+        ),
         (
             "roboticstoolbox",
             lambda: bik.interop.to_roboticstoolbox(ROBOTS["ur5e"]),

@@ -24,7 +24,8 @@ MJCF = """<mujoco model="gripper">
         <joint name="wrist" axis="0 1 0" range="-2 2"/>
         <geom type="box" size="0.02 0.03 0.04"/>
         <body name="left" pos="0.1 0 0"> <joint name="grip" type="slide" axis="0 1 0" range="0 0.04"/> <geom/> </body>
-        <body name="right" pos="0.1 0 0" quat="0 0 0 1"> <joint name="other" type="slide" axis="0 1 0" ref="0.01"/> <geom/> </body>
+        <body name="right" pos="0.1 0 0" quat="0 0 0 1"> <geom/>
+          <joint name="other" type="slide" axis="0 1 0" ref="0.01"/> </body>
         <site name="tool" pos="0.1 0.2 0.3"/>
       </body>
     </body>
@@ -69,7 +70,9 @@ def test_joints_that_a_model_bends_are_refused_on_the_chain_alone() -> None:
     assert bik.Robot.from_mjcf(bent, tip="tool").dof == 3
     with pytest.raises(bik.InvalidInputError) as told:
         bik.Robot.from_mjcf(bent, tip="right")
-    assert str(told.value) == "joint 'other' of the MuJoCo model is coupled by an equality constraint that is not linear"
+    assert (
+        str(told.value) == "joint 'other' of the MuJoCo model is coupled by an equality constraint that is not linear"
+    )
 
 
 def stub(monkeypatch: pytest.MonkeyPatch, name: str, **contents: object) -> ModuleType:

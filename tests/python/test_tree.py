@@ -94,9 +94,7 @@ HELD = "joints that it holds: finger"
         ),
     ],
 )
-def test_wrong_names_and_values_are_told(
-    call: Callable[[], object], kind: type[Exception], message: str
-) -> None:
+def test_wrong_names_and_values_are_told(call: Callable[[], object], kind: type[Exception], message: str) -> None:
     with pytest.raises(kind) as told:
         call()
     assert str(told.value) == message

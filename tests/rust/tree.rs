@@ -4,6 +4,7 @@ use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::Vector3;
 use ikcore::rng;
 use ikcore::robot::Robot;
+use ikcore::shape::Shape;
 
 /// A torso with an arm of two joints, whose hand has two fingers that follow one joint, a camera that follows the elbow, and a
 /// wheel below the torso.
@@ -199,4 +200,55 @@ fn a_hundred_thousand_links_and_mimics_load() {
     let comb = Robot::from_urdf(&xml, None, Some("tip")).unwrap();
     assert_eq!((comb.dof(), comb.all_link_names().count()), (1, count + 2));
     assert_same(&place(&comb, "l0", &[0.3]), &pose::rotation(Vector3::z(), 0.3), 1e-12);
+}
+
+#[test]
+fn a_grasped_part_moves_with_its_link_and_may_touch_what_it_is_told_to() {
+    let arm = Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap();
+    let part = Shape::cuboid([0.0, 0.0, 0.1], [0.02, 0.04, 0.3], None).unwrap();
+    let carrying = arm.with_attached("flange", &part, &["link_5"], None).unwrap();
+    let body = carrying.capsules().last().unwrap();
+    assert_eq!((body.link.as_str(), body.a, body.b), ("attached", [0.0, 0.0, -0.05], [0.0, 0.0, 0.25]));
+    assert!((body.radius - 0.01_f64.hypot(0.02)).abs() < 1e-15);
+    let q = [0.1, 0.2, 0.3, -1.5, 0.4, 1.2, 0.5];
+    assert_same(&place(&carrying, "attached", &q), &arm.fk(&q).unwrap(), 1e-14);
+    let tested = |robot: &Robot, one: &str| robot.collision_pairs().iter().any(|pair| pair.contains(&one));
+    assert!(tested(&carrying, "attached") && !tested(&arm, "attached"));
+    assert!(!carrying.collision_pairs().contains(&["link_5", "attached"]));
+    assert!(
+        arm.with_attached("flange", &part, &[], None).unwrap().collision_pairs().len() > arm.collision_pairs().len()
+    );
+    let second = carrying.with_attached("link_7", &part, &[], None).unwrap();
+    assert_eq!(second.capsules().last().unwrap().link, "attached_2");
+    let floor = Shape::half_space([0.0, 0.0, 1.0], 0.0).unwrap();
+    assert_eq!(
+        arm.with_attached("flange", &floor, &[], None).unwrap_err().to_string(),
+        "a HalfSpace cannot be attached: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh can"
+    );
+    let taken = arm.with_attached("flange", &part, &[], Some("link_3")).unwrap_err().to_string();
+    assert_eq!(taken, "robot 'panda': two links are named 'link_3'");
+    assert!(arm.with_attached("flang", &part, &[], None).unwrap_err().to_string().contains("did you mean 'flange'?"));
+}
+
+#[test]
+fn attached_shapes_are_held_by_their_capsules() {
+    let turn = Some(*pose::from_rpy([0.3, -0.5, 0.7], [0.0; 3]).rotation.matrix());
+    let points: Vec<[f64; 3]> =
+        (0..40).map(|i| f64::from(i)).map(|i| [i.sin(), 0.4 * (2.0 * i).cos(), 0.3 * (3.0 * i).sin()]).collect();
+    let shapes = [
+        Shape::cuboid([0.1, 0.2, 0.3], [0.3, 0.9, 0.2], turn).unwrap(),
+        Shape::ellipsoid([0.1, 0.2, 0.3], [0.3, 0.9, 0.2], turn).unwrap(),
+        Shape::cylinder([0.1, 0.2, 0.3], [1.0, 2.0, 3.0], 0.2, 0.7).unwrap(),
+        Shape::convex_mesh(&points).unwrap(),
+    ];
+    for shape in shapes {
+        let robot = Robot::planar(&[1.0]).unwrap().with_attached("tip", &shape, &[], Some("part")).unwrap();
+        let capsule = &robot.capsules()[0];
+        let (a, b) = (Vector3::from(capsule.a), Vector3::from(capsule.b));
+        for point in shape.triangles().into_iter().flatten().map(Vector3::from) {
+            let along = ((point - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
+            let distance = (a + along * (b - a) - point).norm();
+            assert!(distance <= capsule.radius + 1e-9, "{}: {distance} > {}", shape.name(), capsule.radius);
+        }
+    }
 }

@@ -1,5 +1,6 @@
-"""All URDFs of the package example-robot-data: they load, their links stand where Pinocchio puts them, targets are reached."""
+"""All URDFs of the package example-robot-data: loaded, compared with Pinocchio link by link, and solved."""
 
+import re
 import sys
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from conftest import ROBOTS, Entry, table
 import beetle_ik as bik
 
 sys.path.append(str(Path(__file__).parents[1] / "python"))
-from oracle import Oracle  # noqa: E402
+from oracle import Oracle
 
 # Files without an arm, and the sentence that says so.
 REFUSED = {
@@ -51,13 +52,30 @@ def test_a_hundred_targets_are_reached(entry: Entry) -> None:
     assert np.all(solved.success)
 
 
-def test_robots_keep_clear_of_themselves_in_the_stances_of_their_srdf(entry: Entry) -> None:
+def test_an_srdf_beside_the_file_is_read_or_refused_with_a_reason(entry: Entry) -> None:
+    robot = bik.Robot.from_urdf(entry.path, tip=entry.tip)
     for srdf in sorted(entry.path.parents[1].rglob("*.srdf")):
-        robot = bik.Robot.from_urdf(entry.path, tip=entry.tip)
         try:
-            robot = robot.with_srdf(srdf)
+            described = robot.with_srdf(srdf)
         except bik.UrdfError as error:
-            assert "it is for another robot" in str(error)
-            continue
-        assert all(stance.shape == (robot.dof,) for stance in robot.stances.values())
-        assert set(sum(robot.collision_pairs, ())) <= set(robot.all_link_names)
+            described, reason = robot, str(error)
+            assert re.match(r"SRDF: it is for another robot: ", reason), reason  # noqa: PT017
+        assert all(stance.shape == (robot.dof,) for stance in described.stances.values())
+        links = {link for pair in described.collision_pairs for link in pair}
+        assert links <= {link for link, *_ in described.capsules}
+
+
+# Twenty of those whose meshes are in the package.
+FITTED = (
+    "a1", "allegro_left_hand", "b1-z1", "baxter", "double_pendulum", "finger_edu", "go2", "kinova", "laikago", "panda",
+    "panda_collision", "so100", "solo12", "talos_left_arm", "tiago", "tiago_pro", "ur10_robot", "ur5_robot", "xarm7", "z1",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FITTED)
+def test_bodies_are_fitted_to_meshes(name: str) -> None:
+    (entry,) = (entry for entry in table() if Path(entry.urdf).stem == name)
+    robot = bik.Robot.from_urdf(entry.path, tip=entry.tip, collision="fit", package_dirs=ROBOTS.parent)
+    assert robot.capsules
+    assert not any("a mesh" in shape for shape in robot.unread_collision_shapes)
+    assert all(largest < 0.2 for *_, largest in robot.mesh_fits)

@@ -279,10 +279,9 @@ fn no_capsules(robot: &Robot) -> Error {
     let given = "with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])";
     let remedy = match robot.capsules() {
         [] => format!(
-            "give it capsules with {given}, or load a URDF whose links have <collision> shapes of spheres, cylinders, \
-             capsules and boxes"
+            "load its URDF with collision=\"fit\", or give it capsules with {given}"
         ),
-        _ => "robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
+        _ => "load its URDF with collision=\"fit\", which covers meshes too; robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
               robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
             .into(),
     };

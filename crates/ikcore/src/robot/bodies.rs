@@ -1,6 +1,6 @@
 //! Bodies of a robot: the capsules on its links, given explicitly or generated along the links.
 
-use super::link_capsule::{Bodies, LinkCapsule};
+use super::link_capsule::{Bodies, LinkCapsule, MeshFit};
 use super::model::Robot;
 use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::LinkFrame;
@@ -22,6 +22,11 @@ impl Robot {
         &self.bodies().unread
     }
 
+    /// The meshes of a URDF that capsules were fitted to, with how well they follow them.
+    pub fn mesh_fits(&self) -> &[MeshFit] {
+        &self.bodies().fits
+    }
+
     /// The same robot with these capsules and no others.
     ///
     /// # Errors
@@ -35,7 +40,7 @@ impl Robot {
             })?;
             checked_radius(&format!("radius of capsule {i} of link '{}'", capsule.link), capsule.radius)?;
         }
-        Ok(self.with_bodies(Bodies { capsules, unread: vec![] }))
+        Ok(self.with_bodies(Bodies { capsules, ..Bodies::default() }))
     }
 
     /// The same robot with a capsule of this `radius` (m) along every link: from the preceding joint, through the
@@ -64,7 +69,7 @@ impl Robot {
                 capsules.push(LinkCapsule { link: (*name).into(), a, b, radius });
             }
         }
-        Ok(self.with_bodies(Bodies { capsules, unread: vec![] }))
+        Ok(self.with_bodies(Bodies { capsules, ..Bodies::default() }))
     }
 
     fn nameless(&self, body: usize) -> Error {

@@ -40,7 +40,7 @@ pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
 pub(crate) use link_capsule::Bodies;
-pub use link_capsule::LinkCapsule;
+pub use link_capsule::{LinkCapsule, MeshFit};
 pub(crate) use links::FrameBuffer;
 pub use model::Robot;
 pub use stance::Stance;

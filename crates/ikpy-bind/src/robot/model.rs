@@ -135,6 +135,21 @@ impl PyRobot {
         capsules.map(|c| (c.link.clone(), copied(py, &c.a), copied(py, &c.b), c.radius)).collect()
     }
 
+    /// Meshes that capsules were fitted to, each (link, file, volume ratio, largest distance): the volume of the capsules over that
+    /// of the mesh, NaN for one that is not closed; and the largest distance (m) of the capsules from it.
+    #[getter]
+    fn mesh_fits(&self) -> Vec<(String, String, f64, f64)> {
+        let fits = self.core.mesh_fits().iter();
+        fits.map(|fit| (fit.link.clone(), fit.file.clone(), fit.volume_ratio, fit.largest_distance)).collect()
+    }
+
+    /// Collision shapes that did not become `capsules`, such as "a mesh of link 'hand'": `from_urdf(..., collision="fit")` reads
+    /// meshes.
+    #[getter]
+    fn unread_collision_shapes(&self) -> Vec<String> {
+        self.core.unread_collision_shapes().to_vec()
+    }
+
     /// Pairs of links that are tested against each other, each (link, link). Links that are fixed to each other never are. Without
     /// an SRDF and without `with_collision_pairs` neither are neighbours, links that touch with all joints in the middle of their
     /// ranges or in nearly all of 1,000 random configurations, and links that come no nearer than 20 mm in 10,000. Found at the

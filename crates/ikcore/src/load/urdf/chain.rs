@@ -9,7 +9,7 @@ use super::off_chain;
 use super::step;
 use super::tree::Tree;
 use crate::error::{Error, Result};
-use crate::robot::{Bodies, ChainBuilder, Robot, require_supported};
+use crate::robot::{ChainBuilder, Robot, require_supported};
 
 /// Builds the robot whose chain leads from link `base` to link `tip`; all other links branch off it.
 pub(super) fn build(document: &Document, tree: &Tree, base: &str, tip: &str) -> Result<Robot> {
@@ -38,19 +38,7 @@ pub(super) fn build(document: &Document, tree: &Tree, base: &str, tip: &str) -> 
     }
     let robot = chain.build()?;
     let off_chain = off_chain::of(document, tree, &robot, couplings, &index_in_q)?;
-    let robot = robot.with_off_chain(off_chain)?;
-    let bodies = bodies(document, robot.all_link_names());
-    Ok(robot.with_bodies(bodies))
-}
-
-/// Collects the capsules of the links with these names.
-fn bodies<'a>(document: &Document, names: impl Iterator<Item = &'a str>) -> Bodies {
-    let mut bodies = Bodies::default();
-    for link in names.filter_map(|name| document.capsules.get(name)) {
-        bodies.capsules.extend(link.capsules.iter().cloned());
-        bodies.unread.extend(link.unread.iter().cloned());
-    }
-    bodies
+    robot.with_off_chain(off_chain)
 }
 
 /// Adds the independent joints in chain order, with limits narrowed by their mimic joints, and returns the index in q

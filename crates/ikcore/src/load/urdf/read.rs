@@ -1,10 +1,13 @@
 //! `Robot::from_urdf`: from a file or its text to a robot.
 
 use std::borrow::Cow;
+use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
 
+use super::bodies::{self, CollisionShapes};
 use super::chain;
 use super::document::Document;
+use super::package::Packages;
 use super::tree::Tree;
 use crate::error::{Error, Result, shortened};
 use crate::robot::Robot;
@@ -18,6 +21,13 @@ pub struct UrdfOptions {
     pub tip: Option<String>,
     /// Values of joints beside the chain (rad, m); the others are held at zero or at the limit nearest to it.
     pub hold: Vec<(String, f64)>,
+    /// What becomes of the collision shapes.
+    pub collision: CollisionShapes,
+    /// Folders with packages, in which `package://` is looked for first; then in `ROS_PACKAGE_PATH`, `AMENT_PREFIX_PATH` and the
+    /// folders above the file.
+    pub package_dirs: Vec<String>,
+    /// The folder that relative names of meshes start from; `None`: that of the file.
+    pub directory: Option<PathBuf>,
     /// An SRDF, as a file or text, for [`with_srdf`](Robot::with_srdf).
     pub srdf: Option<String>,
 }
@@ -41,9 +51,9 @@ impl Robot {
     /// both would lock it); if one is given, the other is zero, as URDF specifies. Without `velocity` the speed is
     /// unlimited; an explicit zero locks the joint. Soft limits (`<safety_controller>`) are ignored.
     ///
-    /// Collision shapes of the links on the chain become [capsules](Robot::capsules) that enclose them: exact for
-    /// spheres, with protruding caps for cylinders and boxes. Meshes are not read; [`Robot::unread_collision_shapes`]
-    /// names them.
+    /// Collision shapes of all links become [capsules](Robot::capsules) that enclose them: exact for spheres, with
+    /// protruding caps for cylinders and boxes. Meshes are not read unless [`CollisionShapes::Fit`] says so;
+    /// [`Robot::unread_collision_shapes`] names them.
     ///
     /// # Errors
     /// [`Error::Unreadable`] for a file; [`Error::Urdf`], with the line where there is one, for text that is no URDF;
@@ -70,6 +80,9 @@ impl Robot {
             None => tree.only_leaf_below(base)?,
         };
         let robot = chain::build(&document, &tree, base, tip)?;
+        let folder = Path::new(path_or_xml).parent().filter(|_| !path_or_xml.contains('<'));
+        let packages = Packages::new(&options.package_dirs, options.directory.as_deref().or(folder));
+        let robot = robot.with_bodies(bodies::of(&document, &robot, options.collision, &packages)?);
         let robot = match &options.hold[..] {
             [] => robot,
             hold => robot.with_held(hold.iter().map(|(joint, value)| (joint.as_str(), *value)))?,
