@@ -59,7 +59,7 @@ def test_an_srdf_beside_the_file_is_read_or_refused_with_a_reason(entry: Entry) 
             described = robot.with_srdf(srdf)
         except bik.UrdfError as error:
             described, reason = robot, str(error)
-            assert re.match(r"SRDF: it is for another robot: ", reason), reason  # noqa: PT017
+            assert re.match(r"SRDF: it is for another robot: ", reason), reason
         assert all(stance.shape == (robot.dof,) for stance in described.stances.values())
         links = {link for pair in described.collision_pairs for link in pair}
         assert links <= {link for link, *_ in described.capsules}
@@ -67,9 +67,9 @@ def test_an_srdf_beside_the_file_is_read_or_refused_with_a_reason(entry: Entry) 
 
 # Twenty of those whose meshes are in the package.
 FITTED = (
-    "a1", "allegro_left_hand", "b1-z1", "baxter", "double_pendulum", "finger_edu", "go2", "kinova", "laikago", "panda",
-    "panda_collision", "so100", "solo12", "talos_left_arm", "tiago", "tiago_pro", "ur10_robot", "ur5_robot", "xarm7", "z1",
-)  # fmt: skip
+    "a1 allegro_left_hand b1-z1 baxter double_pendulum finger_edu go2 kinova laikago panda "
+    "panda_collision so100 solo12 talos_left_arm tiago tiago_pro ur10_robot ur5_robot xarm7 z1"
+).split()
 
 
 @pytest.mark.parametrize("name", FITTED)
