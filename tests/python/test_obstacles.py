@@ -101,15 +101,15 @@ def test_each_kind_of_obstacle_has_distance_place_and_normal(kind: str) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_plan_keeps_clear_of_each_kind_of_obstacle(kind: str) -> None:
     obstacle = {
-        "Cylinder": bik.obstacles.Cylinder([0.55, 0, 0.25], [0, 0, 1], 0.15, 0.5),
-        "HalfSpace": bik.obstacles.HalfSpace([0, 0, 1], 0.1),
+        "Cylinder": bik.obstacles.Cylinder([0.5, 0, 0.2], [0, 1, 0], 0.15, 0.6),
+        "HalfSpace": bik.obstacles.HalfSpace([0, 0, 1], 0.2),
         "Mesh": bik.obstacles.Mesh(CRATE.triangles.reshape(-1, 3), np.arange(36).reshape(12, 3)),
-        "PointCloud": bik.obstacles.PointCloud(np.random.default_rng(1).uniform(0, 0.3, (500, 3)) + [0.4, -0.1, 0], 0.01),
+        "PointCloud": bik.obstacles.PointCloud(
+            np.random.default_rng(1).uniform(-1, 1, (300, 3)) * 0.1 + [0.5, 0, 0.2], 0.02
+        ),
         "Grid": bik.obstacles.Grid([0.4, -0.3, 0.0], 0.1, np.ones((2, 6, 4), dtype=bool)),
     }[kind]
-    here = np.array([-0.7, 0.6, 0.0, -1.9, 0.0, 2.4, 0.8])
-    there = here * [-1, 1, 1, 1, 1, 1, 1]
-    plan = bik.plan_point_to_point(PANDA, start_q=here, end_q=there, obstacles=[obstacle], limits=LIMITS)
+    plan = bik.plan_point_to_point(PANDA, start_q=CENTRE, end=BEHIND, obstacles=[obstacle], limits=LIMITS)
     assert plan.success, plan.message
     _, q, *_ = plan.trajectory.sample(0.005)
     assert 0.001 <= plan.clearance <= bik.obstacles.clearance(PANDA, q, [obstacle]).min() + 1e-9

@@ -81,7 +81,8 @@ fn ball(place: impl Fn(Vector3<f64>) -> [f64; 3]) -> Vec<Triangle> {
         let [a, b, c, d] = [corner(row, step), corner(row + 1, step), corner(row + 1, step + 1), corner(row, step + 1)];
         [[a, b, c], [a, c, d]]
     });
-    halves.collect()
+    // At the poles corners coincide.
+    halves.filter(|[a, b, c]| a != b && b != c && c != a).collect()
 }
 
 fn cuboid(pose: &Pose, half: &Vector3<f64>) -> Vec<Triangle> {

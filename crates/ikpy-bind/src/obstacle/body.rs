@@ -2,11 +2,11 @@
 
 use ikcore::math::Pose;
 use ikcore::nalgebra::Matrix3;
-use ikcore::shape::{Geometry, Shape};
+use ikcore::shape::{Geometry, Grid, Shape};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
-use crate::convert::{Array, counted, table};
+use crate::convert::{Array, table};
 use crate::hash::content_hash;
 use crate::options::NewArguments;
 
@@ -46,20 +46,14 @@ impl PyObstacle {
             }
             Geometry::HalfSpace { normal, offset } => format!("{normal:?}, {offset:?}"),
             Geometry::ConvexMesh(hull) => format!("{:?}", hull.points()),
-            Geometry::Mesh(mesh) => format!(
-                "{}, {}{}",
-                counted(mesh.vertices().len(), "vertex"),
-                counted(mesh.faces().len(), "face"),
-                if mesh.is_closed() { ", closed" } else { ", open" }
-            ),
+            Geometry::Mesh(mesh) => {
+                format!("{}, {}", list_text(mesh.vertices(), "points"), list_text(mesh.faces(), "triangles"))
+            }
             Geometry::PointCloud(cloud) => {
-                format!("{}, radius={:?}", counted(cloud.points().len(), "point"), cloud.radius())
+                format!("{}, radius={:?}", list_text(cloud.points(), "points"), cloud.radius())
             }
             Geometry::Grid(grid) => {
-                let [x, y, z] = grid.counts();
-                let occupied = grid.occupied().iter().filter(|occupied| **occupied).count();
-                let voxel = grid.voxel();
-                format!("{:?}, {voxel:?}, {x} x {y} x {z} voxels, {occupied} occupied", grid.origin())
+                format!("{:?}, {:?}, {}", grid.origin(), grid.voxel(), voxels_text(grid))
             }
         };
         format!("obstacles.{}({arguments})", self.core.name())
@@ -92,6 +86,26 @@ impl PyObstacle {
             Geometry::Grid(grid) => ((grid.origin(), grid.voxel(), occupied(py, grid)?).into_pyobject(py)?, none),
         })
     }
+}
+
+/// Longer lists are not written out.
+const MOST_ENTRIES: usize = 100;
+
+/// Formats a list in Python syntax if it is short, else as its length.
+fn list_text<T: std::fmt::Debug>(list: &[T], entries: &str) -> String {
+    if list.len() > MOST_ENTRIES { format!("<{} {entries}>", list.len()) } else { format!("{list:?}") }
+}
+
+/// Formats occupied voxels as nested lists in Python syntax if they are few, else as their number.
+fn voxels_text(grid: &Grid) -> String {
+    let [x, y, z] = grid.counts();
+    if grid.occupied().len() > MOST_ENTRIES {
+        return format!("<{x} x {y} x {z} voxels>");
+    }
+    let word = |occupied: &bool| if *occupied { "True" } else { "False" };
+    let row = |voxels: &[bool]| format!("[{}]", voxels.iter().map(word).collect::<Vec<_>>().join(", "));
+    let slab = |voxels: &[bool]| format!("[{}]", voxels.chunks(z).map(row).collect::<Vec<_>>().join(", "));
+    format!("[{}]", grid.occupied().chunks(y * z).map(slab).collect::<Vec<_>>().join(", "))
 }
 
 fn point_of(pose: &Pose) -> [f64; 3] {
