@@ -68,7 +68,8 @@ def test_an_srdf_beside_the_file_is_read_or_refused_with_a_reason(entry: Entry) 
 # Twenty of those whose meshes are in the package.
 FITTED = [
     "a1", "allegro_left_hand", "b1-z1", "baxter", "double_pendulum", "finger_edu", "go2", "kinova", "laikago", "panda",
-    "panda_collision", "so100", "solo12", "talos_left_arm", "tiago", "tiago_pro", "ur10_robot", "ur5_robot", "xarm7", "z1",
+    "panda_collision", "so100", "solo12", "talos_left_arm", "tiago", "tiago_pro", "ur10_robot", "ur5_robot",
+    "xarm7", "z1",
 ]  # fmt: skip
 
 
