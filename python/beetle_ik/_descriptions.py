@@ -20,7 +20,8 @@ def robot(name: str, options: Mapping[str, Any]) -> Robot:
     except ModuleNotFoundError:
         described = None
     if described is None:
-        near = get_close_matches(name, known, n=3) or get_close_matches(f"{name}_description", known, n=3, cutoff=0.8)
+        stems = {other.removesuffix("_description"): other for other in known}
+        near = [stems[stem] for stem in get_close_matches(name.removesuffix("_description"), stems, n=3)]
         hint = f"; did you mean {' or '.join(near)}?" if near else f"; it has {len(known)} others"
         raise UnknownNameError(f"robot_descriptions has no description '{name:.60}'{hint}")
     if hasattr(described, "URDF_PATH"):

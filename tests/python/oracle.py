@@ -36,7 +36,7 @@ class Oracle:
     def drive(self, joint: str) -> tuple[str, float, float]:
         """The independent joint behind `joint`, and factor and offset of its motion."""
         mimic = self.couplings[joint]
-        if mimic is None:
+        if mimic is None or mimic.attrib["joint"] not in self.couplings:
             return joint, 1.0, 0.0
         master, factor, offset = self.drive(mimic.attrib["joint"])
         multiplier = float(mimic.get("multiplier", 1.0))

@@ -83,7 +83,7 @@ def test_what_is_grasped_collides_with_what_is_around() -> None:
     ball = bik.obstacles.Sphere(end[:3], 0.02)
     assert bik.obstacles.clearance(PANDA, READY, [ball]) > 0.1 > 0 > bik.obstacles.clearance(carrying, READY, [ball])
     nearest = bik.obstacles.nearest(carrying, READY, [ball])
-    assert nearest.link == "stick"
+    assert nearest.body == "stick"
 
 
 HAND = bik.Robot.from_urdf(GRIPPER, tip="hand")

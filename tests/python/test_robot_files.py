@@ -120,7 +120,7 @@ def test_descriptions_are_loaded_by_name(tmp_path: Path, monkeypatch: pytest.Mon
     stub(monkeypatch, "robot_descriptions.arm_description", URDF_PATH=str(urdf))
     robot = bik.Robot.from_description("arm_description", tip="hand", hold={"finger": 0.01})
     assert robot == bik.Robot.from_urdf(urdf, tip="hand", hold={"finger": 0.01})
-    for wrong, near in (("arm_descripton", "did you mean arm_description or "), ("zebra", "it has 3 others")):
+    for wrong, near in (("arm_descripton", "did you mean arm_description"), ("zebra", "it has 3 others")):
         with pytest.raises(bik.UnknownNameError) as told:
             bik.Robot.from_description(wrong)
         assert str(told.value).startswith(f"robot_descriptions has no description '{wrong}'; {near}")

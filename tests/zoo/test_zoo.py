@@ -19,7 +19,8 @@ REFUSED = {
         "URDF line 6: <robot> has no <joint>: a chain needs at least one that moves"
     ),
     "iris_description/robots/iris_simple.urdf": (
-        "URDF: no joint moves between base 'iris__base_link' and tip 'iris__/imu_link'"
+        "robot 'iris' ends in 5 links: say which one is the tip; leaves, by number of joints: iris__/imu_link (0), "
+        "iris__rotor_0 (0), iris__rotor_1 (0), iris__rotor_2 (0), iris__rotor_3 (0)"
     ),
     "ur_description/urdf/ur3.urdf": "URDF line 6: <robot> has no <joint>: a chain needs at least one that moves",
 }
@@ -79,4 +80,4 @@ def test_bodies_are_fitted_to_meshes(name: str) -> None:
     robot = bik.Robot.from_urdf(entry.path, tip=entry.tip, collision="fit", package_dirs=ROBOTS.parent)
     assert robot.capsules
     assert not any("a mesh" in shape for shape in robot.unread_collision_shapes)
-    assert all(largest < 0.2 for *_, largest in robot.mesh_fits)
+    assert all(largest < 0.3 for *_, largest in robot.mesh_fits)
