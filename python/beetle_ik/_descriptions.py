@@ -13,17 +13,16 @@ from ._needs import library
 def robot(name: str, options: Mapping[str, Any]) -> Robot:
     """Returns `Robot.from_description`."""
     require_text("name", name)
-    package = library("robot_descriptions", "robot_descriptions", f"the description '{name:.60}'", extra="robots")
+    package = library("robot_descriptions", "robot_descriptions", f"the robot named '{name:.60}'", extra="robots")
     known = sorted(_names(package))
     try:
         described = import_module(f"robot_descriptions.{name}") if name in known else None
     except ModuleNotFoundError:
         described = None
     if described is None:
-        stems = {other.removesuffix("_description"): other for other in known}
-        near = [stems[stem] for stem in get_close_matches(name.removesuffix("_description"), stems, n=3)]
+        near = get_close_matches(name, known, n=3, cutoff=0.8)
         hint = f"; did you mean {' or '.join(near)}?" if near else f"; it has {len(known)} others"
-        raise UnknownNameError(f"robot_descriptions has no description '{name:.60}'{hint}")
+        raise UnknownNameError(f"robot_descriptions has no robot named '{name:.60}'{hint}")
     if hasattr(described, "URDF_PATH"):
         return Robot.from_urdf(described.URDF_PATH, **options)
     if hasattr(described, "XACRO_PATH"):

@@ -123,10 +123,10 @@ def test_descriptions_are_loaded_by_name(tmp_path: Path, monkeypatch: pytest.Mon
     for wrong, near in (("arm_descripton", "did you mean arm_description"), ("zebra", "it has 3 others")):
         with pytest.raises(bik.UnknownNameError) as told:
             bik.Robot.from_description(wrong)
-        assert str(told.value).startswith(f"robot_descriptions has no description '{wrong}'; {near}")
+        assert str(told.value).startswith(f"robot_descriptions has no robot named '{wrong}'; {near}")
     monkeypatch.setitem(sys.modules, "robot_descriptions", None)
     with pytest.raises(bik.BeetleIkError) as missing:
         bik.Robot.from_description("arm_description")
     assert str(missing.value) == (
-        "the description 'arm_description' needs robot_descriptions: pip install 'beetle-ik[robots]'"
+        "the robot named 'arm_description' needs robot_descriptions: pip install 'beetle-ik[robots]'"
     )

@@ -40,7 +40,8 @@ impl PyRobot {
     ///     UnknownNameError: no link of that name; the message lists them.
     #[staticmethod]
     #[pyo3(signature = (path_or_xml, *, base=None, tip=None, hold=None, srdf=None, collision=Some("primitives"),
-                        package_dirs=None))]
+                        package_dirs=None),
+           text_signature = "(path_or_xml, *, base=None, tip=None, hold=None, srdf=None, collision='primitives', package_dirs=None)")]
     #[allow(clippy::too_many_arguments)]
     fn from_urdf(
         path_or_xml: &Bound<'_, PyAny>,
