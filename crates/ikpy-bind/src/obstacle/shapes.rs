@@ -12,6 +12,7 @@ use super::body::PyObstacle;
 use super::large::read_points;
 use crate::convert::{Array, copied, entries, matrix3, point, table};
 use crate::error::raise;
+use crate::monitor::on_a_thread;
 
 /// A vector stored by a class; Python gets a read-only array.
 #[derive(Clone, Copy)]
@@ -268,8 +269,11 @@ pub struct PyConvexMesh {
 impl PyConvexMesh {
     #[new]
     fn new(points: &Bound<'_, PyAny>) -> PyResult<PyClassInitializer<Self>> {
+        let py = points.py();
         let points = read_points("points", points)?;
-        made(Shape::convex_mesh(&points), Self { points })
+        let given = points.clone();
+        let hull = on_a_thread(py, move || Shape::convex_mesh(&given))?;
+        made(Ok(hull), Self { points })
     }
 
     /// The points as given (k, 3) (m).

@@ -11,6 +11,7 @@ use super::PyRobot;
 use super::modified_copies::{per_joint, read_hold};
 use crate::convert::{path_or_text, rigid, summary, vector};
 use crate::error::{invalid, raise};
+use crate::monitor::on_a_thread;
 use crate::python_calls;
 
 #[pymethods]
@@ -68,7 +69,7 @@ impl PyRobot {
             package_dirs: package_dirs.map_or(Ok(vec![]), read_folders)?,
             directory,
         };
-        py.detach(|| Robot::from_urdf_with(&source, &options)).map(Self::from).map_err(raise)
+        on_a_thread(py, move || Robot::from_urdf_with(&source, &options)).map(Self::from)
     }
 
     /// Makes a robot from a MuJoCo model, as compiled by MuJoCo. Joint positions equal MuJoCo's qpos. Needs the extra "sim".
@@ -202,8 +203,14 @@ impl PyRobot {
     /// Raises:
     ///     UnknownNameError: lists the names and suggests the nearest.
     #[staticmethod]
-    fn named(#[pyo3(from_py_with = crate::convert::text)] name: &str) -> PyResult<Self> {
-        Robot::named(name).map(Self::from).map_err(raise)
+    fn named(name: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let Ok(text) = name.extract::<String>() else {
+            let (got, known) = (summary(name), Robot::names().collect::<Vec<_>>().join(", "));
+            return Err(invalid(format!(
+                "name must be the name of a built-in robot, got {got}; known robots: {known}"
+            )));
+        };
+        Robot::named(&text).map(Self::from).map_err(raise)
     }
 
     /// Returns the names of the built-in robots.
