@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 
 use super::carried::Carried;
 use crate::math::Frame;
-use crate::math::arithmetic::{Arithmetic, by_instructions};
+use crate::math::arithmetic::{Arithmetic, NoFma, by_instructions};
 use crate::math::f64x4::F64x4;
 use crate::shape::{BodyBlock, Shape, ShapeIndex, clear_of_each_other};
 
@@ -112,6 +112,11 @@ impl BodyGroups {
         are_clear(self, frames, obstacles, margin)
     }
 
+    /// Whether one configuration at a time is faster: obstacles are then found by a tree.
+    pub fn has_index(&self) -> bool {
+        self.index.is_some()
+    }
+
     /// In each lane 1 if everything is clear with the moving elements at `frames`, four configurations side by side, else 0.
     pub fn four_are_clear(&self, frames: &[Frame<F64x4>], obstacles: &[Shape], margin: f64) -> F64x4 {
         four_are_clear(self, frames, obstacles, margin)
@@ -119,13 +124,13 @@ impl BodyGroups {
 
     /// The balls around all groups, four in a block.
     #[inline(always)]
-    fn balls<A: Arithmetic>(&self, frames: &[Frame]) -> Balls {
+    fn balls(&self, frames: &[Frame]) -> Balls {
         let mut balls = Balls::new();
         for (i, group) in self.groups.iter().enumerate() {
             if i % 4 == 0 {
                 balls.push(BodyBlock::SPHERES);
             }
-            let center = frames[group.stages].place::<A>(&group.center);
+            let center = frames[group.stages].place::<NoFma>(&group.center);
             let Some(block) = balls.last_mut() else { continue };
             // Lanes after the last group repeat it.
             for lane in i % 4..4 {
@@ -183,12 +188,31 @@ impl Group {
     }
 }
 
+/// Whether all lanes are 1; each is 1 or 0.
+#[inline(always)]
+fn all_clear(lanes: &F64x4) -> bool {
+    lanes.0[0] + lanes.0[1] + lanes.0[2] + lanes.0[3] == 4.0
+}
+
+/// Whether all lanes are 0; each is 1 or 0.
+#[inline(always)]
+fn none_clear(lanes: &F64x4) -> bool {
+    lanes.0[0] + lanes.0[1] + lanes.0[2] + lanes.0[3] == 0.0
+}
+
+/// The larger of each two lanes.
+#[inline(always)]
+fn larger_lanes<A: Arithmetic>(one: F64x4, other: F64x4) -> F64x4 {
+    A::choose_below_x4(one, other, other, one)
+}
+
 by_instructions! {
     fn are_clear(all: &BodyGroups, frames: &[Frame], obstacles: &[Shape], margin: f64) -> bool {
-        let balls = all.balls::<A>(frames);
+        let balls = all.balls(frames);
         let ball = |i: usize| {
             let block = &balls[i / 4];
-            (Vector3::from(block.start.map(|x| x.0[i % 4])), block.radius.0[i % 4])
+            let [x, y, z] = &block.start;
+            (Vector3::new(x.0[i % 4], y.0[i % 4], z.0[i % 4]), block.radius.0[i % 4])
         };
         // For each group the obstacles that its ball is near to.
         let mut near: SmallVec<[(usize, usize); 32]> = SmallVec::new();
@@ -203,10 +227,13 @@ by_instructions! {
             None => {
                 for (obstacle, shape) in obstacles.iter().enumerate() {
                     for (i, block) in balls.iter().enumerate() {
-                        let clear = shape.clear_lanes::<A>(block, margin).0;
+                        let clear = shape.clear_lanes::<A>(block, margin);
+                        if all_clear(&clear) {
+                            continue;
+                        }
                         for lane in 0..4 {
                             let group = 4 * i + lane;
-                            if clear[lane] == 0.0 && group < all.groups.len() && moving(group) {
+                            if clear.0[lane] == 0.0 && group < all.groups.len() && moving(group) {
                                 near.push((group, obstacle));
                             }
                         }
@@ -221,8 +248,7 @@ by_instructions! {
                 placed = (group, all.groups[group].placed::<A>(&frames[all.groups[group].stages]));
             }
             for block in &placed.1 {
-                let clear = obstacles[obstacle].clear_lanes::<A>(block, margin).0;
-                if clear.contains(&0.0) {
+                if !all_clear(&obstacles[obstacle].clear_lanes::<A>(block, margin)) {
                     return false;
                 }
             }
@@ -233,11 +259,11 @@ by_instructions! {
             if (near - far).norm_squared() > enough * enough * (1.0 + 1e-12) {
                 continue;
             }
-            let [near, far] = [pair.near, pair.far].map(|group| &all.groups[group]);
+            let (near, far) = (&all.groups[pair.near], &all.groups[pair.far]);
             let (near, far) = (near.placed::<A>(&frames[near.stages]), far.placed::<A>(&frames[far.stages]));
             for test in &pair.tests {
                 let clear = clear_of_each_other::<A>(&near[test.block].repeated(test.lane), &far[test.far_block], margin);
-                if (0..4).any(|lane| clear.0[lane] + test.ignored.0[lane] == 0.0) {
+                if !all_clear(&larger_lanes::<A>(clear, test.ignored)) {
                     return false;
                 }
             }
@@ -250,8 +276,11 @@ by_instructions! {
     fn four_are_clear(all: &BodyGroups, frames: &[Frame<F64x4>], obstacles: &[Shape], margin: f64) -> F64x4 {
         let mut clear = F64x4::splat(1.0);
         let at = |group: &Group| frames[group.stages];
-        // In each lane 1 unless a ball is near to something and the lane still matters.
-        let settled = |balls_clear: F64x4, clear: &F64x4| (0..4).all(|k| balls_clear.0[k] == 1.0 || clear.0[k] == 0.0);
+        // Lanes that are not clear no longer matter.
+        let settled = |balls: F64x4, clear: &F64x4| {
+            let open = A::sub_x4(*clear, A::mul_x4(*clear, balls)).0;
+            open[0] + open[1] + open[2] + open[3] == 0.0
+        };
         for group in all.groups.iter().filter(|group| group.stages > 0) {
             let at = at(group);
             let ball = BodyBlock::ball_at::<A>(&at, &group.center, group.radius);
@@ -263,16 +292,16 @@ by_instructions! {
                     let body = group.blocks[block].body_at::<A>(lane, &at);
                     clear = A::mul_x4(clear, shape.clear_lanes::<A>(&body, margin));
                 }
-                if clear.0 == [0.0; 4] {
+                if none_clear(&clear) {
                     return clear;
                 }
             }
         }
         for pair in &all.pairs {
-            let [near, far] = [pair.near, pair.far].map(|group| &all.groups[group]);
-            let [near_at, far_at] = [near, far].map(at);
-            let [one, other] = [(near, &near_at), (far, &far_at)]
-                .map(|(group, at)| BodyBlock::ball_at::<A>(at, &group.center, group.radius));
+            let (near, far) = (&all.groups[pair.near], &all.groups[pair.far]);
+            let (near_at, far_at) = (at(near), at(far));
+            let one = BodyBlock::ball_at::<A>(&near_at, &near.center, near.radius);
+            let other = BodyBlock::ball_at::<A>(&far_at, &far.center, far.radius);
             if settled(clear_of_each_other::<A>(&one, &other, margin), &clear) {
                 continue;
             }
@@ -283,7 +312,7 @@ by_instructions! {
                     clear = A::mul_x4(clear, clear_of_each_other::<A>(&body, &other, margin));
                 }
             }
-            if clear.0 == [0.0; 4] {
+            if none_clear(&clear) {
                 return clear;
             }
         }

@@ -170,6 +170,9 @@ impl<'a> Scene<'a> {
         }
         let n = self.robot.dof();
         qs.chunks(n).try_for_each(|q| self.robot.check("joint angles", q))?;
+        if self.groups.has_index() {
+            return Ok(qs.chunks(n).map(|q| self.is_clear(q, margin)).collect());
+        }
         let mut clear = Vec::with_capacity(qs.len() / n);
         let (mut lanes, mut frames) = (vec![F64x4::ZERO; n], self.robot.frame_buffer_four());
         for four in qs.chunks(4 * n) {

@@ -35,8 +35,8 @@ impl BodyBlock {
     #[inline(always)]
     pub fn placed<A: Arithmetic>(&self, frame: &Frame) -> Self {
         let Frame { axes: [x, y, z], origin } = frame;
-        let [x, y, z, origin] = [x, y, z, origin].map(Vec3::<Four<A>>::splat);
-        Self::moved([x, y, z], origin, Vec3::of(&self.start), Vec3::of(&self.along), self.radius, self.spheres)
+        let axes = [Vec3::<Four<A>>::splat(x), Vec3::splat(y), Vec3::splat(z)];
+        Self::moved(axes, Vec3::splat(origin), Vec3::of(&self.start), Vec3::of(&self.along), self.radius, self.spheres)
     }
 
     /// The body in lane `lane` at four places, one per lane.
@@ -53,14 +53,16 @@ impl BodyBlock {
     /// A ball at four places, one per lane.
     #[inline(always)]
     pub fn ball_at<A: Arithmetic>(frames: &Frame<F64x4>, center: &[f64; 3], radius: f64) -> Self {
-        let start = center.map(F64x4::splat);
+        let start = [F64x4::splat(center[0]), F64x4::splat(center[1]), F64x4::splat(center[2])];
         Self { start, radius: F64x4::splat(radius), ..Self::SPHERES }.body_at::<A>(0, frames)
     }
 
     /// The body in lane `lane` in all lanes.
     #[inline(always)]
     pub fn repeated(&self, lane: usize) -> Self {
-        let [start, along] = [&self.start, &self.along].map(|v| v.map(|x| F64x4::splat(x.0[lane])));
+        let [[x, y, z], [u, v, w]] = [&self.start, &self.along];
+        let start = [F64x4::splat(x.0[lane]), F64x4::splat(y.0[lane]), F64x4::splat(z.0[lane])];
+        let along = [F64x4::splat(u.0[lane]), F64x4::splat(v.0[lane]), F64x4::splat(w.0[lane])];
         Self { start, along, radius: F64x4::splat(self.radius.0[lane]), spheres: self.spheres }
     }
 
@@ -76,6 +78,13 @@ impl BodyBlock {
         let start = x.mul_add(start.x, y.mul_add(start.y, z.mul_add(start.z, origin)));
         let along = if spheres { along } else { x.mul_add(along.x, y.mul_add(along.y, z * along.z)) };
         Self { start: start.stored(), along: along.stored(), radius, spheres }
+    }
+
+    /// Whether two lanes hold the same capsule, as do those that fill a block up.
+    fn is_same(&self, lane: usize, other: usize) -> bool {
+        (0..3)
+            .all(|k| self.start[k].0[lane] == self.start[k].0[other] && self.along[k].0[lane] == self.along[k].0[other])
+            && self.radius.0[lane] == self.radius.0[other]
     }
 
     /// The capsule in lane `lane`.
@@ -94,13 +103,22 @@ impl Shape {
         let far = largest::<A>(start).larger(largest::<A>(start + along)) * Four::splat(ROUNDING);
         let rounding = Four::splat(self.rounding(0.0)).larger(far);
         let enough = Four::of(block.radius) + Four::splat(margin) + rounding;
+        let bounds = self.bounding_ball();
+        if block.spheres {
+            // Most bodies are clear of the ball around the shape.
+            let offset = start - Vec3::splat(&bounds.center);
+            let clear = beyond_square(offset.dot(offset), enough + Four::splat(bounds.radius));
+            if clear.0[0] + clear.0[1] + clear.0[2] + clear.0[3] == 4.0 {
+                return clear;
+            }
+        }
         match self.geometry() {
             Geometry::Sphere { center, radius } => {
                 let nearest = to_point(start, along, Vec3::splat(center));
                 beyond_square(nearest.squared, enough + Four::splat(*radius))
             }
             Geometry::Capsule { a, b, radius } => {
-                let axis = std::array::from_fn(|k| b[k] - a[k]);
+                let axis = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
                 let nearest = to_segment(start, along, Vec3::splat(a), Vec3::splat(&axis));
                 beyond_square(nearest.squared, enough + Four::splat(*radius))
             }
@@ -116,20 +134,33 @@ impl Shape {
                 let cylinder = CylinderLanes::new(center, axis, *radius, *length);
                 solid_clear(&cylinder, start, along, enough, block.spheres)
             }
-            _ => {
-                let enough = enough.stored().0;
-                let clear = |lane: usize| self.distance_to_segment(&block.segment(lane), enough[lane]) >= enough[lane];
-                F64x4(std::array::from_fn(|lane| f64::from(u8::from(clear(lane)))))
-            }
+            _ => self.clear_one_by_one(block, &enough.stored()),
         }
+    }
+
+    /// [`clear_lanes`](Self::clear_lanes) for shapes whose distances are found one by one.
+    #[inline(never)]
+    fn clear_one_by_one(&self, block: &BodyBlock, enough: &F64x4) -> F64x4 {
+        let mut clear = F64x4::ZERO;
+        for lane in 0..4 {
+            let repeats = (0..lane).find(|other| block.is_same(*other, lane));
+            clear.0[lane] = match repeats {
+                Some(other) => clear.0[other],
+                None => {
+                    let distance = self.distance_to_segment(&block.segment(lane), enough.0[lane]);
+                    f64::from(u8::from(distance >= enough.0[lane]))
+                }
+            };
+        }
+        clear
     }
 }
 
 /// In each lane 1 if the bodies of both blocks stay at least `margin` >= 0 (m) apart, else 0.
 #[inline(always)]
 pub(crate) fn clear_of_each_other<A: Arithmetic>(one: &BodyBlock, other: &BodyBlock, margin: f64) -> F64x4 {
-    let [p, q] = [one, other].map(|block| Vec3::<Four<A>>::of(&block.start));
-    let [u, v] = [one, other].map(|block| Vec3::<Four<A>>::of(&block.along));
+    let [p, q] = [Vec3::<Four<A>>::of(&one.start), Vec3::of(&other.start)];
+    let [u, v] = [Vec3::<Four<A>>::of(&one.along), Vec3::of(&other.along)];
     let squared = if one.spheres && other.spheres { (p - q).dot(p - q) } else { to_segment(p, u, q, v).squared };
     let rounding = (largest::<A>(p) + largest::<A>(q) + Four::splat(2.0)) * Four::splat(ROUNDING);
     beyond_square(squared, Four::of(one.radius) + Four::of(other.radius) + Four::splat(margin) + rounding)

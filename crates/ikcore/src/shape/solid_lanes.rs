@@ -1,9 +1,9 @@
 //! Boxes and cylinders in the registers: the nearest point to a point, and a bound for a segment.
 
 use super::segment_lanes::excess;
+use crate::math::Pose;
 use crate::math::real::Real;
 use crate::math::vec3::Vec3;
-use crate::math::{Frame, Pose};
 
 /// A convex body with a frame of its own.
 pub(super) trait SolidLanes<R: Real> {
@@ -26,8 +26,10 @@ struct FrameLanes<R> {
 impl<R: Real> FrameLanes<R> {
     #[inline(always)]
     fn new(pose: &Pose) -> Self {
-        let Frame { axes: [x, y, z], origin } = Frame::from(pose);
-        Self { axes: [Vec3::splat(&x), Vec3::splat(&y), Vec3::splat(&z)], origin: Vec3::splat(&origin) }
+        let (m, t) = (pose.rotation.matrix(), &pose.translation.vector);
+        let axis = [[m.m11, m.m21, m.m31], [m.m12, m.m22, m.m32], [m.m13, m.m23, m.m33]];
+        let axes = [Vec3::splat(&axis[0]), Vec3::splat(&axis[1]), Vec3::splat(&axis[2])];
+        Self { axes, origin: Vec3::splat(&[t.x, t.y, t.z]) }
     }
 
     #[inline(always)]
