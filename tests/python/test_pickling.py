@@ -337,6 +337,7 @@ def results() -> dict[str, object]:
         "no minimum": bik.minimize(lambda _: np.nan, [-1.0], [2.0], solver=bik.BAS(), stop=bik.Stop(max_evaluations=9)),
         "posture": bik.planar_posture(planar, (1.5, 1.0, 0.0), swarm=bik.CircleSwarm()),
         "no posture": bik.planar_posture(planar, (4.0, 0.0, 0.0)),
+        "nearest": bik.obstacles.nearest(planar.with_capsules(radius=0.1), [0.1] * planar.dof, [obstacle]),
     }  # fmt: skip
 
 

@@ -9,6 +9,7 @@ use super::body::PyObstacle;
 use super::shapes::{Coordinates, made};
 use crate::convert::{Array, array, point, shape_text, summary, table};
 use crate::error::invalid;
+use crate::monitor::on_a_thread;
 
 /// Reads points (k, 3).
 pub(super) fn read_points(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; 3]>> {
@@ -73,9 +74,13 @@ pub struct PyMesh;
 #[pymethods]
 impl PyMesh {
     #[new]
-    fn new(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<PyClassInitializer<Self>> {
+    fn new(
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+    ) -> PyResult<PyClassInitializer<Self>> {
         let (vertices, faces) = (read_points("vertices", vertices)?, read_faces(faces)?);
-        made(Shape::mesh(vertices, faces), Self)
+        made(Ok(on_a_thread(py, move || Shape::mesh(vertices, faces))?), Self)
     }
 
     /// The vertices (k, 3) (m).
@@ -114,9 +119,9 @@ pub struct PyPointCloud {
 #[pymethods]
 impl PyPointCloud {
     #[new]
-    fn new(points: &Bound<'_, PyAny>, radius: f64) -> PyResult<PyClassInitializer<Self>> {
+    fn new(py: Python<'_>, points: &Bound<'_, PyAny>, radius: f64) -> PyResult<PyClassInitializer<Self>> {
         let points = read_points("points", points)?;
-        made(Shape::point_cloud(points, radius), Self { radius })
+        made(Ok(on_a_thread(py, move || Shape::point_cloud(points, radius))?), Self { radius })
     }
 
     /// The points (k, 3) (m).
@@ -144,10 +149,16 @@ pub struct PyGrid {
 #[pymethods]
 impl PyGrid {
     #[new]
-    fn new(origin: &Bound<'_, PyAny>, voxel: f64, occupied: &Bound<'_, PyAny>) -> PyResult<PyClassInitializer<Self>> {
+    fn new(
+        py: Python<'_>,
+        origin: &Bound<'_, PyAny>,
+        voxel: f64,
+        occupied: &Bound<'_, PyAny>,
+    ) -> PyResult<PyClassInitializer<Self>> {
         let origin = point("origin", origin)?;
         let (counts, occupied) = read_occupied(occupied)?;
-        made(Shape::grid(origin, voxel, counts, occupied), Self { origin: Coordinates(origin), voxel })
+        let grid = on_a_thread(py, move || Shape::grid(origin, voxel, counts, occupied))?;
+        made(Ok(grid), Self { origin: Coordinates(origin), voxel })
     }
 
     /// Whether each voxel is occupied (nx, ny, nz).

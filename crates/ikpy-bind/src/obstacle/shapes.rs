@@ -268,12 +268,11 @@ pub struct PyConvexMesh {
 #[pymethods]
 impl PyConvexMesh {
     #[new]
-    fn new(points: &Bound<'_, PyAny>) -> PyResult<PyClassInitializer<Self>> {
-        let py = points.py();
+    fn new(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<PyClassInitializer<Self>> {
         let points = read_points("points", points)?;
         let given = points.clone();
-        let hull = on_a_thread(py, move || Shape::convex_mesh(&given))?;
-        made(Ok(hull), Self { points })
+        let hull = on_a_thread(py, move || Shape::convex_mesh(&given));
+        made(Ok(hull?), Self { points })
     }
 
     /// The points as given (k, 3) (m).
