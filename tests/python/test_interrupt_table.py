@@ -166,6 +166,7 @@ def waypoints(count: int) -> Callable[[], object]:
     return lambda: bik.time_optimal(q, FAST)
 
 
+PLANNED = "a plan has at most some thousand knots"
 CONSTANT = "its work does not grow with any argument"
 ONE = "one configuration of at most 32 joints"
 COPIES = "as fast as its arrays are copied"
@@ -193,11 +194,15 @@ SHORT: dict[str, str] = {
             "Robot.link_manipulability", "Robot.velocity_ellipsoid", "obstacles.nearest", "Tracker", "Tracker.reset",
             "pose",
             "Robot.all_link_poses", "Robot.with_held", "Robot.with_attached", "Robot.with_collision_pairs",
-            "Robot.with_srdf",
+            "Robot.with_srdf", "state_to_state",
         ],
         ONE,
     ),
-    **dict.fromkeys(["Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"], COPIES),
+    "Plan.retime": PLANNED,
+    **dict.fromkeys(
+        ["Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"],
+        COPIES,
+    ),
     **dict.fromkeys(
         [
             "Robot.from_mjcf", "Robot.from_description",

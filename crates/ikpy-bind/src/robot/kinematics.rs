@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use super::PyRobot;
 use crate::convert::{Rows, count, pose_array, rows, table, vector};
 use crate::error::raise;
-use crate::monitor::{in_pieces, long_call};
+use crate::monitor::{QUICK_ROWS, in_pieces, long_call};
 
 #[pymethods]
 impl PyRobot {
@@ -32,7 +32,7 @@ impl PyRobot {
                 Ok(pose_array(py, &pose)?.into_any())
             }
             Rows::Many(q, m) => {
-                let poses = in_pieces(py, q.as_slice()?, robot.dof(), |q| match link {
+                let poses = in_pieces(py, q.as_slice()?, robot.dof(), QUICK_ROWS, |q| match link {
                     None => robot.fk_all(q),
                     Some(link) => robot.link_fk_all(link, q),
                 })?;
@@ -51,7 +51,7 @@ impl PyRobot {
             }
             Rows::Many(q, m) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                table(py, in_pieces(py, q, n, |q| robot.clip_all(q))?, &[m, n])
+                table(py, in_pieces(py, q, n, QUICK_ROWS, |q| robot.clip_all(q))?, &[m, n])
             }
         }
     }
@@ -93,7 +93,7 @@ impl PyRobot {
                 robot.check("joint angles", q.as_slice()?).map_err(raise)?;
                 table(py, jacobians(q.as_slice()?).map_err(raise)?, &[6, n])
             }
-            Rows::Many(q, m) => table(py, in_pieces(py, q.as_slice()?, n, jacobians)?, &[m, 6, n]),
+            Rows::Many(q, m) => table(py, in_pieces(py, q.as_slice()?, n, QUICK_ROWS, jacobians)?, &[m, 6, n]),
         }
     }
 
