@@ -57,7 +57,8 @@ WORDS = {
 
 URDF = """<robot name="r"><link name="base"/><link name="tip"/><joint name="turn" type="continuous">
 <parent link="base"/><child link="tip"/></joint></robot>"""
-MJCF = """<mujoco><worldbody><body name="base"><body name="tip"><joint/><geom size="1"/></body></body></worldbody></mujoco>"""
+MJCF = """<mujoco><worldbody><body name="base"><body name="tip"><joint/><geom size="1"/></body></body></worldbody>
+</mujoco>"""
 ARM = IIWA.with_capsules(radius=0.05)
 PLANAR = bik.Robot.planar([1, 1, 1])
 LINE = bik.paths.polyline([(0.3, 0.3, 1.0), (0.3, 0.31, 1.0)], duration=0.2)
