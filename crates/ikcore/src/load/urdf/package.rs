@@ -13,16 +13,12 @@ pub(super) struct Packages {
 impl Packages {
     /// `given` come first, then `ROS_PACKAGE_PATH`, the `share` folders of `AMENT_PREFIX_PATH`, and the folders above the URDF.
     pub(super) fn new(given: &[String], directory: Option<&Path>) -> Self {
-        let listed = |variable: &str| std::env::var_os(variable).unwrap_or_default();
-        let ros: Vec<PathBuf> = std::env::split_paths(&listed("ROS_PACKAGE_PATH")).collect();
-        let ament = std::env::split_paths(&listed("AMENT_PREFIX_PATH")).map(|prefix| prefix.join("share")).collect();
+        let ros = folders_of("ROS_PACKAGE_PATH");
+        let ament = folders_of("AMENT_PREFIX_PATH").iter().map(|prefix| prefix.join("share")).collect();
         let directory = directory.map(|folder| std::path::absolute(folder).unwrap_or_else(|_| folder.into()));
         let around = directory.iter().flat_map(|folder| folder.ancestors()).map(Path::to_path_buf).collect();
         let roots = [given.iter().map(PathBuf::from).collect(), ros, ament, around].concat();
-        Self {
-            directory: directory.unwrap_or_default(),
-            roots: roots.into_iter().filter(|root| root != Path::new("")).collect(),
-        }
+        Self { directory: directory.unwrap_or_default(), roots }
     }
 
     /// The file, or where it was looked for.
@@ -44,4 +40,10 @@ impl Packages {
         };
         self.roots.iter().flat_map(in_root).collect()
     }
+}
+
+/// The folders that a variable of the environment lists.
+fn folders_of(variable: &str) -> Vec<PathBuf> {
+    let listed = std::env::var_os(variable).unwrap_or_default();
+    std::env::split_paths(&listed).filter(|folder| !folder.as_os_str().is_empty()).collect()
 }
