@@ -192,7 +192,8 @@ SHORT: dict[str, str] = {
             "Robot.planar", "Robot.named", "Robot.names", "Robot.link_poses", "Robot.with_tool", "Robot.with_base",
             "Robot.with_limits", "Robot.with_capsules", "Robot.with_errors", "Robot.manipulability_gradient",
             "Robot.link_manipulability", "Robot.velocity_ellipsoid", "Tracker", "Tracker.reset", "pose",
-            "state_to_state", "obstacles.nearest",
+            "state_to_state", "obstacles.nearest", "Robot.all_link_poses", "Robot.with_held", "Robot.with_attached",
+            "Robot.with_collision_pairs", "Robot.with_srdf",
         ],
         ONE,
     ),
@@ -203,6 +204,7 @@ SHORT: dict[str, str] = {
     ),
     **dict.fromkeys(
         [
+            "Robot.from_mjcf", "Robot.from_description",
             "ModelFreeResult.plot", "Plan.plot", "TrackResult.plot", "Trajectory.plot", "Trajectory.to_csv",
             "Trajectory.from_csv", "plot.animation", "plot.model_free", "plot.plan", "plot.robot", "plot.saturation",
             "plot.track", "plot.trajectory",

@@ -22,7 +22,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("shape", &[]),
     ("starts", &["kinematics"]),
     ("closed_form", &["kinematics"]),
-    ("robot", &["kinematics", "starts", "closed_form"]),
+    ("robot", &["kinematics", "starts", "closed_form", "shape"]),
     ("load", &["kinematics", "shape", "robot"]),
     ("path", &[]),
     ("trajectory", &[]),

@@ -264,8 +264,8 @@ fn mistakes_are_named() {
         ..Default::default()
     };
     let ball = Shape::sphere([1.0, 0.0, 0.0], 0.25).unwrap();
-    let advice = "give it capsules with with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), \
-                  ...]), or load a URDF whose links have <collision> shapes of spheres, cylinders, capsules and boxes";
+    let advice = "load its URDF with collision=\"fit\", or give it capsules with with_capsules(radius=...) along its links or \
+                  with_capsules([(link, a, b, radius), ...])";
     let bare = Robot::named("panda").unwrap();
     let rest = Endpoint::Configuration(vec![0.0, 0.0, 0.0, -1.5, 0.0, 1.5, 0.0]);
     assert_eq!(

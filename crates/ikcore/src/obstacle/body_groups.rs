@@ -7,7 +7,6 @@ use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 use super::carried::Carried;
-use super::link_displacement::Frames;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, NoFma, by_instructions};
 use crate::math::f64x4::F64x4;
@@ -109,7 +108,7 @@ impl BodyGroups {
     }
 
     /// Whether everything stays at least `margin` >= 0 (m) apart with the moving elements at `frames`.
-    pub fn are_clear(&self, frames: &Frames, obstacles: &[Shape], margin: f64) -> bool {
+    pub fn are_clear(&self, frames: &[Frame], obstacles: &[Shape], margin: f64) -> bool {
         are_clear(self, frames, obstacles, margin)
     }
 
@@ -118,14 +117,14 @@ impl BodyGroups {
         self.index.is_some()
     }
 
-    /// In each lane 1 if everything is clear with the moving elements at these four sets of frames, else 0.
-    pub fn four_are_clear(&self, frames: &[Frames; 4], obstacles: &[Shape], margin: f64) -> F64x4 {
+    /// In each lane 1 if everything is clear with the moving elements at `frames`, four configurations side by side, else 0.
+    pub fn four_are_clear(&self, frames: &[Frame<F64x4>], obstacles: &[Shape], margin: f64) -> F64x4 {
         four_are_clear(self, frames, obstacles, margin)
     }
 
     /// The balls around all groups, four in a block.
     #[inline(always)]
-    fn balls(&self, frames: &Frames) -> Balls {
+    fn balls(&self, frames: &[Frame]) -> Balls {
         let mut balls = Balls::new();
         for (i, group) in self.groups.iter().enumerate() {
             if i % 4 == 0 {
@@ -208,7 +207,7 @@ fn larger_lanes<A: Arithmetic>(one: F64x4, other: F64x4) -> F64x4 {
 }
 
 by_instructions! {
-    fn are_clear(all: &BodyGroups, frames: &Frames, obstacles: &[Shape], margin: f64) -> bool {
+    fn are_clear(all: &BodyGroups, frames: &[Frame], obstacles: &[Shape], margin: f64) -> bool {
         let balls = all.balls(frames);
         let ball = |i: usize| {
             let block = &balls[i / 4];
@@ -274,9 +273,9 @@ by_instructions! {
 }
 
 by_instructions! {
-    fn four_are_clear(all: &BodyGroups, frames: &[Frames; 4], obstacles: &[Shape], margin: f64) -> F64x4 {
+    fn four_are_clear(all: &BodyGroups, frames: &[Frame<F64x4>], obstacles: &[Shape], margin: f64) -> F64x4 {
         let mut clear = F64x4::splat(1.0);
-        let at = |group: &Group| Frame::<F64x4>::of([0, 1, 2, 3].map(|i| &frames[i][group.stages]));
+        let at = |group: &Group| frames[group.stages];
         // Lanes that are not clear no longer matter.
         let settled = |balls: F64x4, clear: &F64x4| {
             let open = A::sub_x4(*clear, A::mul_x4(*clear, balls)).0;

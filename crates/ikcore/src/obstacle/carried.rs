@@ -2,17 +2,15 @@
 
 use nalgebra::Vector3;
 
-use super::link_displacement::Frames;
 use crate::math::arithmetic::NoFma;
-use crate::math::{Frame, MAX_DOF};
-use crate::robot::Robot;
+use crate::robot::{FrameBuffer, Robot};
 use crate::shape::LineSegment;
 
 /// A capsule of the robot, seen from the moving element that carries it.
 #[derive(Debug, Clone)]
 pub(super) struct Carried {
     pub link: String,
-    /// Number of moving elements before it.
+    /// Number of the frame that carries it, 0 for the base.
     pub stages: usize,
     pub ends: [[f64; 3]; 2],
     pub radius: f64,
@@ -21,7 +19,7 @@ pub(super) struct Carried {
 /// Where everything is at one configuration.
 #[derive(Debug, Clone)]
 pub(super) struct Placement {
-    pub frames: Frames,
+    pub frames: FrameBuffer,
     pub segments: Vec<LineSegment>,
 }
 
@@ -36,14 +34,14 @@ pub(super) fn carried(robot: &Robot) -> Vec<Carried> {
 }
 
 impl Placement {
-    /// Of this many bodies, not yet placed.
-    pub fn of(bodies: usize) -> Self {
-        Self { frames: [Frame::IDENTITY; MAX_DOF + 1], segments: vec![[Vector3::zeros(); 2]; bodies] }
+    /// Of this many bodies of `robot`, not yet placed.
+    pub fn of(robot: &Robot, bodies: usize) -> Self {
+        Self { frames: robot.frame_buffer(), segments: vec![[Vector3::zeros(); 2]; bodies] }
     }
 
     /// Places `bodies` at the configuration `q`.
     pub fn update(&mut self, robot: &Robot, bodies: &[Carried], q: &[f64]) {
-        robot.write_stage_frames(q, &mut self.frames);
+        robot.write_frames(q, &mut self.frames);
         for (segment, carried) in self.segments.iter_mut().zip(bodies) {
             let frame = &self.frames[carried.stages];
             *segment = carried.ends.map(|end| frame.place::<NoFma>(&end).into());

@@ -7,7 +7,8 @@ use super::carried::{Carried, Placement, carried};
 use super::contact::{Contact, NearestContact, Neighbor};
 use super::link_displacement::displacement;
 use crate::error::{Error, Result};
-use crate::math::{Frame, MAX_DOF};
+use crate::math::MAX_DOF;
+use crate::math::f64x4::F64x4;
 use crate::robot::{Joint, Robot};
 use crate::shape::{Shape, capsules_nearest, distance_between};
 use crate::wording::listed;
@@ -23,9 +24,8 @@ pub(super) enum BodyPair {
 
 /// The capsules of a robot, the obstacles, and the pairs of bodies that must not touch.
 ///
-/// Capsules that no joint moves are not tested against obstacles: no plan could move them away. Capsules of one link,
-/// or of two links with no capsule between them, are not tested against each other; nor are pairs that touch with all
-/// joints in the middle of their ranges, since such overlaps come from the model and not from the motion.
+/// Capsules that no joint moves are not tested against obstacles: no plan could move them away. Links are tested against
+/// each other in pairs ([`Robot::collision_pairs`]).
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
     robot: &'a Robot,
@@ -129,27 +129,24 @@ impl<'a> Scene<'a> {
         self.robot.check("joint angles", q)?;
         let placement = self.place(q);
         let Some((distance, pair)) = self.nearest_pair(&placement) else { return Ok(None) };
-        let (point, normal, first) = match pair {
+        let (point, normal) = match pair {
             BodyPair::Obstacle { capsule, obstacle } => {
                 let radius = self.carried[capsule].radius;
-                let (point, normal) = self.obstacles[obstacle].nearest_to_capsule(&placement.segments[capsule], radius);
-                (point, normal, 0)
+                self.obstacles[obstacle].nearest_to_capsule(&placement.segments[capsule], radius)
             }
             BodyPair::Capsules { near, far } => {
                 let [own, other] = [far, near].map(|i| (&placement.segments[i], self.carried[i].radius));
-                let (point, normal) = capsules_nearest(own, other);
-                (point, normal, self.carried[near].stages)
+                capsules_nearest(own, other)
             }
         };
-        let moved = match pair {
-            BodyPair::Obstacle { capsule, .. } => self.carried[capsule].stages,
-            BodyPair::Capsules { far, .. } => self.carried[far].stages,
-        };
-        // Screws count only moving elements; the last may be left out if they move nothing.
         let mut gradient = vec![0.0; self.robot.dof()];
-        for screw in self.robot.screws(q).iter().take(moved).skip(first) {
-            let [x, y, z, ..] = screw.column(&point.into());
-            gradient[screw.joint] += normal.dot(&Vector3::new(x, y, z));
+        let (below, own, other) = self.carriers_of(pair);
+        let sides = [(own, 1.0), (other, -1.0)];
+        for (frame, sign) in sides {
+            for (moved, motion) in self.robot.carriers(frame, below) {
+                let velocity = motion.velocity(&placement.frames[moved], &point.into());
+                gradient[motion.joint] += sign * normal.dot(&Vector3::from(velocity));
+            }
         }
         let contact = self.contact(pair, distance);
         Ok(Some(NearestContact { contact, point: point.into(), normal: normal.into(), gradient }))
@@ -158,8 +155,8 @@ impl<'a> Scene<'a> {
     /// Whether everything is at least `margin` >= 0 (m) apart at `q`, which has one finite entry per joint. Never true for
     /// bodies that are nearer.
     pub fn is_clear(&self, q: &[f64], margin: f64) -> bool {
-        let mut frames = [Frame::IDENTITY; MAX_DOF + 1];
-        self.robot.write_stage_frames(q, &mut frames);
+        let mut frames = self.robot.frame_buffer();
+        self.robot.write_frames(q, &mut frames);
         self.groups.are_clear(&frames, self.obstacles, margin)
     }
 
@@ -177,14 +174,14 @@ impl<'a> Scene<'a> {
             return Ok(qs.chunks(n).map(|q| self.is_clear(q, margin)).collect());
         }
         let mut clear = Vec::with_capacity(qs.len() / n);
-        let mut frames = [[Frame::IDENTITY; MAX_DOF + 1]; 4];
+        let (mut lanes, mut frames) = (vec![F64x4::ZERO; n], self.robot.frame_buffer_four());
         for four in qs.chunks(4 * n) {
             let count = four.len() / n;
-            for (i, frames) in frames.iter_mut().enumerate() {
+            for (joint, values) in lanes.iter_mut().enumerate() {
                 // Lanes without a configuration repeat the last one.
-                let i = i.min(count - 1);
-                self.robot.write_stage_frames(&four[i * n..(i + 1) * n], frames);
+                *values = F64x4(std::array::from_fn(|lane| four[lane.min(count - 1) * n + joint]));
             }
+            self.robot.write_frames_four(&lanes, &mut frames);
             let lanes = self.groups.four_are_clear(&frames, self.obstacles, margin).0;
             clear.extend(lanes[..count].iter().map(|lane| *lane == 1.0));
         }
@@ -206,7 +203,7 @@ impl<'a> Scene<'a> {
     }
 
     pub(super) fn place(&self, q: &[f64]) -> Placement {
-        let mut placement = Placement::of(self.carried.len());
+        let mut placement = Placement::of(self.robot, self.carried.len());
         self.place_into(q, &mut placement);
         placement
     }
@@ -231,26 +228,33 @@ impl<'a> Scene<'a> {
 
     /// A bound on the change (m) of a pair's distance while each joint moves by up to `reach` (rad, m).
     pub(super) fn change(&self, pair: BodyPair, placement: &Placement, reach: &[f64]) -> f64 {
-        let (first, capsule) = match pair {
-            BodyPair::Obstacle { capsule, .. } => (0, capsule),
-            BodyPair::Capsules { near, far } => (self.carried[near].stages, far),
+        let (below, own, other) = self.carriers_of(pair);
+        let moved = |capsule: usize, frame: usize| {
+            displacement(self.robot, &placement.frames, &placement.segments[capsule], [below, frame], reach)
         };
-        let stages = first..self.carried[capsule].stages;
-        displacement(self.robot, &placement.frames, &placement.segments[capsule], stages, reach)
+        match pair {
+            BodyPair::Obstacle { capsule, .. } => moved(capsule, own),
+            BodyPair::Capsules { near, far } => moved(far, own) + moved(near, other),
+        }
+    }
+
+    /// Numbers of the frame that carries both bodies of a pair, of the first body's own, and of the other's.
+    fn carriers_of(&self, pair: BodyPair) -> (usize, usize, usize) {
+        match pair {
+            BodyPair::Obstacle { capsule, .. } => (0, self.carried[capsule].stages, 0),
+            BodyPair::Capsules { near, far } => {
+                let [near, far] = [near, far].map(|capsule| self.carried[capsule].stages);
+                (self.robot.meeting_frame(near, far), far, near)
+            }
+        }
     }
 
     fn self_pairs(&self) -> Vec<BodyPair> {
-        let mut bodies: Vec<usize> = self.carried.iter().map(|carried| carried.stages).collect();
-        bodies.sort_unstable();
-        bodies.dedup();
-        let order = |capsule: usize| bodies.partition_point(|stages| *stages < self.carried[capsule].stages);
-        let rest: Vec<f64> = self.robot.joints().iter().map(middle_of_range).collect();
-        let at_rest = self.place(&rest);
-        let count = self.carried.len();
-        let pairs = (0..count).flat_map(|near| (0..count).map(move |far| (near, far)));
-        let apart = pairs.filter(|(near, far)| order(*near) + 1 < order(*far));
-        let pairs = apart.map(|(near, far)| BodyPair::Capsules { near, far });
-        pairs.filter(|pair| self.distance(*pair, &at_rest, 0.0) > 0.0).collect()
+        let ordered = |[one, other]: [usize; 2]| match self.carried[one].stages <= self.carried[other].stages {
+            true => BodyPair::Capsules { near: one, far: other },
+            false => BodyPair::Capsules { near: other, far: one },
+        };
+        self.robot.tested_capsules().into_iter().map(ordered).collect()
     }
 }
 
@@ -278,10 +282,9 @@ fn no_capsules(robot: &Robot) -> Error {
     let given = "with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])";
     let remedy = match robot.capsules() {
         [] => format!(
-            "give it capsules with {given}, or load a URDF whose links have <collision> shapes of spheres, cylinders, \
-             capsules and boxes"
+            "load its URDF with collision=\"fit\", or give it capsules with {given}"
         ),
-        _ => "robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
+        _ => "load its URDF with collision=\"fit\", which covers meshes too; robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
               robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
             .into(),
     };

@@ -16,7 +16,7 @@ use super::large::{faces, occupied, points};
 #[pyclass(name = "Obstacle", module = "beetle_ik.obstacles", frozen, eq, subclass)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyObstacle {
-    pub(super) core: Shape,
+    pub core: Shape,
 }
 
 #[pymethods]

@@ -10,7 +10,7 @@ mod shapes;
 use pyo3::prelude::*;
 
 pub use argument::Obstacles;
-use body::PyObstacle;
+pub use body::PyObstacle;
 use large::{PyGrid, PyMesh, PyPointCloud};
 use nearest::PyNearest;
 use shapes::{PyBox, PyCapsule, PyConvexMesh, PyCylinder, PyEllipse, PyEllipsoid, PyHalfSpace, PySphere};
