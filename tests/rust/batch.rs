@@ -146,7 +146,7 @@ fn lane_groups_do_not_change_results() {
         let rule = RestartRule { max_starts, ..solver.rule };
         let solver = AnySolver::MultiStart(MultiStart { rule, ..solver.clone() });
         let stop = Stop { max_evaluations: 2500, ..Stop::default() };
-        let each = SolveOptions { solver, stop, ..SolveOptions::default() };
+        let each = SolveOptions { solver: Some(solver), stop, ..SolveOptions::default() };
         let expected = found(&alone(&each), 1);
         assert_eq!(expected.iter().filter(|facts| facts.1 == Status::Invalid).count(), 3);
         for threads in [1, 2, 3] {
@@ -170,7 +170,7 @@ fn times_of_targets_add_up() {
 fn items_draw_from_streams_of_their_own() {
     let robot = robot("iiwa14");
     let solver = AnySolver::Single(Algorithm::from(Bas::of(BasVariant::Greedy)));
-    let each = SolveOptions { solver, start: Some(vec![0.3; 7]), ..SolveOptions::default() };
+    let each = SolveOptions { solver: Some(solver), start: Some(vec![0.3; 7]), ..SolveOptions::default() };
     let options = BatchOptions { each, ..on_threads(2) };
     let [first, second] = [[0.4, 0.3, 0.9], [0.5, 0.1, 0.8]];
     let found = |targets: &[[f64; 3]]| {

@@ -30,7 +30,7 @@ pub(super) struct AllBranches {
 pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64]) -> Option<AllBranches> {
     let target = attempt.problem.target();
     let Target::Pose(pose) = target else { return None };
-    let MultiStart { solver: descent, .. } = attempt.context.options().solver.restarted_descent()?;
+    let MultiStart { solver: descent, .. } = attempt.context.solver().restarted_descent()?;
     if !attempt.context.asks_for_pose_alone(target) {
         return None;
     }

@@ -8,7 +8,7 @@ use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, Status, run};
-use crate::task::Goals;
+use crate::task::{Assessment, Goals, SquaredError};
 
 /// Number of starts for approaching a target out of reach.
 const APPROACHES: usize = 8;
@@ -47,7 +47,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
     /// only approached.
     pub fn solve_from(&mut self, x0: &[f64]) -> Solution {
         let bounds = self.context.bounds();
-        let Some(MultiStart { solver: descent, .. }) = self.context.options().solver.restarted_descent() else {
+        let Some(MultiStart { solver: descent, .. }) = self.context.solver().restarted_descent() else {
             let (status, q) = self.search(bounds, x0, 0);
             return self.explained(status, q);
         };
@@ -63,7 +63,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
     pub fn search(&mut self, bounds: &Bounds, x0: &[f64], reserve: usize) -> (Status, Point) {
         let objective: &mut dyn Differentiable = self.problem;
         let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(reserve), self.rng, self.monitor);
-        let status = self.context.options().solver.run(&mut evaluator, x0);
+        let status = self.context.solver().run(&mut evaluator, x0);
         self.budget.add(&evaluator);
         (status, Point::from_slice(&evaluator.best().x))
     }
@@ -132,11 +132,23 @@ impl<'m, 'p> Attempt<'m, 'p> {
         solution
     }
 
+    /// The result at `q` if that solves the target.
+    pub fn solved_at(&mut self, q: Point) -> Option<Solution> {
+        self.budget.evaluations += 1;
+        let Assessment { score, error } = self.problem.assess(&q);
+        score.solved.then(|| self.result(Status::Solved, q, error))
+    }
+
     /// The result at `q`.
     pub fn solution(&self, status: Status, q: Point) -> Solution {
+        let error = self.problem.assess(&q).error;
+        self.result(status, q, error)
+    }
+
+    fn result(&self, status: Status, q: Point, error: SquaredError) -> Solution {
         Solution {
             status,
-            error: self.problem.assess(&q).error.into(),
+            error: error.into(),
             obstruction: String::new(),
             iterations: self.budget.iterations,
             restarts: self.budget.restarts,

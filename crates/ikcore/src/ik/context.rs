@@ -1,5 +1,7 @@
 //! The validated arguments that all targets of a call share.
 
+use std::sync::LazyLock;
+
 use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
@@ -40,7 +42,7 @@ impl<'a> SolveContext<'a> {
     /// # Errors
     /// Any [`Error`] for wrong options.
     pub(crate) fn new(robot: &'a Robot, options: &'a SolveOptions) -> Result<Self> {
-        options.solver.validate()?;
+        options.solver.as_ref().map_or(Ok(()), |solver| solver.validate())?;
         options.stop.validate()?;
         options.task.as_ref().map_or(Ok(()), Task::validate)?;
         let criterion = options.task.map_or(options.tolerance.into(), |task| task.criterion(options.tolerance));
@@ -76,17 +78,23 @@ impl<'a> SolveContext<'a> {
         self.options
     }
 
+    /// The solver of searches.
+    pub(super) fn solver(&self) -> &AnySolver {
+        static DEFAULT: LazyLock<AnySolver> = LazyLock::new(AnySolver::default);
+        self.options.solver.as_ref().unwrap_or(&DEFAULT)
+    }
+
     /// Whether only pose and limits define a solution, and the choice of solver is ours.
     pub(super) fn asks_for_pose_alone(&self, target: &Target) -> bool {
         let plain = self.criterion.components.is_none() && self.criterion.region.is_none() && self.goals.is_empty();
-        matches!(target, Target::Pose(_)) && plain && self.options.solver == AnySolver::default()
+        matches!(target, Target::Pose(_)) && plain && self.options.solver.is_none()
     }
 
     /// The descent of the default solver if it can run side by side: without goals or preferences after it, and without
     /// a time limit.
     pub(crate) fn side_by_side_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
         let alone = self.options.prefer == Prefer::Any && self.goals.is_empty();
-        let descent = self.options.solver.restarted_descent();
+        let descent = self.solver().restarted_descent();
         descent.filter(|_| alone && self.options.stop.max_time.is_none())
     }
 

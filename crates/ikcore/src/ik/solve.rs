@@ -3,6 +3,7 @@
 use super::attempt::Attempt;
 use super::best::best_solution;
 use super::context::{Query, SolveContext};
+use super::first_branch::by_closed_form;
 use super::nearest::nearest_solution;
 use super::solution::Solution;
 use super::solve_options::{Prefer, SolveOptions};
@@ -54,6 +55,9 @@ pub(crate) fn solve_query(context: &SolveContext<'_>, query: &Query<'_>, monitor
 /// Returns the first solution found; with goals it is moved along its self-motion.
 fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
     let context = attempt.context;
+    if let Some(solution) = by_closed_form(attempt, start) {
+        return solution;
+    }
     let x0 = attempt.first_start(start);
     let mut solution = attempt.solve_from(&x0);
     if solution.status != Status::Solved || context.goals().is_empty() {
