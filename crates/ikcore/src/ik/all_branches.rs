@@ -25,32 +25,64 @@ pub(super) struct AllBranches {
     pub singular: bool,
 }
 
-/// The solutions at the whole turns nearest to `reference`; None where the closed form does not apply, or leaves open
-/// whether there are any.
-pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64]) -> Option<AllBranches> {
+/// The solutions at the whole turns nearest to `reference`; of a redundant arm those at `redundancy` values of its parameter. None
+/// where the closed form does not apply, or leaves open whether there are any.
+pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], redundancy: usize) -> Option<AllBranches> {
     let target = attempt.problem.target();
     let Target::Pose(pose) = target else { return None };
     let MultiStart { solver: descent, .. } = attempt.context.solver().restarted_descent()?;
     if !attempt.context.asks_for_pose_alone(target) {
         return None;
     }
-    let branches = attempt.context.robot().branches(pose)?;
-    attempt.budget.evaluations += branches.evaluations;
-    let mut found =
-        AllBranches { solutions: vec![], miss: None, complete: branches.complete, singular: branches.singular };
-    for q in &branches.qs {
-        found.add(attempt, &descent, reference, q);
+    let context = attempt.context;
+    let mut found = AllBranches { solutions: vec![], miss: None, complete: true, singular: false };
+    let mut configurations = 0;
+    if let Some(family) = context.robot().family(pose) {
+        let arcs = family.arcs(context.bounds().lower(), context.bounds().upper());
+        // Outside the arcs there is none: without arcs the pose is out of reach.
+        found.complete = arcs.is_empty();
+        for value in arcs.spread(redundancy) {
+            found.take(attempt, &descent, reference, &family.branches_at(value));
+        }
+    } else {
+        let branches = context.robot().branches(pose)?;
+        found.complete = branches.complete;
+        configurations = branches.len();
+        found.take(attempt, &descent, reference, &branches);
     }
     if !found.solutions.is_empty() {
         return Some(found);
     }
-    found.complete.then(|| found.proven_miss(attempt, &descent, reference, &branches))
+    found.complete.then(|| found.proven_miss(attempt, &descent, reference, configurations))
 }
 
 impl AllBranches {
+    /// Adds the branches that are inside the limits.
+    fn take(
+        &mut self,
+        attempt: &mut Attempt<'_, '_>,
+        descent: &LevenbergMarquardt,
+        reference: &[f64],
+        branches: &ArmBranches,
+    ) {
+        attempt.budget.evaluations += branches.evaluations;
+        self.singular |= branches.singular;
+        let known = self.solutions.len();
+        for q in branches.iter() {
+            self.add(attempt, descent, reference, q, known);
+        }
+    }
+
     /// Adds a branch if it is inside the limits. Of a family that is outside with its representative, another member may be
-    /// inside: a descent looks for it.
-    fn add(&mut self, attempt: &mut Attempt<'_, '_>, descent: &LevenbergMarquardt, reference: &[f64], q: &[f64; 6]) {
+    /// inside: a descent looks for it. Solutions before number `first` are others.
+    fn add(
+        &mut self,
+        attempt: &mut Attempt<'_, '_>,
+        descent: &LevenbergMarquardt,
+        reference: &[f64],
+        q: &[f64],
+        first: usize,
+    ) {
         let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
         let mut near = Point::from_slice(q);
         bring_near(robot, bounds, reference, &mut near);
@@ -68,7 +100,7 @@ impl AllBranches {
             (solved, clipped) = attempt.descend(descent, clipped);
         }
         let known = |other: &Solution| other.q.iter().zip(&clipped).all(|(a, b)| (a - b).abs() < SAME);
-        if solved && !self.solutions.iter().any(known) {
+        if solved && !self.solutions[first..].iter().any(known) {
             self.solutions.push(attempt.solution(Status::Solved, clipped));
         }
     }
@@ -79,7 +111,7 @@ impl AllBranches {
         attempt: &mut Attempt<'_, '_>,
         descent: &LevenbergMarquardt,
         reference: &[f64],
-        branches: &ArmBranches,
+        configurations: usize,
     ) -> Self {
         let q = attempt.approach(descent, reference);
         if attempt.problem.assess(&q).score.solved {
@@ -88,7 +120,7 @@ impl AllBranches {
             return self;
         }
         let beyond = attempt.problem.beyond_reach(attempt.context.bounds());
-        let obstruction = match (branches.qs.len(), beyond) {
+        let obstruction = match (configurations, beyond) {
             (0, Some(beyond)) => beyond.to_string(),
             (0, None) => "no configuration has this pose".into(),
             (1, _) => "its one solution is outside the limits".into(),

@@ -29,7 +29,7 @@ const APART: f64 = 0.1;
 const MOST_TURNED: f64 = 10_000.0;
 
 /// How to look for all solutions.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct AllOptions {
     /// How to solve. Its budgets apply to the whole search; a closed form takes no search.
     pub each: SolveOptions,
@@ -38,8 +38,17 @@ pub struct AllOptions {
     /// Solutions count as the same where every joint differs by less (rad, m), whole turns aside. None: all of a closed form
     /// are returned, those of a search differ by 0.1.
     pub separation: Option<f64>,
+    /// A redundant arm with a closed form is solved at this many values of its parameter, spread over those that its limits allow.
+    /// 0: its solutions are searched for.
+    pub redundancy: usize,
     /// Return each solution at all whole turns inside the limits.
     pub turns: bool,
+}
+
+impl Default for AllOptions {
+    fn default() -> Self {
+        Self { each: SolveOptions::default(), limit: None, separation: None, redundancy: 16, turns: false }
+    }
 }
 
 /// Distinct solutions, and how the search ended.
@@ -96,7 +105,7 @@ pub fn solve_all(
     options: &AllOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<SolutionSet> {
-    let AllOptions { each, limit, separation, turns } = options;
+    let AllOptions { each, limit, separation, redundancy, turns } = options;
     separation.map_or(Ok(()), |separation| require_positive("separation", separation))?;
     if *limit == Some(0) {
         return Err(Error::out_of_range("limit", "at least 1", 0.0));
@@ -109,7 +118,7 @@ pub fn solve_all(
     let mut rng = rng::stream(each.seed, 0);
     let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
     let reference = start.map_or_else(|| middle(context.robot(), context.bounds()), Point::from);
-    let branches = all_branches(&mut attempt, &reference);
+    let branches = all_branches(&mut attempt, &reference, *redundancy);
     let limit = limit.unwrap_or(if branches.is_some() { usize::MAX } else { COLLECTED });
     let mut found = match branches {
         Some(branches) => by_closed_form(&attempt, branches, *separation),

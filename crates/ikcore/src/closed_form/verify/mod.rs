@@ -8,7 +8,7 @@ use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
 use crate::closed_form::branches::{Branches, Candidates};
 use crate::math::Frame;
-use crate::math::arithmetic::{Arithmetic, by_instructions};
+use crate::math::arithmetic::{Arithmetic, Baseline, by_instructions};
 use residuals::{FixedFrames, LANES};
 
 /// Candidates with a larger residual (m, rad) are polished: beside singular poses a residual within [`polish::TOLERANCE`]
@@ -38,6 +38,16 @@ impl<const N: usize> Verifier<N> {
     /// Adds the branch near a candidate, if there is one.
     pub fn add(&self, target: &Frame, candidate: &[Angle; N], found: &mut Branches<N>) {
         self.accept_polished(target, candidate.map(Angle::angle), found);
+    }
+
+    /// Adds the branch near joint values, if there is one.
+    pub fn add_near(&self, target: &Frame, set: [f64; N], found: &mut Branches<N>) {
+        self.accept_polished(target, set, found);
+    }
+
+    /// The candidates that bring the tip to `target`, as joint values. Where speed matters, [`verified`] and [`verified_seven`].
+    pub fn verified(&self, target: &Frame, candidates: &Candidates<N>) -> Branches<N> {
+        self.branches_by::<Baseline>(target, candidates)
     }
 
     #[inline(always)]
@@ -78,6 +88,13 @@ impl<const N: usize> Verifier<N> {
 by_instructions! {
     /// The candidates that bring the tip to `target`, as joint values.
     pub fn verified(verifier: &Verifier<6>, target: &Frame, candidates: &Candidates<6>) -> Branches<6> {
+        verifier.branches_by::<A>(target, candidates)
+    }
+}
+
+by_instructions! {
+    /// The same for seven joints.
+    pub fn verified_seven(verifier: &Verifier<7>, target: &Frame, candidates: &Candidates<7>) -> Branches<7> {
         verifier.branches_by::<A>(target, candidates)
     }
 }
