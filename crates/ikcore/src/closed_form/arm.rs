@@ -116,6 +116,17 @@ impl ClosedFormArm {
         }
     }
 
+    /// Whether it takes no longer than a search: all but the general method for six joints.
+    pub fn is_at_once(&self) -> bool {
+        let general = match &self.method {
+            Method::Planar(_) | Method::Scara(_) => false,
+            Method::Five(method) => method.structure() == Structure::General,
+            Method::Six(method) => method.structure() == Structure::General,
+            Method::Seven(method) => method.structure() == Some(Structure::General),
+        };
+        !general
+    }
+
     /// All configurations that bring the tip of the chain to `target`; None for redundant arms.
     pub fn solve(&self, target: &Frame) -> Option<ArmBranches> {
         Some(match &self.method {

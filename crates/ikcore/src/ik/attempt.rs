@@ -7,7 +7,7 @@ use super::solution::Solution;
 use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
-use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, Status, run};
+use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, run};
 use crate::task::{Assessment, Goals, SquaredError};
 
 /// Number of starts for approaching a target out of reach.
@@ -68,6 +68,20 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (status, Point::from_slice(&evaluator.best().x))
     }
 
+    /// Runs one attempt of the default solver from `x0`: it stalls as soon as it makes too little progress.
+    pub fn search_once(&mut self, x0: &[f64]) -> (Status, Point) {
+        let Some(MultiStart { solver, rule }) = self.context.solver().restarted_descent() else {
+            return (Status::Stalled, Point::from_slice(x0));
+        };
+        let once = MultiStart { solver, rule: RestartRule { max_starts: 1, ..rule } };
+        let objective: &mut dyn Differentiable = self.problem;
+        let (bounds, stop) = (self.context.bounds(), self.budget.rest(0));
+        let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);
+        let status = run(&once, &mut evaluator, x0);
+        self.budget.add(&evaluator);
+        (status, Point::from_slice(&evaluator.best().x))
+    }
+
     /// The solution of a search that ended with `status` at `q`. After a miss, descends from `q` first.
     pub fn finish(&mut self, descent: &LevenbergMarquardt, status: Status, q: Point) -> Solution {
         if !matches!(status, Status::BudgetSpent | Status::Stalled) {
@@ -124,7 +138,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
     }
 
     /// The result at `q`, with the reason for a miss.
-    fn explained(&self, status: Status, q: Point) -> Solution {
+    pub fn explained(&self, status: Status, q: Point) -> Solution {
         let mut solution = self.solution(status, q);
         if status != Status::Solved {
             solution.obstruction = self.problem.obstruction(self.context.bounds(), &solution.q);

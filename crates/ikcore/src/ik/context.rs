@@ -90,6 +90,14 @@ impl<'a> SolveContext<'a> {
         matches!(target, Target::Pose(_)) && plain && self.options.solver.is_none()
     }
 
+    /// The finite ranges inside the limits that configurations are drawn from: their lower ends, and their upper ones.
+    pub(super) fn sampling_ranges(&self) -> [Point; 2] {
+        let (bounds, joints) = (&self.bounds, self.robot().joints());
+        let ranges = bounds.lower().iter().zip(bounds.upper()).zip(joints);
+        let (lower, upper) = ranges.map(|((lower, upper), joint)| joint.sampling_range_within(*lower, *upper)).unzip();
+        [lower, upper]
+    }
+
     /// The descent of the default solver if it can run side by side: without goals or preferences after it, and without
     /// a time limit.
     pub(crate) fn side_by_side_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {

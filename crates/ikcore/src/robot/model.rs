@@ -235,6 +235,11 @@ impl Robot {
         self.closed_form_or_reason().as_ref().ok()?.family(self.at_flange(pose))
     }
 
+    /// Whether a closed form takes no longer than a search; false without one.
+    pub(crate) fn solves_at_once(&self) -> bool {
+        self.closed_form_or_reason().as_ref().is_ok_and(ClosedFormArm::is_at_once)
+    }
+
     /// The pose of the flange, seen from the first link, that brings the tip to `pose`.
     fn at_flange(&self, pose: &Frame) -> Frame {
         let (base, tool) = (Frame::from(&self.base), Frame::from(&self.tool));
