@@ -13,6 +13,9 @@ use crate::task::Target;
 /// Most values of the parameter of a redundant arm that are tried: all but a few in a hundred thousand poses take fewer.
 const SCANNED: usize = 128;
 
+/// Budgets of fewer evaluations are left to the search.
+const LEAST_BUDGET: usize = 500;
+
 /// Evaluations of a search that comes before a closed form that takes longer: 98 in 100 poses take fewer.
 const TRIAL: usize = 100;
 
@@ -21,7 +24,7 @@ const TRIAL: usize = 100;
 pub(super) fn by_closed_form(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
     let (context, target) = (attempt.context, attempt.problem.target());
     let Target::Pose(pose) = target else { return None };
-    if !context.asks_for_pose_alone(target) {
+    if !context.asks_for_pose_alone(target) || attempt.budget.left() < LEAST_BUDGET {
         return None;
     }
     let robot = context.robot();
@@ -61,6 +64,7 @@ fn of_family(attempt: &mut Attempt<'_, '_>, family: &PoseFamily<'_>, start: Opti
     }
     let preference = Preference::new(attempt.context, start);
     let [lower, upper] = attempt.context.sampling_ranges();
+    let half_the_budget = attempt.budget.left() / 2;
     for value in family.arcs(&lower, &upper).scattered(SCANNED) {
         let branches = family.branches_at(value);
         attempt.budget.evaluations += branches.evaluations;
@@ -69,7 +73,7 @@ fn of_family(attempt: &mut Attempt<'_, '_>, family: &PoseFamily<'_>, start: Opti
         {
             return Some(solution);
         }
-        if attempt.budget.is_spent() {
+        if attempt.budget.left() < half_the_budget {
             break;
         }
     }

@@ -59,6 +59,9 @@ fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solut
         return solution;
     }
     let x0 = attempt.first_start(start);
+    if attempt.budget.left() == 0 {
+        return attempt.explained(Status::BudgetSpent, x0);
+    }
     let mut solution = attempt.solve_from(&x0);
     if solution.status != Status::Solved || context.goals().is_empty() {
         return solution;
