@@ -214,7 +214,10 @@ fn the_same_seed_gives_the_same_bits() {
         [(AnySolver::default(), false), (AnySolver::Single(Algorithm::from(Bas::of(BasVariant::Star))), true)]
     {
         let q = |seed| {
-            bits(&solved(&ur, &target, &SolveOptions { solver: Some(solver.clone()), seed, ..SolveOptions::default() }).q)
+            bits(
+                &solved(&ur, &target, &SolveOptions { solver: Some(solver.clone()), seed, ..SolveOptions::default() })
+                    .q,
+            )
         };
         assert_eq!(q(5), q(5), "{solver:?}");
         assert_eq!(q(5) != q(6), draws, "{solver:?}");

@@ -10,7 +10,7 @@ use crate::objective::{Bounds, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
-use crate::solver::{AnySolver, LevenbergMarquardt, MultiStart};
+use crate::solver::AnySolver;
 use crate::task::{Criterion, Goals, Target, Task};
 
 /// A validated target and start.
@@ -96,14 +96,6 @@ impl<'a> SolveContext<'a> {
         let ranges = bounds.lower().iter().zip(bounds.upper()).zip(joints);
         let (lower, upper) = ranges.map(|((lower, upper), joint)| joint.sampling_range_within(*lower, *upper)).unzip();
         [lower, upper]
-    }
-
-    /// The descent of the default solver if it can run side by side: without goals or preferences after it, and without
-    /// a time limit.
-    pub(crate) fn side_by_side_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
-        let alone = self.options.prefer == Prefer::Any && self.goals.is_empty();
-        let descent = self.solver().restarted_descent();
-        descent.filter(|_| alone && self.options.stop.max_time.is_none())
     }
 
     /// The problem of reaching `target`.

@@ -3,8 +3,7 @@
 //! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds the state of
 //! one target: problem, random numbers, monitor, `budget`. `nearest` and `best` choose among several solutions,
 //! `goal_descent` moves a solution along its self-motion, `solve_all` collects solutions (`all_branches` by the closed
-//! form), `side_by_side` solves four targets at once for batches. [`problem`](crate::problem) explains why a target was
-//! missed.
+//! form). [`problem`](crate::problem) explains why a target was missed.
 
 mod all_branches;
 mod attempt;
@@ -15,8 +14,6 @@ mod first_branch;
 mod goal_descent;
 mod nearest;
 mod preference;
-mod shared_time;
-mod side_by_side;
 mod solution;
 mod solve;
 mod solve_all;
@@ -24,7 +21,6 @@ mod solve_options;
 mod whole_turns;
 
 pub(crate) use context::{Query, SolveContext};
-pub(crate) use side_by_side::solve_queries;
 pub use solution::Solution;
 pub use solve::solve;
 pub(crate) use solve::solve_query;

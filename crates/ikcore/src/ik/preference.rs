@@ -78,7 +78,8 @@ impl JointPreference {
     /// The value `q` at the whole turn nearest to the reference inside the limits; None if there is none.
     #[inline]
     fn turned(&self, q: f64) -> Option<f64> {
-        let q = if (self.reference - q).abs() > 0.5 * self.period || self.is_outside(q) { self.nearest_turn(q) } else { q };
+        let q =
+            if (self.reference - q).abs() > 0.5 * self.period || self.is_outside(q) { self.nearest_turn(q) } else { q };
         (!self.is_outside(q)).then(|| q.clamp(self.lower, self.upper))
     }
 

@@ -8,7 +8,6 @@
 //! | `chain`, `stages` | constant frames, and the joint that drives each stage |
 //! | `forward_pass`, `wide_frame` | from the base to the tip, one frame per stage |
 //! | `tip`, `jacobian`, `torques`, `link_frames` | the kernels |
-//! | `four_jacobians` | Jacobians of four configurations at once |
 //! | `kernels` | table of compiled kernels |
 //! | `screws` | axis and velocity of every stage |
 //! | `reach`, `fixed_direction` | bounds on the positions of the tip |
@@ -17,7 +16,6 @@
 pub(crate) mod chain;
 mod fixed_direction;
 mod forward_pass;
-mod four_jacobians;
 mod jacobian;
 pub(crate) mod kernels;
 pub(crate) mod link_frames;
@@ -30,7 +28,6 @@ mod torques;
 mod wide_frame;
 
 pub use fixed_direction::FixedDirection;
-pub(crate) use four_jacobians::FourColumns;
 pub use jacobian::Columns;
 pub use reach::{Beyond, Reach};
 pub use screws::{Screw, Screws};

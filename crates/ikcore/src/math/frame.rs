@@ -3,34 +3,15 @@
 use nalgebra::Matrix3;
 
 use super::arithmetic::Arithmetic;
-use super::f64x4::F64x4;
 use super::{Pose, pose};
 
-/// A rigid transform: the columns of its rotation (its axes in base coordinates) and its origin (m). With `F64x4`
-/// entries, four transforms, one per lane.
+/// A rigid transform: the columns of its rotation (its axes in base coordinates) and its origin (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame<T = f64> {
+pub struct Frame {
     /// x, y and z axis.
-    pub axes: [[T; 3]; 3],
+    pub axes: [[f64; 3]; 3],
     /// Position of the origin (m).
-    pub origin: [T; 3],
-}
-
-impl Frame<F64x4> {
-    /// These frames, one per lane.
-    #[inline(always)]
-    pub(crate) fn of(frames: [&Frame; 4]) -> Self {
-        let mut all = Self { axes: [[F64x4::ZERO; 3]; 3], origin: [F64x4::ZERO; 3] };
-        for (lane, frame) in frames.into_iter().enumerate() {
-            for k in 0..3 {
-                all.origin[k].0[lane] = frame.origin[k];
-                for axis in 0..3 {
-                    all.axes[axis][k].0[lane] = frame.axes[axis][k];
-                }
-            }
-        }
-        all
-    }
+    pub origin: [f64; 3],
 }
 
 impl Frame {

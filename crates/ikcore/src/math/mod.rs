@@ -1,15 +1,14 @@
 //! Mathematics without robots: plain arrays in hot code, nalgebra elsewhere.
 //!
-//! Kernels are compiled with and without FMA (`arithmetic`). Kernels for one number or four, one per lane of a register
-//! (`F64x4`), are written over `Real`.
+//! Kernels are compiled with and without FMA (`arithmetic`).
 //!
 //! | files | what |
 //! |---|---|
 //! | `pose`, `frame` | rigid transforms: `pose` for checked input, `frame` for kernels |
 //! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
-//! | `arithmetic`, `f64x4`, `real` | instructions and lanes |
+//! | `arithmetic`, `f64x4` | instructions, and four numbers in a register |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
-//! | `gram`, `ldl`, `box_step`, `four_box_steps`, `secant`, `singular_values` | small linear systems, and the bounded step |
+//! | `gram`, `ldl`, `box_step`, `secant`, `singular_values` | small linear systems, and the bounded step |
 //! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `sampling_range` | functions of one variable |
 
 pub(crate) mod arctangent;
@@ -18,7 +17,6 @@ pub mod box_step;
 pub(crate) mod comparison;
 pub(crate) mod cubic_spline;
 pub(crate) mod f64x4;
-pub(crate) mod four_box_steps;
 mod frame;
 pub(crate) mod gram;
 pub(crate) mod hermite;
@@ -27,7 +25,6 @@ pub(crate) mod ldl;
 pub(crate) mod logarithm;
 pub mod polynomial;
 pub mod pose;
-pub(crate) mod real;
 pub(crate) mod sampling_range;
 pub(crate) mod secant;
 pub(crate) mod sincos;
