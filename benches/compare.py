@@ -26,7 +26,7 @@ from pathlib import Path
 
 import numpy as np
 from peers import closed_form, local, restarting, stepping, tracking
-from peers.adapter import Adapter, Unsupported
+from peers.adapter import Adapter, load
 from peers.chain import Chain, load_chains
 from peers.measure import Solver, batch_rate, interleave, judge, per_call
 from peers.report import (
@@ -123,7 +123,7 @@ def measure(chain: Chain, measured: Measured) -> None:
     measured.kinematics += time_kinematics(chain)
     measured.batches.append(time_batch(chain))
     if chain.name == tracking.ROBOT:
-        measured.followed += tracking.compare_tracking(chain, load(chain, tracking.TOLERANCE, TRACKING)[0])
+        measured.followed += tracking.compare_tracking(chain, load(TRACKING, chain, tracking.TOLERANCE)[0])
 
 
 def write(measured: Measured, out: Path) -> None:
@@ -155,7 +155,7 @@ def compare(chain: Chain, task: str, libraries: list[type[Adapter]], count: int,
     """The rows of one task on one robot, in every order."""
     method, tolerance = TASKS[task]
     libraries = [library for library in libraries if library.offers(method)]
-    adapters, missing = load(chain, tolerance, libraries)
+    adapters, missing = load(libraries, chain, tolerance)
     poses, starts = chain.targets(count)
     targets = poses[:, :3, 3].copy() if method == "solve_position" else poses
     solvers: dict[str, Solver] = {adapter.name: getattr(adapter, method) for adapter in adapters}
@@ -172,24 +172,11 @@ def compare(chain: Chain, task: str, libraries: list[type[Adapter]], count: int,
     return rows
 
 
-def load(chain: Chain, tolerance: float, libraries: list[type[Adapter]]) -> tuple[list[Adapter], dict[str, str]]:
-    """The libraries that are there and take this robot, and why the others are not or do not."""
-    adapters, missing = [], {}
-    for library in libraries:
-        try:
-            adapters.append(library(chain, tolerance))
-        except (ImportError, Unsupported) as reason:
-            missing[library.name] = str(reason)
-        except Exception as failure:  # of any kind: one library must not end the run of the others
-            missing[library.name] = f"{type(failure).__name__}: {failure}"
-    return adapters, missing
-
-
 def time_kinematics(chain: Chain) -> list[list[str]]:
     """Forward kinematics and Jacobian of every library that has them, in ns a call."""
     configurations = np.random.default_rng(0).uniform(chain.lower, chain.upper, (1000, chain.dof))
     libraries = [library for library in (*GENERAL, *LOCAL) if library.offers("fk")]
-    adapters, _ = load(chain, TASKS[POSE][1], libraries)
+    adapters, _ = load(libraries, chain, TASKS[POSE][1])
     poses = per_call({adapter.name: adapter.fk for adapter in adapters}, configurations)
     both = [adapter for adapter in adapters if adapter.offers("fk_and_jacobian")]
     jacobians = per_call({adapter.name: adapter.fk_and_jacobian for adapter in both}, configurations)

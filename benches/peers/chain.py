@@ -26,6 +26,7 @@ class Chain:
     urdf: Path
     base: str
     tip: str
+    carried_as: str = ""  # the module of `ssik` for this arm, where it carries one
 
     @cached_property
     def model(self) -> pin.Model:
@@ -57,7 +58,7 @@ class Chain:
         return self._data.oMf[self.tip_frame].homogeneous.copy()
 
     def unwound(self, q: np.ndarray) -> np.ndarray:
-        """The same posture by whole turns: each joint at its least value that is not below its limit."""
+        """The same postures (n,) or (k, n) by whole turns: each joint at its least value not below its limit."""
         return q + TURN * np.ceil((self.lower - q) / TURN)
 
     def targets(self, count: int) -> tuple[np.ndarray, np.ndarray]:

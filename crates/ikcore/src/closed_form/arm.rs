@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use super::axis_chain::{AxisChain, JointAxis};
-use super::branches::{Branches, MOST};
+use super::branches::{BranchError, Branches, MOST};
 use super::five_joints::FiveJoints;
 use super::parameter_arcs::ParameterArcs;
 use super::planar::Planar;
@@ -14,7 +14,7 @@ use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 
 /// Most joints that a closed form has.
-const MOST_JOINTS: usize = 7;
+pub(crate) const MOST_JOINTS: usize = 7;
 
 /// Why a chain has no closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,8 +59,11 @@ enum Method {
 #[derive(Debug, Clone)]
 pub(crate) struct ArmBranches {
     sets: [[f64; MOST_JOINTS]; MOST],
+    errors: [BranchError; MOST],
     count: usize,
     joints: usize,
+    /// A configuration that was no solution was near one: the pose may be reached within wide tolerances.
+    pub nearly: bool,
     /// No configuration is missing; for a redundant arm, none at this value of the parameter.
     pub complete: bool,
     /// One configuration at least stands for a family, in which a joint is free.
@@ -100,18 +103,18 @@ impl ClosedFormArm {
         Ok(Self { method, drives })
     }
 
-    /// The structure in words, and how many solutions it allows. A joint is told by its number.
+    /// The structure in words, and how many solutions it allows. `joint_name` names a joint by its number.
     pub fn structure(&self, joint_name: impl Fn(usize) -> String) -> String {
         match &self.method {
             Method::Planar(_) => "planar; at most 2 solutions".into(),
             Method::Scara(_) => "SCARA; at most 2 solutions".into(),
-            Method::Five(method) => format!("five joints, one added: {}", method.structure()),
+            Method::Five(method) => format!("five joints, solved as six: {}", method.structure()),
             Method::Six(method) => method.structure().to_string(),
             Method::Seven(method) => match (method.parameter(), method.structure()) {
                 (Parameter::Axis(axis), Some(structure)) => {
-                    format!("one parameter, joint '{}': {structure} each", joint_name(self.drives[axis].0))
+                    format!("{structure} for each value of joint '{}'", joint_name(self.drives[axis].0))
                 }
-                _ => "one parameter, arm angle: spherical shoulder and wrist; at most 8 solutions each".into(),
+                _ => "spherical shoulder and wrist; at most 8 solutions for each arm angle".into(),
             },
         }
     }
@@ -127,13 +130,22 @@ impl ClosedFormArm {
         !general
     }
 
+    /// Whether an arm has more joints than a pose needs.
+    pub fn is_redundant(&self) -> bool {
+        matches!(self.method, Method::Seven(_))
+    }
+
     /// All configurations that bring the tip of the chain to `target`; None for redundant arms.
     pub fn solve(&self, target: &Frame) -> Option<ArmBranches> {
         Some(match &self.method {
             Method::Planar(method) => ArmBranches::of(&method.solve(target), &self.drives),
             Method::Scara(method) => ArmBranches::of(&method.solve(target), &self.drives),
             Method::Five(method) => ArmBranches::of(&method.solve(target), &self.drives),
-            Method::Six(method) => ArmBranches::of(&method.solve(target), &self.drives),
+            Method::Six(method) => {
+                let branches = ArmBranches::of(&method.solve(target), &self.drives);
+                // Only zeros of a polynomial near the real axis would tell.
+                ArmBranches { nearly: branches.nearly || method.structure() == Structure::General, ..branches }
+            }
             Method::Seven(_) => return None,
         })
     }
@@ -173,8 +185,10 @@ impl ArmBranches {
                 set[*joint] = value / scale;
             }
         }
-        let Branches { complete, singular, evaluations, .. } = *branches;
-        Self { sets, count: branches.len(), joints: N, complete, singular, evaluations }
+        let mut errors = [BranchError::default(); MOST];
+        errors[..branches.len()].copy_from_slice(branches.errors());
+        let Branches { nearly, complete, singular, evaluations, .. } = *branches;
+        Self { sets, errors, count: branches.len(), joints: N, nearly, complete, singular, evaluations }
     }
 
     /// How many there are.
@@ -182,9 +196,9 @@ impl ArmBranches {
         self.count
     }
 
-    /// The configurations (n,) (rad, m).
-    pub fn iter(&self) -> impl Iterator<Item = &[f64]> {
-        self.sets[..self.count].iter().map(|set| &set[..self.joints])
+    /// The configurations (n,) (rad, m), and by how much they miss the pose.
+    pub fn iter(&self) -> impl Iterator<Item = (&[f64], BranchError)> {
+        self.sets[..self.count].iter().zip(self.errors).map(|(set, error)| (&set[..self.joints], error))
     }
 }
 

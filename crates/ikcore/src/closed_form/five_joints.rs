@@ -68,6 +68,7 @@ impl FiveJoints {
         }
         (found.complete, found.singular) = (six.complete, six.singular);
         found.evaluations += six.evaluations;
+        found.nearly |= six.nearly;
         found
     }
 }

@@ -32,4 +32,6 @@ mod vector;
 mod verify;
 mod wrist;
 
-pub(crate) use arm::{ArmBranches, ClosedFormArm, NoClosedForm, PoseFamily};
+pub(crate) use arm::{ArmBranches, ClosedFormArm, MOST_JOINTS, NoClosedForm, PoseFamily};
+pub(crate) use branches::BranchError;
+pub(crate) use verify::VERIFIED;

@@ -43,7 +43,7 @@ enum Method {
     ArmAngle(Box<(ArmAngle, Verifier<7>)>),
 }
 
-/// Shoulder and a point on axes 5 and 6: with joint 7 given, their distance determines joint 4.
+/// Shoulder and a point on axes 5 and 6: their distance determines joint 4, given joint 7 or a spherical wrist.
 #[derive(Debug, Clone, Copy)]
 struct Distance {
     shoulder: Vector,
@@ -55,7 +55,10 @@ impl Redundant {
     pub fn new(chain: &AxisChain<7>) -> Option<Self> {
         let (mut distance, back) = (None, chain.tip.inverse());
         let method = match ArmAngle::new(chain) {
-            Some(method) => Method::ArmAngle(Box::new((method, Verifier::new(chain, 1e-3)))),
+            Some(method) => {
+                distance = Distance::of(chain);
+                Method::ArmAngle(Box::new((method, Verifier::new(chain, 1e-3))))
+            }
             None => {
                 let (last, first) = (six_without(chain, 6), six_without(chain, 0));
                 match (rank(&last), rank(&first)) {
@@ -117,7 +120,7 @@ impl Redundant {
     ///
     /// Exact, so that an arc shrunk to a point, with joint 4 at its limit, is not lost between samples.
     pub fn arcs(&self, target: &Frame, limits: &[[f64; 2]; 7]) -> ParameterArcs {
-        let Parameter::Axis(axis) = self.parameter() else { return ParameterArcs::CIRCLE };
+        let Parameter::Axis(axis) = self.parameter() else { return self.arm_angles(target, limits[3]) };
         if self.chain.joints[axis].motion == AxisMotion::Slides {
             return ParameterArcs::one(limits[axis]);
         }
@@ -128,13 +131,19 @@ impl Redundant {
         reached.within(limits[axis])
     }
 
+    /// All arm angles, or none: the distance of shoulder and wrist alone determines joint 4.
+    fn arm_angles(&self, target: &Frame, limits: [f64; 2]) -> ParameterArcs {
+        let Some(Distance { shoulder, wrist }) = &self.distance else { return ParameterArcs::CIRCLE };
+        let square = |from_tip: &Frame| squared_distance(&from_tip.place::<Baseline>(wrist), shoulder);
+        let reached = square(&target.then::<Baseline>(&self.back));
+        let by_joint_4 = Wave::of(|q| square(&self.chain.joints[3].displacement(q)));
+        Wave::of(|_| reached).arcs_between(by_joint_4.range(limits))
+    }
+
     fn arcs_by_distance(&self, distance: &Distance, target: &Frame, limits: [f64; 2]) -> ParameterArcs {
         let Distance { shoulder, wrist } = distance;
         let goal = target.then::<Baseline>(&self.back);
-        let square = |from_tip: &Frame| {
-            let way = sub(&from_tip.place::<Baseline>(wrist), shoulder);
-            dot(&way, &way)
-        };
+        let square = |from_tip: &Frame| squared_distance(&from_tip.place::<Baseline>(wrist), shoulder);
         let by_joint_4 = |q: f64| square(&self.chain.joints[3].displacement(q));
         let by_joint_7 = |q: f64| square(&goal.then::<Baseline>(&self.chain.joints[6].displacement(-q)));
         Wave::of(by_joint_7).arcs_between(Wave::of(by_joint_4).range(limits))
@@ -144,17 +153,24 @@ impl Redundant {
     fn inserted(&self, six: &Branches<6>, joint: usize, value: f64) -> Branches<7> {
         let mut seven = Branches::none();
         (seven.complete, seven.singular, seven.evaluations) = (six.complete, six.singular, six.evaluations);
+        seven.nearly = six.nearly;
         let turns = self.chain.joints[joint].motion == AxisMotion::Turns;
         let value = if turns { Angle::by(value).angle() } else { value };
-        for set in six.iter() {
-            seven.push(std::array::from_fn(|k| match k {
+        for (set, error) in six.iter().zip(six.errors()) {
+            let values = std::array::from_fn(|k| match k {
                 k if k < joint => set[k],
                 k if k == joint => value,
                 k => set[k - 1],
-            }));
+            });
+            seven.push(values, *error);
         }
         seven
     }
+}
+
+fn squared_distance(a: &Vector, b: &Vector) -> f64 {
+    let way = sub(a, b);
+    dot(&way, &way)
 }
 
 /// The closed form of the chain without one joint; without the last, its tip is the displacement of the others.

@@ -44,13 +44,13 @@ fn of_branches(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]
     let branches = attempt.context.robot().branches(pose)?;
     attempt.budget.evaluations += branches.evaluations;
     let preference = Preference::new(attempt.context, start);
-    if let Some(q) = preference.choose(branches.iter())
+    if let Some(q) = preference.choose(branches.iter().map(|(q, _)| q))
         && let Some(solution) = attempt.solved_at(q)
     {
         return Some(solution);
     }
     // Limits cut all branches, or the tolerances are tighter than rounding allows the closed form.
-    of_all_branches(attempt, &preference.reference())
+    of_all_branches(attempt, &preference, start)
 }
 
 /// Of an arm with one joint more: from the start by descent; then the first value of the parameter that has a branch inside the
@@ -68,7 +68,7 @@ fn of_family(attempt: &mut Attempt<'_, '_>, family: &PoseFamily<'_>, start: Opti
     for value in family.arcs(&lower, &upper).scattered(SCANNED) {
         let branches = family.branches_at(value);
         attempt.budget.evaluations += branches.evaluations;
-        if let Some(q) = preference.choose(branches.iter())
+        if let Some(q) = preference.choose(branches.iter().map(|(q, _)| q))
             && let Some(solution) = attempt.solved_at(q)
         {
             return Some(solution);
@@ -88,10 +88,16 @@ fn after_trial(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<S
     if status != Status::BudgetSpent || attempt.budget.is_spent() {
         return Some(attempt.explained(status, q));
     }
-    of_all_branches(attempt, &Preference::new(attempt.context, start).reference())
+    of_all_branches(attempt, &Preference::new(attempt.context, start), start)
 }
 
-fn of_all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64]) -> Option<Solution> {
-    let all = all_branches(attempt, reference, 0)?;
-    all.solutions.into_iter().next().or(all.miss)
+/// What `solve_all` finds, or proves.
+fn of_all_branches(attempt: &mut Attempt<'_, '_>, preference: &Preference, start: Option<&[f64]>) -> Option<Solution> {
+    let all = all_branches(attempt, &preference.reference(), 0)?;
+    if let Some(q) = preference.choose(all.solutions.iter().map(|solution| solution.q)) {
+        return attempt.solved_at(q);
+    }
+    let obstruction = all.obstruction?;
+    let x0 = attempt.first_start(start);
+    Some(Solution { obstruction, ..attempt.approached(&x0) })
 }

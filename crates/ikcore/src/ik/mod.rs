@@ -15,6 +15,7 @@ mod goal_descent;
 mod nearest;
 mod preference;
 mod solution;
+mod solutions;
 mod solve;
 mod solve_all;
 mod solve_options;
@@ -22,8 +23,9 @@ mod whole_turns;
 
 pub(crate) use context::{Query, SolveContext};
 pub use solution::Solution;
+pub use solutions::{SolutionView, Solutions};
 pub use solve::solve;
 pub(crate) use solve::solve_query;
-pub use solve_all::{AllOptions, SolutionSet, solve_all};
+pub use solve_all::{AllOptions, SolutionSet, nearest_miss, solve_all};
 pub use solve_options::{Prefer, SolveOptions};
 pub(crate) use whole_turns::bring_near;

@@ -232,7 +232,8 @@ impl Robot {
     /// All configurations of a redundant arm that bring the tip to `pose`, by one parameter; None without a closed form and for arms
     /// that are not redundant.
     pub(crate) fn family(&self, pose: &Frame) -> Option<PoseFamily<'_>> {
-        self.closed_form_or_reason().as_ref().ok()?.family(self.at_flange(pose))
+        let form = self.closed_form_or_reason().as_ref().ok()?;
+        if form.is_redundant() { form.family(self.at_flange(pose)) } else { None }
     }
 
     /// Whether a closed form takes no longer than a search; false without one.

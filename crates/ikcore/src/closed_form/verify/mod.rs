@@ -6,10 +6,13 @@ mod residuals;
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
-use crate::closed_form::branches::{Branches, Candidates};
+use crate::closed_form::branches::{BranchError, Branches, Candidates};
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, Baseline, by_instructions};
 use residuals::{FixedFrames, LANES};
+
+/// Every branch brings the tip nearer to the pose than this (m, rad): entries within [`polish::TOLERANCE`].
+pub(crate) const VERIFIED: f64 = 3.0 * polish::TOLERANCE;
 
 /// Candidates with a larger residual (m, rad) are polished: beside singular poses a residual within [`polish::TOLERANCE`]
 /// leaves more than that in the angles.
@@ -61,7 +64,7 @@ impl<const N: usize> Verifier<N> {
             let angles = angles::angles(&self.slides, candidates, first);
             for lane in 0..LANES.min(candidates.count - first) {
                 let set = std::array::from_fn(|k| angles[k][lane]);
-                self.accept(target, residuals[lane], set, &mut found);
+                self.accept(target, residuals.worst[lane], set, residuals.error(lane), &mut found);
             }
             first += LANES;
         }
@@ -69,9 +72,9 @@ impl<const N: usize> Verifier<N> {
     }
 
     #[inline(always)]
-    fn accept(&self, target: &Frame, residual: f64, set: [f64; N], found: &mut Branches<N>) {
+    fn accept(&self, target: &Frame, residual: f64, set: [f64; N], error: BranchError, found: &mut Branches<N>) {
         if residual <= GOOD {
-            push_new(set, &self.slides, found);
+            push_new(set, error, &self.slides, found);
         } else if residual <= self.worth_polishing {
             self.accept_polished(target, set, found);
         }
@@ -79,8 +82,9 @@ impl<const N: usize> Verifier<N> {
 
     #[cold]
     fn accept_polished(&self, target: &Frame, set: [f64; N], found: &mut Branches<N>) {
-        if let Some(set) = polish::polished(&self.chain, target, set, &mut found.evaluations) {
-            push_new(set, &self.slides, found);
+        match polish::polished(&self.chain, target, set, &mut found.evaluations) {
+            Some((set, error)) => push_new(set, error, &self.slides, found),
+            None => found.nearly = true,
         }
     }
 }
@@ -101,12 +105,12 @@ by_instructions! {
 
 /// Adds a branch unless it is there already.
 #[inline(always)]
-fn push_new<const N: usize>(set: [f64; N], slides: &[bool; N], found: &mut Branches<N>) {
+fn push_new<const N: usize>(set: [f64; N], error: BranchError, slides: &[bool; N], found: &mut Branches<N>) {
     let near = |a: f64, b: f64, slides: bool| {
         let apart = (a - b).abs();
         apart < SAME || !slides && std::f64::consts::TAU - apart < SAME
     };
     if !found.iter().any(|other| (0..N).all(|k| near(other[k], set[k], slides[k]))) {
-        found.push(set);
+        found.push(set, error);
     }
 }

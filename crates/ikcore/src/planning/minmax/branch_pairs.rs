@@ -48,6 +48,6 @@ impl PairSearch<'_> {
         let options = AllOptions { each, limit: Some(BRANCHES), redundancy: 0, ..AllOptions::default() };
         let found = solve_all(self.robot, target, &options, monitor)?;
         self.evaluations += found.evaluations;
-        Ok(found.solutions.into_iter().map(|solution| solution.q).collect())
+        Ok(found.solutions.iter().map(|solution| Point::from_slice(solution.q)).collect())
     }
 }
