@@ -1,6 +1,6 @@
 //! All solutions of a pose by the closed form of the arm.
 
-use super::attempt::Attempt;
+use super::attempt::{APPROACHES, Attempt};
 use super::solutions::Solutions;
 use super::whole_turns::NearestTurns;
 use crate::closed_form::{ArmBranches, BranchError, MOST_JOINTS, PoseFamily, VERIFIED};
@@ -191,7 +191,7 @@ impl Taker<'_, '_, '_> {
     /// edge of the reach, or beside what an arm with few joints can reach.
     #[cold]
     fn take_beside(&mut self) {
-        let q = self.attempt.approach(&self.descent, self.turns.reference());
+        let q = self.attempt.approach(&self.descent, self.turns.reference(), APPROACHES);
         if !self.attempt.problem.assess(&q).score.solved {
             return;
         }

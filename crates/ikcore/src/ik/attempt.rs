@@ -11,7 +11,7 @@ use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartR
 use crate::task::{Assessment, Criterion, Goals, SquaredError, Tolerance};
 
 /// Number of starts for approaching a target out of reach.
-const APPROACHES: usize = 8;
+pub(super) const APPROACHES: usize = 8;
 
 /// The state of solving one target.
 pub(super) struct Attempt<'m, 'p> {
@@ -52,7 +52,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
             return self.explained(status, q);
         };
         if self.problem.beyond_reach(bounds).is_some() {
-            let q = self.approach(&descent, x0);
+            let q = self.approach(&descent, x0, APPROACHES);
             return self.explained(Status::OutOfReach, q);
         }
         let (status, q) = self.search(bounds, x0, self.budget.reserve());
@@ -118,11 +118,10 @@ impl<'m, 'p> Attempt<'m, 'p> {
         Point::from_slice(&evaluator.best().x)
     }
 
-    /// The best of a few descents towards a target that cannot be reached.
-    pub fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64]) -> Point {
+    /// The best of `approaches` descents towards a target that cannot be reached.
+    pub fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64], approaches: usize) -> Point {
         let mut best: Option<(f64, Point)> = None;
         let mut x = Point::from_slice(x0);
-        let approaches = std::env::var("APPROACHES").map_or(APPROACHES, |a| a.parse().unwrap());
         for approach in 0..approaches {
             if approach > 0 {
                 self.next_start(&mut x);
@@ -138,9 +137,9 @@ impl<'m, 'p> Attempt<'m, 'p> {
     }
 
     /// The result of approaching a target that cannot be reached.
-    pub fn approached(&mut self, x0: &[f64]) -> Solution {
+    pub fn approached(&mut self, x0: &[f64], approaches: usize) -> Solution {
         let descent = self.context.solver().restarted_descent().map_or_else(Default::default, |multi| multi.solver);
-        let q = self.approach(&descent, x0);
+        let q = self.approach(&descent, x0, approaches);
         self.explained(Status::OutOfReach, q)
     }
 

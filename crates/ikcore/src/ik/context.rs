@@ -84,10 +84,15 @@ impl<'a> SolveContext<'a> {
         self.options.solver.as_ref().unwrap_or(&DEFAULT)
     }
 
-    /// Whether only pose and limits define a solution, and the choice of solver is ours.
-    pub(super) fn asks_for_pose_alone(&self, target: &Target) -> bool {
-        let plain = self.criterion.components.is_none() && self.criterion.region.is_none() && self.goals.is_empty();
+    /// Whether only pose and limits define a solution, goals aside, and the choice of solver is ours.
+    pub(super) fn asks_for_pose(&self, target: &Target) -> bool {
+        let plain = self.criterion.components.is_none() && self.criterion.region.is_none();
         matches!(target, Target::Pose(_)) && plain && self.options.solver.is_none()
+    }
+
+    /// The same without goals.
+    pub(super) fn asks_for_pose_alone(&self, target: &Target) -> bool {
+        self.goals.is_empty() && self.asks_for_pose(target)
     }
 
     /// The finite ranges inside the limits that configurations are drawn from: their lower ends, and their upper ones.

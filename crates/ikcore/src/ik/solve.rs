@@ -55,14 +55,7 @@ pub(crate) fn solve_query(context: &SolveContext<'_>, query: &Query<'_>, monitor
 /// Returns the first solution found; with goals it is moved along its self-motion.
 fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
     let context = attempt.context;
-    if let Some(solution) = by_closed_form(attempt, start) {
-        return solution;
-    }
-    let x0 = attempt.first_start(start);
-    if attempt.budget.left() == 0 {
-        return attempt.explained(Status::BudgetSpent, x0);
-    }
-    let mut solution = attempt.solve_from(&x0);
+    let mut solution = by_closed_form(attempt, start).unwrap_or_else(|| searched_solution(attempt, start));
     if solution.status != Status::Solved || context.goals().is_empty() {
         return solution;
     }
@@ -71,4 +64,13 @@ fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solut
     }
     attempt.descend_goals(&mut context.goals().clone(), &mut solution.q);
     attempt.solution(Status::Solved, solution.q)
+}
+
+/// The first solution that a search finds.
+fn searched_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
+    let x0 = attempt.first_start(start);
+    if attempt.budget.left() == 0 {
+        return attempt.explained(Status::BudgetSpent, x0);
+    }
+    attempt.solve_from(&x0)
 }
