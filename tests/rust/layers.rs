@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 
 use imports::{SourceFile, Sources, code_of, paths};
 
-const FOUNDATION: &[&str] = &["error", "rng", "math", "stored", "wording"];
+const FOUNDATION: &[&str] = &["error", "interrupt", "rng", "math", "stored", "wording"];
 
 /// Which modules a module may use, besides itself and those of [`FOUNDATION`]. No solver knows of robots, no robot of solvers.
 const LAYERS: &[(&str, &[&str])] = &[
     ("error", &[]),
+    ("interrupt", &[]),
     ("rng", &[]),
     ("math", &[]),
     ("stored", &[]),

@@ -46,7 +46,7 @@
 //!
 //! | layer | modules |
 //! |---|---|
-//! | 0 | [`error`], [`rng`], [`math`], [`stored`], `wording` |
+//! | 0 | [`error`], [`interrupt`], [`rng`], [`math`], [`stored`], `wording` |
 //! | 1 | [`kinematics`], [`path`], [`trajectory`], [`objective`] |
 //! | 2 | [`starts`], `closed_form` |
 //! | 3 | [`robot`] |
@@ -60,6 +60,7 @@ pub mod batch;
 mod closed_form;
 pub mod error;
 pub mod ik;
+pub mod interrupt;
 pub mod kinematics;
 pub mod limits;
 pub mod load;

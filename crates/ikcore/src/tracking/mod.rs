@@ -16,9 +16,11 @@
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
 //! | `record` | [`Record`]: one row per tick, violations, status and message |
 //! | `model_free`, `plant` | tracking without a model: the call, and the arms that it commands |
+//! | `late_sensor` | detects a sensor delay that the controller does not assume |
 //! | `controller` | controllers, which only command and observe |
 
 mod controller;
+mod late_sensor;
 mod model_free;
 mod plant;
 mod record;

@@ -235,6 +235,17 @@ impl Record {
 
     /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
+        let advice = match &self.out_of_reach {
+            None => Status::Lost.advice().into(),
+            Some((beyond, when)) => {
+                format!("the path is {beyond} at t = {} s: {}", time(*when), Status::OutOfReach.advice())
+            }
+        };
+        self.message_with(&advice)
+    }
+
+    /// [`message`](Self::message), with this `advice` if the track failed.
+    pub(super) fn message_with(&self, advice: &str) -> String {
         let last = self.rows() - 1;
         if self.status == Status::Interrupted {
             return format!("interrupted at t = {} s: {}", time(self.time_of(last)), Status::Interrupted.advice());
@@ -251,12 +262,6 @@ impl Record {
         let band = match components.and_then(|components| components.tolerance) {
             Some(_) => "its tolerance in each component".into(),
             None => self.in_words(tolerance.position, tolerance.rotation),
-        };
-        let advice = match &self.out_of_reach {
-            None => Status::Lost.advice().into(),
-            Some((beyond, when)) => {
-                format!("the path is {beyond} at t = {} s: {}", time(*when), Status::OutOfReach.advice())
-            }
         };
         let Some(joined) = self.joined() else {
             let (position, rotation) = (smallest(&self.position_error), smallest(&self.rotation_error));

@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyTuple};
 use super::given::GivenLimit;
 use super::per_joint::PerJoint;
 use super::sampling::Sampling;
-use crate::error::raise;
+use crate::error::{limit_error, raise};
 use crate::options::NewArguments;
 use crate::traversal::traversed;
 
@@ -47,6 +47,13 @@ impl PyLimits {
         let mut given = [const { None }; 5];
         for ((slot, field), value) in given.iter_mut().zip(FIELDS).zip([lower, upper, velocity, acceleration, jerk]) {
             *slot = value.map(|value| GivenLimit::read(field, value)).transpose()?;
+            if let Some(GivenLimit::Numbers(numbers)) = slot
+                && !matches!(field, Field::Lower | Field::Upper)
+                && let Some((j, value)) = numbers.values.iter().enumerate().find(|(_, value)| **value < 0.0)
+            {
+                let joint = if numbers.single { String::new() } else { format!(" of joint {}", j + 1) };
+                return Err(limit_error(format!("{field} limit{joint} is {value}: a limit cannot be negative")));
+            }
         }
         Ok(Self { given })
     }

@@ -13,7 +13,7 @@ use crate::error::raise;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::outcome::outcome;
-use crate::path::PyPath;
+use crate::path::path_argument;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
 use crate::robot::PyRobot;
@@ -157,7 +157,7 @@ impl PyTrackResult {
 pub fn track(
     py: Python<'_>,
     robot: &Bound<'_, PyRobot>,
-    path: &PyPath,
+    path: &Bound<'_, PyAny>,
     start: Option<&Bound<'_, PyAny>>,
     dt: f64,
     task: Option<&Bound<'_, PyAny>>,
@@ -171,6 +171,7 @@ pub fn track(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTrackResult> {
     let arm = robot.get().core.clone();
+    let path = path_argument(path)?.get();
     let rule = tick_rule(solver)?;
     let reference =
         if rule.uses_velocities() { path.reference_with_velocities(py, dt)? } else { path.reference(py, dt)? };

@@ -1,6 +1,7 @@
 //! Geometric path of the joints: cubics in a path parameter, without timing.
 
 use crate::error::{Error, Result, require_finite};
+use crate::interrupt::checkpoint_at;
 use crate::math::polynomial::{derivative, roots};
 
 /// Number of coefficients of a cubic.
@@ -175,6 +176,9 @@ impl JointPath {
     pub fn range(&self, joint: usize) -> [f64; 2] {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for piece in 0..self.pieces() {
+            if checkpoint_at(piece).is_err() {
+                break; // the interrupted caller discards the result
+            }
             let cubic = self.powers(piece).map(|of_power| of_power[joint]);
             let end = self.length(piece);
             for s in roots(&derivative(&cubic), 0.0, end).into_iter().chain([0.0, end]) {

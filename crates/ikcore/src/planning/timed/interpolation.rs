@@ -2,6 +2,7 @@
 
 use super::projection::project;
 use crate::error::Result;
+use crate::interrupt::checkpoint_at;
 use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Linearization};
 use crate::planning::deviation::TipDeviation;
@@ -98,12 +99,14 @@ impl Interpolation<'_> {
                 tip_path: self.tip_path,
                 configurations: |share: f64, q: &mut [f64]| path.position(share, q),
             };
-            let is_coarse = |i: &usize| {
-                let [from, to] = [waypoints.knots[*i], waypoints.knots[*i + 1]];
+            let is_coarse = |i: usize| {
+                checkpoint_at(i)?;
+                let [from, to] = [waypoints.knots[i], waypoints.knots[i + 1]];
                 // A given start may be off the path.
-                deviation.between(from, to, SAMPLES) > ENOUGH * accuracy + deviation.at(from)
+                Ok((deviation.between(from, to, SAMPLES) > ENOUGH * accuracy + deviation.at(from)).then_some(i))
             };
-            let coarse: Vec<usize> = (0..waypoints.knots.len() - 1).filter(is_coarse).collect();
+            let intervals = 0..waypoints.knots.len() - 1;
+            let coarse: Vec<usize> = intervals.filter_map(|i| is_coarse(i).transpose()).collect::<Result<_>>()?;
             if coarse.is_empty() || waypoints.knots.len() + coarse.len() > MOST_KNOTS {
                 break;
             }

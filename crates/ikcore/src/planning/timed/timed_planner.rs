@@ -130,7 +130,15 @@ fn plan(
 
 /// Runs the search; `None` if the arm is not redundant.
 fn search(cost: &mut TimedCost<'_>, options: &AlongPathOptions, monitor: &mut dyn Monitor) -> Result<Option<Found>> {
-    let Some(bounds) = cost.bounds() else { return Ok(None) };
+    let Some(bounds) = cost.bounds() else {
+        return match &options.solver {
+            None => Ok(None),
+            Some(_) => Err(Error::Contradiction {
+                problem: "solver searches the redundancy of the arm, but on this path it has none: leave solver out"
+                    .into(),
+            }),
+        };
+    };
     let schedule = Schedule::of(POPULATION);
     let evolution = || AnySolver::Single(DifferentialEvolution { schedule, ..DifferentialEvolution::default() }.into());
     let search = Search {
