@@ -12,6 +12,7 @@ mod choice;
 mod circle_posture;
 mod closed_form;
 mod contract;
+mod first_branch;
 mod ik;
 mod jump;
 mod kinematics;

@@ -10,16 +10,16 @@ use crate::objective::Point;
 use crate::solver::Status;
 use crate::task::Target;
 
-/// Most values of the parameter of a redundant arm that are tried: all but a few in a hundred thousand poses take fewer.
+/// Most values of the parameter of a redundant arm that are tried before a search.
 const SCANNED: usize = 128;
 
 /// Budgets of fewer evaluations are left to the search.
 const LEAST_BUDGET: usize = 500;
 
-/// Descents towards a pose that is proven to be out of reach: eight would come nearer by 1 %.
+/// Descents towards a pose that is proven to be out of reach: eight would come nearer by 1 % (UR5e, measured) in four times the time.
 const APPROACHES_OF_PROVEN: usize = 2;
 
-/// Evaluations of a search that comes before a closed form that takes longer: 98 in 100 poses take fewer.
+/// Evaluations of a search that comes before a closed form that takes longer than most searches.
 const TRIAL: usize = 100;
 
 /// The branch nearest to the start or, without one, the most central one; or the nearest configuration, if it is proven that
