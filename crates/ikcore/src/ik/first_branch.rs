@@ -31,10 +31,12 @@ pub(super) fn by_closed_form(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]
         return None;
     }
     let robot = context.robot();
-    if let Some(family) = robot.family(pose) {
-        return if robot.solves_at_once() { of_family(attempt, &family, start) } else { None };
+    match (robot.solves_at_once()?, robot.family(pose)) {
+        (true, Some(family)) => of_family(attempt, &family, start),
+        (true, None) => of_branches(attempt, pose, start),
+        (false, Some(_)) => None,
+        (false, None) => after_trial(attempt, start),
     }
-    if robot.solves_at_once() { of_branches(attempt, pose, start) } else { after_trial(attempt, start) }
 }
 
 /// Of an arm that has as many joints as the pose needs.

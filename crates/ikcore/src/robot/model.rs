@@ -238,9 +238,9 @@ impl Robot {
         if form.is_redundant() { form.family(self.at_flange(pose)) } else { None }
     }
 
-    /// Whether a closed form takes no longer than a search; false without one.
-    pub(crate) fn solves_at_once(&self) -> bool {
-        self.closed_form_or_reason().as_ref().is_ok_and(ClosedFormArm::is_at_once)
+    /// Whether the closed form takes no longer than a search; None without one.
+    pub(crate) fn solves_at_once(&self) -> Option<bool> {
+        self.closed_form_or_reason().as_ref().ok().map(ClosedFormArm::is_at_once)
     }
 
     /// The pose of the flange, seen from the first link, that brings the tip to `pose`.
