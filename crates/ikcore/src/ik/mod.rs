@@ -1,7 +1,8 @@
 //! Inverse kinematics: one solution of a target, or all of them.
 //!
 //! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds the state of
-//! one target: problem, random numbers, monitor, `budget`. `nearest` and `best` choose among several solutions,
+//! one target: problem, random numbers, monitor, `budget`. `first_branch` answers poses by the closed form, with the
+//! `preference` for one of its branches. `nearest` and `best` choose among several solutions,
 //! `goal_descent` moves a solution along its self-motion, `solve_all` collects solutions (`all_branches` by the closed
 //! form). [`problem`](crate::problem) explains why a target was missed.
 

@@ -16,6 +16,10 @@ use crate::task::Target;
 
 /// Finds a configuration that brings the tip of `robot` to `target`.
 ///
+/// A pose of an arm with a closed form ([`Robot::closed_form`]) is solved by it, unless a solver is named or the task has weights or a
+/// region: the branch nearest to the start is returned or, without a start, the most central one inside the limits. A redundant arm
+/// descends from a given start first. A pose that has no solution is proven to be out of reach. Everything else is searched for.
+///
 /// With goals, the solution is moved along its self-motion to the nearest optimum of the goals.
 ///
 /// With [`Prefer::Nearest`], the solve is repeated from starts at increasing distances from the given one. Each
