@@ -25,7 +25,6 @@ use crate::task::Target;
 /// With [`Prefer::Nearest`], the solve is repeated from starts at increasing distances from the given one. Each
 /// solution is moved along its self-motion and by whole turns towards the start, until 24 consecutive solutions are no
 /// nearer or the budget is spent. The distance is |q - start|, with joints in rad and m.
-/// |q - start|, joints counted in rad and m.
 ///
 /// With [`Prefer::Best`], the solve is repeated from starts all over the joint space. Each solution is moved along its
 /// self-motion, until 40 consecutive solutions are no better for the goals. For an arm with one joint more than its
