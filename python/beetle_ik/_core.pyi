@@ -1413,8 +1413,11 @@ def solve(
         robot: the arm.
         target: pose (4, 4), or position (3,) (m) with the orientation left free.
         task: which part of the target counts, one of `tasks`; None: all of it.
-        start: (n,), first start of the search; None: stored configurations of the robot with the tip near the target.
-        solver: the solver; None: Levenberg-Marquardt from many starts.
+        start: (n,), the configuration that the closed form of an arm with 6 joints or fewer chooses the nearest solution to, and
+            where a search, or the descent of a redundant arm, begins. None: the closed form takes the most central solution
+            inside the limits, and a search begins at stored configurations of the robot with the tip near the target.
+        solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
+            Levenberg-Marquardt from many starts for everything else.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
         goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
@@ -1494,7 +1497,7 @@ def solve_all(
 ) -> SolutionSet:
     """Returns all solutions of a pose where the arm has a closed form (`Robot.closed_form`), and searches for distinct ones elsewhere.
 
-    The closed form serves whole poses with the default solver and no weights or region. `SolutionSet.complete` says whether it is
+    The closed form serves whole poses without a `solver`, weights or region. `SolutionSet.complete` says whether it is
     proven that no solution is missing. The search ends when a hundred solutions in a row are known already, or the budget is spent.
 
     Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
@@ -1512,7 +1515,7 @@ def solve_all(
             limits allow. 0: its solutions are searched for.
         turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
         task: which part of the target counts, one of `tasks`; None: all of it.
-        solver: the solver; None: Levenberg-Marquardt from many starts.
+        solver: the solver of a search; None: the closed form where there is one, and Levenberg-Marquardt from many starts elsewhere.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
         limits: position limits; None: the robot's.
@@ -1599,13 +1602,14 @@ def solve_batch(
     Args:
         robot: the arm.
         targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free.
-        starts: first starts, (m, n), or (n,) for all; None: stored configurations of the robot with the tip near the target.
+        starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
         threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
         on_invalid: how to treat an invalid target or start: "raise" raises an error that names its row; "skip" solves the
             other rows and marks this one `Status.INVALID`, with q NaN.
         progress: True shows a progress bar; a callable is called with (done, total).
         task: as for `solve`.
-        solver: the solver; None: Levenberg-Marquardt from many starts.
+        solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
+            Levenberg-Marquardt from many starts for everything else.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
         goals, prefer: as for `solve`.

@@ -13,6 +13,7 @@ mod circle_posture;
 mod closed_form;
 mod contract;
 mod ease;
+mod first_branch;
 mod ik;
 mod jump;
 mod kinematics;

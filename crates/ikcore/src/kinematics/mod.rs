@@ -8,7 +8,7 @@
 //! | `chain`, `stages` | constant frames, and the joint that drives each stage |
 //! | `forward_pass`, `wide_frame` | from the base to the tip, one frame per stage |
 //! | `tip`, `jacobian`, `torques`, `link_frames` | the kernels |
-//! | `four_forward_pass`, `four_jacobians` | the pass and the Jacobians of four configurations at once |
+//! | `four_forward_pass` | the pass of four configurations at once |
 //! | `kernels` | table of compiled kernels |
 //! | `link_tree` | all links, with those that branch off the chain |
 //! | `screws` | axis and velocity of every stage |
@@ -19,7 +19,6 @@ pub(crate) mod chain;
 mod fixed_direction;
 mod forward_pass;
 mod four_forward_pass;
-mod four_jacobians;
 mod jacobian;
 pub(crate) mod kernels;
 pub(crate) mod link_frames;
@@ -33,7 +32,6 @@ mod torques;
 mod wide_frame;
 
 pub use fixed_direction::FixedDirection;
-pub(crate) use four_jacobians::FourColumns;
 pub use jacobian::Columns;
 pub use reach::{Beyond, Reach};
 pub use screws::{Screw, Screws};

@@ -40,6 +40,8 @@ pub struct Robot {
     reach_of_links: Reach,
     /// Pairs of links tested against each other, found at first use; copies that differ in base and tool share it.
     pairs: Arc<OnceLock<Vec<[usize; 2]>>>,
+    /// The smallest change of each joint that leaves the pose of every link unchanged.
+    turn_periods: Vec<Option<f64>>,
     /// Built at first use; copies that differ in base and tool share it.
     start_index: Arc<OnceLock<StartIndex>>,
     /// Computed at first use.
@@ -64,6 +66,7 @@ impl Robot {
         parts.validate()?;
         let chain = parts.description.folded(&parts.base, &parts.tool);
         Ok(Self {
+            turn_periods: turn_periods(&chain, &parts.description.joints),
             parts,
             kernels: Kernels::for_chain(&chain),
             reach_of_links: Reach::of_links(&chain),
@@ -145,18 +148,12 @@ impl Robot {
 
     /// Whether a full turn of joint `joint` leaves the pose of every link unchanged.
     pub(crate) fn repeats_every_turn(&self, joint: usize) -> bool {
-        let driven = self.chain.motions.iter().filter(|motion| motion.joint == joint);
-        let scales = driven.map(|motion| (motion.turn_scale, motion.slide_scale));
-        self.joints()[joint].kind.turns() && scales.into_iter().all(|(turn, slide)| turn.fract() == 0.0 && slide == 0.0)
+        repeats_every_turn(&self.chain, &self.joints()[joint], joint)
     }
 
     /// The smallest change of joint `joint` that leaves the pose of every link unchanged; None where there is none.
     pub(crate) fn turn_period(&self, joint: usize) -> Option<f64> {
-        let mut driven = self.chain.motions[..self.chain.moving].iter().filter(|motion| motion.joint == joint);
-        match (driven.next(), driven.next()) {
-            (Some(only), None) if only.turn_scale != 0.0 => Some(TAU / only.turn_scale.abs()),
-            _ => self.repeats_every_turn(joint).then_some(TAU),
-        }
+        self.turn_periods[joint]
     }
 
     /// Err unless `q` has one finite entry per joint; `what` names it in the message.
@@ -243,6 +240,11 @@ impl Robot {
     pub(crate) fn family(&self, pose: &Frame) -> Option<PoseFamily<'_>> {
         let form = self.closed_form_or_reason().as_ref().ok()?;
         if form.is_redundant() { form.family(self.at_flange(pose)) } else { None }
+    }
+
+    /// Whether the closed form takes no longer than a search; None without one.
+    pub(crate) fn solves_at_once(&self) -> Option<bool> {
+        self.closed_form_or_reason().as_ref().ok().map(ClosedFormArm::is_at_once)
     }
 
     /// The pose of the flange, seen from the first link, that brings the tip to `pose`.
@@ -336,4 +338,20 @@ impl Robot {
     pub(super) fn kernels(&self) -> &Kernels {
         &self.kernels
     }
+}
+
+fn repeats_every_turn(chain: &Chain, joint: &Joint, number: usize) -> bool {
+    let mut driven = chain.motions.iter().filter(|motion| motion.joint == number);
+    joint.kind.turns() && driven.all(|motion| motion.turn_scale.fract() == 0.0 && motion.slide_scale == 0.0)
+}
+
+fn turn_periods(chain: &Chain, joints: &[Joint]) -> Vec<Option<f64>> {
+    let period = |(number, joint): (usize, &Joint)| {
+        let mut driven = chain.motions[..chain.moving].iter().filter(|motion| motion.joint == number);
+        match (driven.next(), driven.next()) {
+            (Some(only), None) if only.turn_scale != 0.0 => Some(TAU / only.turn_scale.abs()),
+            _ => repeats_every_turn(chain, joint, number).then_some(TAU),
+        }
+    };
+    joints.iter().enumerate().map(period).collect()
 }
