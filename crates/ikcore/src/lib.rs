@@ -51,7 +51,7 @@
 //! | 2 | [`starts`], `closed_form` |
 //! | 3 | [`robot`] |
 //! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
-//! | 5 | [`task`], [`solver`] |
+//! | 5 | [`task`], [`solver`], `motion` |
 //! | 6 | [`problem`] |
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
 //! | 8 | [`tracking`], [`planning`], [`posture`], [`batch`] |
@@ -66,6 +66,7 @@ pub mod load;
 pub mod manipulability;
 pub mod math;
 pub mod minimize;
+mod motion;
 pub mod objective;
 pub mod obstacle;
 pub mod path;

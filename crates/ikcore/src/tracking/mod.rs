@@ -13,18 +13,23 @@
 //! |---|---|
 //! | `track`, `track_options` | the call for a whole path, and its options |
 //! | `session`, `step` | [`Session`]: accepted configuration, clock, box and rule; one [`Step`] per tick |
+//! | `limited_motion` | the motion of an arm under acceleration or jerk limits |
+//! | `target_stream`, `target_filter` | targets as they arrive: stamps, timeout, filters |
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
 //! | `record` | [`Record`]: one row per tick, violations, status and message |
 //! | `model_free`, `plant` | tracking without a model: the call, and the arms that it commands |
 //! | `controller` | controllers, which only command and observe |
 
 mod controller;
+mod limited_motion;
 mod model_free;
 mod plant;
 mod record;
 mod rule;
 mod session;
 mod step;
+mod target_filter;
+mod target_stream;
 mod tip_pose;
 mod track;
 mod track_options;
@@ -36,6 +41,8 @@ pub use record::Record;
 pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
 pub use session::Session;
 pub use step::Step;
+pub use target_filter::TargetFilter;
+pub use target_stream::Arrival;
 pub use tip_pose::TipPose;
 pub use track::track;
 pub use track_options::TrackOptions;

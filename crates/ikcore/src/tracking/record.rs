@@ -170,7 +170,7 @@ impl Record {
     fn too_sudden(&self, j: usize, step: f64, [from, to]: [f64; 2]) -> f64 {
         let rows = self.rows();
         let before = if rows > 1 { self.q[(rows - 1) * self.dof + j] - self.q[(rows - 2) * self.dof + j] } else { 0.0 };
-        (step - before).abs() - self.limits.acceleration_over(j, from, to) * self.dt * self.dt
+        (step - before).abs() - self.limits.smallest_over(Field::Acceleration, j, [from, to]) * self.dt * self.dt
     }
 
     /// Sets the status of the whole track. It is solved if it stayed in the band once it had reached it, and every

@@ -1,0 +1,244 @@
+//! The goal of a pursuit: the configuration in which the arm meets its target, as a moving point.
+//!
+//! Each target gives a sample of the goal, with the noise of its sensor. A fading-memory filter keeps position, step and
+//! change of the goal: a triple pole at theta = 1 - 1/m for a memory of m samples, so that a goal with constant change is
+//! followed without lag. The memory is as long as the noise requires: following the filtered goal takes a small fraction of
+//! the acceleration and jerk limits. Without noise it is one sample: the goal is then exactly the last sample. After a jump
+//! the filter starts anew, with a growing memory.
+
+use super::noise_level::NoiseLevel;
+use super::Braking;
+use crate::objective::Point;
+
+/// Standard deviation of the acceleration that noise may cause, as a fraction of the acceleration limit.
+const SHAKE: f64 = 0.004;
+
+/// Likewise for jerk, which the noise of single samples causes.
+const JERK_SHAKE: f64 = 0.02;
+
+/// Following a goal with a memory of m samples multiplies noise by this over m^2.5 in the acceleration, and by this over
+/// m^3.5 in the jerk.
+const AMPLIFIED: f64 = 5.0;
+
+/// A sample further than this many standard deviations from where the goal was expected is no noise.
+const OUTLIER: f64 = 6.0;
+
+/// A sample further than this many accelerations of one sample is no smooth motion of a goal that the arm can follow.
+const SUDDEN: f64 = 4.0;
+
+/// Samples that a parabola needs.
+const PARABOLA: usize = 3;
+
+/// Step of a joint without a velocity limit (rad, m).
+const LONGEST_STEP: f64 = 1.0;
+
+/// Overdue intervals that the motion is extrapolated over.
+const STRETCH: f64 = 2.0;
+
+/// What the limits of a joint are measured in: per tick.
+#[derive(Debug, Clone)]
+pub(crate) struct Scales {
+    /// Largest steps.
+    pub step: Point,
+    /// Largest changes.
+    pub change: Point,
+    /// Smallest ratio of jerk to acceleration limit: fraction of the change that may change in a tick.
+    pub jerk_share: f64,
+}
+
+impl Scales {
+    /// The scales of joints with these largest steps. A joint without an acceleration limit gets the acceleration that its
+    /// jerk limit allows up to its velocity limit.
+    pub fn new(braking: &[Braking], steps: impl Iterator<Item = f64>) -> Self {
+        let step: Point = steps.collect();
+        let change: Point = braking.iter().zip(&step).map(|(braking, step)| {
+            let by_jerk = (braking.jerk * step.min(LONGEST_STEP)).sqrt();
+            braking.acceleration.min(by_jerk)
+        }).collect();
+        let jerk_share = braking.iter().zip(&change).map(|(braking, change)| braking.jerk / change);
+        Self { jerk_share: jerk_share.fold(f64::INFINITY, f64::min), step, change }
+    }
+}
+
+/// A sample of the goal.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sample<'a> {
+    /// The configuration that meets the target.
+    pub q: &'a [f64],
+    /// Its time, in ticks.
+    pub time: f64,
+}
+
+/// A moving goal.
+#[derive(Debug, Clone)]
+pub(crate) struct Goal {
+    /// Configuration of the goal at the end of the tick.
+    q: Point,
+    /// Its displacement in the tick.
+    step: Point,
+    /// The difference of its displacement to that of the tick before.
+    change: Point,
+    now: f64,
+    last_sample: f64,
+    /// Ticks between samples.
+    interval: f64,
+    /// Samples since the last jump.
+    samples: usize,
+    /// Samples that the filter remembers.
+    memory: f64,
+    noise: NoiseLevel,
+}
+
+/// Corrections of position, step and change per sample interval by an unexpected difference.
+#[derive(Debug, Clone, Copy)]
+struct Gains {
+    position: f64,
+    step: f64,
+    change: f64,
+}
+
+impl Goal {
+    /// A goal at rest at its first sample.
+    pub fn new(sample: Sample<'_>, now: f64, scales: &Scales) -> Self {
+        let n = sample.q.len();
+        let mut noise = NoiseLevel::new();
+        noise.add(sample.q, sample.time, &scales.change);
+        Self {
+            q: Point::from_slice(sample.q),
+            step: Point::from_elem(0.0, n),
+            change: Point::from_elem(0.0, n),
+            now,
+            last_sample: sample.time,
+            interval: 1.0,
+            samples: 1,
+            memory: 1.0,
+            noise,
+        }
+    }
+
+    /// Configuration at the end of the tick.
+    pub fn q(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// Displacement in the tick.
+    pub fn step(&self) -> &[f64] {
+        &self.step
+    }
+
+    /// Difference of the displacement to that of the tick before.
+    pub fn change(&self) -> &[f64] {
+        &self.change
+    }
+
+    /// Standard deviation of the noise of a sample, in units of the scales.
+    pub fn noise(&self) -> f64 {
+        self.noise.level()
+    }
+
+    /// Ticks over which noise is averaged; 1 without noise.
+    pub fn memory(&self) -> f64 {
+        self.memory * self.interval
+    }
+
+    /// Moves on by one tick. A goal whose sample is overdue brakes to rest.
+    pub fn advance(&mut self, scales: &Scales) {
+        self.now += 1.0;
+        if self.now - self.last_sample > STRETCH * self.interval + 1.0 {
+            for ((step, change), most) in self.step.iter().zip(&mut self.change).zip(&scales.change) {
+                *change = -step.signum() * step.abs().min(0.5 * most);
+            }
+        }
+        for ((q, step), change) in self.q.iter_mut().zip(&mut self.step).zip(&self.change) {
+            *step += change;
+            *q += *step;
+        }
+    }
+
+    /// Writes the expected configuration at `time` (in ticks).
+    pub fn expected(&self, time: f64, out: &mut Point) {
+        let ago = self.now - time;
+        out.clear();
+        let motion = self.q.iter().zip(self.step.iter().zip(&self.change));
+        out.extend(motion.map(|(q, (step, change))| q - ago * (step - 0.5 * (ago - 1.0) * change)));
+    }
+
+    /// Corrects the motion by a sample; `expected` is the expected configuration at its time.
+    pub fn correct(&mut self, sample: Sample<'_>, expected: &[f64], scales: &Scales) {
+        let Sample { q, time } = sample;
+        let interval = time - self.last_sample;
+        if interval <= 0.0 {
+            return;
+        }
+        self.noise.add(q, time, &scales.change);
+        self.interval += (interval - self.interval) * if self.samples < PARABOLA { 1.0 } else { 0.2 };
+        self.last_sample = time;
+        self.memory = self.required_memory(scales.jerk_share);
+        self.samples += 1;
+        let surprise = largest_share(q.iter().zip(expected).map(|(q, expected)| q - expected), &scales.change);
+        let square = self.interval.powi(2);
+        let noise = OUTLIER * self.noise();
+        if self.samples == 2 {
+            // Faster than the arm can follow: it has jumped again.
+            let steps = q.iter().zip(expected).map(|(q, expected)| (q - expected) / self.interval);
+            if largest_share(steps, &scales.step) > 1.0 && surprise > noise {
+                return self.restart(sample);
+            }
+        } else if surprise > SUDDEN * square + noise {
+            // What a goal may gain by an acceleration within its memory is no jump.
+            if surprise > (SUDDEN + 0.125 * self.memory.powi(2)) * square + noise {
+                return self.restart(sample);
+            }
+            self.samples = (self.samples.min(self.memory.ceil() as usize) / 2).max(2);
+        }
+        self.apply(self.gains(), interval, sample, expected);
+    }
+
+    fn restart(&mut self, sample: Sample<'_>) {
+        self.q.copy_from_slice(sample.q);
+        self.step.fill(0.0);
+        self.change.fill(0.0);
+        self.samples = 1;
+    }
+
+    /// Samples to remember so that following the noise takes a small share of the limits.
+    fn required_memory(&self, jerk_share: f64) -> f64 {
+        let noise = self.noise() / self.interval.powi(2);
+        let for_acceleration = (AMPLIFIED * noise / SHAKE).powf(0.4);
+        let for_jerk = (AMPLIFIED * noise / (JERK_SHAKE * jerk_share * self.interval)).powf(2.0 / 7.0);
+        for_acceleration.max(for_jerk).max(1.0)
+    }
+
+    fn gains(&self) -> Gains {
+        let n = self.samples as f64;
+        if self.samples < PARABOLA || n < self.memory {
+            // The straight line of least squares through n samples.
+            let both = n * (n + 1.0);
+            return Gains { position: 2.0 * (2.0 * n - 1.0) / both, step: 6.0 / both, change: 0.0 };
+        }
+        let (theta, forgotten) = (1.0 - 1.0 / self.memory, 1.0 / self.memory);
+        // A change adds this share of itself to the displacement of an interval.
+        let share = 0.5 * (self.interval + 1.0) / self.interval;
+        Gains {
+            position: 1.0 - theta.powi(3),
+            step: forgotten.powi(2) * (2.0 + theta - share * forgotten),
+            change: forgotten.powi(3),
+        }
+    }
+
+    fn apply(&mut self, gains: Gains, interval: f64, sample: Sample<'_>, expected: &[f64]) {
+        let ago = self.now - sample.time;
+        for (j, (q, expected)) in sample.q.iter().zip(expected).enumerate() {
+            let surprise = q - expected;
+            let (step, change) = (gains.step * surprise / interval, gains.change * surprise / interval.powi(2));
+            self.q[j] += gains.position * surprise + ago * (step + 0.5 * (ago + 1.0) * change);
+            self.step[j] += step + ago * change;
+            self.change[j] += change;
+        }
+    }
+}
+
+/// The largest entry in units of its scale.
+fn largest_share(entries: impl Iterator<Item = f64>, scales: &[f64]) -> f64 {
+    entries.zip(scales).map(|(entry, scale)| entry.abs() / scale).fold(0.0, f64::max)
+}

@@ -1,0 +1,30 @@
+//! Motion inside limits up to jerk: stopping motions, the set of reachable commands, and the pursuit of a moving goal.
+//!
+//! Commands are positions q_k, one per tick of `dt`. A tick's *step* is q_k - q_(k-1), its *change* the difference of two
+//! steps, and the change of the change is limited by jerk: |step| <= v dt, |change| <= a dt^2, |change' - change| <= j dt^3.
+//! Between commands an arm that interpolates them by a uniform cubic B-spline keeps the same limits at every instant,
+//! because velocity, acceleration and jerk of the spline are averages of these differences.
+//!
+//! | file | what |
+//! |---|---|
+//! | `braking` | [`Braking`]: how a joint brakes; its fastest stop in closed form |
+//! | `reachable_set` | the changes after which a joint can still stop inside its limits; the box of a tick |
+//! | `joint_state` | steps and changes of all joints |
+//! | `bracket` | zeros of increasing functions |
+//! | `noise_level` | noise of a sequence of samples, robust to jumps |
+//! | `goal` | the goal configuration as a moving point: position, step and change from noisy samples |
+//! | `pursuit` | the change of each joint towards a moving goal |
+
+mod bracket;
+mod braking;
+mod goal;
+mod joint_state;
+mod noise_level;
+mod pursuit;
+mod reachable_set;
+
+pub(crate) use braking::Braking;
+pub(crate) use goal::{Goal, Sample, Scales};
+pub(crate) use joint_state::JointState;
+pub(crate) use pursuit::Pursuit;
+pub(crate) use reachable_set::ReachableSet;

@@ -1,0 +1,85 @@
+//! The noise of a sequence of samples.
+//!
+//! A smooth motion is a parabola over four samples, so the difference between a sample and the parabola through the three
+//! before it is noise. The median over a window ignores jumps.
+
+use crate::objective::Point;
+
+/// Samples that a parabola needs.
+const BEFORE: usize = 3;
+
+/// Window of the median. A jump spoils four differences, which is less than half.
+const WINDOW: usize = 15;
+
+/// Median of the absolute value of a normal variable with standard deviation 1.
+const MEDIAN_OF_NORMAL: f64 = 0.6745;
+
+/// A median above this multiple of the level is a new level; smaller ones are averaged.
+const RISE: f64 = 3.0;
+
+/// Samples over which the level is averaged.
+const AVERAGED: f64 = 50.0;
+
+/// A running estimate of the standard deviation of noise.
+#[derive(Debug, Clone)]
+pub(super) struct NoiseLevel {
+    /// The last samples and their times, oldest first in a ring.
+    samples: [Point; BEFORE],
+    times: [f64; BEFORE],
+    count: usize,
+    /// Differences in the window; zero until it is full, so that a jump at the start is not taken for noise.
+    differences: [f64; WINDOW],
+    level: f64,
+}
+
+impl NoiseLevel {
+    pub fn new() -> Self {
+        let samples = std::array::from_fn(|_| Point::new());
+        Self { samples, times: [0.0; BEFORE], count: 0, differences: [0.0; WINDOW], level: 0.0 }
+    }
+
+    /// Standard deviation of the noise, in the scales of `add`.
+    pub fn level(&self) -> f64 {
+        self.level
+    }
+
+    /// Adds a sample at `time`; entries are measured in units of `scales`.
+    pub fn add(&mut self, sample: &[f64], time: f64, scales: &[f64]) {
+        let count = self.count;
+        let slot = |ago: usize| (count + BEFORE - ago) % BEFORE;
+        if count >= BEFORE {
+            let slots = [slot(3), slot(2), slot(1)];
+            let difference = self.difference(sample, time, scales, slots);
+            self.differences[count % WINDOW] = difference;
+            self.update();
+        }
+        let oldest = slot(3);
+        self.samples[oldest].clear();
+        self.samples[oldest].extend_from_slice(sample);
+        self.times[oldest] = time;
+        self.count += 1;
+    }
+
+    /// Root mean square over the entries of the difference to the parabola, divided by its standard deviation for noise of
+    /// unit size.
+    fn difference(&self, sample: &[f64], time: f64, scales: &[f64], slots: [usize; BEFORE]) -> f64 {
+        let times = slots.map(|slot| self.times[slot]);
+        let weights: [f64; BEFORE] = std::array::from_fn(|i| {
+            (0..BEFORE).filter(|k| *k != i).map(|k| (time - times[k]) / (times[i] - times[k])).product()
+        });
+        let variance = 1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>();
+        let squares = (0..sample.len()).map(|j| {
+            let extrapolated: f64 = slots.iter().zip(weights).map(|(slot, weight)| weight * self.samples[*slot][j]).sum();
+            ((sample[j] - extrapolated) / scales[j]).powi(2)
+        });
+        let (limited, sum) = squares.zip(scales).filter(|(_, scale)| scale.is_finite()).fold((0, 0.0), |(count, sum), (square, _)| (count + 1, sum + square));
+        (sum / (f64::from(limited.max(1)) * variance)).sqrt()
+    }
+
+    fn update(&mut self) {
+        let mut sorted = self.differences;
+        let (_, median, _) = sorted.select_nth_unstable_by(WINDOW / 2, f64::total_cmp);
+        let median = *median / MEDIAN_OF_NORMAL;
+        self.level = if median > RISE * self.level { median } else { self.level + (median - self.level) / AVERAGED };
+    }
+}

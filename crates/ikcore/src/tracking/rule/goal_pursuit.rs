@@ -1,0 +1,162 @@
+//! The model-based rule under acceleration and jerk limits: it keeps a goal, the moving configuration that meets the target,
+//! and pursues it inside the reachable set of the tick.
+//!
+//! Each target gives a sample of the goal: Gauss-Newton steps from where the goal was expected, within the position limits
+//! alone. [`Goal`] filters the samples by their noise; [`Pursuit`] chooses the changes of the joints. Without noise the arm
+//! meets a target that moves smoothly exactly, with one Jacobian and one tip a tick.
+
+use super::tick::{Tick, TickResult};
+use crate::math::box_step::{BoxStep, least_damping};
+use crate::motion::{Goal, Pursuit, Sample};
+use crate::objective::{Bounds, Differentiable, Linearization, Point};
+use crate::problem::Problem;
+use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
+use crate::tracking::limited_motion::LimitedMotion;
+
+/// Steps that Gauss-Newton may take in a tick; they converge quadratically.
+const MOST_STEPS: usize = 6;
+
+/// A step this short (rad, m) leaves an error of its square, which is below every tolerance.
+const SHORT: f64 = 1e-5;
+
+/// Evaluations of a tick in which Gauss-Newton fails: at singularities and out of reach. The next tick continues.
+const MOST_EVALUATIONS: usize = 60;
+
+/// State of the rule between ticks.
+#[derive(Debug, Default)]
+pub(crate) struct GoalPursuit {
+    goal: Option<Goal>,
+    /// Ticks since the start.
+    now: f64,
+    expected: Point,
+    sample: Point,
+    linearization: Box<Linearization>,
+}
+
+impl GoalPursuit {
+    /// Drops the goal.
+    pub(crate) fn forget(&mut self) {
+        self.goal = None;
+    }
+
+    /// Runs one tick from `q`. A target counts as a sample if `tick.sampled_ago` is given: its age at the end of the tick, in
+    /// ticks.
+    pub(super) fn advance(&mut self, q: &[f64], mut tick: Tick<'_>) -> TickResult {
+        let mut found = TickResult::at(q);
+        let Some(motion) = tick.limited else { return found };
+        self.now += 1.0;
+        if let Some(goal) = &mut self.goal {
+            goal.advance(motion.scales());
+        }
+        if let Some(ago) = tick.sampled_ago {
+            self.take_sample(q, ago, &mut found, &mut tick, motion);
+        }
+        match &self.goal {
+            Some(goal) if !found.interrupted => {
+                let (braking, scales, reachable) = (motion.braking(), motion.scales(), tick.tick_box);
+                Pursuit { goal, braking, scales, reachable }.write(q, motion.state(), &mut found.q);
+            }
+            _ => {
+                found.q = motion.stopping(q);
+                tick.tick_box.clip(&mut found.q);
+            }
+        }
+        found.set_tip(&tick.robot.tip(&found.q), tick.target, tick.criterion);
+        found.evaluations += 1;
+        found
+    }
+
+    /// Corrects the goal by the target, of the given age in ticks.
+    fn take_sample(
+        &mut self,
+        q: &[f64],
+        ago: f64,
+        found: &mut TickResult,
+        tick: &mut Tick<'_>,
+        motion: &LimitedMotion,
+    ) {
+        let time = self.now - ago;
+        match &self.goal {
+            Some(goal) => goal.expected(time, &mut self.expected),
+            None => self.expected = Point::from_slice(q),
+        }
+        let positions = positions(tick, q.len());
+        self.solve(&positions, found, tick);
+        let sample = Sample { q: &self.sample, time };
+        match &mut self.goal {
+            Some(goal) => goal.correct(sample, &self.expected, motion.scales()),
+            None => self.goal = Some(Goal::new(sample, self.now, motion.scales())),
+        }
+    }
+
+    /// Sets `sample` to the configuration nearest to the expected one that meets the target.
+    fn solve(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
+        let n = self.expected.len();
+        self.sample = Point::from_slice(&self.expected);
+        positions.clip(&mut self.sample);
+        let mut begin = self.sample.clone();
+        let mut lowest = f64::INFINITY;
+        for i in 0..MOST_STEPS {
+            let value = self.linearize(found, tick);
+            if value > lowest {
+                break;
+            }
+            (lowest, begin) = (value, self.sample.clone());
+            let preferred = if i == 0 { self.preferred(positions, tick) } else { None };
+            let Linearization { columns, residual } = &*self.linearization;
+            let lambda = least_damping(&columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
+            let (lower, upper) = (positions.lower(), positions.upper());
+            let step = BoxStep { columns, residual, lambda, x: &begin, lower, upper };
+            match preferred {
+                Some(preferred) => step.write_near(&preferred, &mut self.sample),
+                None => step.write(&mut self.sample),
+            }
+            let longest = self.sample.iter().zip(&begin).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
+            if longest <= SHORT {
+                return;
+            }
+        }
+        self.sample = begin;
+        self.descend(positions, found, tick);
+    }
+
+    /// Residual and Jacobian at `sample`; returns the squared error.
+    fn linearize(&mut self, found: &mut TickResult, tick: &Tick<'_>) -> f64 {
+        found.evaluations += 1;
+        found.iterations += 1;
+        let tip = tick.robot.tip_and_jacobian(&self.sample, &mut self.linearization.columns);
+        let n = self.sample.len();
+        tick.target.linearize_tip(&tip, n, tick.criterion, &mut self.linearization).score.value
+    }
+
+    /// Where the goals in the null space would have the joints, if there are goals.
+    fn preferred(&self, positions: &Bounds, tick: &mut Tick<'_>) -> Option<Point> {
+        if tick.goals.is_empty() {
+            return None;
+        }
+        let mut preferred = self.sample.clone();
+        tick.goals.cost(tick.robot, &self.sample, &mut preferred);
+        for (preferred, q) in preferred.iter_mut().zip(&self.sample) {
+            *preferred = q - tick.dt * *preferred;
+        }
+        positions.clip(&mut preferred);
+        Some(preferred)
+    }
+
+    /// Lowers the error as far as one tick allows, where Gauss-Newton fails.
+    fn descend(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
+        let mut problem = Problem::new(tick.robot, tick.target, *tick.criterion);
+        let objective: &mut dyn Differentiable = &mut problem;
+        let stop = Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() };
+        let mut evaluator = Evaluator::new(objective, positions, stop, tick.rng, tick.monitor);
+        run(&LevenbergMarquardt::default(), &mut evaluator, &self.sample);
+        found.evaluations += evaluator.evaluations();
+        found.iterations += evaluator.iterations();
+        self.sample.copy_from_slice(&evaluator.best().x);
+    }
+}
+
+/// The position limits of the tick.
+fn positions(tick: &Tick<'_>, n: usize) -> Bounds {
+    Bounds::from_ranges((0..n).map(|j| tick.limits.position_range(j, tick.time, tick.time + tick.dt).into()))
+}
