@@ -120,8 +120,7 @@ impl Braking {
         while ticks > 0.0 && !stays(ticks) {
             ticks -= 1.0;
         }
-        let displacement_after =
-            |k: f64| k * (first - (k + 1.0) * (0.5 * braking + jerk * (k + 2.0) * (1.0 / 6.0)));
+        let displacement_after = |k: f64| k * (first - (k + 1.0) * (0.5 * braking + jerk * (k + 2.0) * (1.0 / 6.0)));
         if first < 0.0 {
             // The joint moves backwards at first, until its steps change sign.
             let slope = -braking - 0.5 * jerk;

@@ -6,8 +6,8 @@
 //! the acceleration and jerk limits. Without noise it is one sample: the goal is then exactly the last sample. After a jump
 //! the filter starts anew, with a growing memory.
 
-use super::noise_level::NoiseLevel;
 use super::Braking;
+use super::noise_level::{NoiseLevel, root_mean_square};
 use crate::objective::Point;
 
 /// Standard deviation of the acceleration that noise may cause, as a fraction of the acceleration limit.
@@ -25,6 +25,9 @@ const OUTLIER: f64 = 6.0;
 
 /// A sample further than this many accelerations of one sample is no smooth motion of a goal that the arm can follow.
 const SUDDEN: f64 = 4.0;
+
+/// A memory below this many samples follows single samples.
+const NOISELESS: f64 = 2.0;
 
 /// Samples that a parabola needs.
 const PARABOLA: usize = 3;
@@ -51,10 +54,14 @@ impl Scales {
     /// jerk limit allows up to its velocity limit.
     pub fn new(braking: &[Braking], steps: impl Iterator<Item = f64>) -> Self {
         let step: Point = steps.collect();
-        let change: Point = braking.iter().zip(&step).map(|(braking, step)| {
-            let by_jerk = (braking.jerk * step.min(LONGEST_STEP)).sqrt();
-            braking.acceleration.min(by_jerk)
-        }).collect();
+        let change: Point = braking
+            .iter()
+            .zip(&step)
+            .map(|(braking, step)| {
+                let by_jerk = (braking.jerk * step.min(LONGEST_STEP)).sqrt();
+                braking.acceleration.min(by_jerk)
+            })
+            .collect();
         let jerk_share = braking.iter().zip(&change).map(|(braking, change)| braking.jerk / change);
         Self { jerk_share: jerk_share.fold(f64::INFINITY, f64::min), step, change }
     }
@@ -82,8 +89,8 @@ pub(crate) struct Goal {
     last_sample: f64,
     /// Ticks between samples.
     interval: f64,
-    /// Samples since the last jump.
-    samples: usize,
+    /// Samples since the last jump, while they are fewer than the memory; afterwards `None`.
+    samples: Option<usize>,
     /// Samples that the filter remembers.
     memory: f64,
     noise: NoiseLevel,
@@ -110,7 +117,7 @@ impl Goal {
             now,
             last_sample: sample.time,
             interval: 1.0,
-            samples: 1,
+            samples: Some(1),
             memory: 1.0,
             noise,
         }
@@ -131,7 +138,12 @@ impl Goal {
         &self.change
     }
 
-    /// Standard deviation of the noise of a sample, in units of the scales.
+    /// Standard deviation of the noise of a sample in joint `j`, in units of its scale.
+    pub fn noise_of(&self, j: usize) -> f64 {
+        self.noise.level_of(j)
+    }
+
+    /// Root mean square of the noise over the joints.
     pub fn noise(&self) -> f64 {
         self.noise.level()
     }
@@ -171,34 +183,46 @@ impl Goal {
             return;
         }
         self.noise.add(q, time, &scales.change);
-        self.interval += (interval - self.interval) * if self.samples < PARABOLA { 1.0 } else { 0.2 };
+        self.interval +=
+            (interval - self.interval) * if self.samples.is_some_and(|samples| samples < PARABOLA) { 1.0 } else { 0.2 };
         self.last_sample = time;
+        let before = self.memory;
         self.memory = self.required_memory(scales.jerk_share);
-        self.samples += 1;
-        let surprise = largest_share(q.iter().zip(expected).map(|(q, expected)| q - expected), &scales.change);
-        let square = self.interval.powi(2);
+        if before < NOISELESS && self.memory > NOISELESS {
+            // What was taken for motion was noise.
+            return self.restart(sample);
+        }
+        self.samples = self.samples.map(|samples| samples + 1).filter(|n| *n < PARABOLA || (*n as f64) < self.memory);
+        let surprise = root_mean_square(q.iter().zip(expected).map(|(q, expected)| q - expected), &scales.change);
         let noise = OUTLIER * self.noise();
-        if self.samples == 2 {
+        if self.samples == Some(2) {
             // Faster than the arm can follow: it has jumped again.
             let steps = q.iter().zip(expected).map(|(q, expected)| (q - expected) / self.interval);
-            if largest_share(steps, &scales.step) > 1.0 && surprise > noise {
+            if surprise > noise && root_mean_square(steps, &scales.step) > 1.0 {
                 return self.restart(sample);
             }
-        } else if surprise > SUDDEN * square + noise {
-            // What a goal may gain by an acceleration within its memory is no jump.
-            if surprise > (SUDDEN + 0.125 * self.memory.powi(2)) * square + noise {
+        } else if surprise > SUDDEN * self.interval.powi(2) + noise {
+            // An acceleration within the memory explains that much; otherwise it is a jump.
+            if surprise > (SUDDEN + 0.125 * self.memory.powi(2)) * self.interval.powi(2) + noise {
                 return self.restart(sample);
             }
-            self.samples = (self.samples.min(self.memory.ceil() as usize) / 2).max(2);
+            self.forget_half();
         }
         self.apply(self.gains(), interval, sample, expected);
+    }
+
+    /// Starts a straight line through half as many samples.
+    fn forget_half(&mut self) {
+        let remembered = self.samples.unwrap_or(self.memory.ceil() as usize);
+        self.samples = Some((remembered / 2).max(2));
+        self.change.fill(0.0);
     }
 
     fn restart(&mut self, sample: Sample<'_>) {
         self.q.copy_from_slice(sample.q);
         self.step.fill(0.0);
         self.change.fill(0.0);
-        self.samples = 1;
+        self.samples = Some(1);
     }
 
     /// Samples to remember so that following the noise takes a small share of the limits.
@@ -210,9 +234,9 @@ impl Goal {
     }
 
     fn gains(&self) -> Gains {
-        let n = self.samples as f64;
-        if self.samples < PARABOLA || n < self.memory {
+        if let Some(samples) = self.samples {
             // The straight line of least squares through n samples.
+            let n = samples as f64;
             let both = n * (n + 1.0);
             return Gains { position: 2.0 * (2.0 * n - 1.0) / both, step: 6.0 / both, change: 0.0 };
         }
@@ -236,9 +260,4 @@ impl Goal {
             self.change[j] += change;
         }
     }
-}
-
-/// The largest entry in units of its scale.
-fn largest_share(entries: impl Iterator<Item = f64>, scales: &[f64]) -> f64 {
-    entries.zip(scales).map(|(entry, scale)| entry.abs() / scale).fold(0.0, f64::max)
 }

@@ -8,13 +8,15 @@
 //! | file | what |
 //! |---|---|
 //! | `braking` | [`Braking`]: how a joint brakes; its fastest stop in closed form |
-//! | `reachable_set` | the changes after which a joint can still stop inside its limits; the box of a tick |
+//! | `admissible` | the changes of a joint after which it can still stop inside its limits |
+//! | `reachable_set` | these changes for all joints, as the box of a tick |
 //! | `joint_state` | steps and changes of all joints |
 //! | `bracket` | zeros of increasing functions |
 //! | `noise_level` | noise of a sequence of samples, robust to jumps |
 //! | `goal` | the goal configuration as a moving point: position, step and change from noisy samples |
 //! | `pursuit` | the change of each joint towards a moving goal |
 
+mod admissible;
 mod bracket;
 mod braking;
 mod goal;

@@ -9,7 +9,7 @@ use crate::objective::Point;
 const BEFORE: usize = 3;
 
 /// Window of the median. A jump spoils four differences, which is less than half.
-const WINDOW: usize = 15;
+const WINDOW: usize = 9;
 
 /// Median of the absolute value of a normal variable with standard deviation 1.
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
@@ -30,17 +30,24 @@ pub(super) struct NoiseLevel {
     /// Differences in the window; zero until it is full, so that a jump at the start is not taken for noise.
     differences: [f64; WINDOW],
     level: f64,
+    /// Fraction of the squared differences in each entry.
+    shares: Point,
 }
 
 impl NoiseLevel {
     pub fn new() -> Self {
         let samples = std::array::from_fn(|_| Point::new());
-        Self { samples, times: [0.0; BEFORE], count: 0, differences: [0.0; WINDOW], level: 0.0 }
+        Self { samples, times: [0.0; BEFORE], count: 0, differences: [0.0; WINDOW], level: 0.0, shares: Point::new() }
     }
 
-    /// Standard deviation of the noise, in the scales of `add`.
+    /// Root mean square over the entries of the standard deviation of the noise, in the scales of `add`.
     pub fn level(&self) -> f64 {
         self.level
+    }
+
+    /// Standard deviation of the noise of entry `j`.
+    pub fn level_of(&self, j: usize) -> f64 {
+        self.level * (self.shares.len() as f64 * self.shares[j]).sqrt()
     }
 
     /// Adds a sample at `time`; entries are measured in units of `scales`.
@@ -53,6 +60,9 @@ impl NoiseLevel {
             self.differences[count % WINDOW] = difference;
             self.update();
         }
+        if count == 0 {
+            self.shares = Point::from_elem(1.0 / sample.len() as f64, sample.len());
+        }
         let oldest = slot(3);
         self.samples[oldest].clear();
         self.samples[oldest].extend_from_slice(sample);
@@ -62,18 +72,25 @@ impl NoiseLevel {
 
     /// Root mean square over the entries of the difference to the parabola, divided by its standard deviation for noise of
     /// unit size.
-    fn difference(&self, sample: &[f64], time: f64, scales: &[f64], slots: [usize; BEFORE]) -> f64 {
+    fn difference(&mut self, sample: &[f64], time: f64, scales: &[f64], slots: [usize; BEFORE]) -> f64 {
         let times = slots.map(|slot| self.times[slot]);
         let weights: [f64; BEFORE] = std::array::from_fn(|i| {
             (0..BEFORE).filter(|k| *k != i).map(|k| (time - times[k]) / (times[i] - times[k])).product()
         });
         let variance = 1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>();
-        let squares = (0..sample.len()).map(|j| {
-            let extrapolated: f64 = slots.iter().zip(weights).map(|(slot, weight)| weight * self.samples[*slot][j]).sum();
-            ((sample[j] - extrapolated) / scales[j]).powi(2)
-        });
-        let (limited, sum) = squares.zip(scales).filter(|(_, scale)| scale.is_finite()).fold((0, 0.0), |(count, sum), (square, _)| (count + 1, sum + square));
-        (sum / (f64::from(limited.max(1)) * variance)).sqrt()
+        let square = |j: usize| -> f64 {
+            let extrapolated: f64 =
+                slots.iter().zip(weights).map(|(slot, weight)| weight * self.samples[*slot][j]).sum();
+            if scales[j].is_finite() { ((sample[j] - extrapolated) / scales[j]).powi(2) } else { 0.0 }
+        };
+        let squares: Point = (0..sample.len()).map(square).collect();
+        let sum: f64 = squares.iter().sum();
+        if sum > 0.0 {
+            for (share, square) in self.shares.iter_mut().zip(&squares) {
+                *share += (square / sum - *share) / AVERAGED;
+            }
+        }
+        (sum / (sample.len() as f64 * variance)).sqrt()
     }
 
     fn update(&mut self) {
@@ -82,4 +99,10 @@ impl NoiseLevel {
         let median = *median / MEDIAN_OF_NORMAL;
         self.level = if median > RISE * self.level { median } else { self.level + (median - self.level) / AVERAGED };
     }
+}
+
+/// Root mean square of the entries in units of their scales; infinite scales count as zeros.
+pub(super) fn root_mean_square(entries: impl Iterator<Item = f64>, scales: &[f64]) -> f64 {
+    let sum: f64 = entries.zip(scales).map(|(entry, scale)| (entry / scale).powi(2)).sum();
+    (sum / scales.len() as f64).sqrt()
 }

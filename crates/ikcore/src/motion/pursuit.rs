@@ -14,7 +14,7 @@ use super::{Braking, JointState};
 use crate::objective::{Bounds, Point};
 
 /// Half width of the noise around the goal, in standard deviations of a sample.
-const EDGE: f64 = 1.0;
+const EDGE: f64 = 1.25;
 
 /// A goal farther than this many changes, and out of its noise, is approached in proportion.
 const FAR: f64 = 16.0;
@@ -48,10 +48,11 @@ impl Pursuit<'_> {
     /// Writes the configuration at the end of the tick of an arm that is at `q` in `state`.
     pub fn write(&self, q: &[f64], state: &JointState, out: &mut [f64]) {
         let shares = self.shares(q);
-        let edge = EDGE * self.goal.noise();
         let pole = 1.0 - 1.0 / self.goal.memory();
         for j in 0..q.len() {
-            let (goal_step, goal_change) = (self.goal.step()[j], self.goal.change()[j]);
+            let goal_step = self.goal.step()[j];
+            // Far from the goal its acceleration does not count, but its noise would.
+            let goal_change = if shares.far { 0.0 } else { self.goal.change()[j] };
             let straight = q[j] + state.step[j] + goal_change;
             let relative = Relative {
                 distance: q[j] - (self.goal.q()[j] - goal_step),
@@ -62,7 +63,7 @@ impl Pursuit<'_> {
             let acceleration = (shares.change[j] * acceleration - goal_change.abs()).max(LEAST_SHARE * acceleration);
             let braking = Braking { acceleration, jerk: shares.jerk[j] * jerk };
             let scale = self.scales.change[j];
-            let edge = if scale.is_finite() { edge * scale } else { 0.0 };
+            let edge = if scale.is_finite() { EDGE * self.goal.noise_of(j) * scale } else { 0.0 };
             out[j] = straight + relative.change(&braking, pole, edge, shares.step[j] * self.scales.step[j]);
         }
         self.reachable.clip(out);
@@ -75,7 +76,7 @@ impl Pursuit<'_> {
         let farthest = (0..n).map(|j| way(j) / self.scales.change[j]).fold(0.0, f64::max);
         if farthest <= FAR + EDGE * FAR * self.goal.noise() {
             let all = Point::from_elem(1.0, n);
-            return Shares { step: all.clone(), change: all.clone(), jerk: all };
+            return Shares { far: false, step: all.clone(), change: all.clone(), jerk: all };
         }
         let of = |limit: &dyn Fn(usize) -> f64| -> Point {
             let longest = (0..n).map(|j| way(j) / limit(j)).fold(0.0, f64::max);
@@ -83,6 +84,7 @@ impl Pursuit<'_> {
             (0..n).map(share).collect()
         };
         Shares {
+            far: true,
             step: of(&|j| self.scales.step[j]),
             change: of(&|j| self.braking[j].acceleration),
             jerk: of(&|j| self.braking[j].jerk),
@@ -92,6 +94,8 @@ impl Pursuit<'_> {
 
 /// Shares of the limits of each joint.
 struct Shares {
+    /// Whether the goal is far.
+    far: bool,
     step: Point,
     change: Point,
     jerk: Point,

@@ -1,17 +1,11 @@
-//! The changes of a tick after which a joint can still stop inside all its limits.
-//!
-//! A change is admissible if jerk and acceleration limits allow it and the fastest stop that follows stays inside the
-//! position limits and below the velocity limits until it ends. The rest of a fastest stop is itself a fastest stop, so the
-//! set of the next tick contains at least the continued stop: it is never empty, as long as limits do not close in. The
-//! highest position and the highest speed of the stop increase with the change, so the set is an interval.
+//! The reachable set of an arm: for each joint, the changes of a tick after which it can still stop inside all its limits.
 //!
 //! Limits that vary over time: acceleration and jerk count with their smallest value from now on. A velocity must stay below
 //! the smallest velocity limit until the stop ends, so falling limits are braked for. Position limits count with the
-//! narrowest range within the time in which the joint stops from its highest speed; a joint that a position limit would
-//! overtake is moved out of its way.
+//! narrowest range within the time in which the joint gets up to its highest speed and stops again; a joint that a position
+//! limit would overtake is moved out of its way.
 
-use super::bracket::largest_not_positive;
-use super::braking::longest_first;
+use super::admissible::Room;
 use super::{Braking, JointState};
 use crate::limits::{Field, LimitAt, Limits, Profile, TickBox};
 use crate::math::MAX_DOF;
@@ -34,14 +28,6 @@ pub(crate) struct ReachableSet {
     velocities_vary: bool,
     braking: [Braking; MAX_DOF],
     joints: usize,
-}
-
-/// Distances to the position limits, and the largest step.
-#[derive(Debug, Clone, Copy)]
-struct Room {
-    below: f64,
-    above: f64,
-    step: f64,
 }
 
 impl ReachableSet {
@@ -107,14 +93,15 @@ impl ReachableSet {
                 let ahead = self.dt * ticks_ahead(&braking, tick.velocity[j] * self.dt);
                 [floor, ceiling] = limits.position_range(j, time, time + ahead);
             }
-            let room = Room { below: q[j] - floor, above: ceiling - q[j], step: tick.velocity[j].max(0.0) * self.dt };
+            let rounding = ROUNDING * q[j].abs().max(1.0);
+            let [below, above] = [q[j] - floor, ceiling - q[j]].map(|room| (room - rounding).max(room.min(0.0)));
+            let room = Room { below, above, step: tick.velocity[j].max(0.0) * self.dt };
             let slowest_until = |ticks: f64| {
                 let (from, to) = (time, time + (ticks + 1.0) * self.dt);
                 self.dt * self.limit_at.of(&limits.velocity_of(j), from, to).min(tick.velocity[j]).max(0.0)
             };
             let falling: Option<&dyn Fn(f64) -> f64> = if self.velocities_vary { Some(&slowest_until) } else { None };
             let (kept, [least, most]) = braking.changes([step, change], room, falling);
-            let rounding = ROUNDING * q[j].abs().max(1.0);
             feasible &= kept || most - least > -rounding && self.holds(&braking, [step, change], room, rounding);
             let [from, to] = [q[j] + step + least.min(most), q[j] + step + most];
             let (lower, upper) = tick.bounds.parts_mut();
@@ -132,9 +119,11 @@ impl ReachableSet {
             let time = self.dt * stop.ticks;
             let [floor, ceiling] = limits.position_range(*j, 0.0, time);
             let rounding = ROUNDING * q[*j].abs().max(1.0);
-            let room = Room { below: q[*j] - floor, above: ceiling - q[*j], step: self.dt * velocity.smallest(0.0, time).1 };
+            let room =
+                Room { below: q[*j] - floor, above: ceiling - q[*j], step: self.dt * velocity.smallest(0.0, time).1 };
             let fastest = braking.fastest(step, change).max(braking.fastest(-step, -change));
-            change.abs() > braking.acceleration / PLANNED + rounding || fastest > room.step + rounding
+            change.abs() > braking.acceleration / PLANNED + rounding
+                || fastest > room.step + rounding
                 || !self.holds(braking, [step, change], room, rounding)
         })
     }
@@ -142,7 +131,9 @@ impl ReachableSet {
     /// Whether the fastest stop stays inside `room` but for rounding.
     fn holds(&self, braking: &Braking, [step, change]: [f64; 2], room: Room, rounding: f64) -> bool {
         let stop = braking.stop(step, change);
-        stop.highest <= room.above + rounding && -stop.lowest <= room.below + rounding && step.abs() <= room.step + rounding
+        stop.highest <= room.above + rounding
+            && -stop.lowest <= room.below + rounding
+            && step.abs() <= room.step + rounding
     }
 }
 
@@ -150,55 +141,4 @@ impl ReachableSet {
 fn ticks_ahead(braking: &Braking, step: f64) -> f64 {
     let ticks = braking.stop(step, 0.0).ticks;
     if ticks.is_finite() { 2.0 * ticks } else { 0.0 }
-}
-
-impl Braking {
-    /// The admissible changes of a joint with this step and change, from smallest to largest, and whether there are any.
-    /// Without any, the nearest to admissible twice. `slowest_until` gives the smallest velocity limit of the next ticks,
-    /// in rad or m per tick, if it varies.
-    fn changes(
-        &self,
-        [step, change]: [f64; 2],
-        room: Room,
-        slowest_until: Option<&dyn Fn(f64) -> f64>,
-    ) -> (bool, [f64; 2]) {
-        let ends = [(change - self.jerk).max(-self.acceleration), (change + self.jerk).min(self.acceleration)];
-        let [least, most] = ends;
-        // A change that fades out adds to the step.
-        let fastest = |left: f64| if left >= 0.0 { longest_first(left, self.jerk) } else { left };
-        let limited = [(-fastest(room.step + step)).clamp(least, most), fastest(room.step - step).clamp(least, most)];
-        let not_too_fast = -fastest(room.step + step) <= most && fastest(room.step - step) >= least;
-        let upper = self.largest_before(step, [least, limited[1]], room.above, slowest_until);
-        let lower = self.largest_before(-step, [-most, -limited[0]], room.below, slowest_until).map(|change| -change);
-        match (lower, upper) {
-            (Some(lower), Some(upper)) if lower <= upper => (not_too_fast, [lower, upper]),
-            (Some(lower), Some(upper)) => (false, [0.5 * (lower + upper); 2]),
-            (Some(_), None) => (false, [least; 2]),
-            (None, Some(upper)) => (false, [upper; 2]),
-            (None, None) => (false, [self.first_change(step, change).clamp(least, most); 2]),
-        }
-    }
-
-    /// The largest change from `least` to `most` after which the fastest stop stays within `room` above and below
-    /// `slowest_until` its end.
-    fn largest_before(
-        &self,
-        step: f64,
-        [least, most]: [f64; 2],
-        room: f64,
-        slowest_until: Option<&dyn Fn(f64) -> f64>,
-    ) -> Option<f64> {
-        let excess = |change: f64| {
-            let next = step + change;
-            let stop = self.stop(next, change);
-            let too_far = if room == f64::INFINITY { f64::NEG_INFINITY } else { next + stop.highest - room };
-            let too_fast =
-                slowest_until.map_or(f64::NEG_INFINITY, |limit| self.fastest(next, change) - limit(stop.ticks));
-            too_far.max(too_fast)
-        };
-        if room == f64::INFINITY && slowest_until.is_none() {
-            return Some(most);
-        }
-        largest_not_positive([least, most], excess)
-    }
 }

@@ -93,7 +93,8 @@ impl RunningFilter {
         let (_, measured) = motion(raw).at(1.0);
         let speed_share = share(SPEED_CUTOFF, interval);
         let Twist { linear, angular } = &mut self.twist;
-        for (smooth, measured) in linear.iter_mut().zip(measured.linear).chain(angular.iter_mut().zip(measured.angular)) {
+        for (smooth, measured) in linear.iter_mut().zip(measured.linear).chain(angular.iter_mut().zip(measured.angular))
+        {
             *smooth += speed_share * (measured - *smooth);
         }
         let [position, rotation] = self.settings.shares([norm(linear), norm(angular)], interval);

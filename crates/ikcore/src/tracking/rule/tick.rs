@@ -6,8 +6,8 @@ use crate::objective::{Bounds, Point, Score};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::Monitor;
-use crate::tracking::limited_motion::LimitedMotion;
 use crate::task::{Assessment, Criterion, Goals, SquaredError, Target, TargetMotion, Twist};
+use crate::tracking::limited_motion::LimitedMotion;
 
 /// The input of a rule for one tick.
 pub(in crate::tracking) struct Tick<'a> {
