@@ -1,1 +1,1 @@
-"""The inverse kinematics libraries that `compare.py` measures, and what it needs to measure them fairly."""
+"""The libraries that the benchmarks measure, and what is needed to measure them fairly."""

@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Iterable
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -37,6 +38,10 @@ class Adapter:
         """Joint values whose tip is at `point` (3,), in m, with any orientation."""
         raise NotImplementedError
 
+    def solve_all(self, target: np.ndarray, start: np.ndarray) -> np.ndarray:
+        """All configurations (k, n) that the library finds for the pose, as it returns them."""
+        raise NotImplementedError
+
     def follow(self, points: np.ndarray, start: np.ndarray) -> list[np.ndarray | None]:
         """Joint values whose tip is at each of `points` (k, 3), each found from the one before."""
         followed, q = [], start
@@ -56,3 +61,16 @@ class Adapter:
     @classmethod
     def offers(cls, method: str) -> bool:
         return getattr(cls, method) is not getattr(Adapter, method)
+
+
+def load(libraries: Iterable[type], chain: Chain, options: Any) -> tuple[list[Any], dict[str, str]]:
+    """The libraries that are there and take this robot, and why the others are not or do not."""
+    taken, missing = [], {}
+    for library in libraries:
+        try:
+            taken.append(library(chain, options))
+        except (ImportError, Unsupported) as reason:
+            missing[library.name] = str(reason)
+        except Exception as failure:  # of any kind: one library must not end the run of the others
+            missing[library.name] = f"{type(failure).__name__}: {failure}"
+    return taken, missing

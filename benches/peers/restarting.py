@@ -19,7 +19,7 @@ class BeetleIk(Adapter):
     def __init__(self, chain: Chain, tolerance: float) -> None:
         import beetle_ik
 
-        self._solve = beetle_ik.solve
+        self._bik, self._solve = beetle_ik, beetle_ik.solve
         self._tolerance = tolerance
         self.robot = beetle_ik.Robot.from_urdf(chain.urdf, base=chain.base, tip=chain.tip)
         self._solve(self.robot, chain.pose(chain.lower))  # builds the index, once a robot
@@ -31,6 +31,9 @@ class BeetleIk(Adapter):
     def solve_position(self, point: np.ndarray, start: np.ndarray) -> np.ndarray:
         return self._solve(self.robot, point, position_tolerance=self._tolerance).q
 
+    def solve_all(self, target: np.ndarray, start: np.ndarray) -> np.ndarray:
+        return self._bik.solve_all(self.robot, target).q
+
     def fk(self, q: np.ndarray) -> np.ndarray:
         return self.robot.fk(q)
 
@@ -41,7 +44,8 @@ class BeetleIk(Adapter):
 class BeetleIkFromStart(BeetleIk):
     name = "beetle-ik, start given"
     settings = "defaults, start= the random start that the other libraries get"
-    fk = Adapter.fk  # as above
+    solve_all = Adapter.solve_all  # as above
+    fk = Adapter.fk
     fk_and_jacobian = Adapter.fk_and_jacobian
 
     def solve_pose(self, target: np.ndarray, start: np.ndarray) -> np.ndarray:

@@ -152,7 +152,7 @@ class Mink(FrameTasks):
         import mink
         import mujoco
 
-        model = mujoco.MjModel.from_xml_string(_for_mujoco(chain.urdf))
+        model = mujoco.MjModel.from_xml_string(for_mujoco(chain.urdf))
         self._library, self._state = mink, mink.Configuration(model)
         self._limits = [mink.ConfigurationLimit(model, gain=0.95)]
         self._pose = mink.FrameTask(chain.tip, "body", position_cost=1.0, orientation_cost=1.0, lm_damping=LM_DAMPING)
@@ -169,7 +169,7 @@ class Mink(FrameTasks):
         self._task.set_target(self._library.SE3.from_rotation_and_translation(here.rotation(), point))
 
 
-def _for_mujoco(urdf: Path) -> str:
+def for_mujoco(urdf: Path) -> str:
     """The same chain, none of its frames merged away."""
     robot = ET.parse(urdf).getroot()
     extension = ET.SubElement(robot, "mujoco")
