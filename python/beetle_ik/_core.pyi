@@ -1932,6 +1932,29 @@ class TrackResult:
     def __len__(self) -> int: ...
 
 @final
+class LowPass:
+    """."""
+
+    def __new__(cls, cutoff: float) -> LowPass: ...
+    @property
+    def cutoff(self) -> float:
+        """."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class OneEuro:
+    """."""
+
+    def __new__(cls, *, min_cutoff: float = 1.0, beta: float = 10.0) -> OneEuro: ...
+    @property
+    def min_cutoff(self) -> float:
+        """."""
+    @property
+    def beta(self) -> float:
+        """."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class Tracker:
     """Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 
@@ -1967,8 +1990,10 @@ class Tracker:
         rotation_tolerance: float = 1e-6,
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
+        target_filter: LowPass | OneEuro | None = None,
+        timeout: float | None = None,
     ) -> Tracker: ...
-    def step(self, target: _Pose, *, velocity: ArrayLike | None = None) -> Step:
+    def step(self, target: _Pose | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
         """Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
 
         Args:
@@ -1976,8 +2001,10 @@ class Tracker:
             velocity: (3,) (m/s), velocity of the target at the end of the tick, which only `WeightedPseudoInverse` uses;
                 None: from the difference to the previous target.
         """
-    def reset(self, q: ArrayLike) -> None:
-        """Resets to rest at q (n,) and t = 0."""
+    def stop(self) -> float:
+        """."""
+    def reset(self, q: ArrayLike, qd: ArrayLike | None = None, qdd: ArrayLike | None = None) -> None:
+        """."""
     @property
     def q(self) -> _Array:
         """The last accepted configuration (n,) (rad, m)."""

@@ -20,6 +20,7 @@ mod manipulability;
 mod messages;
 mod minimize;
 mod model_free;
+mod motion;
 mod obstacle;
 mod path;
 mod planning;

@@ -18,29 +18,27 @@ pub(super) struct Room {
 }
 
 impl Braking {
-    /// The admissible changes of a joint with this step and change, from smallest to largest, and whether there are any.
-    /// Without any, the nearest to admissible twice. `slowest_until` gives the smallest velocity limit of the next ticks,
-    /// in rad or m per tick, if it varies.
+    /// The admissible changes of a joint with this step and change, from smallest to largest; without any, the one that comes
+    /// nearest, twice. `slowest_until` gives the smallest velocity limit of the next ticks, in rad or m per tick, if it
+    /// varies.
     pub(super) fn changes(
         &self,
         [step, change]: [f64; 2],
         room: Room,
         slowest_until: Option<&dyn Fn(f64) -> f64>,
-    ) -> (bool, [f64; 2]) {
-        let ends = [(change - self.jerk).max(-self.acceleration), (change + self.jerk).min(self.acceleration)];
-        let [least, most] = ends;
+    ) -> [f64; 2] {
+        let [least, most] = [(change - self.jerk).max(-self.acceleration), (change + self.jerk).min(self.acceleration)];
         // A change that fades out adds to the step.
         let fastest = |left: f64| if left >= 0.0 { longest_first(left, self.jerk) } else { left };
-        let limited = [(-fastest(room.step + step)).clamp(least, most), fastest(room.step - step).clamp(least, most)];
-        let not_too_fast = -fastest(room.step + step) <= most && fastest(room.step - step) >= least;
-        let upper = self.largest_before(step, [least, limited[1]], room.above, slowest_until);
-        let lower = self.largest_before(-step, [-most, -limited[0]], room.below, slowest_until).map(|change| -change);
+        let [slow, fast] = [-fastest(room.step + step), fastest(room.step - step)].map(|end| end.max(least).min(most));
+        let upper = self.largest_before(step, [least, fast], room.above, slowest_until);
+        let lower = self.largest_before(-step, [-most, -slow], room.below, slowest_until).map(|change| -change);
         match (lower, upper) {
-            (Some(lower), Some(upper)) if lower <= upper => (not_too_fast, [lower, upper]),
-            (Some(lower), Some(upper)) => (false, [0.5 * (lower + upper); 2]),
-            (Some(_), None) => (false, [least; 2]),
-            (None, Some(upper)) => (false, [upper; 2]),
-            (None, None) => (false, [self.first_change(step, change).clamp(least, most); 2]),
+            (Some(lower), Some(upper)) if lower <= upper => [lower, upper],
+            (Some(_), None) => [least; 2],
+            (None, Some(upper)) => [upper; 2],
+            // Both limits are out of reach, or they have crossed.
+            _ => [self.first_change(step, change).max(least).min(most); 2],
         }
     }
 
@@ -65,5 +63,58 @@ impl Braking {
             return Some(most);
         }
         largest_not_positive([least, most], excess)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// A joint that takes any admissible changes keeps all limits and always has an admissible change left.
+        #[test]
+        fn admissible_changes_never_run_out(
+            jerk in -2.5_f64..0.5, limited in any::<bool>(), speed in -0.5_f64..2.3, width in -1.0_f64..2.0,
+            shares in prop::collection::vec((0_u8..5, 0.0..1.0), 10), falls in any::<bool>(),
+        ) {
+            let jerk = if limited { 10.0_f64.powf(jerk) } else { f64::INFINITY };
+            let braking = Braking { acceleration: 1.0, jerk };
+            let fastest = 10.0_f64.powf(speed);
+            let half = fastest * 10.0_f64.powf(width);
+            // The velocity limit falls to a tenth within the motion.
+            let limit = |tick: f64| if falls { fastest * (1.0 - 0.003 * tick).max(0.1) } else { fastest };
+            let (mut q, mut step, mut change) = (0.0, 0.0, 0.0);
+            for tick in 0..400 {
+                let now = f64::from(tick);
+                let until = |ticks: f64| limit(now + ticks + 1.0);
+                let room = Room { below: q + half, above: half - q, step: limit(now + 1.0) };
+                let [least, most] = braking.changes([step, change], room, Some(&until));
+                prop_assert!(least <= most);
+                let (kind, share) = shares[tick as usize / 40];
+                let share = match kind { 0 => 0.0, 1 => 1.0, 2 => f64::from(u8::from(tick % 7 < 3)), _ => share };
+                let next = least + share * (most - least);
+                let rounding = 1e-12 * (1.0 + half);
+                prop_assert!((next - change).abs() <= jerk + rounding && next.abs() <= 1.0 + rounding);
+                (change, step) = (next, step + next);
+                q += step;
+                prop_assert!(step.abs() <= limit(now + 1.0) + rounding, "tick {tick}: {step} {}", limit(now + 1.0));
+                prop_assert!(q.abs() <= half + rounding, "tick {tick}: {q} {half}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_joint_at_its_limit_may_stay_or_leave() {
+        let braking = Braking { acceleration: 1.0, jerk: 0.25 };
+        let room = Room { below: 9.0, above: 0.0, step: 5.0 };
+        assert_eq!(braking.changes([0.0, 0.0], room, None), [-0.25, 0.0]);
+    }
+
+    #[test]
+    fn a_joint_past_its_limit_brakes_as_hard_as_it_may() {
+        let braking = Braking { acceleration: 1.0, jerk: 0.25 };
+        let room = Room { below: 9.0, above: -2.0, step: 5.0 };
+        assert_eq!(braking.changes([0.5, -0.5], room, None), [-0.75; 2]);
     }
 }

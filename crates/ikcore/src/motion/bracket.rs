@@ -6,6 +6,9 @@ const ITERATIONS: usize = 60;
 /// One iteration of so many bisects, so that the bracket shrinks for any function.
 const BISECT_EVERY: usize = 4;
 
+/// A function that needs more iterations than this jumps at its zero; from then on all bisect.
+const SECANTS: usize = 16;
+
 /// Values within this fraction of those at the ends count as zero.
 const ZERO: f64 = 1e-12;
 
@@ -25,7 +28,7 @@ pub(super) fn largest_not_positive([least, most]: [f64; 2], function: impl Fn(f6
     let mut lower_side = None;
     for i in 0..ITERATIONS {
         let secant = (low * at_high - high * at_low) / (at_high - at_low);
-        let bisect = i % BISECT_EVERY == BISECT_EVERY - 1 || !(low < secant && secant < high);
+        let bisect = i > SECANTS || i % BISECT_EVERY == BISECT_EVERY - 1 || !(low < secant && secant < high);
         let middle = if bisect { 0.5 * (low + high) } else { secant };
         if middle <= low || middle >= high {
             break;
@@ -47,4 +50,21 @@ pub(super) fn largest_not_positive([least, most]: [f64; 2], function: impl Fn(f6
         lower_side = Some(below);
     }
     Some(low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_are_approached_from_below() {
+        for zero in [0.1_f64, 0.5, 0.999] {
+            let found = largest_not_positive([0.0, 1.0], |x| x.powi(3) - zero.powi(3)).unwrap();
+            assert!(found <= zero && zero - found < 1e-10, "{found} {zero}");
+        }
+        let jump = largest_not_positive([0.0, 1.0], |x| if x < 0.25 { -1.0 } else { 1e9 }).unwrap();
+        assert!(jump < 0.25 && jump > 0.25 - 1e-9, "{jump}");
+        assert_eq!(largest_not_positive([0.0, 1.0], |x| x - 2.0), Some(1.0));
+        assert_eq!(largest_not_positive([0.0, 1.0], |x| x + 2.0), None);
+    }
 }

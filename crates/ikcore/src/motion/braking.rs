@@ -167,7 +167,92 @@ impl Braking {
         let (step, change) = (sign * step, sign * change);
         let hardest = (change - self.jerk).max(-self.acceleration);
         // A joint that still moves backwards lets its change fade out.
-        let wanted = if step > 0.0 { -longest_first(step, self.jerk) } else { (change - self.jerk).max(-step) };
+        let wanted = if step > 0.0 { -longest_first(step, self.jerk) } else { (change - self.jerk).max(0.0) };
         sign * wanted.max(hardest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The greedy stop, tick by tick: the smallest change after which the joint does not reverse while its change fades out.
+    fn simulated(braking: &Braking, mut step: f64, mut change: f64) -> StoppingMotion {
+        let mut stop = StoppingMotion { ticks: 0.0, end: 0.0, lowest: 0.0, highest: 0.0 };
+        while step.abs() > 1e-13 * braking.acceleration.min(1.0) {
+            let sign = if braking.coasting(step, change) < 0.0 { -1.0 } else { 1.0 };
+            let [mut low, mut high] = [
+                (sign * change - braking.jerk).max(-braking.acceleration),
+                (sign * change + braking.jerk).min(braking.acceleration),
+            ];
+            let keeps_on = |change: f64| braking.coasting(sign * step + change, change) >= 0.0;
+            if keeps_on(low) {
+                high = low;
+            }
+            for _ in 0..200 {
+                let middle = 0.5 * (low + high);
+                (low, high) = if keeps_on(middle) { (low, middle) } else { (middle, high) };
+            }
+            change = sign * high;
+            step += change;
+            stop.end += step;
+            stop.ticks += 1.0;
+            (stop.lowest, stop.highest) = (stop.lowest.min(stop.end), stop.highest.max(stop.end));
+        }
+        stop
+    }
+
+    fn braking() -> impl Strategy<Value = Braking> {
+        (-2.5_f64..0.5, any::<bool>()).prop_map(|(jerk, limited)| Braking {
+            acceleration: 1.0,
+            jerk: if limited { 10.0_f64.powf(jerk) } else { f64::INFINITY },
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn the_closed_form_is_the_greedy_stop(braking in braking(), step in -40.0..40.0, change in -1.0..1.0) {
+            let (stop, expected) = (braking.stop(step, change), simulated(&braking, step, change));
+            let scale = 1e-9 * (1.0 + expected.highest - expected.lowest);
+            prop_assert!((stop.end - expected.end).abs() < scale, "{stop:?} {expected:?}");
+            prop_assert!((stop.highest - expected.highest).abs() < scale, "{stop:?} {expected:?}");
+            prop_assert!((stop.lowest - expected.lowest).abs() < scale, "{stop:?} {expected:?}");
+            prop_assert!((stop.ticks - expected.ticks).abs() <= 1.0, "{stop:?} {expected:?}");
+        }
+
+        #[test]
+        fn the_first_change_begins_the_stop(braking in braking(), step in -40.0..40.0, change in -1.0..1.0) {
+            let first = braking.first_change(step, change);
+            prop_assert!(first.abs() <= 1.0 && (first - change).abs() <= braking.jerk * (1.0 + 1e-12));
+            let (whole, rest) = (braking.stop(step, change), braking.stop(step + first, first));
+            prop_assert!((whole.end - step - first - rest.end).abs() < 1e-9 * (1.0 + whole.end.abs()));
+        }
+
+        #[test]
+        fn longest_first_is_used_up(total in 1e-6..30.0, change in 1e-3..1.0) {
+            let sum = |first: f64| -> f64 {
+                std::iter::successors(Some(first), |x| Some(x - change)).take_while(|x| *x > 0.0).sum()
+            };
+            let first = longest_first(total, change);
+            prop_assert!((sum(first) - total).abs() < 1e-9 * total.max(1.0) && sum(first * (1.0 + 1e-6)) > total);
+        }
+    }
+
+    #[test]
+    fn short_ticks_approach_the_continuous_stop() {
+        let (speed, acceleration, jerk, dt) = (1.2_f64, 4.0_f64, 60.0_f64, 1e-5_f64);
+        let braking = Braking { acceleration: acceleration * dt.powi(2), jerk: jerk * dt.powi(3) };
+        let stop = braking.stop(speed * dt, 0.0);
+        // Braking builds up and fades out in a / j each.
+        let time = speed / acceleration + acceleration / jerk;
+        assert!((stop.ticks * dt - time).abs() < 1e-4 && (stop.end - 0.5 * speed * time).abs() < 1e-4, "{stop:?}");
+    }
+
+    #[test]
+    fn without_a_limit_the_stop_takes_a_tick() {
+        let free = Braking { acceleration: f64::INFINITY, jerk: f64::INFINITY };
+        assert_eq!(free.stop(0.3, 0.1), StoppingMotion { ticks: 1.0, end: 0.0, lowest: 0.0, highest: 0.0 });
+        assert_eq!((free.first_change(0.3, 0.1), free.stop(0.0, 0.0).ticks), (-0.3, 0.0));
     }
 }

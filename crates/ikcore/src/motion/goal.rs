@@ -86,7 +86,9 @@ pub(crate) struct Goal {
     /// The difference of its displacement to that of the tick before.
     change: Point,
     now: f64,
+    /// Time of the last sample, and when it arrived.
     last_sample: f64,
+    arrived: f64,
     /// Ticks between samples.
     interval: f64,
     /// Samples since the last jump, while they are fewer than the memory; afterwards `None`.
@@ -116,6 +118,7 @@ impl Goal {
             change: Point::from_elem(0.0, n),
             now,
             last_sample: sample.time,
+            arrived: now,
             interval: 1.0,
             samples: Some(1),
             memory: 1.0,
@@ -156,7 +159,7 @@ impl Goal {
     /// Moves on by one tick. A goal whose sample is overdue brakes to rest.
     pub fn advance(&mut self, scales: &Scales) {
         self.now += 1.0;
-        if self.now - self.last_sample > STRETCH * self.interval + 1.0 {
+        if self.now - self.arrived > STRETCH * self.interval + 1.0 {
             for ((step, change), most) in self.step.iter().zip(&mut self.change).zip(&scales.change) {
                 *change = -step.signum() * step.abs().min(0.5 * most);
             }
@@ -185,7 +188,7 @@ impl Goal {
         self.noise.add(q, time, &scales.change);
         self.interval +=
             (interval - self.interval) * if self.samples.is_some_and(|samples| samples < PARABOLA) { 1.0 } else { 0.2 };
-        self.last_sample = time;
+        (self.last_sample, self.arrived) = (time, self.now);
         let before = self.memory;
         self.memory = self.required_memory(scales.jerk_share);
         if before < NOISELESS && self.memory > NOISELESS {
@@ -259,5 +262,98 @@ impl Goal {
             self.step[j] += step + ago * change;
             self.change[j] += change;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::{self, LazyRng};
+
+    fn scales() -> Scales {
+        let braking = Braking { acceleration: 2e-5, jerk: f64::INFINITY };
+        Scales::new(&[braking], std::iter::once(3e-3))
+    }
+
+    fn normal(draws: &mut LazyRng) -> f64 {
+        (0..12).map(|_| draws.uniform_in(-0.5, 0.5)).sum()
+    }
+
+    /// The largest error of the goal in the second half of `ticks`, when every `every`-th tick has a sample of `age`.
+    fn error(path: impl Fn(f64) -> f64, noise: f64, ticks: usize, [every, age]: [usize; 2]) -> f64 {
+        let (scales, mut draws, mut expected) = (scales(), rng::stream(1, 0), Point::new());
+        let mut goal: Option<Goal> = None;
+        let mut worst = 0.0_f64;
+        for tick in 1..=ticks {
+            let now = tick as f64;
+            if let Some(goal) = &mut goal {
+                goal.advance(&scales);
+            }
+            if tick % every == 0 {
+                let time = now - age as f64;
+                let sample = Sample { q: &[path(time) + noise * normal(&mut draws)], time };
+                match &mut goal {
+                    None => goal = Some(Goal::new(sample, now, &scales)),
+                    Some(goal) => {
+                        goal.expected(time, &mut expected);
+                        goal.correct(sample, &expected, &scales);
+                    }
+                }
+            }
+            if let Some(goal) = goal.as_ref().filter(|_| tick > ticks / 2) {
+                worst = worst.max((goal.q()[0] - path(now)).abs());
+            }
+        }
+        worst
+    }
+
+    #[test]
+    fn without_noise_the_goal_is_the_sample() {
+        assert!(error(|time| 0.2 * (0.002 * time).sin(), 0.0, 2000, [1, 0]) < 1e-15);
+    }
+
+    #[test]
+    fn noise_is_averaged() {
+        let noise = 1e-3;
+        let worst = error(|_| 0.4, noise, 3000, [1, 0]);
+        assert!(worst < noise, "{worst}");
+    }
+
+    #[test]
+    fn rare_and_late_samples_of_a_parabola_are_extrapolated() {
+        let worst = error(|time| 1e-3 * time - 4e-7 * time * time, 0.0, 2000, [8, 25]);
+        assert!(worst < 1e-9, "{worst}");
+    }
+
+    #[test]
+    fn a_jump_is_taken_over_at_once() {
+        let (scales, mut expected) = (scales(), Point::new());
+        let mut goal = Goal::new(Sample { q: &[0.1], time: 0.0 }, 0.0, &scales);
+        for tick in 1..40 {
+            let (now, q) = (f64::from(tick), [if tick < 30 { 0.1 } else { 0.4 }]);
+            goal.advance(&scales);
+            goal.expected(now, &mut expected);
+            goal.correct(Sample { q: &q, time: now }, &expected, &scales);
+            assert!((goal.q()[0] - q[0]).abs() < 1e-15 && goal.step()[0].abs() < 1e-15, "tick {tick}");
+        }
+    }
+
+    #[test]
+    fn a_goal_without_samples_comes_to_rest() {
+        let (scales, mut expected) = (scales(), Point::new());
+        let mut goal = Goal::new(Sample { q: &[0.0], time: 0.0 }, 0.0, &scales);
+        for tick in 1..=10 {
+            let now = f64::from(tick);
+            goal.advance(&scales);
+            goal.expected(now, &mut expected);
+            goal.correct(Sample { q: &[1e-3 * now], time: now }, &expected, &scales);
+        }
+        let mut steps = vec![];
+        for _ in 0..400 {
+            goal.advance(&scales);
+            steps.push(goal.step()[0]);
+        }
+        assert!(steps[0] > 0.9e-3 && steps[399] == 0.0);
+        assert!(steps.windows(2).all(|two| two[1] <= two[0] + 1e-15 && two[0] - two[1] <= 1.1e-5));
     }
 }

@@ -106,3 +106,34 @@ pub(super) fn root_mean_square(entries: impl Iterator<Item = f64>, scales: &[f64
     let sum: f64 = entries.zip(scales).map(|(entry, scale)| (entry / scale).powi(2)).sum();
     (sum / scales.len() as f64).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+
+    fn level(noise: f64, path: impl Fn(f64) -> f64) -> f64 {
+        let (mut level, mut draws) = (NoiseLevel::new(), rng::stream(3, 0));
+        for i in 0..400 {
+            let time = f64::from(i);
+            // A sum of uniform draws has nearly a normal distribution.
+            let normal: f64 = (0..12).map(|_| draws.uniform_in(-0.5, 0.5)).sum();
+            level.add(&[path(time) + noise * normal, 2.0 * path(time)], time, &[1.0, 1.0]);
+        }
+        level.level_of(0)
+    }
+
+    #[test]
+    fn noise_is_measured_on_a_moving_path() {
+        for noise in [1e-5, 1e-2] {
+            let measured = level(noise, |time| 0.3 * (0.02 * time).sin());
+            assert!((0.7..1.4).contains(&(measured / noise)), "{measured} {noise}");
+        }
+    }
+
+    #[test]
+    fn a_jump_is_no_noise() {
+        assert!(level(0.0, |time| if time < 200.0 { 0.0 } else { 0.5 }) < 1e-15);
+        assert!(level(0.0, |time| if time < 2.0 { 0.0 } else { 0.5 }) < 1e-15);
+    }
+}

@@ -75,8 +75,8 @@ impl ReachableSet {
     }
 
     /// Narrows `tick`, the box from position and velocity limits at `q`, to the reachable set of an arm in `state`, in the
-    /// tick that begins at `time` (s). Returns false if a joint has no admissible change; it then moves towards its limits
-    /// as fast as it may.
+    /// tick that begins at `time` (s). Returns false if a joint must break a limit in this tick; it then moves towards it as
+    /// fast as it may.
     pub fn narrow(&mut self, q: &[f64], state: &JointState, time: f64, limits: &Limits, tick: &mut TickBox) -> bool {
         if self.varying {
             self.update_braking(time);
@@ -98,12 +98,14 @@ impl ReachableSet {
             let room = Room { below, above, step: tick.velocity[j].max(0.0) * self.dt };
             let slowest_until = |ticks: f64| {
                 let (from, to) = (time, time + (ticks + 1.0) * self.dt);
-                self.dt * self.limit_at.of(&limits.velocity_of(j), from, to).min(tick.velocity[j]).max(0.0)
+                self.dt * self.limit_at.of(limits.velocity_of(j), from, to).min(tick.velocity[j]).max(0.0)
             };
             let falling: Option<&dyn Fn(f64) -> f64> = if self.velocities_vary { Some(&slowest_until) } else { None };
-            let (kept, [least, most]) = braking.changes([step, change], room, falling);
-            feasible &= kept || most - least > -rounding && self.holds(&braking, [step, change], room, rounding);
-            let [from, to] = [q[j] + step + least.min(most), q[j] + step + most];
+            let [least, most] = braking.changes([step, change], room, falling);
+            let [from, to] = [q[j] + step + least, q[j] + step + most];
+            let reach = room.step + rounding;
+            feasible &= from >= tick.floor[j] - rounding && to <= tick.ceiling[j] + rounding;
+            feasible &= from >= q[j] - reach && to <= q[j] + reach;
             let (lower, upper) = tick.bounds.parts_mut();
             (lower[j], upper[j]) = (lower[j].clamp(from, to), upper[j].clamp(from, to));
         }

@@ -41,7 +41,7 @@ pub use record::Record;
 pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
 pub use session::Session;
 pub use step::Step;
-pub use target_filter::TargetFilter;
+pub use target_filter::{LowPass, OneEuro, TargetFilter};
 pub use target_stream::Arrival;
 pub use tip_pose::TipPose;
 pub use track::track;

@@ -15,21 +15,29 @@ use crate::task::{Target, TargetMotion, Twist};
 /// Cutoff of the speed that the one-euro filter adapts to (Hz), as in the paper.
 const SPEED_CUTOFF: f64 = 1.0;
 
+/// First-order low-pass.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LowPass {
+    /// Cutoff (Hz).
+    pub cutoff: f64,
+}
+
+/// One-euro filter: its cutoff is `min_cutoff` + `beta` speed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OneEuro {
+    /// Cutoff at rest (Hz).
+    pub min_cutoff: f64,
+    /// Increase of the cutoff with speed: Hz per m/s for positions, per rad/s for orientations.
+    pub beta: f64,
+}
+
 /// A filter of targets.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum TargetFilter {
     /// First-order low-pass.
-    LowPass {
-        /// Cutoff (Hz).
-        cutoff: f64,
-    },
-    /// One-euro filter: the cutoff is `min_cutoff` + `beta` speed.
-    OneEuro {
-        /// Cutoff at rest (Hz).
-        min_cutoff: f64,
-        /// Increase of the cutoff with speed: Hz per m/s for positions, per rad/s for orientations.
-        beta: f64,
-    },
+    LowPass(LowPass),
+    /// One-euro filter.
+    OneEuro(OneEuro),
 }
 
 impl TargetFilter {
@@ -39,8 +47,8 @@ impl TargetFilter {
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for a cutoff that is not positive or a negative `beta`.
     pub fn validate(&self) -> Result<()> {
         match *self {
-            Self::LowPass { cutoff } => require_positive("cutoff", cutoff),
-            Self::OneEuro { min_cutoff, beta } => {
+            Self::LowPass(LowPass { cutoff }) => require_positive("cutoff", cutoff),
+            Self::OneEuro(OneEuro { min_cutoff, beta }) => {
                 require_positive("min_cutoff", min_cutoff)?;
                 require_finite("beta", &[beta], |_| "value".into())?;
                 if beta >= 0.0 { Ok(()) } else { Err(crate::Error::out_of_range("beta", "at least 0", beta)) }
@@ -52,8 +60,8 @@ impl TargetFilter {
     /// speeds (m/s, rad/s).
     fn shares(&self, speeds: [f64; 2], interval: f64) -> [f64; 2] {
         let cutoffs = match *self {
-            Self::LowPass { cutoff } => [cutoff; 2],
-            Self::OneEuro { min_cutoff, beta } => speeds.map(|speed| min_cutoff + beta * speed),
+            Self::LowPass(LowPass { cutoff }) => [cutoff; 2],
+            Self::OneEuro(OneEuro { min_cutoff, beta }) => speeds.map(|speed| min_cutoff + beta * speed),
         };
         cutoffs.map(|cutoff| share(cutoff, interval))
     }

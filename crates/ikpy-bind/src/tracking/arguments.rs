@@ -34,6 +34,7 @@ impl TrackArguments<'_, '_> {
             limits,
             limit_at: self.limit_at.parse::<LimitAt>().map_err(raise)?,
             seed: count("seed", self.seed)?,
+            ..TrackOptions::default()
         })
     }
 }

@@ -102,7 +102,7 @@ impl GoalPursuit {
                 break;
             }
             (lowest, begin) = (value, self.sample.clone());
-            let preferred = if i == 0 { self.preferred(positions, tick) } else { None };
+            let preferred = (i == 0).then(|| self.preferred(positions, tick));
             let Linearization { columns, residual } = &*self.linearization;
             let lambda = least_damping(&columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
             let (lower, upper) = (positions.lower(), positions.upper());
@@ -129,18 +129,20 @@ impl GoalPursuit {
         tick.target.linearize_tip(&tip, n, tick.criterion, &mut self.linearization).score.value
     }
 
-    /// Where the goals in the null space would have the joints, if there are goals.
-    fn preferred(&self, positions: &Bounds, tick: &mut Tick<'_>) -> Option<Point> {
-        if tick.goals.is_empty() {
-            return None;
-        }
-        let mut preferred = self.sample.clone();
-        tick.goals.cost(tick.robot, &self.sample, &mut preferred);
-        for (preferred, q) in preferred.iter_mut().zip(&self.sample) {
-            *preferred = q - tick.dt * *preferred;
+    /// Where the joints should be as far as the target leaves them free: where the goal was one tick before, moved as the goals
+    /// in the null space ask. The motion of the goal is not extrapolated there, since no target would ever stop it.
+    fn preferred(&self, positions: &Bounds, tick: &mut Tick<'_>) -> Point {
+        let mut preferred: Point = match &self.goal {
+            Some(goal) => goal.q().iter().zip(goal.step()).map(|(q, step)| q - step).collect(),
+            None => self.sample.clone(),
+        };
+        if !tick.goals.is_empty() {
+            let mut slope = preferred.clone();
+            tick.goals.cost(tick.robot, &self.sample, &mut slope);
+            preferred.iter_mut().zip(&slope).for_each(|(preferred, slope)| *preferred -= tick.dt * slope);
         }
         positions.clip(&mut preferred);
-        Some(preferred)
+        preferred
     }
 
     /// Lowers the error as far as one tick allows, where Gauss-Newton fails.
