@@ -1,10 +1,10 @@
-"""All solutions of a pose: `solve_all` beside other libraries, and whether any is missing.
+"""All solutions of a pose: `solve_all` compared with other libraries, and tested for missing solutions.
 
     python benches/all_solutions.py --arms ur5e kr6_r900 xarm6 --poses 10000 --descents 200 --out DIR
 
-By default the arms are some whose geometry `ssik` carries, most of which are in no catalog of ours.
-Times: one pose a call, alternating and in a row. Complete: against the union of what the others find and of random
-descents, each of their solutions verified by Pinocchio's forward kinematics and inside the limits before it counts.
+The default arms are part of `ssik`; most of them are not in our own catalog.
+Times: one pose per call, alternating and in a row. Completeness: tested against the union of the solutions of the
+others and of random descents, which count if they reach the pose by Pinocchio's forward kinematics inside the limits.
 """
 
 # ruff: noqa: E402
@@ -37,7 +37,7 @@ SHOWN = 20  # missing solutions written out for an arm
 
 @dataclass
 class Measured:
-    """All figures so far, as lines of tables; and why a library is missing."""
+    """All figures so far, as lines of tables, and the reasons for missing libraries."""
 
     times: list[list[str]] = field(default_factory=list)
     complete: list[list[str]] = field(default_factory=list)
@@ -46,7 +46,7 @@ class Measured:
 
 
 def main() -> None:
-    """Measure everything and write it down, anew after each arm: the run is long."""
+    """Measures all arms and writes the results, again after each arm: the run is long."""
     arguments = parse_arguments()
     arguments.out.mkdir(parents=True, exist_ok=True)
     measured = Measured()
@@ -59,7 +59,7 @@ def main() -> None:
 
 
 def parse_arguments() -> argparse.Namespace:
-    """What to measure, and where the results go."""
+    """Parses the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arms.add_arguments(parser, arms=(*arms.SIX_JOINTS, *arms.SEVEN_JOINTS))
     parser.add_argument("--timed", type=int, default=500, help="poses an arm that are timed (default: 500)")
@@ -70,7 +70,7 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def measure(chain: Chain, arguments: argparse.Namespace, measured: Measured) -> None:
-    """Times and counts on one arm; whether they are complete where the solutions are finitely many."""
+    """Measures times and counts on one arm, and completeness if its solutions are finitely many."""
     adapters, missing = load(LIBRARIES, chain, TOLERANCE)
     if reason := missing.get(restarting.BeetleIk.name):
         raise SystemExit(f"{chain.name}: {reason}")
@@ -88,7 +88,7 @@ TIMES_COLUMNS = [
 
 
 def measure_times(chain: Chain, adapters: list[Adapter], poses: int, measured: Measured) -> None:
-    """How long each library takes for a pose, and how many of its solutions hold."""
+    """Measures the time of each library for a pose, and counts its solutions."""
     targets, starts = chain.targets(poses)
     solvers = {adapter.name: adapter.solve_all for adapter in adapters}
     structure = adapters[0].robot.closed_form
@@ -125,7 +125,7 @@ COMPLETE_COLUMNS = [
 def measure_completeness(
     chain: Chain, adapters: list[Adapter], arguments: argparse.Namespace, measured: Measured
 ) -> None:
-    """What `solve_all` misses of the union of the other libraries' solutions and of random descents."""
+    """Looks for solutions that `solve_all` misses."""
     import beetle_ik
 
     targets, starts = chain.targets(arguments.poses)

@@ -1,4 +1,4 @@
-"""Live targets that jump and are noisy: `Tracker` beside what others command, tick by tick.
+"""Live targets that jump and are noisy: `Tracker` compared with other libraries, tick by tick.
 
     python benches/noisy_targets.py --arms franka_panda ur5e iiwa14 --out DIR
 
@@ -74,7 +74,7 @@ STREAM_TICK = 2e-3  # s
 
 @dataclass
 class Measured:
-    """All figures so far, as lines of tables; and why a library is missing."""
+    """All figures so far, as lines of tables, and the reasons for missing libraries."""
 
     jumps: list[list[str]] = field(default_factory=list)
     smooth: list[list[str]] = field(default_factory=list)
@@ -83,7 +83,7 @@ class Measured:
 
 
 def main() -> None:
-    """Measure everything and write it down, anew after each arm: the run is long."""
+    """Measures all arms and writes the results, again after each arm: the run is long."""
     arguments = parse_arguments()
     warnings.filterwarnings("ignore")  # of libraries, about solvers and deprecated calls
     arguments.out.mkdir(parents=True, exist_ok=True)
@@ -102,7 +102,7 @@ def main() -> None:
 
 
 def parse_arguments() -> argparse.Namespace:
-    """What to measure, and where the results go."""
+    """Parses the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arms.add_arguments(parser, arms=("franka_panda", "ur5e", "iiwa14"))
     parser.add_argument("--ticks", nargs="+", type=float, default=TICKS, help="tick lengths (s)")
@@ -121,7 +121,7 @@ JUMP_COLUMNS = [
 
 
 def measure_jumps(chain: Chain, setting: Setting, arguments: argparse.Namespace, measured: Measured) -> None:
-    """Every library at the same jumps, for each level of noise."""
+    """Measures all libraries at the same jumps, for each level of noise."""
     movers = available(JUMPING, chain, setting, measured)
     ticks = round(arguments.seconds / setting.dt)
     for noise in arguments.noises:
@@ -143,7 +143,7 @@ def measure_jumps(chain: Chain, setting: Setting, arguments: argparse.Namespace,
 def judge_jump(
     chain: Chain, commanded: motion.Commanded, goal: np.ndarray, setting: Setting, noise: float
 ) -> list[float]:
-    """The figures of one jump but for the time in a row; what happens at rest is that of the last third."""
+    """The figures of one jump except the time in a row; the last third of the time counts as rest."""
     points, dt = motion.tips(chain, commanded.q), setting.dt
     at_rest = commanded.q[-len(commanded.q) // 3 :]
     return [
@@ -158,7 +158,7 @@ def judge_jump(
 
 
 def over_limits(q: np.ndarray, setting: Setting) -> tuple[float, float]:
-    """The largest acceleration and jerk over their limits; NaN where there is none. The arm was at rest before."""
+    """The largest acceleration and jerk relative to their limits, NaN where there is none; the arm starts at rest."""
     q = np.vstack([q[:1], q[:1], q])
     acceleration = motion.excess(q, 2, setting.dt, setting.acceleration)
     return acceleration, np.nan if setting.jerk is None else motion.excess(q, 3, setting.dt, setting.jerk)
@@ -168,7 +168,7 @@ SMOOTH_COLUMNS = ["robot", "tick_ms", "jerk_limit", "library", "lag_ms", "error_
 
 
 def measure_smooth(chain: Chain, setting: Setting, measured: Measured) -> None:
-    """The lag of every library behind a smooth path that begins at rest."""
+    """Measures the lag of all libraries behind a smooth path that begins at rest."""
     start, path = smooth_path(chain, setting.dt)
     for name, commanded in motion.drive(available(JUMPING, chain, setting, measured), start, path[1:]).items():
         points = motion.tips(chain, commanded.q)
@@ -189,7 +189,7 @@ STREAM_COLUMNS = [
 
 
 def measure_stream(chain: Chain, setting: Setting, measured: Measured) -> None:
-    """Lag, error and shaking of every library after the same slow, late and noisy stream along the smooth path."""
+    """Measures lag, error, acceleration and jerk of all libraries on the same slow, late and noisy stream."""
     start, path = smooth_path(chain, setting.dt)
     arrivals = stream(path, setting.dt)
     for mover in available(STREAMING, chain, setting, measured):
@@ -217,19 +217,19 @@ def rms(differences: np.ndarray) -> float:
 
 
 def available(movers: list[type[Mover]], chain: Chain, setting: Setting, measured: Measured) -> list[Mover]:
-    """Those that are installed and take this arm and these limits; what is missing is noted."""
+    """The libraries that are installed and accept this arm and these limits; notes the others."""
     found, missing = load(movers, chain, setting)
     measured.missing |= dict.fromkeys(f"- {name}, {chain.name}: {reason}" for name, reason in missing.items())
     return found
 
 
 def limit_name(jerk: float | None) -> str:
-    """As in the tables."""
+    """The limit as printed in the tables."""
     return "none" if jerk is None else f"{jerk:g}"
 
 
 def cell(value: float) -> str:
-    """A figure of a table; a dash for what did not happen or is not limited."""
+    """The figure as printed in the tables; a dash if it is not finite."""
     return f"{value:.4g}" if np.isfinite(value) else "-"
 
 

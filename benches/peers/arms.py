@@ -1,4 +1,4 @@
-"""The arms whose geometry `ssik` carries, as URDF files: some seventy real ones, most of them in no catalog of ours."""
+"""The seventy-two arms whose geometry is part of `ssik`, as URDF files; most are not in our own catalog."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pinocchio as pin
 
 from .chain import Chain, load_chains, some_mass
 
-# Every structure that has a closed form, and arms without one.
+# All structures with a closed form, and arms without one.
 SIX_JOINTS = (
     *("irb120", "irb6700", "vs060", "lrmate200id", "kr6_r900", "rv4fr", "rx160", "viperx300s", "puma560", "gp8"),
     *("ur3e", "ur5", "ur5e", "ur16e", "z1", "standardbots_core"),
@@ -24,8 +24,8 @@ SEVEN_JOINTS = ("franka_panda", "fr3", "iiwa7", "iiwa14", "gen3", "xarm7", "rizo
 
 
 def add_arguments(parser: argparse.ArgumentParser, *, arms: Iterable[str] = (), robots: Iterable[Path] = ()) -> None:
-    """The options that say which arms are measured."""
-    parser.add_argument("--arms", nargs="*", default=arms, help="names of arms that ssik carries")
+    """Adds the options that choose the arms."""
+    parser.add_argument("--arms", nargs="*", default=arms, help="names of arms in ssik")
     parser.add_argument(
         "--robots",
         nargs="*",
@@ -37,12 +37,12 @@ def add_arguments(parser: argparse.ArgumentParser, *, arms: Iterable[str] = (), 
 
 
 def chosen(arguments: argparse.Namespace, scratch: Path) -> list[Chain]:
-    """The chains that the options name, with files in `scratch`."""
+    """Returns the chains of the chosen arms, with files in `scratch`."""
     return [*carried_chains(arguments.arms, scratch), *load_chains(arguments.robots, scratch)]
 
 
 def carried_chains(names: Collection[str], scratch: Path) -> list[Chain]:
-    """The chains of these arms, with files in `scratch`."""
+    """Returns the chains of these arms of `ssik`, with files in `scratch`."""
     if not names:
         return []
     import ssik
@@ -54,7 +54,7 @@ def carried_chains(names: Collection[str], scratch: Path) -> list[Chain]:
 
 
 def _chain(name: str, import_path: str, scratch: Path) -> Chain:
-    """Write the arm with every joint about its own z axis, which all readers of URDF understand."""
+    """Writes the arm with each joint about its own z axis: not all libraries read other axes exactly."""
     module = importlib.import_module(import_path)
     robot = ET.Element("robot", name=name)
     link = module.BASE_LINK

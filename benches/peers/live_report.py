@@ -1,4 +1,4 @@
-"""What `noisy_targets.py` measured, in one table and one picture."""
+"""Results of `noisy_targets.py` in one table and one picture."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def rows(columns: list[str], lines: list[list[str]]) -> list[Row]:
 
 
 def summary_lines(jumps: list[Row], smooth: list[Row]) -> list[list[str]]:
-    """A line a library and jerk limit: medians over arms and ticks, of which noise has the settling times compared."""
+    """One line per library and jerk limit: medians over arms and ticks."""
     lines = []
     for library, jerk in dict.fromkeys((row["library"], row["jerk_limit"]) for row in jumps):
         mine = [row for row in jumps if (row["library"], row["jerk_limit"]) == (library, jerk)]
@@ -46,7 +46,7 @@ def summary_lines(jumps: list[Row], smooth: list[Row]) -> list[list[str]]:
 
 
 def _settling_ratios(noisy: Iterable[Row], quiet: Iterable[Row]) -> list[float]:
-    """Settling time with noise over that without, on each arm and with each tick; infinite where it never settled."""
+    """Settling times with noise relative to those without, per arm and tick; infinite where it never settled."""
     without = {(row["robot"], row["tick_ms"]): float(row["settling_s"]) for row in quiet if row["settling_s"] != "-"}
     return [
         (np.inf if row["settling_s"] == "-" else float(row["settling_s"])) / without[row["robot"], row["tick_ms"]]

@@ -1,4 +1,4 @@
-"""What `all_solutions.py` measured of times, in one short table."""
+"""Times and counts of `all_solutions.py` in one short table."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ SUMMARY_COLUMNS = [
     *("arms", "library", "a pose in a row, µs", "time over ours in a row", "alternating"),
     *("solutions a pose", "poses with more than ours"),
 ]
-CLOSED = ("spherical", "axes")  # how the structure of an arm begins that needs no search along a joint
+CLOSED = ("spherical", "axes")  # beginnings of `closed_form` for arms solved without a search along a joint
 
 
 def summary_lines(times: list[Row]) -> list[list[str]]:
-    """A line a kind of arm and library: ranges over the arms, geometric means of the ratios, means of the counts."""
+    """One line per kind of arm and library: range of the times, geometric mean of the ratios, mean of the counts."""
     groups: dict[tuple[str, str], list[Row]] = defaultdict(list)
     for row in times:
         groups[_kind(row), row["library"]].append(row)

@@ -1341,6 +1341,7 @@ def solve_all(
     start: ArrayLike | None = None,
     limit: int | None = None,
     separation: float | None = None,
+    redundancy: int = 16,
     turns: bool = False,
     task: Task | None = None,
     solver: _Solver | None = None,
@@ -1356,7 +1357,8 @@ def solve_all(
     proven that no solution is missing. The search ends when a hundred solutions in a row are known already, or the budget is spent.
 
     Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
-    start is given. A redundant arm has infinitely many solutions: those returned are at least `separation` apart.
+    start is given. A redundant arm has infinitely many solutions. With a closed form, those at `redundancy` values of its parameter
+    are returned; found by search, they are at least `separation` apart.
 
     Args:
         robot: the arm.
@@ -1365,6 +1367,8 @@ def solve_all(
         limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
         separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
             a closed form are returned, those of a search differ by 0.1.
+        redundancy: number of values of the parameter at which a redundant arm with a closed form is solved, spread over those that its
+            limits allow. 0: its solutions are searched for.
         turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
         task: which part of the target counts, one of `tasks`; None: all of it.
         solver: the solver; None: Levenberg-Marquardt from many starts.
@@ -1375,7 +1379,7 @@ def solve_all(
         seed: seed of the random draws; the same seed gives the same bits.
 
     Returns:
-        A `SolutionSet`. If no solution is found, it is empty, and `miss` is the best configuration.
+        A `SolutionSet`. If no solution is found, it is empty, and `miss` is the nearest configuration found.
 
     Raises:
         InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
@@ -1418,7 +1422,9 @@ class SolutionSet:
         """Whether the pose is singular, so that one solution at least stands for a family in which a joint is free."""
     @property
     def miss(self) -> Solution | None:
-        """The best `Solution` that misses the target, if no solution was found; otherwise None."""
+        """The best `Solution` that misses the target, if no solution was found; otherwise None. If the target is proven out of reach, it
+        is computed when first asked for.
+        """
     def __len__(self) -> int: ...
     @overload
     def __getitem__(self, index: int | np.integer, /) -> Solution: ...

@@ -10,7 +10,7 @@ import beetle_ik as bik
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benches"))
 
-from hostile_streams import SLACK, excesses, lowest, run
+from hostile_streams import HISTORY, SLACK, excesses, lowest, run
 from hostile_targets import TARGETS, Stream
 
 DT = 0.01
@@ -30,7 +30,7 @@ def test_a_rate_a_millionth_beyond_its_limit_is_noticed(order: int, kind: str) -
     robot = bik.Robot.planar([1.0])
     stream = Stream("by hand", robot, np.zeros(1), DT, {kind: LIMITS[kind]}, [])
     q = np.full((20, 1), LIMITS[kind] * DT**order)  # its differences of this order, from rest on
-    q[0] = 0.0
+    q[:HISTORY] = 0.0
     for _ in range(order):
         q = np.cumsum(q, axis=0)
     assert abs(excesses(stream, q)[kind]) < SLACK
@@ -40,8 +40,8 @@ def test_a_rate_a_millionth_beyond_its_limit_is_noticed(order: int, kind: str) -
 def test_a_joint_beyond_its_position_limit_is_noticed() -> None:
     robot = bik.Robot.planar([1.0], lower=[-0.5], upper=[0.5])
     stream = Stream("by hand", robot, np.zeros(1), DT, {}, [])
-    assert excesses(stream, np.array([[0.0], [0.5], [-0.5]]))["position"] == 0.0
-    assert excesses(stream, np.array([[0.0], [0.6], [0.0]]))["position"] == pytest.approx(0.1)
+    assert excesses(stream, np.array([[0.0], [0.0], [0.0], [0.5], [-0.5]]))["position"] == 0.0
+    assert excesses(stream, np.array([[0.0], [0.0], [0.0], [0.6], [0.0]]))["position"] == pytest.approx(0.1)
 
 
 def test_the_lowest_value_over_each_tick_is_that_of_dense_samples() -> None:

@@ -26,6 +26,7 @@ mod path;
 mod planning;
 mod point_to_point;
 mod polynomial;
+mod redundancy;
 mod region;
 mod resolved_rate;
 mod robots;
