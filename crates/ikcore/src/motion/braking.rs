@@ -27,6 +27,9 @@ pub(crate) struct StoppingMotion {
     pub highest: f64,
 }
 
+/// Corrections of a number of ticks that was estimated.
+const ADJUSTMENTS: usize = 4;
+
 /// Progress of a stop in the direction in which it ends.
 struct Phases {
     /// Step of the last tick.
@@ -48,9 +51,7 @@ pub(super) fn longest_first(total: f64, change: f64) -> f64 {
     if change == 0.0 {
         return 0.0;
     }
-    let (terms, first) = fade_out(total, change);
-    debug_assert!(terms >= 1.0);
-    first
+    fade_out(total, change).1
 }
 
 /// Number of terms and first term of the sequence x, x - `change`, ... of positive terms that sums to `total`.
@@ -78,6 +79,12 @@ impl Braking {
     /// The largest step on the way if the joint brakes at once; negative steps count too.
     pub fn fastest(&self, step: f64, change: f64) -> f64 {
         if change > 0.0 { self.coasting(step, change) } else { step }
+    }
+
+    /// A bound of the way to rest of a joint with steps up to `most`: while its change fades out, and from the largest step.
+    pub fn farthest(&self, most: f64) -> f64 {
+        let fading = if self.jerk < f64::INFINITY { self.acceleration.min(most) / self.jerk } else { 0.0 };
+        most * (2.0 + fading) + self.stop(most, 0.0).end
     }
 
     /// The fastest stop after a tick with this step and change.
@@ -114,11 +121,15 @@ impl Braking {
         // Where the faded braking, about x^2 / (2 jerk) + x / 2, meets the step that is left.
         let peak = (jerk * (first + 0.5 * braking) + 0.5 * braking * braking).max(0.0).sqrt();
         let mut ticks = ((peak.min(most) - braking) / jerk).floor().max(0.0);
-        while stays(ticks + 1.0) {
-            ticks += 1.0;
-        }
-        while ticks > 0.0 && !stays(ticks) {
-            ticks -= 1.0;
+        // The estimate is off by one at most, more by rounding only.
+        for _ in 0..ADJUSTMENTS {
+            if stays(ticks + 1.0) {
+                ticks += 1.0;
+            } else if ticks > 0.0 && !stays(ticks) {
+                ticks -= 1.0;
+            } else {
+                break;
+            }
         }
         let displacement_after = |k: f64| k * (first - (k + 1.0) * (0.5 * braking + jerk * (k + 2.0) * (1.0 / 6.0)));
         if first < 0.0 {

@@ -13,20 +13,20 @@
 //! | `joint_state` | steps and changes of all joints |
 //! | `bracket` | zeros of increasing functions |
 //! | `noise_level` | noise of a sequence of samples, robust to jumps |
-//! | `goal` | the goal configuration as a moving point: position, step and change from noisy samples |
+//! | `moving_goal` | the goal configuration as a moving point: position, step and change from noisy samples |
 //! | `pursuit` | the change of each joint towards a moving goal |
 
 mod admissible;
 mod bracket;
 mod braking;
-mod goal;
 mod joint_state;
+mod moving_goal;
 mod noise_level;
 mod pursuit;
 mod reachable_set;
 
 pub(crate) use braking::Braking;
-pub(crate) use goal::{Goal, Sample, Scales};
 pub(crate) use joint_state::JointState;
+pub(crate) use moving_goal::{GoalSample, MovingGoal, Scales};
 pub(crate) use pursuit::Pursuit;
 pub(crate) use reachable_set::ReachableSet;

@@ -9,14 +9,14 @@
 
 use super::bracket::largest_not_positive;
 use super::braking::longest_first;
-use super::goal::{Goal, Scales};
+use super::moving_goal::{MovingGoal, Scales};
 use super::{Braking, JointState};
 use crate::objective::{Bounds, Point};
 
 /// Half width of the noise around the goal, in standard deviations of a sample.
 const EDGE: f64 = 1.25;
 
-/// A goal farther than this many changes, and out of its noise, is approached in proportion.
+/// A goal farther than this many changes, plus standard deviations of its noise, is approached in proportion.
 const FAR: f64 = 16.0;
 
 /// Smallest share of its limits that a joint keeps.
@@ -26,7 +26,7 @@ const LEAST_SHARE: f64 = 0.1;
 #[derive(Debug)]
 pub(crate) struct Pursuit<'a> {
     /// The goal at the end of the tick.
-    pub goal: &'a Goal,
+    pub goal: &'a MovingGoal,
     /// How the joints may brake.
     pub braking: &'a [Braking],
     /// Largest steps and changes.
@@ -74,7 +74,7 @@ impl Pursuit<'_> {
         let way = |j: usize| (self.goal.q()[j] - q[j]).abs();
         let n = q.len();
         let farthest = (0..n).map(|j| way(j) / self.scales.change[j]).fold(0.0, f64::max);
-        if farthest <= FAR + EDGE * FAR * self.goal.noise() {
+        if farthest <= FAR * (1.0 + self.goal.noise()) {
             let all = Point::from_elem(1.0, n);
             return Shares { far: false, step: all.clone(), change: all.clone(), jerk: all };
         }

@@ -27,6 +27,8 @@ pub(crate) struct ReachableSet {
     positions_vary: bool,
     velocities_vary: bool,
     braking: [Braking; MAX_DOF],
+    /// The farthest that a joint gets before it has stopped; position limits beyond have no effect. Infinite if limits vary.
+    farthest: [f64; MAX_DOF],
     joints: usize,
 }
 
@@ -55,9 +57,15 @@ impl ReachableSet {
             positions_vary: fields_vary(&[Field::Lower, Field::Upper]),
             velocities_vary: fields_vary(&[Field::Velocity]),
             braking: [Braking { acceleration: 0.0, jerk: 0.0 }; MAX_DOF],
+            farthest: [f64::INFINITY; MAX_DOF],
             joints,
         };
         set.update_braking(0.0);
+        if !set.varying && !set.velocities_vary {
+            for j in 0..joints {
+                set.farthest[j] = set.braking[j].farthest(dt * limits.velocity_of(j).at(0.0));
+            }
+        }
         Some(set)
     }
 
@@ -95,6 +103,7 @@ impl ReachableSet {
             }
             let rounding = ROUNDING * q[j].abs().max(1.0);
             let [below, above] = [q[j] - floor, ceiling - q[j]].map(|room| (room - rounding).max(room.min(0.0)));
+            let [below, above] = [below, above].map(|room| if room > self.farthest[j] { f64::INFINITY } else { room });
             let room = Room { below, above, step: tick.velocity[j].max(0.0) * self.dt };
             let slowest_until = |ticks: f64| {
                 let (from, to) = (time, time + (ticks + 1.0) * self.dt);

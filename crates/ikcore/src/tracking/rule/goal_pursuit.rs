@@ -2,12 +2,12 @@
 //! and pursues it inside the reachable set of the tick.
 //!
 //! Each target gives a sample of the goal: Gauss-Newton steps from where the goal was expected, within the position limits
-//! alone. [`Goal`] filters the samples by their noise; [`Pursuit`] chooses the changes of the joints. Without noise the arm
+//! alone. [`MovingGoal`] filters the samples by their noise; [`Pursuit`] chooses the changes of the joints. Without noise the arm
 //! meets a target that moves smoothly exactly, with one Jacobian and one tip a tick.
 
 use super::tick::{Tick, TickResult};
 use crate::math::box_step::{BoxStep, least_damping};
-use crate::motion::{Goal, Pursuit, Sample};
+use crate::motion::{GoalSample, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Differentiable, Linearization, Point};
 use crate::problem::Problem;
 use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
@@ -25,7 +25,7 @@ const MOST_EVALUATIONS: usize = 60;
 /// State of the rule between ticks.
 #[derive(Debug, Default)]
 pub(crate) struct GoalPursuit {
-    goal: Option<Goal>,
+    goal: Option<MovingGoal>,
     /// Ticks since the start.
     now: f64,
     expected: Point,
@@ -82,10 +82,10 @@ impl GoalPursuit {
         }
         let positions = positions(tick, q.len());
         self.solve(&positions, found, tick);
-        let sample = Sample { q: &self.sample, time };
+        let sample = GoalSample { q: &self.sample, time };
         match &mut self.goal {
             Some(goal) => goal.correct(sample, &self.expected, motion.scales()),
-            None => self.goal = Some(Goal::new(sample, self.now, motion.scales())),
+            None => self.goal = Some(MovingGoal::new(sample, self.now, motion.scales())),
         }
     }
 

@@ -43,7 +43,7 @@ const STRETCH: f64 = 2.0;
 pub(crate) struct Scales {
     /// Largest steps.
     pub step: Point,
-    /// Largest changes.
+    /// Largest changes; infinite for joints without limits and for locked ones.
     pub change: Point,
     /// Smallest ratio of jerk to acceleration limit: fraction of the change that may change in a tick.
     pub jerk_share: f64,
@@ -54,22 +54,21 @@ impl Scales {
     /// jerk limit allows up to its velocity limit.
     pub fn new(braking: &[Braking], steps: impl Iterator<Item = f64>) -> Self {
         let step: Point = steps.collect();
-        let change: Point = braking
-            .iter()
-            .zip(&step)
-            .map(|(braking, step)| {
-                let by_jerk = (braking.jerk * step.min(LONGEST_STEP)).sqrt();
-                braking.acceleration.min(by_jerk)
-            })
-            .collect();
-        let jerk_share = braking.iter().zip(&change).map(|(braking, change)| braking.jerk / change);
-        Self { jerk_share: jerk_share.fold(f64::INFINITY, f64::min), step, change }
+        let scale = |(braking, step): (&Braking, &f64)| {
+            let by_jerk = (braking.jerk * step.min(LONGEST_STEP)).sqrt();
+            let scale = braking.acceleration.min(by_jerk);
+            if scale > 0.0 { scale } else { f64::INFINITY }
+        };
+        let change: Point = braking.iter().zip(&step).map(scale).collect();
+        let limited = braking.iter().zip(&change).filter(|(_, change)| change.is_finite());
+        let jerk_share = limited.map(|(braking, change)| braking.jerk / change).fold(f64::INFINITY, f64::min);
+        Self { step, change, jerk_share }
     }
 }
 
 /// A sample of the goal.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sample<'a> {
+pub(crate) struct GoalSample<'a> {
     /// The configuration that meets the target.
     pub q: &'a [f64],
     /// Its time, in ticks.
@@ -78,7 +77,7 @@ pub(crate) struct Sample<'a> {
 
 /// A moving goal.
 #[derive(Debug, Clone)]
-pub(crate) struct Goal {
+pub(crate) struct MovingGoal {
     /// Configuration of the goal at the end of the tick.
     q: Point,
     /// Its displacement in the tick.
@@ -106,9 +105,9 @@ struct Gains {
     change: f64,
 }
 
-impl Goal {
+impl MovingGoal {
     /// A goal at rest at its first sample.
-    pub fn new(sample: Sample<'_>, now: f64, scales: &Scales) -> Self {
+    pub fn new(sample: GoalSample<'_>, now: f64, scales: &Scales) -> Self {
         let n = sample.q.len();
         let mut noise = NoiseLevel::new();
         noise.add(sample.q, sample.time, &scales.change);
@@ -179,8 +178,8 @@ impl Goal {
     }
 
     /// Corrects the motion by a sample; `expected` is the expected configuration at its time.
-    pub fn correct(&mut self, sample: Sample<'_>, expected: &[f64], scales: &Scales) {
-        let Sample { q, time } = sample;
+    pub fn correct(&mut self, sample: GoalSample<'_>, expected: &[f64], scales: &Scales) {
+        let GoalSample { q, time } = sample;
         let interval = time - self.last_sample;
         if interval <= 0.0 {
             return;
@@ -221,7 +220,7 @@ impl Goal {
         self.change.fill(0.0);
     }
 
-    fn restart(&mut self, sample: Sample<'_>) {
+    fn restart(&mut self, sample: GoalSample<'_>) {
         self.q.copy_from_slice(sample.q);
         self.step.fill(0.0);
         self.change.fill(0.0);
@@ -253,7 +252,7 @@ impl Goal {
         }
     }
 
-    fn apply(&mut self, gains: Gains, interval: f64, sample: Sample<'_>, expected: &[f64]) {
+    fn apply(&mut self, gains: Gains, interval: f64, sample: GoalSample<'_>, expected: &[f64]) {
         let ago = self.now - sample.time;
         for (j, (q, expected)) in sample.q.iter().zip(expected).enumerate() {
             let surprise = q - expected;
@@ -282,7 +281,7 @@ mod tests {
     /// The largest error of the goal in the second half of `ticks`, when every `every`-th tick has a sample of `age`.
     fn error(path: impl Fn(f64) -> f64, noise: f64, ticks: usize, [every, age]: [usize; 2]) -> f64 {
         let (scales, mut draws, mut expected) = (scales(), rng::stream(1, 0), Point::new());
-        let mut goal: Option<Goal> = None;
+        let mut goal: Option<MovingGoal> = None;
         let mut worst = 0.0_f64;
         for tick in 1..=ticks {
             let now = tick as f64;
@@ -291,9 +290,9 @@ mod tests {
             }
             if tick % every == 0 {
                 let time = now - age as f64;
-                let sample = Sample { q: &[path(time) + noise * normal(&mut draws)], time };
+                let sample = GoalSample { q: &[path(time) + noise * normal(&mut draws)], time };
                 match &mut goal {
-                    None => goal = Some(Goal::new(sample, now, &scales)),
+                    None => goal = Some(MovingGoal::new(sample, now, &scales)),
                     Some(goal) => {
                         goal.expected(time, &mut expected);
                         goal.correct(sample, &expected, &scales);
@@ -328,12 +327,12 @@ mod tests {
     #[test]
     fn a_jump_is_taken_over_at_once() {
         let (scales, mut expected) = (scales(), Point::new());
-        let mut goal = Goal::new(Sample { q: &[0.1], time: 0.0 }, 0.0, &scales);
+        let mut goal = MovingGoal::new(GoalSample { q: &[0.1], time: 0.0 }, 0.0, &scales);
         for tick in 1..40 {
             let (now, q) = (f64::from(tick), [if tick < 30 { 0.1 } else { 0.4 }]);
             goal.advance(&scales);
             goal.expected(now, &mut expected);
-            goal.correct(Sample { q: &q, time: now }, &expected, &scales);
+            goal.correct(GoalSample { q: &q, time: now }, &expected, &scales);
             assert!((goal.q()[0] - q[0]).abs() < 1e-15 && goal.step()[0].abs() < 1e-15, "tick {tick}");
         }
     }
@@ -341,12 +340,12 @@ mod tests {
     #[test]
     fn a_goal_without_samples_comes_to_rest() {
         let (scales, mut expected) = (scales(), Point::new());
-        let mut goal = Goal::new(Sample { q: &[0.0], time: 0.0 }, 0.0, &scales);
+        let mut goal = MovingGoal::new(GoalSample { q: &[0.0], time: 0.0 }, 0.0, &scales);
         for tick in 1..=10 {
             let now = f64::from(tick);
             goal.advance(&scales);
             goal.expected(now, &mut expected);
-            goal.correct(Sample { q: &[1e-3 * now], time: now }, &expected, &scales);
+            goal.correct(GoalSample { q: &[1e-3 * now], time: now }, &expected, &scales);
         }
         let mut steps = vec![];
         for _ in 0..400 {
