@@ -22,7 +22,7 @@ words!("limit_at": LimitAt { Interval => "interval", Start => "start" });
 
 impl LimitAt {
     /// Returns the value of `limit` for the tick from `from` to `to` (s).
-    pub(crate) fn of(self, limit: &Profile, from: f64, to: f64) -> f64 {
+    fn of(self, limit: &Profile, from: f64, to: f64) -> f64 {
         match self {
             Self::Interval => limit.smallest(from, to).1,
             Self::Start => limit.at(from),

@@ -89,7 +89,7 @@ impl Braking {
 
     /// The fastest stop after a tick with this step and change.
     pub fn stop(&self, step: f64, change: f64) -> StoppingMotion {
-        if step == 0.0 && change == 0.0 {
+        if step == 0.0 && change.abs() <= self.jerk {
             return StoppingMotion { ticks: 0.0, end: 0.0, lowest: 0.0, highest: 0.0 };
         }
         let sign = if self.coasting(step, change) < 0.0 { -1.0 } else { 1.0 };

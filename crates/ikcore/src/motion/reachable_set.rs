@@ -7,7 +7,7 @@
 
 use super::admissible::Room;
 use super::{Braking, JointState};
-use crate::limits::{Field, LimitAt, Limits, Profile, TickBox};
+use crate::limits::{Field, Limits, Profile, TickBox};
 use crate::math::MAX_DOF;
 
 /// Fraction of the acceleration and jerk limits in use; with all of them, rounding of positions could exceed a limit.
@@ -20,7 +20,6 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 #[derive(Debug)]
 pub(crate) struct ReachableSet {
     dt: f64,
-    limit_at: LimitAt,
     /// Acceleration and jerk limits of each joint from now on.
     from_now_on: [Vec<Profile>; 2],
     varying: bool,
@@ -34,7 +33,7 @@ pub(crate) struct ReachableSet {
 
 impl ReachableSet {
     /// The set under `limits`; `None` without acceleration and jerk limits.
-    pub fn new(limits: &Limits, limit_at: LimitAt, dt: f64) -> Option<Self> {
+    pub fn new(limits: &Limits, dt: f64) -> Option<Self> {
         let fields = [Field::Acceleration, Field::Jerk];
         if !fields.into_iter().any(|field| limits.is_finite(field)) {
             return None;
@@ -51,7 +50,6 @@ impl ReachableSet {
         let fields_vary = |fields: &[Field]| fields.iter().any(|field| limits.field(*field).is_some_and(vary));
         let mut set = Self {
             dt,
-            limit_at,
             from_now_on,
             varying,
             positions_vary: fields_vary(&[Field::Lower, Field::Upper]),
@@ -107,7 +105,7 @@ impl ReachableSet {
             let room = Room { below, above, step: tick.velocity[j].max(0.0) * self.dt };
             let slowest_until = |ticks: f64| {
                 let (from, to) = (time, time + (ticks + 1.0) * self.dt);
-                self.dt * self.limit_at.of(limits.velocity_of(j), from, to).min(tick.velocity[j]).max(0.0)
+                self.dt * limits.velocity_of(j).smallest(from, to).1.min(tick.velocity[j]).max(0.0)
             };
             let falling: Option<&dyn Fn(f64) -> f64> = if self.velocities_vary { Some(&slowest_until) } else { None };
             let [least, most] = braking.changes([step, change], room, falling);

@@ -1,7 +1,7 @@
 //! The motion of an arm under acceleration or jerk limits: what it did in the last ticks, and what it may do next.
 
 use crate::error::{Error, Result};
-use crate::limits::{LimitAt, Limits, TickBox};
+use crate::limits::{Limits, TickBox};
 use crate::motion::{Braking, JointState, ReachableSet, Scales};
 use crate::objective::Point;
 use crate::wording::number;
@@ -17,8 +17,8 @@ pub(super) struct LimitedMotion {
 
 impl LimitedMotion {
     /// At rest; `None` without acceleration and jerk limits.
-    pub fn new(limits: &Limits, limit_at: LimitAt, dt: f64) -> Option<Self> {
-        let reachable = ReachableSet::new(limits, limit_at, dt)?;
+    pub fn new(limits: &Limits, dt: f64) -> Option<Self> {
+        let reachable = ReachableSet::new(limits, dt)?;
         let steps = (0..limits.dof()).map(|j| dt * limits.velocity_of(j).at(0.0));
         let scales = Scales::new(reachable.braking(), steps);
         Some(Self { state: JointState::at_rest(limits.dof()), reachable, scales, dt })

@@ -74,7 +74,7 @@ impl Session {
         // If limits vary over time, goals use the joint ranges at the start.
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &robot, &ranges);
-        let limited = LimitedMotion::new(&limits, options.limit_at, dt);
+        let limited = LimitedMotion::new(&limits, dt);
         Ok(Self {
             robot,
             tick_box: TickBox::around(start, &limits),
