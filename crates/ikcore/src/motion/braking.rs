@@ -116,7 +116,8 @@ impl Braking {
         let step_after = |k: f64| first - k * braking - 0.5 * jerk * k * (k + 1.0);
         let stays = |k: f64| {
             let reached = braking + k * jerk;
-            reached <= most && self.faded(reached) <= step_after(k - 1.0)
+            // A change that speeds up fades out in any case.
+            reached <= 0.0 || reached <= most && self.faded(reached) <= step_after(k - 1.0)
         };
         // Where the faded braking, about x^2 / (2 jerk) + x / 2, meets the step that is left.
         let peak = (jerk * (first + 0.5 * braking) + 0.5 * braking * braking).max(0.0).sqrt();

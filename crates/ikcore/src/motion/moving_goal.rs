@@ -6,8 +6,8 @@
 //! the acceleration and jerk limits. Without noise it is one sample: the goal is then exactly the last sample. After a jump
 //! the filter starts anew, with a growing memory.
 
-use super::Braking;
 use super::noise_level::{NoiseLevel, root_mean_square};
+use super::{Braking, JointState};
 use crate::objective::Point;
 
 /// Standard deviation of the acceleration that noise may cause, as a fraction of the acceleration limit.
@@ -95,6 +95,8 @@ pub(crate) struct MovingGoal {
     /// Samples that the filter remembers.
     memory: f64,
     noise: NoiseLevel,
+    /// Uncertainty of the goal in standard deviations of a sample.
+    uncertainty: f64,
 }
 
 /// Corrections of position, step and change per sample interval by an unexpected difference.
@@ -106,22 +108,21 @@ struct Gains {
 }
 
 impl MovingGoal {
-    /// A goal at rest at its first sample.
-    pub fn new(sample: GoalSample<'_>, now: f64, scales: &Scales) -> Self {
-        let n = sample.q.len();
-        let mut noise = NoiseLevel::new();
-        noise.add(sample.q, sample.time, &scales.change);
+    /// A goal that moves as the arm does that is at `q` in `state`, at `now` (in ticks), before its first sample at the time
+    /// `first`.
+    pub fn of_arm(q: &[f64], state: &JointState, now: f64, first: f64) -> Self {
         Self {
-            q: Point::from_slice(sample.q),
-            step: Point::from_elem(0.0, n),
-            change: Point::from_elem(0.0, n),
+            q: Point::from_slice(q),
+            step: Point::from_slice(&state.step),
+            change: Point::from_slice(&state.change),
             now,
-            last_sample: sample.time,
+            last_sample: first - 1.0,
             arrived: now,
             interval: 1.0,
-            samples: Some(1),
+            samples: None,
             memory: 1.0,
-            noise,
+            noise: NoiseLevel::new(),
+            uncertainty: 1.0,
         }
     }
 
@@ -140,9 +141,9 @@ impl MovingGoal {
         &self.change
     }
 
-    /// Standard deviation of the noise of a sample in joint `j`, in units of its scale.
-    pub fn noise_of(&self, j: usize) -> f64 {
-        self.noise.level_of(j)
+    /// Standard deviation of the goal in joint `j` because of noise, up to a factor near 1, in units of its scale.
+    pub fn uncertainty_of(&self, j: usize) -> f64 {
+        self.noise.level_of(j) * self.uncertainty
     }
 
     /// Root mean square of the noise over the joints.
@@ -210,7 +211,9 @@ impl MovingGoal {
             }
             self.forget_half();
         }
-        self.apply(self.gains(), interval, sample, expected);
+        let gains = self.gains();
+        self.uncertainty = gains.position.sqrt();
+        self.apply(gains, interval, sample, expected);
     }
 
     /// Starts a straight line through half as many samples.
@@ -291,13 +294,9 @@ mod tests {
             if tick % every == 0 {
                 let time = now - age as f64;
                 let sample = GoalSample { q: &[path(time) + noise * normal(&mut draws)], time };
-                match &mut goal {
-                    None => goal = Some(MovingGoal::new(sample, now, &scales)),
-                    Some(goal) => {
-                        goal.expected(time, &mut expected);
-                        goal.correct(sample, &expected, &scales);
-                    }
-                }
+                let goal = goal.get_or_insert_with(|| MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), now, time));
+                goal.expected(time, &mut expected);
+                goal.correct(sample, &expected, &scales);
             }
             if let Some(goal) = goal.as_ref().filter(|_| tick > ticks / 2) {
                 worst = worst.max((goal.q()[0] - path(now)).abs());
@@ -327,7 +326,7 @@ mod tests {
     #[test]
     fn a_jump_is_taken_over_at_once() {
         let (scales, mut expected) = (scales(), Point::new());
-        let mut goal = MovingGoal::new(GoalSample { q: &[0.1], time: 0.0 }, 0.0, &scales);
+        let mut goal = MovingGoal::of_arm(&[0.1], &JointState::at_rest(1), 0.0, 1.0);
         for tick in 1..40 {
             let (now, q) = (f64::from(tick), [if tick < 30 { 0.1 } else { 0.4 }]);
             goal.advance(&scales);
@@ -340,7 +339,7 @@ mod tests {
     #[test]
     fn a_goal_without_samples_comes_to_rest() {
         let (scales, mut expected) = (scales(), Point::new());
-        let mut goal = MovingGoal::new(GoalSample { q: &[0.0], time: 0.0 }, 0.0, &scales);
+        let mut goal = MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), 0.0, 1.0);
         for tick in 1..=10 {
             let now = f64::from(tick);
             goal.advance(&scales);

@@ -14,7 +14,7 @@ use super::{Braking, JointState};
 use crate::objective::{Bounds, Point};
 
 /// Half width of the noise around the goal, in standard deviations of a sample.
-const EDGE: f64 = 1.25;
+const EDGE: f64 = 4.0;
 
 /// A goal farther than this many changes, plus standard deviations of its noise, is approached in proportion.
 const FAR: f64 = 16.0;
@@ -63,7 +63,7 @@ impl Pursuit<'_> {
             let acceleration = (shares.change[j] * acceleration - goal_change.abs()).max(LEAST_SHARE * acceleration);
             let braking = Braking { acceleration, jerk: shares.jerk[j] * jerk };
             let scale = self.scales.change[j];
-            let edge = if scale.is_finite() { EDGE * self.goal.noise_of(j) * scale } else { 0.0 };
+            let edge = if scale.is_finite() { EDGE * self.goal.uncertainty_of(j) * scale } else { 0.0 };
             out[j] = straight + relative.change(&braking, pole, edge, shares.step[j] * self.scales.step[j]);
         }
         self.reachable.clip(out);
@@ -114,6 +114,8 @@ impl Relative {
             let step = self.step + change;
             self.distance + step + braking.stop(step, change).end
         };
+        // An arm that is still fast aims at the goal itself.
+        let edge = (edge - braking.stop(self.step, 0.0).end.abs()).max(0.0);
         let there = end(linear);
         if there > edge {
             largest_not_positive([least, linear], |change| end(change) - edge).unwrap_or(least)

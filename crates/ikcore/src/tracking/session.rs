@@ -395,7 +395,7 @@ fn require_inside(robot: &Robot, limits: &Limits, criterion: &Criterion, what: &
 fn require_room_to_stop(limits: &Limits) -> Result<()> {
     let method = "a task with a region";
     let remedy = "an arm that may not stop at once can be carried out of it; leave one of the two out";
-    limits.require_none(&[Field::Acceleration], method, remedy)?;
+    limits.require_none(&[Field::Acceleration, Field::Jerk], method, remedy)?;
     let remedy = "limits that move can push the arm out of it; give numbers, or leave region out";
     [Field::Lower, Field::Upper].into_iter().try_for_each(|field| limits.constants(field, method, remedy).map(|_| ()))
 }

@@ -44,12 +44,15 @@ impl GoalPursuit {
     pub(super) fn advance(&mut self, q: &[f64], mut tick: Tick<'_>) -> TickResult {
         let mut found = TickResult::at(q);
         let Some(motion) = tick.limited else { return found };
+        if let Some(ago) = tick.sampled_ago.filter(|_| self.goal.is_none()) {
+            self.goal = Some(MovingGoal::of_arm(q, motion.state(), self.now, self.now + 1.0 - ago));
+        }
         self.now += 1.0;
         if let Some(goal) = &mut self.goal {
             goal.advance(motion.scales());
         }
         if let Some(ago) = tick.sampled_ago {
-            self.take_sample(q, ago, &mut found, &mut tick, motion);
+            self.take_sample(ago, &mut found, &mut tick, motion);
         }
         match &self.goal {
             Some(goal) if !found.interrupted => {
@@ -67,25 +70,15 @@ impl GoalPursuit {
     }
 
     /// Corrects the goal by the target, of the given age in ticks.
-    fn take_sample(
-        &mut self,
-        q: &[f64],
-        ago: f64,
-        found: &mut TickResult,
-        tick: &mut Tick<'_>,
-        motion: &LimitedMotion,
-    ) {
+    fn take_sample(&mut self, ago: f64, found: &mut TickResult, tick: &mut Tick<'_>, motion: &LimitedMotion) {
         let time = self.now - ago;
-        match &self.goal {
-            Some(goal) => goal.expected(time, &mut self.expected),
-            None => self.expected = Point::from_slice(q),
+        let positions = positions(tick, tick.velocity_limit.len());
+        if let Some(goal) = &self.goal {
+            goal.expected(time, &mut self.expected);
         }
-        let positions = positions(tick, q.len());
         self.solve(&positions, found, tick);
-        let sample = GoalSample { q: &self.sample, time };
-        match &mut self.goal {
-            Some(goal) => goal.correct(sample, &self.expected, motion.scales()),
-            None => self.goal = Some(MovingGoal::new(sample, self.now, motion.scales())),
+        if let Some(goal) = &mut self.goal {
+            goal.correct(GoalSample { q: &self.sample, time }, &self.expected, motion.scales());
         }
     }
 
