@@ -151,6 +151,11 @@ impl MovingGoal {
         self.noise.level()
     }
 
+    /// Ticks between samples.
+    pub fn interval(&self) -> f64 {
+        self.interval
+    }
+
     /// Ticks over which noise is averaged; 1 without noise.
     pub fn memory(&self) -> f64 {
         self.memory * self.interval

@@ -76,14 +76,14 @@ impl GoalPursuit {
         if let Some(goal) = &self.goal {
             goal.expected(time, &mut self.expected);
         }
-        self.solve(&positions, found, tick);
+        self.solve(time, &positions, found, tick);
         if let Some(goal) = &mut self.goal {
             goal.correct(GoalSample { q: &self.sample, time }, &self.expected, motion.scales());
         }
     }
 
-    /// Sets `sample` to the configuration nearest to the expected one that meets the target.
-    fn solve(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
+    /// Sets `sample` to the configuration nearest to the expected one that meets the target of `time` (in ticks).
+    fn solve(&mut self, time: f64, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
         let n = self.expected.len();
         self.sample = Point::from_slice(&self.expected);
         positions.clip(&mut self.sample);
@@ -95,7 +95,7 @@ impl GoalPursuit {
                 break;
             }
             (lowest, begin) = (value, self.sample.clone());
-            let preferred = (i == 0).then(|| self.preferred(positions, tick));
+            let preferred = (i == 0).then(|| self.preferred(time, positions, tick));
             let Linearization { columns, residual } = &*self.linearization;
             let lambda = least_damping(&columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
             let (lower, upper) = (positions.lower(), positions.upper());
@@ -122,13 +122,14 @@ impl GoalPursuit {
         tick.target.linearize_tip(&tip, n, tick.criterion, &mut self.linearization).score.value
     }
 
-    /// Where the joints should be as far as the target leaves them free: where the goal was one tick before, moved as the goals
-    /// in the null space ask. The motion of the goal is not extrapolated there, since no target would ever stop it.
-    fn preferred(&self, positions: &Bounds, tick: &mut Tick<'_>) -> Point {
-        let mut preferred: Point = match &self.goal {
-            Some(goal) => goal.q().iter().zip(goal.step()).map(|(q, step)| q - step).collect(),
-            None => self.sample.clone(),
-        };
+    /// Where the joints should be at `time` as far as the target leaves them free: where the goal was one sample before, moved
+    /// as the goals in the null space ask. The motion of the goal is not extrapolated there, since no target would ever stop
+    /// it.
+    fn preferred(&self, time: f64, positions: &Bounds, tick: &mut Tick<'_>) -> Point {
+        let mut preferred = self.sample.clone();
+        if let Some(goal) = &self.goal {
+            goal.expected(time - goal.interval(), &mut preferred);
+        }
         if !tick.goals.is_empty() {
             let mut slope = preferred.clone();
             tick.goals.cost(tick.robot, &self.sample, &mut slope);
