@@ -20,7 +20,7 @@ def tracker(**options: object) -> bik.Tracker:
 
 def test_a_track_keeps_jerk_limits() -> None:
     start = PANDA.fk(READY)[:3, 3]
-    circle = bik.paths.circle(start - [0.05, 0.0, 0.0], diameter=0.1, duration=5.0)
+    circle = bik.paths.circle(start - np.array([0.05, 0.0, 0.0]), diameter=0.1, duration=5.0)
     result = bik.track(PANDA, circle, READY, dt=0.004, limits=LIMITS)
     assert result.max_violation == 0.0
     commands = np.vstack([[READY] * 3, result.q])
@@ -56,7 +56,7 @@ def test_a_late_target_is_followed_up_to_now() -> None:
     home = PANDA.fk(READY)[:3, 3]
 
     def hand(t: float) -> np.ndarray:
-        return home + [0.0, 0.1 * np.sin(t), 0.0]
+        return home + np.array([0.0, 0.1 * np.sin(t), 0.0])
 
     for tick in range(1, 2000):
         seen = 0.002 * tick - 0.05
@@ -115,7 +115,7 @@ def test_filters_smooth_and_are_values(filter_: bik.filters.LowPass | bik.filter
     home = PANDA.fk(READY)[:3, 3]
     smooth = tracker(target_filter=filter_, limits=None)
     smooth.step(home)
-    assert smooth.step(home + [0.0, 0.01, 0.0]).q == pytest.approx(READY, abs=3e-3)
+    assert smooth.step(home + np.array([0.0, 0.01, 0.0])).q == pytest.approx(READY, abs=3e-3)
 
 
 def test_settings_of_filters_are_checked() -> None:
