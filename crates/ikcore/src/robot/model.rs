@@ -8,6 +8,7 @@ use super::joint::Joint;
 use super::link_capsule::Bodies;
 use crate::closed_form::{ArmBranches, ClosedFormArm, NoClosedForm, PoseFamily};
 use crate::error::{Error, Result, require_finite};
+use crate::interrupt::checkpoint_at;
 use crate::kinematics::chain::Chain;
 use crate::kinematics::kernels::Kernels;
 use crate::kinematics::{Reach, TaskRank};
@@ -191,7 +192,8 @@ impl Robot {
         if qs.try_reserve_exact(count.saturating_mul(self.dof())).is_err() {
             return Err(Error::out_of_range("number of configurations", "small enough for memory", count as f64));
         }
-        for _ in 0..count {
+        for row in 0..count {
+            checkpoint_at(row)?;
             qs.extend(ranges.iter().map(|(lower, upper)| rng.uniform_in(*lower, *upper)));
         }
         Ok(qs)

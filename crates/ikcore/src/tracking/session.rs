@@ -226,7 +226,7 @@ impl Session {
         }
         let status = self.status(target.as_ref(), &found);
         if !found.interrupted {
-            self.accept(&found);
+            self.accept(&found.q, found.assessment.score.value);
         }
         let TickResult { position, evaluations, iterations, interrupted, .. } = found;
         let (error, inside_limits) = (found.assessment.error.into(), within && can_stop);
@@ -308,13 +308,13 @@ impl Session {
         }
     }
 
-    fn accept(&mut self, found: &TickResult) {
+    fn accept(&mut self, q: &[f64], value: f64) {
         if let Some(limited) = &mut self.limited {
-            limited.advance(&self.q, &found.q);
+            limited.advance(&self.q, q);
         }
         self.before.copy_from_slice(&self.q);
-        self.q.copy_from_slice(&found.q);
-        (self.last_value, self.ticks) = (Some(found.assessment.score.value), self.ticks + 1);
+        self.q.copy_from_slice(q);
+        (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
         self.targets.accept();
     }
 
@@ -323,6 +323,28 @@ impl Session {
     pub fn stop(&mut self) -> f64 {
         self.begin_stopping();
         self.limited.as_ref().map_or(0.0, LimitedMotion::time_to_stop)
+    }
+
+    /// Moves by one tick to `q`, which the caller has found inside the limits, instead of asking the rule. The rule starts
+    /// anew from there.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub(super) fn drive(&mut self, q: &[f64], target: &Target, velocity: Option<[f64; 3]>) -> Result<Step> {
+        let target = self.read(target)?;
+        let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
+        let inside_limits = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
+        let Assessment { score, error } = target.assess(&self.robot, q, &self.criterion);
+        let status = match self.last_value {
+            _ if score.solved => Status::Solved,
+            Some(last) if score.value >= last => Status::Capped,
+            _ => Status::Improved,
+        };
+        self.targets.place(*target, velocity);
+        self.accept(q, score.value);
+        self.running = self.rule.start(self.limited.is_some());
+        let (position, error) = (self.robot.tip_position(q), error.into());
+        Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits, interrupted: false })
     }
 
     /// Shortens a tick that would take the tip out of its region. The tick starts inside the region and the box is

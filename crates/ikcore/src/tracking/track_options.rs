@@ -26,6 +26,9 @@ pub struct TrackOptions {
     pub target_filter: Option<TargetFilter>,
     /// Time without a new target after which the arm stops (s). `None` means never.
     pub timeout: Option<f64>,
+    /// Whether [`track`](super::track()) begins with an approach that meets the moving path within acceleration and jerk
+    /// limits. Sessions ignore it.
+    pub ease: bool,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }
