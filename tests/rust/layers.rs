@@ -60,7 +60,6 @@ const LAYERS: &[(&str, &[&str])] = &[
     (
         "tracking",
         &[
-            "motion",
             "kinematics",
             "robot",
             "path",
