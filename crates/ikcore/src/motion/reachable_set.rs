@@ -10,7 +10,7 @@ use super::{Braking, JointState};
 use crate::limits::{Field, Limits, Profile, TickBox};
 use crate::math::MAX_DOF;
 
-/// Fraction of the acceleration and jerk limits in use; with all of them, rounding of positions could exceed a limit.
+/// Fraction of the velocity, acceleration and jerk limits in use; with all of them, rounding of positions could exceed a limit.
 const PLANNED: f64 = 1.0 - 1e-6;
 
 /// Bounds that cross by less than this (rad, m; relative beyond 1) cross by rounding.
@@ -102,15 +102,16 @@ impl ReachableSet {
             let rounding = ROUNDING * q[j].abs().max(1.0);
             let [below, above] = [q[j] - floor, ceiling - q[j]].map(|room| (room - rounding).max(room.min(0.0)));
             let [below, above] = [below, above].map(|room| if room > self.farthest[j] { f64::INFINITY } else { room });
-            let room = Room { below, above, step: tick.velocity[j].max(0.0) * self.dt };
+            let longest = tick.velocity[j].max(0.0) * self.dt;
+            let room = Room { below, above, step: PLANNED * longest };
             let slowest_until = |ticks: f64| {
                 let (from, to) = (time, time + (ticks + 1.0) * self.dt);
-                self.dt * limits.velocity_of(j).smallest(from, to).1.min(tick.velocity[j]).max(0.0)
+                PLANNED * self.dt * limits.velocity_of(j).smallest(from, to).1.min(tick.velocity[j]).max(0.0)
             };
             let falling: Option<&dyn Fn(f64) -> f64> = if self.velocities_vary { Some(&slowest_until) } else { None };
             let [least, most] = braking.changes([step, change], room, falling);
             let [from, to] = [q[j] + step + least, q[j] + step + most];
-            let reach = room.step + rounding;
+            let reach = longest + rounding;
             feasible &= from >= tick.floor[j] - rounding && to <= tick.ceiling[j] + rounding;
             feasible &= from >= q[j] - reach && to <= q[j] + reach;
             let (lower, upper) = tick.bounds.parts_mut();
