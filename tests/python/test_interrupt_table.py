@@ -82,24 +82,30 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "obstacles.clearance": lambda: with_rows(lambda q: bik.obstacles.clearance(CAPSULES, q), 400_000),
         "paths.from_samples": lambda: posed(500_000),
         "plan_along_path": lambda: lambda: bik.plan_along_path(IIWA, CIRCLE, limits=FAST, stop=ENDLESS),
-        "plan_point_to_point": lambda: lambda: bik.plan_point_to_point(
-            CAPSULES, start_q=[1.57, 1.0, 0, 0, 0, 0, 0], end_q=[-1.57, 1.0, 0, 0, 0, 0, 0], limits=FAST,
-            obstacles=walled_in(), stop=ENDLESS,
+        "plan_point_to_point": lambda: (
+            lambda: bik.plan_point_to_point(
+                CAPSULES,
+                start_q=[1.57, 1.0, 0, 0, 0, 0, 0],
+                end_q=[-1.57, 1.0, 0, 0, 0, 0, 0],
+                limits=FAST,
+                obstacles=walled_in(),
+                stop=ENDLESS,
+            )
         ),
-        "planar_posture": lambda: lambda: bik.planar_posture(
-            PLANAR, [0.5, 0.5, 0.0], swarm=bik.CircleSwarm(population=1000, generations=10**6)
+        "planar_posture": lambda: (
+            lambda: bik.planar_posture(
+                PLANAR, [0.5, 0.5, 0.0], swarm=bik.CircleSwarm(population=1000, generations=10**6)
+            )
         ),
         "solve": lambda: lambda: bik.solve(IIWA, INSIDE_SHOULDER, stop=ENDLESS),
         "solve_all": lambda: lambda: bik.solve_all(IIWA, [0.5, 0.0, 0.6], limit=10**9, stop=ENDLESS),
         "solve_batch": lambda: lambda: bik.solve_batch(IIWA, [INSIDE_SHOULDER] * 9, stop=ENDLESS),
         "time_optimal": lambda: waypoints(100_000),
         "track": lambda: lambda: bik.track(IIWA, far, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12),
-        "track_model_free": lambda: lambda: bik.track_model_free(
-            bik.KinematicPlant(IIWA), CIRCLE, START, dt=5e-4, controller=bik.ZNNBAS()
+        "track_model_free": lambda: (
+            lambda: bik.track_model_free(bik.KinematicPlant(IIWA), CIRCLE, START, dt=5e-4, controller=bik.ZNNBAS())
         ),
     }
-
-
 
 
 def with_rows(call: Callable[[np.ndarray], object], count: int) -> Callable[[], object]:
@@ -141,6 +147,7 @@ def waypoints(count: int) -> Callable[[], object]:
     return lambda: bik.time_optimal(q, FAST)
 
 
+PLANNED = "a plan has at most some thousand knots"
 CONSTANT = "its work does not grow with any argument"
 ONE = "one configuration of at most 32 joints"
 COPIES = "as fast as its arrays are copied"
@@ -166,10 +173,15 @@ SHORT: dict[str, str] = {
             "Robot.planar", "Robot.named", "Robot.names", "Robot.link_poses", "Robot.with_tool", "Robot.with_base",
             "Robot.with_limits", "Robot.with_capsules", "Robot.with_errors", "Robot.manipulability_gradient",
             "Robot.link_manipulability", "Robot.velocity_ellipsoid", "Tracker", "Tracker.reset", "pose",
+            "state_to_state",
         ],
         ONE,
     ),
-    **dict.fromkeys(["Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"], COPIES),
+    "Plan.retime": PLANNED,
+    **dict.fromkeys(
+        ["Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"],
+        COPIES,
+    ),
     **dict.fromkeys(
         [
             "ModelFreeResult.plot", "Plan.plot", "TrackResult.plot", "Trajectory.plot", "Trajectory.to_csv",

@@ -9,6 +9,9 @@ use crate::error::raise;
 use crate::monitor::in_pieces;
 use crate::robot::PyRobot;
 
+/// Rows between two checks for Ctrl-C; among many obstacles a row takes a millisecond.
+const ROWS: usize = 128;
+
 /// Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
 /// for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
 ///
@@ -35,7 +38,7 @@ pub fn clearance<'py>(
     match rows("joint angles", robot.core.name(), robot.core.dof(), q)? {
         Rows::One(q) => Ok(scene.clearance(q.as_slice()?).map_err(raise)?.into_pyobject(py)?.into_any()),
         Rows::Many(q, _) => {
-            let clearances = in_pieces(py, q.as_slice()?, robot.core.dof(), |q| scene.clearances(q))?;
+            let clearances = in_pieces(py, q.as_slice()?, robot.core.dof(), ROWS, |q| scene.clearances(q))?;
             Ok(row(py, clearances).into_any())
         }
     }

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use super::PyRobot;
 use crate::convert::{Rows, count, pose_array, rows, table, vector};
 use crate::error::raise;
-use crate::monitor::{in_pieces, long_call};
+use crate::monitor::{QUICK_ROWS, in_pieces, long_call};
 
 #[pymethods]
 impl PyRobot {
@@ -18,7 +18,7 @@ impl PyRobot {
             Rows::One(q) => Ok(pose_array(py, &self.core.fk(q.as_slice()?).map_err(raise)?)?.into_any()),
             Rows::Many(q, m) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                let poses = in_pieces(py, q, robot.dof(), |q| robot.fk_all(q))?;
+                let poses = in_pieces(py, q, robot.dof(), QUICK_ROWS, |q| robot.fk_all(q))?;
                 Ok(table(py, poses, &[m, 4, 4])?.into_any())
             }
         }
@@ -34,7 +34,7 @@ impl PyRobot {
             }
             Rows::Many(q, m) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                table(py, in_pieces(py, q, n, |q| robot.clip_all(q))?, &[m, n])
+                table(py, in_pieces(py, q, n, QUICK_ROWS, |q| robot.clip_all(q))?, &[m, n])
             }
         }
     }
@@ -57,7 +57,7 @@ impl PyRobot {
             }
             Rows::Many(q, m) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                table(py, in_pieces(py, q, n, |q| robot.jacobian_all(q))?, &[m, 6, n])
+                table(py, in_pieces(py, q, n, QUICK_ROWS, |q| robot.jacobian_all(q))?, &[m, 6, n])
             }
         }
     }

@@ -146,7 +146,7 @@ impl<'a> TreeSearch<'a> {
     pub(super) fn shorten(
         &mut self,
         path: JointPolyline,
-        shortens: &dyn Fn(&[Vec<f64>], &[Vec<f64>]) -> bool,
+        shortens: Shortens<'_>,
         rng: &mut LazyRng,
         monitor: &mut dyn Monitor,
     ) -> JointPolyline {
@@ -173,11 +173,7 @@ impl<'a> TreeSearch<'a> {
     }
 
     /// Connects each point to the farthest one that a straight line can reach.
-    fn with_longest_lines(
-        &mut self,
-        points: Vec<Vec<f64>>,
-        shortens: &dyn Fn(&[Vec<f64>], &[Vec<f64>]) -> bool,
-    ) -> Vec<Vec<f64>> {
+    fn with_longest_lines(&mut self, points: Vec<Vec<f64>>, shortens: Shortens<'_>) -> Vec<Vec<f64>> {
         let last = points.len() - 1;
         let (mut i, mut kept) = (0, vec![points[0].clone()]);
         while i < last {
@@ -192,6 +188,9 @@ impl<'a> TreeSearch<'a> {
         kept
     }
 }
+
+/// Whether a new stretch of points is shorter than an old one with the same ends.
+type Shortens<'f> = &'f dyn Fn(&[Vec<f64>], &[Vec<f64>]) -> bool;
 
 /// Number of random shortcuts tried.
 const SHORTCUTS: usize = 60;
