@@ -45,9 +45,9 @@ impl NoiseLevel {
         self.level
     }
 
-    /// Standard deviation of the noise of entry `j`.
+    /// Standard deviation of the noise of entry `j`; 0 before the first sample.
     pub fn level_of(&self, j: usize) -> f64 {
-        self.level * (self.shares.len() as f64 * self.shares[j]).sqrt()
+        self.shares.get(j).map_or(0.0, |share| self.level * (self.shares.len() as f64 * share).sqrt())
     }
 
     /// Adds a sample at `time`; entries are measured in units of `scales`.
