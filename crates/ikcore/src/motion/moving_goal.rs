@@ -107,6 +107,15 @@ struct Gains {
     change: f64,
 }
 
+impl Gains {
+    /// Uncertainty of a goal that is extrapolated over `ahead` intervals, in standard deviations of a sample, up to a factor
+    /// near 1: that of its position, and of step and change, which are as much smaller as their gains.
+    fn uncertainty(&self, ahead: f64) -> f64 {
+        let (step, change) = (self.step.sqrt(), self.change.cbrt().powi(2));
+        self.position.sqrt() * (1.0 + ahead * (step + 0.5 * ahead * change))
+    }
+}
+
 impl MovingGoal {
     /// A goal that moves as the arm does that is at `q` in `state`, at `now` (in ticks), before its first sample at the time
     /// `first`.
@@ -195,7 +204,7 @@ impl MovingGoal {
             (interval - self.interval) * if self.samples.is_some_and(|samples| samples < PARABOLA) { 1.0 } else { 0.2 };
         (self.last_sample, self.arrived) = (time, self.now);
         let before = self.memory;
-        self.memory = self.required_memory(scales.jerk_share);
+        self.memory = self.required_memory(scales.jerk_share, (self.now - time) / self.interval);
         if before < NOISELESS && self.memory > NOISELESS {
             // What was taken for motion was noise.
             return self.restart(sample);
@@ -217,7 +226,7 @@ impl MovingGoal {
             self.forget_half();
         }
         let gains = self.gains();
-        self.uncertainty = gains.position.sqrt();
+        self.uncertainty = gains.uncertainty((self.now - time) / self.interval);
         self.apply(gains, interval, sample, expected);
     }
 
@@ -235,9 +244,9 @@ impl MovingGoal {
         self.samples = Some(1);
     }
 
-    /// Samples to remember so that following the noise takes a small share of the limits.
-    fn required_memory(&self, jerk_share: f64) -> f64 {
-        let noise = self.noise() / self.interval.powi(2);
+    /// Samples to remember so that following the noise, over so many intervals ahead, takes a small share of the limits.
+    fn required_memory(&self, jerk_share: f64, ahead: f64) -> f64 {
+        let noise = self.noise() * (1.0 + ahead) / self.interval.powi(2);
         let for_acceleration = (AMPLIFIED * noise / SHAKE).powf(0.4);
         let for_jerk = (AMPLIFIED * noise / (JERK_SHAKE * jerk_share * self.interval)).powf(2.0 / 7.0);
         for_acceleration.max(for_jerk).max(1.0)
