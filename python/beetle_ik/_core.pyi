@@ -188,6 +188,13 @@ class Robot:
     ) -> Robot:
         """Returns a copy with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps the present ones."""
     @property
+    def rated_limits(self) -> Limits:
+        """The limits that the maker rates the arm for: `limits`, with acceleration and jerk limits where it publishes them
+        (`panda` and `fr3`, from the maker's "Robot and interface specifications"). Give them as `limits=` where they are
+        wanted; nothing uses them on its own.
+        """
+
+    @property
     def capsules(self) -> list[tuple[str, _Array, _Array, float]]:
         """Collision capsules of the links, each (link, a, b, radius). A capsule is all points within the radius (m) of the
         segment from a (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a
@@ -1341,6 +1348,7 @@ def solve_all(
     start: ArrayLike | None = None,
     limit: int | None = None,
     separation: float | None = None,
+    redundancy: int = 16,
     turns: bool = False,
     task: Task | None = None,
     solver: _Solver | None = None,
@@ -1356,7 +1364,8 @@ def solve_all(
     proven that no solution is missing. The search ends when a hundred solutions in a row are known already, or the budget is spent.
 
     Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
-    start is given. A redundant arm has infinitely many solutions: those returned are at least `separation` apart.
+    start is given. A redundant arm has infinitely many solutions. With a closed form, those at `redundancy` values of its parameter
+    are returned; found by search, they are at least `separation` apart.
 
     Args:
         robot: the arm.
@@ -1365,6 +1374,8 @@ def solve_all(
         limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
         separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
             a closed form are returned, those of a search differ by 0.1.
+        redundancy: number of values of the parameter at which a redundant arm with a closed form is solved, spread over those that its
+            limits allow. 0: its solutions are searched for.
         turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
         task: which part of the target counts, one of `tasks`; None: all of it.
         solver: the solver; None: Levenberg-Marquardt from many starts.
@@ -1375,7 +1386,7 @@ def solve_all(
         seed: seed of the random draws; the same seed gives the same bits.
 
     Returns:
-        A `SolutionSet`. If no solution is found, it is empty, and `miss` is the best configuration.
+        A `SolutionSet`. If no solution is found, it is empty, and `miss` is the nearest configuration found.
 
     Raises:
         InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
@@ -1418,7 +1429,9 @@ class SolutionSet:
         """Whether the pose is singular, so that one solution at least stands for a family in which a joint is free."""
     @property
     def miss(self) -> Solution | None:
-        """The best `Solution` that misses the target, if no solution was found; otherwise None."""
+        """The best `Solution` that misses the target, if no solution was found; otherwise None. If the target is proven out of reach, it
+        is computed when first asked for.
+        """
     def __len__(self) -> int: ...
     @overload
     def __getitem__(self, index: int | np.integer, /) -> Solution: ...
@@ -1812,6 +1825,7 @@ def track(
     rotation_tolerance: float = 1e-6,
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
+    ease: bool = False,
     progress: _Progress = None,
 ) -> TrackResult:
     """Follows a path with the tip of the robot, tick by tick, inside the limits.
@@ -1837,6 +1851,8 @@ def track(
         seed: seed of the random draws; the same seed gives the same bits.
         limit_at: which velocity limit holds in a tick: the smallest over its "interval", or, as in the paper, the one at its
             "start".
+        ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
+            that meets the moving path, after which the arm is on it. The tip is off the path until then.
         progress: True shows a progress bar; a callable is called with (done, total).
 
     Returns:
@@ -1924,7 +1940,10 @@ class TrackResult:
         """The robot."""
     @property
     def trajectory(self) -> Trajectory:
-        """The joint trajectory, linear between the ticks: its velocities are exactly `qd`."""
+        """The joint trajectory. Without acceleration and jerk limits it is linear between the ticks: its velocities are exactly
+        `qd`. With them it is a cubic spline that keeps them at every instant, and passes each configuration at a sixth of
+        its acceleration times dt^2 (rad, m).
+        """
     def plot(self) -> Figure:
         """Draws the path of the tip, the errors, joint positions, velocities with their limits, and evaluations; returns a
         matplotlib figure.
@@ -2151,6 +2170,7 @@ def plan_point_to_point(
     *,
     start_q: ArrayLike | None = None,
     end_q: ArrayLike | None = None,
+    start_qd: ArrayLike | None = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
@@ -2160,13 +2180,15 @@ def plan_point_to_point(
     seed: int = 0,
     progress: _Progress = None,
 ) -> Plan:
-    """Plans a motion between two ends, from rest to rest.
+    """Plans a motion between two ends, to rest at the end.
 
     Args:
         robot: the arm.
         start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration.
         start_q, end_q: joint positions (n,) instead.
-        limits: position, velocity and acceleration limits; None: the robot's.
+        start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
+            rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.
+        limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
             "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
         objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
@@ -2183,7 +2205,45 @@ def plan_point_to_point(
     Raises:
         InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance).
         LimitError: limits that contradict each other or exclude an end.
-        UnsupportedLimit: jerk limits, or limits that vary in time.
+        InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
+        UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
+    """
+
+def state_to_state(
+    q0: ArrayLike,
+    q1: ArrayLike,
+    limits: Limits,
+    *,
+    qd0: ArrayLike | None = None,
+    qdd0: ArrayLike | None = None,
+    qd1: ArrayLike | None = None,
+    qdd1: ArrayLike | None = None,
+    joint_names: list[str] | None = None,
+) -> Trajectory:
+    """Computes the fastest motion of all joints from one state to another, in which they arrive together.
+
+    The limits hold at every instant. With jerk limits the acceleration is continuous; without them it jumps, and qdd0 and
+    qdd1 have no effect. A joint with velocity limits alone moves at constant velocity, and qd0 and qd1 have no effect. A
+    joint that begins outside its velocity or acceleration limits, or about to leave them, first returns inside them as
+    quickly as its limits allow. The joint that needs longest moves as fast as it can; the others spread their motion over
+    the same time (Berscheid and Kroeger 2021 treat the same problem).
+
+    Args:
+        q0, q1: positions at the start and at the end (n,) (rad, m).
+        limits: constant limits; each joint needs one of `velocity`, `acceleration` and `jerk`. Missing fields are unlimited.
+        qd0, qd1: velocities (n,) (rad/s, m/s); None: zero.
+        qdd0, qdd1: accelerations (n,) (rad/s^2, m/s^2); None: zero.
+        joint_names: n names; None: "q1", "q2" and so on.
+
+    Returns:
+        A `Trajectory` of cubic segments.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN, limits that are not positive, or two equal states.
+        LimitError: a position outside its limits.
+        InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
+            limits.
+        UnsupportedLimit: limits that vary in time.
     """
 
 def time_optimal(
@@ -2247,7 +2307,7 @@ def plan_along_path(
         robot: the arm.
         path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
         start_q: joint positions (n,) at the start; None: chosen by the planner.
-        limits: position, velocity and acceleration limits; None: the robot's.
+        limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
             uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
         objective: quantity to minimise, "time" or "joint_travel".
@@ -2265,7 +2325,8 @@ def plan_along_path(
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two points, or points out of reach.
         LimitError: limits that contradict each other.
-        UnsupportedLimit: jerk limits, or limits that vary in time.
+        UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
+            (`Plan.retime` adds them).
     """
 
 @final
@@ -2349,6 +2410,21 @@ class Plan:
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:
         """The obstacles, as given."""
+    def retime(self, limits: Limits) -> Plan:
+        """Returns the plan with other limits: the same path, as fast as they allow. Clearance and accuracy remain.
+
+        A plan of `plan_along_path` with method "timed" gets a new optimal timing. Any other motion is scaled in time as a
+        whole and passes the very same configurations.
+
+        Args:
+            limits: position, velocity, acceleration and jerk limits; a field that is not given is the robot's.
+
+        Raises:
+            InfeasibleError: a plan with violations, a path outside the position limits, or jerk limits on a motion whose
+                acceleration jumps.
+            UnsupportedLimit: limits that vary in time.
+        """
+
     def plot(self) -> Figure:
         """Draws the arm along its path, the cost over evaluations, and the joint motions with their limits; returns a matplotlib
         figure.

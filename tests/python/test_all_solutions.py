@@ -17,7 +17,12 @@ POSE = UR.fk(Q)
     [
         (UR, "axes 2 to 4 parallel; at most 8 solutions"),
         (bik.Robot.named("kr210"), "spherical wrist; at most 8 solutions"),
-        (bik.Robot.named("panda"), "none: 7 joints; closed forms are for 6"),
+        (
+            bik.Robot.named("panda"),
+            "spherical shoulder; at most 8 solutions for each value of joint 'panda_joint7'",
+        ),
+        (bik.Robot.planar([0.5, 0.4, 0.2]), "planar; at most 2 solutions"),
+        (bik.Robot.planar([1.0] * 8), "none: 8 joints; closed forms are for 3 to 7"),
         (bik.Robot.planar([1.0] * 6), "none: the tip moves in 3 of 6 directions"),
     ],
 )
@@ -70,6 +75,41 @@ def test_out_of_reach_is_proven() -> None:
     found = bik.solve_all(UR, pose)
     assert (len(found), found.status, found.complete) == (0, bik.Status.OUT_OF_REACH, True)
     assert "(no configuration has this pose): move or turn the target into reach" in found.message
+
+
+def test_the_nearest_miss_is_computed_when_asked_for() -> None:
+    found = bik.solve_all(UR, bik.pose([1.2, 0.0, 0.1], rpy=[0.0, -1.5, 0.0]))
+    assert found.evaluations <= 16
+    miss, again = found.miss, found.miss
+    assert miss is not None and again is not None
+    assert miss.status == bik.Status.OUT_OF_REACH
+    assert 0.0 < miss.position_error < 1.0
+    np.testing.assert_array_equal(miss.q, again.q)
+    copy = pickle.loads(pickle.dumps(found))
+    np.testing.assert_array_equal(copy.miss.q, miss.q)
+    assert (copy.status, copy.message) == (found.status, found.message)
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14", "gen3"])
+def test_redundant_arms_are_sampled(name: str) -> None:
+    robot = bik.Robot.named(name)
+    q = robot.random_configurations(20, seed=4)
+    few = [bik.solve_all(robot, pose, redundancy=8) for pose in robot.fk(q)]
+    many = [bik.solve_all(robot, pose, redundancy=32) for pose in robot.fk(q)]
+    assert sum(map(len, many)) > 3 * sum(map(len, few))
+    for found, pose in zip(many, robot.fk(q), strict=True):
+        np.testing.assert_allclose(robot.fk(found.q), np.broadcast_to(pose, (len(found), 4, 4)), rtol=0, atol=1e-9)
+        assert ((robot.lower <= found.q) & (found.q <= robot.upper)).all()
+        assert not found.complete
+    start = q[0]
+    nearest_first = bik.solve_all(robot, robot.fk(start), start=start).q
+    distances = np.linalg.norm(nearest_first - start, axis=1)
+    assert (np.diff(distances) >= 0.0).all()
+
+
+def test_the_number_of_samples_is_checked() -> None:
+    with pytest.raises(bik.InvalidInputError, match=r"^redundancy must be zero or more, got -1$"):
+        bik.solve_all(bik.Robot.named("panda"), POSE, redundancy=-1)
 
 
 def test_completeness_is_pickled() -> None:

@@ -86,11 +86,11 @@ def test_the_classes_of_errors() -> None:
         ),
         (lambda: solve(start=[0.0] * 6), Invalid, "start of robot 'iiwa14': expected 7 joints, got 6"),
         (lambda: solve(start=np.zeros((1, 7))), Invalid, "start: expected one dimension, got shape (1, 7)"),
-        (lambda: solve(start=with_entry(6, np.nan)), Invalid, "start must be finite, but joint 'joint_7' is NaN"),
+        (lambda: solve(start=with_entry(6, np.nan)), Invalid, "start must be finite, but joint 'joint_a7' is NaN"),
         (
             lambda: solve(start=with_entry(0, 3.0)),
             Limit,
-            f"start: joint 'joint_1' at 3 is outside its limits [-{TURN}, {TURN}]",
+            f"start: joint 'joint_a1' at 3 is outside its limits [-{TURN}, {TURN}]",
         ),
         (lambda: solve(solver="BAS"), Invalid, f"{SOLVERS}, got 'BAS'"),
         (
@@ -104,7 +104,7 @@ def test_the_classes_of_errors() -> None:
         (
             lambda: solve(limits=bik.Limits(lower=1, upper=-1)),
             Limit,
-            "joint 'joint_1': lower limit 1 is above upper limit -1",
+            "joint 'joint_a1': lower limit 1 is above upper limit -1",
         ),
         (
             lambda: solve(limits=bik.Limits(lower=[1, 2])),
@@ -163,7 +163,7 @@ def test_wrong_solver_options_are_named(call: Callable[[], object], error: type[
         (
             lambda: track(START + 9),
             Limit,
-            f"start: joint 'joint_1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}]",
+            f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}]",
         ),
         (lambda: track("home"), Invalid, "start must be an array of numbers, got 'home'"),
         (lambda: track(solver="bas"), Invalid, f"{SOLVERS} or WeightedPseudoInverse, got 'bas'"),
@@ -189,12 +189,12 @@ def test_wrong_solver_options_are_named(call: Callable[[], object], error: type[
         (
             lambda: track(limits=bik.Limits(lower=lambda t: t - 1, upper=1.5)),
             Limit,
-            "joint 'joint_1': lower limit 1.6 is above upper limit 1.5 at t = 2.5 s",
+            "joint 'joint_a1': lower limit 1.6 is above upper limit 1.5 at t = 2.5 s",
         ),
         (
             lambda: track(limits=bik.Limits(velocity=np.nan)),
             Invalid,
-            "velocity limit of joint 'joint_1' must be a number, got NaN",
+            "velocity limit of joint 'joint_a1' must be a number, got NaN",
         ),
     ]
 )

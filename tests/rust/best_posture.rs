@@ -44,9 +44,9 @@ fn scan(robot: &Robot, target: &Target) -> f64 {
     let options = AllOptions { limit: Some(200), separation: Some(0.3), ..AllOptions::default() };
     let found = solve_all(robot, target, &options, &mut Unattended).unwrap();
     let mut largest = 0.0_f64;
-    for solution in &found.solutions {
+    for solution in found.solutions.iter() {
         for sign in [1.0, -1.0] {
-            let mut q = DVector::from_row_slice(&solution.q);
+            let mut q = DVector::from_row_slice(solution.q);
             let mut last: Option<DVector<f64>> = None;
             for _ in 0..1500 {
                 let inside = |(j, q): (usize, &f64)| (robot.joints()[j].lower..=robot.joints()[j].upper).contains(q);
@@ -132,7 +132,7 @@ fn six_joint_arms_find_the_best_of_all_solutions() {
             let target = Target::from(&arm.fk(q).unwrap());
             let found = best(&arm, &target, Goal::Manipulability { motion: Motion::Pose, weight: 1.0 });
             let all = solve_all(&arm, &target, &AllOptions::default(), &mut Unattended).unwrap();
-            let largest = all.solutions.iter().map(|each| measure.index(&arm, &each.q)).fold(0.0, f64::max);
+            let largest = all.solutions.iter().map(|each| measure.index(&arm, each.q)).fold(0.0, f64::max);
             assert!(measure.index(&arm, &found.q) > (1.0 - 1e-5) * largest, "{name} {q:?}");
         }
     }

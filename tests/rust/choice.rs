@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::common::{bits, configurations, message, pose_at, robot};
-use ikcore::ik::{AllOptions, Prefer, Solution, SolveOptions, solve, solve_all};
+use ikcore::ik::{AllOptions, Prefer, Solution, SolveOptions, nearest_miss, solve, solve_all};
 use ikcore::limits::LimitAt;
 use ikcore::load::{Dh, DhTable};
 use ikcore::manipulability::{self, Motion};
@@ -138,13 +138,15 @@ fn all_solutions_of_a_six_joint_arm_are_found() {
         let options =
             AllOptions { each: SolveOptions { start: Some(q.clone()), ..Default::default() }, ..AllOptions::default() };
         let found = solve_all(&robot, &target, &options, &mut Unattended).unwrap();
-        assert!(found.miss.is_none() && found.solutions[0].q.iter().zip(&q).all(|(a, b)| (a - b).abs() < 1e-6));
-        let distances: Vec<f64> = found.solutions.iter().map(|solution| distance(&solution.q, &q)).collect();
+        assert!(
+            found.miss.is_none() && found.solutions.get(0).unwrap().q.iter().zip(&q).all(|(a, b)| (a - b).abs() < 1e-6)
+        );
+        let distances: Vec<f64> = found.solutions.iter().map(|solution| distance(solution.q, &q)).collect();
         assert!(distances.is_sorted(), "{distances:?}");
         for (i, a) in found.solutions.iter().enumerate() {
             assert!(a.error.position <= 1e-6 && a.error.rotation <= 1e-6);
-            for b in &found.solutions[..i] {
-                let apart = a.q.iter().zip(&b.q).any(|(a, b)| ((a - b + PI).rem_euclid(TAU) - PI).abs() >= 0.1);
+            for b in found.solutions.iter().take(i) {
+                let apart = a.q.iter().zip(b.q).any(|(a, b)| ((a - b + PI).rem_euclid(TAU) - PI).abs() >= 0.1);
                 assert!(apart, "the same twice");
             }
         }
@@ -164,8 +166,10 @@ fn limit_keeps_the_nearest_and_a_miss_is_returned() {
     assert_eq!((found.solutions.len(), found.message()), (3, "3 distinct solutions".into()));
     let far = Target::from(&pose::translation(3.0, 0.0, 0.5));
     let found = solve_all(&robot, &far, &options, &mut Unattended).unwrap();
-    assert!(found.solutions.is_empty() && found.miss.is_some());
-    assert!(found.message().starts_with("no solution; best miss: as near as possible, "), "{}", found.message());
+    assert!(found.solutions.is_empty() && found.complete, "{}", found.message());
+    assert!(found.message().starts_with("no solution (out of reach by at least 2.057 m): move"), "{}", found.message());
+    let miss = nearest_miss(&robot, &far, &options, &mut Unattended).unwrap();
+    assert!(miss.message().starts_with("as near as possible, "), "{}", miss.message());
     let zero = AllOptions { limit: Some(0), ..options.clone() };
     assert_eq!(message(solve_all(&robot, &far, &zero, &mut Unattended)), "limit must be at least 1, got 0");
     let negative = AllOptions { separation: Some(-1.0), ..options };

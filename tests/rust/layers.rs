@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 
 use imports::{SourceFile, Sources, code_of, paths};
 
-const FOUNDATION: &[&str] = &["error", "rng", "math", "stored", "wording"];
+const FOUNDATION: &[&str] = &["error", "interrupt", "rng", "math", "stored", "wording"];
 
 /// Which modules a module may use, besides itself and those of [`FOUNDATION`]. No solver knows of robots, no robot of solvers.
 const LAYERS: &[(&str, &[&str])] = &[
     ("error", &[]),
+    ("interrupt", &[]),
     ("rng", &[]),
     ("math", &[]),
     ("stored", &[]),
@@ -26,6 +27,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("trajectory", &[]),
     ("objective", &[]),
     ("limits", &["robot", "objective"]),
+    ("motion", &["limits", "trajectory", "objective"]),
     ("obstacle", &["robot", "objective"]),
     ("manipulability", &["kinematics", "robot"]),
     ("task", &["kinematics", "robot", "manipulability", "objective"]),
@@ -41,6 +43,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     (
         "planning",
         &[
+            "motion",
             "robot",
             "path",
             "trajectory",
@@ -57,6 +60,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     (
         "tracking",
         &[
+            "motion",
             "kinematics",
             "robot",
             "path",

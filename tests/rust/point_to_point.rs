@@ -65,7 +65,7 @@ fn the_nearest_of_all_branches_and_turns_are_taken() {
     for pair in targets.windows(2) {
         let [starts, ends] = [0, 1].map(|i| {
             let found = solve_all(&robot, &pair[i], &AllOptions::default(), &mut Unattended).unwrap();
-            found.solutions.into_iter().map(|solution| solution.q).collect::<Vec<_>>()
+            found.solutions.iter().map(|solution| solution.q.to_vec()).collect::<Vec<_>>()
         });
         // A joint that turns once to either side can always take the shorter way round.
         let turns = |j: usize| if robot.joints()[j].upper >= TAU { 1.0 } else { 0.0 };

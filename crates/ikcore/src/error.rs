@@ -13,6 +13,9 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 #[non_exhaustive]
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Error {
+    /// The computation was interrupted; see [`interruptible`](crate::interrupt::interruptible).
+    #[error("interrupted before the end")]
+    Interrupted,
     /// A number that must be finite is NaN or infinite.
     #[error("{what} must be finite, but {place} is {value}")]
     NotFinite {

@@ -15,6 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyBytes, PyList, PyString, PyTuple, PyType};
 
 use crate::error::{invalid, raise};
+use crate::monitor::check_signals_at;
 
 /// A float64 array of any shape.
 pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -256,7 +257,11 @@ pub fn rigid_rows(what: &str, rows: &[f64]) -> PyResult<Pose> {
 /// Makes rigid transforms from stacked 4x4 matrices.
 pub fn rigid_matrices(numbers: &[f64]) -> PyResult<Vec<Pose>> {
     let matrices = numbers.chunks_exact(16).enumerate();
-    matrices.map(|(i, rows)| rigid_rows(&format!("pose {i}"), rows)).collect()
+    let read = |(i, rows)| {
+        Python::attach(|py| check_signals_at(py, i))?;
+        rigid_rows(&format!("pose {i}"), rows)
+    };
+    matrices.map(read).collect()
 }
 
 /// Reads a 3x3 matrix.

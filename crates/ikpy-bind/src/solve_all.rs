@@ -2,9 +2,12 @@
 
 use ikcore::ik::{self, AllOptions};
 use ikcore::stored::{from_bytes, to_bytes};
-use numpy::{PyArrayDyn, PyUntypedArrayMethods};
+use ikcore::task::Target;
+use numpy::PyArrayDyn;
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyIterator, PyList};
+use pyo3::{PyTraverseError, PyVisit};
 
 use crate::convert::{count, table, vector};
 use crate::error::raise;
@@ -17,21 +20,37 @@ use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
-use crate::traversal::traversed;
+use crate::traversal::{Traversed, traversed};
 
 /// The distinct solutions for one target, a sequence of `Solution`.
 #[pyclass(name = "SolutionSet", module = "beetle_ik", frozen, sequence)]
 pub struct PySolutionSet {
     core: ik::SolutionSet,
-    /// The configurations (k, n) (rad, m), inside the limits.
-    #[pyo3(get)]
-    q: Py<PyArrayDyn<f64>>,
+    dof: usize,
+    /// Made when first asked for.
+    q: PyOnceLock<Py<PyArrayDyn<f64>>>,
+    /// What finds the nearest configuration to a target that is proven out of reach, when that is first asked for.
+    unreached: Option<Box<Unreached>>,
+    miss: PyOnceLock<ik::Solution>,
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
 
-traversed!(PySolutionSet: limits);
+traversed!(PySolutionSet: limits, unreached);
+
+/// A target without a solution, and the call that looked for one.
+struct Unreached {
+    robot: Py<PyRobot>,
+    target: Target,
+    options: AllOptions,
+}
+
+impl Traversed for Unreached {
+    fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.robot.traverse(visit)
+    }
+}
 
 outcome! {
     PySolutionSet = |result|
@@ -60,10 +79,19 @@ impl PySolutionSet {
         self.core.singular
     }
 
-    /// The best `Solution` that misses the target, if no solution was found; otherwise None.
+    /// The configurations (k, n) (rad, m), inside the limits.
     #[getter]
-    fn miss(&self, py: Python<'_>) -> Option<PySolution> {
-        self.core.miss.as_ref().map(|miss| PySolution::new(py, miss.clone(), self.limits.clone_ref(py)))
+    fn q(&self, py: Python<'_>) -> PyResult<Py<PyArrayDyn<f64>>> {
+        let rows = || table(py, self.core.solutions.values().to_vec(), &[self.core.solutions.len(), self.dof]);
+        Ok(self.q.get_or_try_init(py, || rows().map(Bound::unbind))?.clone_ref(py))
+    }
+
+    /// The best `Solution` that misses the target, if no solution was found; otherwise None. If the target is proven out of reach, it
+    /// is computed when first asked for.
+    #[getter]
+    fn miss(&self, py: Python<'_>) -> PyResult<Option<PySolution>> {
+        let miss = self.nearest_miss(py)?;
+        Ok(miss.map(|miss| PySolution::new(py, miss.clone(), self.limits.clone_ref(py))))
     }
 
     fn __len__(&self) -> usize {
@@ -72,10 +100,15 @@ impl PySolutionSet {
 
     /// Returns a `Solution`, or a list of them for a slice, a mask or several indices.
     fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let solution = |i: usize| PySolution::new(py, self.core.solutions[i].clone(), self.limits.clone_ref(py));
+        let solution = |i: usize| {
+            let found = self.core.solution(i).expect("an index that was checked");
+            PySolution::new(py, found, self.limits.clone_ref(py))
+        };
         match select("a set", index, self.core.solutions.len())? {
             Selection::One(i) => Ok(Bound::new(py, solution(i))?.into_any()),
-            Selection::Many(rows) => Ok(PyList::new(py, rows.into_iter().map(solution))?.into_any()),
+            Selection::Many(rows) => {
+                Ok(PyList::new(py, rows.into_iter().map(solution).collect::<Vec<_>>())?.into_any())
+            }
         }
     }
 
@@ -89,23 +122,37 @@ impl PySolutionSet {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let core = pickling::bytes(py, to_bytes("set of solutions", &self.core))?;
-        let dof = self.q.bind(py).shape()[1];
-        pickling::restored_from::<Self>(py, (core, dof, self.limits.clone_ref(py)))
+        let miss = self.nearest_miss(py)?.cloned().map(Box::new);
+        let complete = ik::SolutionSet { miss, ..self.core.clone() };
+        let core = pickling::bytes(py, to_bytes("set of solutions", &complete))?;
+        pickling::restored_from::<Self>(py, (core, self.dof, self.limits.clone_ref(py)))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    fn _restore(py: Python<'_>, bytes: &[u8], dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
-        Self::new(py, from_bytes("set of solutions", bytes).map_err(raise)?, dof, limits)
+    fn _restore(bytes: &[u8], dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
+        Ok(Self::new(from_bytes("set of solutions", bytes).map_err(raise)?, dof, limits, None))
     }
 }
 
 impl PySolutionSet {
-    fn new(py: Python<'_>, core: ik::SolutionSet, dof: usize, limits: Py<PyLimits>) -> PyResult<Self> {
-        let rows: Vec<f64> = core.solutions.iter().flat_map(|solution| solution.q.iter().copied()).collect();
-        let q = table(py, rows, &[core.solutions.len(), dof])?.unbind();
-        Ok(Self { core, q, limits })
+    fn new(core: ik::SolutionSet, dof: usize, limits: Py<PyLimits>, unreached: Option<Box<Unreached>>) -> Self {
+        Self { core, dof, q: PyOnceLock::new(), unreached, miss: PyOnceLock::new(), limits }
+    }
+
+    fn nearest_miss(&self, py: Python<'_>) -> PyResult<Option<&ik::Solution>> {
+        match (&self.core.miss, &self.unreached) {
+            (Some(miss), _) => Ok(Some(miss)),
+            (None, None) => Ok(None),
+            (None, Some(unreached)) => self.miss.get_or_try_init(py, || unreached.nearest_miss(py)).map(Some),
+        }
+    }
+}
+
+impl Unreached {
+    fn nearest_miss(&self, py: Python<'_>) -> PyResult<ik::Solution> {
+        let robot = &self.robot.get().core;
+        watched(py, None, |watcher| ik::nearest_miss(robot, &self.target, &self.options, watcher))
     }
 }
 
@@ -115,7 +162,8 @@ impl PySolutionSet {
 /// proven that no solution is missing. The search ends when a hundred solutions in a row are known already, or the budget is spent.
 ///
 /// Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
-/// start is given. A redundant arm has infinitely many solutions: those returned are at least `separation` apart.
+/// start is given. A redundant arm has infinitely many solutions. With a closed form, those at `redundancy` values of its parameter
+/// are returned; found by search, they are at least `separation` apart.
 ///
 /// Args:
 ///     robot: the arm.
@@ -124,6 +172,8 @@ impl PySolutionSet {
 ///     limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
 ///     separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
 ///         a closed form are returned, those of a search differ by 0.1.
+///     redundancy: number of values of the parameter at which a redundant arm with a closed form is solved, spread over those that its
+///         limits allow. 0: its solutions are searched for.
 ///     turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
 ///     task: which part of the target counts, one of `tasks`; None: all of it.
 ///     solver: the solver; None: Levenberg-Marquardt from many starts.
@@ -134,23 +184,24 @@ impl PySolutionSet {
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///
 /// Returns:
-///     A `SolutionSet`. If no solution is found, it is empty, and `miss` is the best configuration.
+///     A `SolutionSet`. If no solution is found, it is empty, and `miss` is the nearest configuration found.
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
 ///         configurations.
 ///     LimitError: a start outside the limits.
 #[pyfunction]
-#[pyo3(signature = (robot, target, *, start=None, limit=None, separation=None, turns=false, task=None, solver=None,
+#[pyo3(signature = (robot, target, *, start=None, limit=None, separation=None, redundancy=16, turns=false, task=None, solver=None,
                     position_tolerance=1e-6, rotation_tolerance=1e-6, limits=None, stop=None, seed=0))]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_all(
     py: Python<'_>,
-    robot: &PyRobot,
+    robot: &Bound<'_, PyRobot>,
     target: &Bound<'_, PyAny>,
     start: Option<&Bound<'_, PyAny>>,
     limit: Option<i128>,
     separation: Option<f64>,
+    redundancy: i128,
     turns: bool,
     task: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
@@ -161,12 +212,17 @@ pub fn solve_all(
     seed: i128,
 ) -> PyResult<PySolutionSet> {
     let target = read_target("target", target)?;
+    let owner = robot;
+    let robot = owner.get();
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let asked =
         SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals: None, prefer: "any", stop, seed };
     let each = asked.read(start.map(|start| vector("start", start)).transpose()?, resolved)?;
     let limit = limit.map(|limit| count("limit", limit)).transpose()?;
-    let options = AllOptions { each, limit, separation, turns };
+    let redundancy = count("redundancy", redundancy)?;
+    let options = AllOptions { each, limit, separation, redundancy, turns };
     let core = watched(py, None, |watcher| ik::solve_all(&robot.core, &target, &options, watcher))?;
-    PySolutionSet::new(py, core, robot.core.dof(), in_force)
+    let is_unreached = core.obstruction.is_some();
+    let unreached = is_unreached.then(|| Box::new(Unreached { robot: owner.clone().unbind(), target, options }));
+    Ok(PySolutionSet::new(core, robot.core.dof(), in_force, unreached))
 }

@@ -19,6 +19,12 @@ impl<T: Traversed> Traversed for Option<T> {
     }
 }
 
+impl<T: Traversed> Traversed for Box<T> {
+    fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        (**self).traverse(visit)
+    }
+}
+
 impl<T: Traversed, const N: usize> Traversed for [T; N] {
     fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
         self.iter().try_for_each(|field| field.traverse(visit))

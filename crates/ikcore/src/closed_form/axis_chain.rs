@@ -105,6 +105,23 @@ impl<const N: usize> AxisChain<N> {
 }
 
 #[cfg(test)]
+impl<const N: usize> AxisChain<N> {
+    /// An arm from rows (a, alpha, d, theta) of a standard Denavit-Hartenberg table.
+    pub fn of_rows(rows: &[[f64; 4]; N]) -> Self {
+        let mut at = Frame::IDENTITY;
+        let joints = rows.map(|[a, alpha, d, theta]| {
+            let joint = JointAxis::turning(at.axes[2], at.origin);
+            let (sine, cosine) = alpha.sin_cos();
+            let link =
+                Frame { axes: [[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]], origin: [a, 0.0, d] };
+            at = at.turned::<Baseline>(theta.sin(), theta.cos()).then::<Baseline>(&link);
+            joint
+        });
+        Self { joints, tip: at }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -46,11 +46,23 @@ impl<const N: usize> Default for Candidates<N> {
     }
 }
 
+/// By how much a configuration misses its pose, by forward kinematics.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct BranchError {
+    /// Distance (m).
+    pub position: f64,
+    /// Angle (rad).
+    pub rotation: f64,
+}
+
 /// All branches found for one pose, each verified by forward kinematics.
 #[derive(Debug, Clone, Copy)]
 pub struct Branches<const N: usize> {
     sets: [[f64; N]; MOST],
+    errors: [BranchError; MOST],
     count: usize,
+    /// A candidate was near the pose, but no branch: the tolerances of a caller may be wide enough for it.
+    pub nearly: bool,
     /// Evaluations of the forward kinematics that verification took.
     pub evaluations: usize,
     /// The method proves that there are no others.
@@ -63,16 +75,31 @@ impl<const N: usize> Branches<N> {
     /// No branch, and nothing proven.
     #[inline(always)]
     pub fn none() -> Self {
-        Self { sets: [[0.0; N]; MOST], count: 0, evaluations: 0, complete: false, singular: false }
+        Self {
+            sets: [[0.0; N]; MOST],
+            errors: [BranchError::default(); MOST],
+            count: 0,
+            nearly: false,
+            evaluations: 0,
+            complete: false,
+            singular: false,
+        }
     }
 
     /// Adds one; ignored when full.
     #[inline(always)]
-    pub(crate) fn push(&mut self, set: [f64; N]) {
+    pub(crate) fn push(&mut self, set: [f64; N], error: BranchError) {
         if self.count < MOST {
             self.sets[self.count] = set;
+            self.errors[self.count] = error;
             self.count += 1;
         }
+    }
+
+    /// The error of each.
+    #[inline(always)]
+    pub(crate) fn errors(&self) -> &[BranchError] {
+        &self.errors[..self.count]
     }
 }
 

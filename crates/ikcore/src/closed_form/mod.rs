@@ -1,18 +1,26 @@
-//! Inverse kinematics in closed form: all configurations of a six-joint arm for a pose, and whether they are surely all.
+//! Inverse kinematics in closed form: all configurations of an arm of three to seven joints for a pose, and whether they are surely
+//! all.
 //!
-//! Read `six` first: it decides the structure of a chain (`structure`) and its method (`spherical_wrist`, `sliding_arm`,
-//! `three_parallel`, `general`) once, and solves poses. The methods reduce to canonical subproblems (`subproblem`) and to zeros of
-//! trigonometric polynomials (`trigonometric`), and yield candidates as cosines and sines; `verify` keeps those that forward
-//! kinematics confirms. `arm` takes the axes from a robot's chain and converts joint values.
+//! Read `six` first: it decides the structure of a chain of six joints (`structure`) and its method (`spherical_wrist`,
+//! `sliding_arm`, `three_parallel`, `general`) once, and solves poses. Seven joints (`redundant`) become six by giving one of them, or
+//! are solved for a given arm angle (`arm_angle`); five (`five_joints`) become six by adding one; `planar` serves planar arms and
+//! SCARAs. The methods reduce to canonical subproblems (`subproblem`) and to zeros of trigonometric polynomials (`trigonometric`),
+//! and yield candidates as cosines and sines; `verify` keeps those that forward kinematics confirms. `arm` takes the axes from a
+//! robot's chain and converts joint values.
 //!
 //! Sources: Pieper (1968); Raghavan and Roth (1990); Manocha and Canny (1994); Elias and Wen, "IK-Geo" (arXiv 2211.05737).
 
 mod angle;
 mod arm;
+mod arm_angle;
 mod axis_chain;
 mod branches;
+mod five_joints;
 mod general;
+mod parameter_arcs;
+mod planar;
 mod position;
+mod redundant;
 mod six;
 mod sliding_arm;
 mod spherical_wrist;
@@ -24,4 +32,6 @@ mod vector;
 mod verify;
 mod wrist;
 
-pub(crate) use arm::{ArmBranches, ClosedFormArm, NoClosedForm};
+pub(crate) use arm::{ArmBranches, ClosedFormArm, MOST_JOINTS, NoClosedForm, PoseFamily};
+pub(crate) use branches::BranchError;
+pub(crate) use verify::VERIFIED;

@@ -1,12 +1,13 @@
 //! All solutions of a pose by the closed form of the arm.
 
 use super::attempt::Attempt;
-use super::solution::Solution;
-use super::whole_turns::bring_near;
-use crate::closed_form::ArmBranches;
+use super::solutions::Solutions;
+use super::whole_turns::NearestTurns;
+use crate::closed_form::{ArmBranches, BranchError, MOST_JOINTS, PoseFamily, VERIFIED};
+use crate::math::Frame;
 use crate::objective::Point;
-use crate::solver::{LevenbergMarquardt, MultiStart, Status};
-use crate::task::Target;
+use crate::solver::{LevenbergMarquardt, MultiStart};
+use crate::task::{Target, TipError};
 
 /// A joint that is outside its limits by less (rad, m) is at its limit: rounding.
 const AT_LIMIT: f64 = 1e-9;
@@ -14,87 +15,210 @@ const AT_LIMIT: f64 = 1e-9;
 /// Solutions nearer to each other in every joint (rad, m) are one.
 const SAME: f64 = 1e-6;
 
+/// A branch that is outside its limits by less (rad, m) may reach the pose within tolerances from inside them.
+const NEAR_LIMIT: f64 = 1e-4;
+
+/// Tolerances (m, rad) beyond which a pose without solutions, and without candidates near one, may still be reached.
+const WIDE: f64 = 1e-5;
+
+/// How many times more values of the parameter are tried where none has a solution.
+const FINER: usize = 4;
+
+/// Values of the parameter between two looks at the monitor.
+const VALUES_BETWEEN_LOOKS: usize = 64;
+
 /// What the closed form yields for one target.
 pub(super) struct AllBranches {
-    pub solutions: Vec<Solution>,
-    /// The nearest configuration, where it is proven that no solution exists inside the limits.
-    pub miss: Option<Solution>,
+    pub solutions: Solutions,
+    /// Why there is none, where that is proven.
+    pub obstruction: Option<String>,
     /// No solution inside the limits is missing, whole turns aside.
     pub complete: bool,
     /// One solution at least stands for a family, in which a joint is free.
     pub singular: bool,
+    /// The monitor asked to stop.
+    pub interrupted: bool,
 }
 
-/// The solutions at the whole turns nearest to `reference`; None where the closed form does not apply, or leaves open
-/// whether there are any.
-pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64]) -> Option<AllBranches> {
+/// The solutions at the whole turns nearest to `reference`; of a redundant arm those at `redundancy` values of its parameter. None
+/// where the closed form does not apply, or leaves open whether there are any.
+pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], redundancy: usize) -> Option<AllBranches> {
     let target = attempt.problem.target();
     let Target::Pose(pose) = target else { return None };
     let MultiStart { solver: descent, .. } = attempt.context.options().solver.restarted_descent()?;
     if !attempt.context.asks_for_pose_alone(target) {
         return None;
     }
-    let branches = attempt.context.robot().branches(pose)?;
-    attempt.budget.evaluations += branches.evaluations;
-    let mut found =
-        AllBranches { solutions: vec![], miss: None, complete: branches.complete, singular: branches.singular };
-    for q in &branches.qs {
-        found.add(attempt, &descent, reference, q);
+    let context = attempt.context;
+    let (robot, bounds) = (context.robot(), context.bounds());
+    let tolerance = attempt.problem.criterion().tolerance;
+    let mut taker = Taker {
+        turns: NearestTurns::new(robot, bounds, reference),
+        descent,
+        verified_is_solved: tolerance.position.min(tolerance.rotation) >= VERIFIED,
+        nearly: tolerance.position.max(tolerance.rotation) > WIDE,
+        found: AllBranches {
+            solutions: Solutions::new(robot.dof()),
+            obstruction: None,
+            complete: true,
+            singular: false,
+            interrupted: false,
+        },
+        attempt,
+    };
+    let count = match robot.family(pose) {
+        Some(_) if redundancy == 0 => return None,
+        Some(family) => {
+            taker.sample(&family, redundancy);
+            None
+        }
+        None => Some(taker.take_all(pose)?),
+    };
+    let mut found = taker.found;
+    if found.solutions.is_empty() {
+        found.obstruction = found.complete.then(|| match attempt.problem.beyond_reach(bounds) {
+            Some(beyond) => beyond.to_string(),
+            None => outside(count),
+        });
+        // The search goes on from what is left open.
+        found.obstruction.as_ref()?;
     }
-    if !found.solutions.is_empty() {
-        return Some(found);
-    }
-    found.complete.then(|| found.proven_miss(attempt, &descent, reference, &branches))
+    Some(found)
 }
 
-impl AllBranches {
-    /// Adds a branch if it is inside the limits. Of a family that is outside with its representative, another member may be
-    /// inside: a descent looks for it.
-    fn add(&mut self, attempt: &mut Attempt<'_, '_>, descent: &LevenbergMarquardt, reference: &[f64], q: &[f64; 6]) {
-        let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
-        let mut near = Point::from_slice(q);
-        bring_near(robot, bounds, reference, &mut near);
-        let mut clipped = near.clone();
-        bounds.clip(&mut clipped);
-        let inside = near.iter().zip(&clipped).all(|(near, clipped)| (near - clipped).abs() <= AT_LIMIT);
-        if !inside && !self.singular {
-            return;
-        }
-        attempt.budget.evaluations += 1;
-        let mut solved = inside && attempt.problem.assess(&clipped).score.solved;
-        if !solved {
-            // Outside, or the tolerances asked for are tighter than rounding allows the closed form.
-            self.complete = false;
-            (solved, clipped) = attempt.descend(descent, clipped);
-        }
-        let known = |other: &Solution| other.q.iter().zip(&clipped).all(|(a, b)| (a - b).abs() < SAME);
-        if solved && !self.solutions.iter().any(known) {
-            self.solutions.push(attempt.solution(Status::Solved, clipped));
+/// Where the solutions of a pose are that has none inside the limits; `count` is None if that is not known.
+fn outside(count: Option<usize>) -> String {
+    match count {
+        None => "no configuration inside the limits has this pose".into(),
+        Some(0) => "no configuration has this pose".into(),
+        Some(1) => "its one solution is outside the limits".into(),
+        Some(count) => format!("all {count} solutions are outside the limits"),
+    }
+}
+
+/// Takes the branches that are inside the limits.
+struct Taker<'a, 'm, 'p> {
+    attempt: &'a mut Attempt<'m, 'p>,
+    turns: NearestTurns<'a>,
+    descent: LevenbergMarquardt,
+    /// The tolerances are no tighter than those by which branches are verified.
+    verified_is_solved: bool,
+    /// The tolerances may be met although no branch is inside the limits.
+    nearly: bool,
+    found: AllBranches,
+}
+
+impl Taker<'_, '_, '_> {
+    /// Takes those of a redundant arm at `count` values of its parameter, or at more where none of them has a solution.
+    fn sample(&mut self, family: &PoseFamily<'_>, count: usize) {
+        let bounds = self.attempt.context.bounds();
+        let arcs = family.arcs(bounds.lower(), bounds.upper());
+        // Outside the arcs there is none: without arcs the pose is out of reach.
+        self.found.complete = arcs.is_empty();
+        for finer in [1, FINER, FINER * FINER] {
+            self.take_values(family, arcs.spread(count.saturating_mul(finer)));
+            if !self.found.solutions.is_empty() || self.found.interrupted || self.found.complete {
+                break;
+            }
         }
     }
 
-    /// The nearest configuration to a target without a solution; one at the very edge of the reach may meet the tolerances.
-    fn proven_miss(
-        mut self,
-        attempt: &mut Attempt<'_, '_>,
-        descent: &LevenbergMarquardt,
-        reference: &[f64],
-        branches: &ArmBranches,
-    ) -> Self {
-        let q = attempt.approach(descent, reference);
-        if attempt.problem.assess(&q).score.solved {
-            self.complete = false;
-            self.solutions.push(attempt.solution(Status::Solved, q));
-            return self;
+    fn take_values(&mut self, family: &PoseFamily<'_>, values: impl Iterator<Item = f64>) {
+        for (k, value) in values.enumerate() {
+            if k % VALUES_BETWEEN_LOOKS == VALUES_BETWEEN_LOOKS - 1 && !self.attempt.monitor.keep_going() {
+                self.found.interrupted = true;
+                break;
+            }
+            let branches = family.branches_at(value);
+            self.attempt.budget.evaluations += branches.evaluations;
+            self.found.singular |= branches.singular;
+            for (q, error) in branches.iter() {
+                self.take_inside(q, error);
+            }
         }
-        let beyond = attempt.problem.beyond_reach(attempt.context.bounds());
-        let obstruction = match (branches.qs.len(), beyond) {
-            (0, Some(beyond)) => beyond.to_string(),
-            (0, None) => "no configuration has this pose".into(),
-            (1, _) => "its one solution is outside the limits".into(),
-            (count, _) => format!("all {count} solutions are outside the limits"),
-        };
-        self.miss = Some(Solution { obstruction, ..attempt.solution(Status::OutOfReach, q) });
-        self
+    }
+
+    /// Takes those of an arm that is not redundant. Returns how many there are, limits aside; None without a closed form.
+    fn take_all(&mut self, pose: &Frame) -> Option<usize> {
+        let branches = self.attempt.context.robot().branches(pose)?;
+        self.take_branches(&branches);
+        self.nearly |= branches.nearly;
+        if self.found.solutions.is_empty() && self.found.complete && self.nearly {
+            self.take_beside();
+        }
+        Some(branches.len())
+    }
+
+    fn take_branches(&mut self, branches: &ArmBranches) {
+        self.attempt.budget.evaluations += branches.evaluations;
+        self.found.complete &= branches.complete;
+        self.found.singular |= branches.singular;
+        for (q, error) in branches.iter() {
+            // Of a family that is outside with its representative, another member may be inside.
+            if !self.take_inside(q, error) && branches.singular {
+                self.take_beyond(q);
+            }
+        }
+    }
+
+    /// Takes a branch if it is inside the limits.
+    #[inline]
+    fn take_inside(&mut self, q: &[f64], error: BranchError) -> bool {
+        let bounds = self.attempt.context.bounds();
+        let mut near = [0.0; MOST_JOINTS];
+        let near = &mut near[..q.len()];
+        near.copy_from_slice(q);
+        self.turns.bring_near(near);
+        for ((value, lower), upper) in near.iter_mut().zip(bounds.lower()).zip(bounds.upper()) {
+            let outside = (lower - *value).max(*value - upper);
+            if outside > AT_LIMIT {
+                self.nearly |= outside < NEAR_LIMIT;
+                return false;
+            }
+            *value = value.clamp(*lower, *upper);
+        }
+        if self.verified_is_solved {
+            let BranchError { position, rotation } = error;
+            self.found.solutions.push(near, TipError { position, rotation });
+        } else {
+            // The tolerances asked for may be tighter than rounding allows the closed form.
+            self.take_beyond(near);
+        }
+        true
+    }
+
+    /// Takes the branches of a pose that is within the tolerances, where the pose itself has none inside the limits: it is at the
+    /// edge of the reach, or beside what an arm with few joints can reach.
+    #[cold]
+    fn take_beside(&mut self) {
+        let q = self.attempt.approach(&self.descent, self.turns.reference());
+        if !self.attempt.problem.assess(&q).score.solved {
+            return;
+        }
+        self.found.complete = false;
+        let context = self.attempt.context;
+        let reached = context.robot().tip(&q);
+        let branches = context.robot().branches(&reached);
+        for (q, _) in branches.iter().flat_map(ArmBranches::iter) {
+            self.take_beyond(q);
+        }
+        if self.found.solutions.is_empty() {
+            self.found.solutions.push(&q, self.attempt.problem.assess(&q).error.into());
+        }
+    }
+
+    /// Takes the solution that a descent from `q` finds.
+    #[cold]
+    fn take_beyond(&mut self, q: &[f64]) {
+        self.found.complete = false;
+        let mut near = Point::from_slice(q);
+        self.turns.bring_near(&mut near);
+        self.attempt.context.bounds().clip(&mut near);
+        let q = self.attempt.descend_beyond(&self.descent, near, VERIFIED);
+        let assessment = self.attempt.problem.assess(&q);
+        let known = |other: &[f64]| other.iter().zip(&q).all(|(a, b)| (a - b).abs() < SAME);
+        if assessment.score.solved && !self.found.solutions.iter().any(|other| known(other.q)) {
+            self.found.solutions.push(&q, assessment.error.into());
+        }
     }
 }

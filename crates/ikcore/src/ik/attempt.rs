@@ -8,7 +8,7 @@ use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, Status, run};
-use crate::task::Goals;
+use crate::task::{Criterion, Goals, Tolerance};
 
 /// Number of starts for approaching a target out of reach.
 const APPROACHES: usize = 8;
@@ -89,6 +89,21 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (evaluator.best().solved, Point::from_slice(&evaluator.best().x))
     }
 
+    /// Descends once from `q`, beyond the tolerances as far as `tolerance` (m, rad) where those are wider; returns the best point.
+    pub fn descend_beyond(&mut self, descent: &LevenbergMarquardt, q: Point, tolerance: f64) -> Point {
+        let asked = *self.problem.criterion();
+        let Tolerance { position, rotation } = asked.tolerance;
+        let tighter = Tolerance { position: position.min(tolerance), rotation: rotation.min(tolerance) };
+        let (robot, target) = (self.context.robot(), self.problem.target());
+        let mut problem = Problem::new(robot, target, Criterion { tolerance: tighter, ..asked }).disregarding_turns();
+        let objective: &mut dyn Differentiable = &mut problem;
+        let mut evaluator =
+            Evaluator::new(objective, self.context.bounds(), self.budget.rest(0), self.rng, self.monitor);
+        run(descent, &mut evaluator, &q);
+        self.budget.add(&evaluator);
+        Point::from_slice(&evaluator.best().x)
+    }
+
     /// The best of a few descents towards a target that cannot be reached.
     pub fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64]) -> Point {
         let mut best: Option<(f64, Point)> = None;
@@ -105,6 +120,14 @@ impl<'m, 'p> Attempt<'m, 'p> {
             }
         }
         best.map_or(x, |(_, q)| q)
+    }
+
+    /// The result of approaching a target that cannot be reached.
+    pub fn approached(&mut self, x0: &[f64]) -> Solution {
+        let descent =
+            self.context.options().solver.restarted_descent().map_or_else(Default::default, |multi| multi.solver);
+        let q = self.approach(&descent, x0);
+        self.explained(Status::OutOfReach, q)
     }
 
     /// Moves `q` along its self-motion to the nearest optimum of `goals`; false if `q` is neither at nor near a

@@ -8,10 +8,10 @@ use super::all_branches::{AllBranches, all_branches};
 use super::attempt::Attempt;
 use super::context::SolveContext;
 use super::solution::Solution;
+use super::solutions::{SolutionView, Solutions};
 use super::solve_options::SolveOptions;
 use super::whole_turns::{all_turns, bring_near, count_of_turns};
 use crate::error::{Error, Result, require_positive};
-use crate::math::vector::distance;
 use crate::objective::{Bounds, Point};
 use crate::rng;
 use crate::robot::Robot;
@@ -29,7 +29,7 @@ const APART: f64 = 0.1;
 const MOST_TURNED: f64 = 10_000.0;
 
 /// How to look for all solutions.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct AllOptions {
     /// How to solve. Its budgets apply to the whole search; a closed form takes no search.
     pub each: SolveOptions,
@@ -38,21 +38,36 @@ pub struct AllOptions {
     /// Solutions count as the same where every joint differs by less (rad, m), whole turns aside. None: all of a closed form
     /// are returned, those of a search differ by 0.1.
     pub separation: Option<f64>,
+    /// A redundant arm with a closed form is solved at this many values of its parameter, spread over those that its limits allow.
+    /// 0: its solutions are searched for.
+    pub redundancy: usize,
     /// Return each solution at all whole turns inside the limits.
     pub turns: bool,
+}
+
+impl Default for AllOptions {
+    fn default() -> Self {
+        Self { each: SolveOptions::default(), limit: None, separation: None, redundancy: 16, turns: false }
+    }
 }
 
 /// Distinct solutions, and how the search ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SolutionSet {
     /// The solutions, nearest to the start first; without a start in the order of discovery.
-    pub solutions: Vec<Solution>,
-    /// The best miss if there is no solution.
-    pub miss: Option<Solution>,
+    pub solutions: Solutions,
+    /// Why there is no solution, where that is proven. [`nearest_miss`] then finds a configuration near the target.
+    pub obstruction: Option<String>,
+    /// The best miss of a search that found no solution.
+    pub miss: Option<Box<Solution>>,
     /// It is proven that there is no other solution inside the limits, whole turns aside.
     pub complete: bool,
     /// The pose is singular: one solution at least stands for a family, in which a joint is free.
     pub singular: bool,
+    /// Iterations of a search, over all starts.
+    pub iterations: usize,
+    /// Starts of a search beyond the first.
+    pub restarts: usize,
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
     /// Time taken.
@@ -62,13 +77,20 @@ pub struct SolutionSet {
 }
 
 impl SolutionSet {
-    /// [`Status::Solved`] if there is a solution, else why the last search ended.
+    /// [`Status::Solved`] if there is a solution, else why there is none.
     pub fn status(&self) -> Status {
-        self.miss.as_ref().map_or(Status::Solved, |miss| miss.status)
+        match (&self.obstruction, &self.miss) {
+            (Some(_), _) => Status::OutOfReach,
+            (None, Some(miss)) => miss.status,
+            (None, None) => Status::Solved,
+        }
     }
 
     /// The number of solutions, or why there are none.
     pub fn message(&self) -> String {
+        if let Some(obstruction) = &self.obstruction {
+            return format!("no solution ({obstruction}): {}", Status::OutOfReach.advice());
+        }
         let count = match (self.solutions.len(), &self.miss) {
             (0, Some(miss)) => return format!("no solution; best miss: {}", miss.message()),
             (1, _) => "1 solution".into(),
@@ -77,6 +99,36 @@ impl SolutionSet {
         let complete = if self.complete { ", no others inside the limits" } else { "" };
         let singular = if self.singular { "; the pose is singular: a family counts as one solution" } else { "" };
         format!("{count}{complete}{singular}")
+    }
+
+    /// A set with nothing said of it.
+    fn of(solutions: Solutions) -> Self {
+        Self {
+            solutions,
+            obstruction: None,
+            miss: None,
+            complete: false,
+            singular: false,
+            iterations: 0,
+            restarts: 0,
+            evaluations: 0,
+            elapsed: Duration::ZERO,
+            interrupted: false,
+        }
+    }
+
+    /// Solution number `i`, counted from 0, with the counts of all; None beyond the last.
+    pub fn solution(&self, i: usize) -> Option<Solution> {
+        self.solutions.get(i).map(|SolutionView { q, error }| Solution {
+            q: Point::from_slice(q),
+            status: Status::Solved,
+            error,
+            obstruction: String::new(),
+            iterations: self.iterations,
+            restarts: self.restarts,
+            evaluations: self.evaluations,
+            elapsed: self.elapsed,
+        })
     }
 }
 
@@ -96,7 +148,7 @@ pub fn solve_all(
     options: &AllOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<SolutionSet> {
-    let AllOptions { each, limit, separation, turns } = options;
+    let AllOptions { each, limit, separation, redundancy, turns } = options;
     separation.map_or(Ok(()), |separation| require_positive("separation", separation))?;
     if *limit == Some(0) {
         return Err(Error::out_of_range("limit", "at least 1", 0.0));
@@ -108,44 +160,61 @@ pub fn solve_all(
     let mut problem = context.problem(&target);
     let mut rng = rng::stream(each.seed, 0);
     let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
-    let reference = start.map_or_else(|| middle(context.robot(), context.bounds()), Point::from);
-    let branches = all_branches(&mut attempt, &reference);
+    let reference = start.map_or_else(|| middle(context.robot(), context.bounds()), Point::from_slice);
+    let branches = all_branches(&mut attempt, &reference, *redundancy);
     let limit = limit.unwrap_or(if branches.is_some() { usize::MAX } else { COLLECTED });
     let mut found = match branches {
         Some(branches) => by_closed_form(&attempt, branches, *separation),
         None => search(&mut attempt, start, &reference, limit, separation.unwrap_or(APART)),
     };
     if *turns {
-        found.solutions = at_all_turns(&context, found.solutions)?;
+        found.solutions = at_all_turns(&context, &found.solutions)?;
     }
     if let Some(start) = start {
-        found.solutions.sort_by(|a, b| distance(&a.q, start).total_cmp(&distance(&b.q, start)));
+        found.solutions.sort_by_distance(start);
     }
     found.complete &= found.solutions.len() <= limit;
     found.solutions.truncate(limit);
-    found.elapsed = attempt.budget.elapsed();
+    (found.iterations, found.restarts) = (attempt.budget.iterations, attempt.budget.restarts);
+    (found.evaluations, found.elapsed) = (attempt.budget.evaluations, attempt.budget.elapsed());
     Ok(found)
+}
+
+/// The nearest of a few descents towards a target that [`solve_all`] proves to be out of reach.
+///
+/// # Errors
+/// Any [`enum@Error`] for wrong input.
+pub fn nearest_miss(
+    robot: &Robot,
+    target: &Target,
+    options: &AllOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Solution> {
+    let context = SolveContext::new(robot, &options.each)?;
+    let target = context.read(target)?;
+    let mut problem = context.problem(&target);
+    let mut rng = rng::stream(options.each.seed, 0);
+    let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
+    let start = options.each.start.as_deref();
+    let reference = start.map_or_else(|| middle(context.robot(), context.bounds()), Point::from_slice);
+    Ok(attempt.approached(&reference))
 }
 
 /// The solutions of the closed form, thinned out where a separation is asked for.
 fn by_closed_form(attempt: &Attempt<'_, '_>, branches: AllBranches, separation: Option<f64>) -> SolutionSet {
-    let AllBranches { solutions: all, miss, complete, singular } = branches;
+    let AllBranches { solutions: all, obstruction, complete, singular, interrupted } = branches;
     let count = all.len();
-    let mut solutions = Vec::<Solution>::with_capacity(count);
-    for solution in all {
-        let known = |apart| is_known(attempt.context.robot(), &solutions, &solution.q, apart);
-        if !separation.is_some_and(known) {
-            solutions.push(solution);
-        }
-    }
+    let robot = attempt.context.robot();
+    let solutions = match separation {
+        Some(apart) => all.filtered(|kept, q| !is_known(robot, kept, q, apart)),
+        None => all,
+    };
     SolutionSet {
         complete: complete && solutions.len() == count,
-        solutions,
-        miss,
+        obstruction,
         singular,
-        evaluations: attempt.budget.evaluations,
-        elapsed: attempt.budget.elapsed(),
-        interrupted: false,
+        interrupted,
+        ..SolutionSet::of(solutions)
     }
 }
 
@@ -158,7 +227,7 @@ fn search(
 ) -> SolutionSet {
     let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
     let mut x0 = attempt.first_start(start);
-    let (mut solutions, mut known) = (Vec::<Solution>::new(), 0);
+    let (mut solutions, mut known) = (Solutions::new(robot.dof()), 0);
     let mut interrupted = false;
     let last = loop {
         let found = attempt.solve_from(&x0);
@@ -171,7 +240,7 @@ fn search(
             known += 1;
         } else {
             known = 0;
-            solutions.push(solution);
+            solutions.push(&solution.q, solution.error);
         }
         // Without a start any solutions will do; with one, the nearest are wanted, and they may come last.
         let enough = start.is_none() && solutions.len() == limit;
@@ -183,15 +252,14 @@ fn search(
         attempt.next_start(&mut x0);
     };
     interrupted |= last.as_ref().is_some_and(|solution| solution.status == Status::Interrupted);
-    let miss = last.filter(|_| solutions.is_empty());
-    let (evaluations, elapsed) = (attempt.budget.evaluations, attempt.budget.elapsed());
-    SolutionSet { solutions, miss, complete: false, singular: false, evaluations, elapsed, interrupted }
+    let miss = last.filter(|_| solutions.is_empty()).map(Box::new);
+    SolutionSet { miss, interrupted, ..SolutionSet::of(solutions) }
 }
 
 /// Each solution at all whole turns inside the limits.
-fn at_all_turns(context: &SolveContext<'_>, solutions: Vec<Solution>) -> Result<Vec<Solution>> {
+fn at_all_turns(context: &SolveContext<'_>, solutions: &Solutions) -> Result<Solutions> {
     let (robot, bounds) = (context.robot(), context.bounds());
-    let count: f64 = solutions.iter().map(|solution| count_of_turns(robot, bounds, &solution.q)).sum();
+    let count: f64 = solutions.iter().map(|solution| count_of_turns(robot, bounds, solution.q)).sum();
     if count > MOST_TURNED {
         return Err(Error::Contradiction {
             problem: format!(
@@ -199,11 +267,11 @@ fn at_all_turns(context: &SolveContext<'_>, solutions: Vec<Solution>) -> Result<
             ),
         });
     }
-    let turned = |solution: &Solution| {
-        let all = all_turns(robot, bounds, &solution.q);
-        all.into_iter().map(|q| Solution { q, ..solution.clone() }).collect::<Vec<_>>()
-    };
-    Ok(solutions.iter().flat_map(turned).collect())
+    let mut turned = Solutions::new(robot.dof());
+    for SolutionView { q, error } in solutions.iter() {
+        all_turns(robot, bounds, q).iter().for_each(|q| turned.push(q, error));
+    }
+    Ok(turned)
 }
 
 /// The middle of the ranges that joints are sampled from.
@@ -218,10 +286,10 @@ fn middle(robot: &Robot, bounds: &Bounds) -> Point {
 }
 
 /// Whether no joint differs by `separation` from one of the `solutions`, whole turns aside.
-fn is_known(robot: &Robot, solutions: &[Solution], q: &[f64], separation: f64) -> bool {
-    let apart = |j: usize, other: &Solution| {
-        let difference = other.q[j] - q[j];
+fn is_known(robot: &Robot, solutions: &Solutions, q: &[f64], separation: f64) -> bool {
+    let apart = |j: usize, other: &[f64]| {
+        let difference = other[j] - q[j];
         robot.turn_period(j).map_or(difference, |turn| difference - turn * (difference / turn).round())
     };
-    solutions.iter().any(|other| (0..q.len()).all(|j| apart(j, other).abs() < separation))
+    solutions.iter().any(|other| (0..q.len()).all(|j| apart(j, other.q).abs() < separation))
 }

@@ -1,26 +1,59 @@
 //! Whole turns of joints: the same posture nearer to a reference, or at every turn.
 
+use smallvec::SmallVec;
+
+use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
 /// Shifts each joint by whole turns to be as near as possible to `reference` within its limits.
 pub(crate) fn bring_near(robot: &Robot, bounds: &Bounds, reference: &[f64], q: &mut [f64]) {
-    for j in 0..q.len() {
-        let Some(period) = robot.turn_period(j) else { continue };
-        let (lower, upper) = (bounds.lower()[j], bounds.upper()[j]);
-        let turns = ((reference[j] - q[j]) / period).round();
-        let (fewest, most) = (((lower - q[j]) / period).ceil(), ((upper - q[j]) / period).floor());
-        let turned = q[j] + turns.max(fewest).min(most) * period;
-        // Rounding may pass a limit.
-        if lower <= turned && turned <= upper {
-            q[j] = turned;
+    NearestTurns::new(robot, bounds, reference).bring_near(q);
+}
+
+/// What [`bring_near`] needs, prepared for many configurations.
+pub(super) struct NearestTurns<'a> {
+    bounds: &'a Bounds,
+    reference: &'a [f64],
+    /// The period of each joint; 0 where there is none.
+    periods: SmallVec<[f64; MAX_DOF]>,
+}
+
+impl<'a> NearestTurns<'a> {
+    pub fn new(robot: &Robot, bounds: &'a Bounds, reference: &'a [f64]) -> Self {
+        let periods = (0..reference.len()).map(|j| robot.turn_period(j).unwrap_or(0.0)).collect();
+        Self { bounds, reference, periods }
+    }
+
+    /// The configuration to be near to (n,).
+    pub fn reference(&self) -> &'a [f64] {
+        self.reference
+    }
+
+    /// Shifts each joint by whole turns to be as near as possible to the reference within its limits.
+    #[inline]
+    pub fn bring_near(&self, q: &mut [f64]) {
+        for (j, (value, period)) in q.iter_mut().zip(&self.periods).enumerate() {
+            let (lower, upper) = (self.bounds.lower()[j], self.bounds.upper()[j]);
+            let away = self.reference[j] - *value;
+            let is_near = 2.0 * away.abs() < *period && lower <= *value && *value <= upper;
+            if is_near || *period == 0.0 {
+                continue;
+            }
+            let turns = (away / period).round();
+            let (fewest, most) = (((lower - *value) / period).ceil(), ((upper - *value) / period).floor());
+            let turned = *value + turns.max(fewest).min(most) * period;
+            // Rounding may pass a limit.
+            if lower <= turned && turned <= upper {
+                *value = turned;
+            }
         }
     }
 }
 
 /// All configurations inside the limits that differ from `q` by whole turns, `q` first. Joints without limits stay.
-pub(super) fn all_turns(robot: &Robot, bounds: &Bounds, q: &Point) -> Vec<Point> {
-    let mut all = vec![q.clone()];
+pub(super) fn all_turns(robot: &Robot, bounds: &Bounds, q: &[f64]) -> Vec<Point> {
+    let mut all = vec![Point::from_slice(q)];
     for j in 0..q.len() {
         let others = other_turns(robot, bounds, q, j);
         for i in 0..all.len() {
@@ -37,19 +70,19 @@ pub(super) fn all_turns(robot: &Robot, bounds: &Bounds, q: &Point) -> Vec<Point>
 }
 
 /// How many configurations [`all_turns`] returns.
-pub(super) fn count_of_turns(robot: &Robot, bounds: &Bounds, q: &Point) -> f64 {
+pub(super) fn count_of_turns(robot: &Robot, bounds: &Bounds, q: &[f64]) -> f64 {
     (0..q.len()).map(|j| range_of_turns(robot, bounds, q, j).map_or(1.0, |(_, low, high)| high - low + 1.0)).product()
 }
 
 /// Where whole turns take joint `j` inside its limits, besides where it is.
-fn other_turns(robot: &Robot, bounds: &Bounds, q: &Point, j: usize) -> Vec<f64> {
+fn other_turns(robot: &Robot, bounds: &Bounds, q: &[f64], j: usize) -> Vec<f64> {
     let Some((period, low, high)) = range_of_turns(robot, bounds, q, j) else { return vec![] };
     let turns = (low as i64..=high as i64).filter(|turns| *turns != 0);
     turns.map(|turns| (q[j] + turns as f64 * period).clamp(bounds.lower()[j], bounds.upper()[j])).collect()
 }
 
 /// The period of joint `j`, and the fewest and most whole turns that keep it inside its limits, up to rounding.
-fn range_of_turns(robot: &Robot, bounds: &Bounds, q: &Point, j: usize) -> Option<(f64, f64, f64)> {
+fn range_of_turns(robot: &Robot, bounds: &Bounds, q: &[f64], j: usize) -> Option<(f64, f64, f64)> {
     const ROUNDING: f64 = 1e-12;
     let period = robot.turn_period(j)?;
     let (low, high) = ((bounds.lower()[j] - q[j]) / period, (bounds.upper()[j] - q[j]) / period);

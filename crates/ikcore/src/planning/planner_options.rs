@@ -72,6 +72,8 @@ impl FromStr for AlongPathMethod {
 /// Options of [`plan_point_to_point`](super::plan_point_to_point).
 #[derive(Debug, Clone, Default)]
 pub struct PointToPointOptions {
+    /// Velocity at the start (n,) (rad/s, m/s), which must then be a configuration. `None` begins at rest.
+    pub start_velocity: Option<Vec<f64>>,
     /// The planner.
     pub method: PointToPointMethod,
     /// Quantity to minimise.

@@ -6,8 +6,9 @@ use std::sync::{Arc, OnceLock};
 use super::description::{Description, Element};
 use super::joint::Joint;
 use super::link_capsule::Bodies;
-use crate::closed_form::{ArmBranches, ClosedFormArm, NoClosedForm};
+use crate::closed_form::{ArmBranches, ClosedFormArm, NoClosedForm, PoseFamily};
 use crate::error::{Error, Result, require_finite};
+use crate::interrupt::checkpoint_at;
 use crate::kinematics::chain::Chain;
 use crate::kinematics::kernels::Kernels;
 use crate::kinematics::{Reach, TaskRank};
@@ -191,7 +192,8 @@ impl Robot {
         if qs.try_reserve_exact(count.saturating_mul(self.dof())).is_err() {
             return Err(Error::out_of_range("number of configurations", "small enough for memory", count as f64));
         }
-        for _ in 0..count {
+        for row in 0..count {
+            checkpoint_at(row)?;
             qs.extend(ranges.iter().map(|(lower, upper)| rng.uniform_in(*lower, *upper)));
         }
         Ok(qs)
@@ -216,23 +218,33 @@ impl Robot {
     /// The structure that the closed form of the inverse kinematics rests on and how many solutions it allows, or "none: " and
     /// the reason. Decided at the first call.
     pub fn closed_form(&self) -> String {
+        let name = |joint: usize| self.joints()[joint].name.clone();
         match self.closed_form_or_reason() {
-            Ok(form) => form.structure(),
-            Err(NoClosedForm::Joints(count)) => format!("none: {count} joints; closed forms are for 6"),
-            Err(NoClosedForm::Drives { joint, axes }) => {
-                format!("none: joint '{}' drives {axes} axes", self.joints()[*joint].name)
-            }
+            Ok(form) => form.structure(name),
+            Err(NoClosedForm::Joints(count)) => format!("none: {count} joints; closed forms are for 3 to 7"),
+            Err(NoClosedForm::Drives { joint, axes }) => format!("none: joint '{}' drives {axes} axes", name(*joint)),
             Err(NoClosedForm::Rank(rank)) => format!("none: the tip moves in {rank} of 6 directions"),
+            Err(NoClosedForm::Joined) => "none: arms of 3 and 4 joints have one if they are planar or SCARAs".into(),
             Err(NoClosedForm::Sliding) => "none: no method fits these sliding joints".into(),
         }
     }
 
-    /// All configurations that bring the tip to `pose`, limits aside; None without a closed form.
+    /// All configurations that bring the tip to `pose`, limits aside; None without a closed form and for redundant arms.
     pub(crate) fn branches(&self, pose: &Frame) -> Option<ArmBranches> {
+        self.closed_form_or_reason().as_ref().ok()?.solve(&self.at_flange(pose))
+    }
+
+    /// All configurations of a redundant arm that bring the tip to `pose`, by one parameter; None without a closed form and for arms
+    /// that are not redundant.
+    pub(crate) fn family(&self, pose: &Frame) -> Option<PoseFamily<'_>> {
         let form = self.closed_form_or_reason().as_ref().ok()?;
+        if form.is_redundant() { form.family(self.at_flange(pose)) } else { None }
+    }
+
+    /// The pose of the flange, seen from the first link, that brings the tip to `pose`.
+    fn at_flange(&self, pose: &Frame) -> Frame {
         let (base, tool) = (Frame::from(&self.base), Frame::from(&self.tool));
-        let flange = base.inverse().then::<Baseline>(pose).then::<Baseline>(&tool.inverse());
-        Some(form.solve(&flange))
+        base.inverse().then::<Baseline>(pose).then::<Baseline>(&tool.inverse())
     }
 
     fn closed_form_or_reason(&self) -> &std::result::Result<ClosedFormArm, NoClosedForm> {

@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use super::Obstacles;
 use crate::convert::{Rows, row, rows};
 use crate::error::raise;
+use crate::monitor::in_pieces;
 use crate::robot::PyRobot;
 
 /// Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
@@ -34,8 +35,8 @@ pub fn clearance<'py>(
     match rows("joint angles", robot.core.name(), robot.core.dof(), q)? {
         Rows::One(q) => Ok(scene.clearance(q.as_slice()?).map_err(raise)?.into_pyobject(py)?.into_any()),
         Rows::Many(q, _) => {
-            let (scene, q) = (&scene, q.as_slice()?);
-            Ok(row(py, py.detach(|| scene.clearances(q)).map_err(raise)?).into_any())
+            let clearances = in_pieces(py, q.as_slice()?, robot.core.dof(), |q| scene.clearances(q))?;
+            Ok(row(py, clearances).into_any())
         }
     }
 }

@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use super::body::PyObstacle;
 use crate::convert::{Array, array, copied, entries, matrix3, point, shape_text, table};
 use crate::error::{invalid, raise};
+use crate::monitor::on_a_thread;
 
 /// A vector stored by a class; Python gets a read-only array.
 #[derive(Clone, Copy)]
@@ -205,8 +206,10 @@ impl PyConvexMesh {
         let numbers = array("points", points)?;
         match numbers.shape() {
             [_, 3] => {
-                let points = numbers.as_slice()?.as_chunks().0.to_vec();
-                made(Obstacle::convex_mesh(&points), Self { points })
+                let given: Vec<[f64; 3]> = numbers.as_slice()?.as_chunks().0.to_vec();
+                let points = given.clone();
+                let hull = on_a_thread(numbers.py(), move || Obstacle::convex_mesh(&given))?;
+                made(Ok(hull), Self { points })
             }
             shape => Err(invalid(format!("points: expected shape (k, 3), got {}", shape_text(shape)))),
         }

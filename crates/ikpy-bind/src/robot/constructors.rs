@@ -10,6 +10,7 @@ use super::PyRobot;
 use super::modified_copies::per_joint;
 use crate::convert::{rigid, summary, vector};
 use crate::error::{invalid, raise};
+use crate::monitor::on_a_thread;
 
 #[pymethods]
 impl PyRobot {
@@ -44,7 +45,9 @@ impl PyRobot {
                 }
             },
         };
-        Robot::from_urdf(&source, base, tip).map(Self::from).map_err(raise)
+        let [base, tip] = [base, tip].map(|link| link.map(str::to_owned));
+        let robot = on_a_thread(path_or_xml.py(), move || Robot::from_urdf(&source, base.as_deref(), tip.as_deref()))?;
+        Ok(Self::from(robot))
     }
 
     /// Makes a robot from Denavit-Hartenberg parameters, one row per joint.
@@ -125,8 +128,14 @@ impl PyRobot {
     /// Raises:
     ///     UnknownNameError: lists the names and suggests the nearest.
     #[staticmethod]
-    fn named(#[pyo3(from_py_with = crate::convert::text)] name: &str) -> PyResult<Self> {
-        Robot::named(name).map(Self::from).map_err(raise)
+    fn named(name: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let Ok(text) = name.extract::<String>() else {
+            let (got, known) = (summary(name), Robot::names().collect::<Vec<_>>().join(", "));
+            return Err(invalid(format!(
+                "name must be the name of a built-in robot, got {got}; known robots: {known}"
+            )));
+        };
+        Robot::named(&text).map(Self::from).map_err(raise)
     }
 
     /// Returns the names of the built-in robots.

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use super::PyRobot;
 use crate::convert::{Rows, count, pose_array, rows, table, vector};
 use crate::error::raise;
+use crate::monitor::{in_pieces, long_call};
 
 #[pymethods]
 impl PyRobot {
@@ -31,7 +32,10 @@ impl PyRobot {
                 self.core.check("joint angles", q.as_slice()?).map_err(raise)?;
                 table(py, self.core.clip_all(q.as_slice()?).map_err(raise)?, &[n])
             }
-            Rows::Many(q, m) => table(py, self.core.clip_all(q.as_slice()?).map_err(raise)?, &[m, n]),
+            Rows::Many(q, m) => {
+                let (robot, q) = (&*self.core, q.as_slice()?);
+                table(py, in_pieces(py, q, n, |q| robot.clip_all(q))?, &[m, n])
+            }
         }
     }
 
@@ -67,27 +71,7 @@ impl PyRobot {
         seed: i128,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (m, seed) = (count("m", m)?, count("seed", seed)?);
-        table(py, self.core.random_configurations(m, &mut rng::stream(seed, 0)).map_err(raise)?, &[m, self.core.dof()])
+        let drawn = long_call(py, || self.core.random_configurations(m, &mut rng::stream(seed, 0)))?;
+        table(py, drawn, &[m, self.core.dof()])
     }
-}
-
-/// Runs `work` on rows of `n` numbers without the interpreter, and checks for Ctrl-C in between.
-pub fn in_pieces(
-    py: Python<'_>,
-    rows: &[f64],
-    n: usize,
-    work: impl Fn(&[f64]) -> ikcore::Result<Vec<f64>> + Sync,
-) -> PyResult<Vec<f64>> {
-    /// Rows that take about ten milliseconds.
-    const PIECE: usize = 1 << 17;
-    if rows.len() <= PIECE * n {
-        return py.detach(|| work(rows)).map_err(raise);
-    }
-    let mut results = vec![];
-    for piece in rows.chunks(PIECE * n) {
-        py.check_signals()?;
-        // On an error, run again on all rows: its message counts from the first one.
-        results.extend(py.detach(|| work(piece).or_else(|_| work(rows))).map_err(raise)?);
-    }
-    Ok(results)
 }

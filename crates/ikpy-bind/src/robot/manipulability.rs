@@ -6,10 +6,10 @@ use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 
 use super::PyRobot;
-use super::kinematics::in_pieces;
 use crate::convert::{Rows, row, rows, table, vector};
 use crate::error::raise;
 use crate::hash::content_hash;
+use crate::monitor::in_pieces;
 use crate::pickling::{self, Reduced};
 
 /// The ellipsoid of tip velocities for unit joint speeds, |q'| = 1. It has one semi-axis for each direction in which the

@@ -114,6 +114,14 @@ impl PyRobot {
         Ok(limits.clone_ref(py))
     }
 
+    /// The limits that the maker rates the arm for: `limits`, with acceleration and jerk limits where it publishes them
+    /// (`panda` and `fr3`, from the maker's "Robot and interface specifications"). Give them as `limits=` where they are
+    /// wanted; nothing uses them on its own.
+    #[getter]
+    fn rated_limits(&self) -> PyLimits {
+        PyLimits::rated(&self.core)
+    }
+
     /// Collision capsules of the links, each (link, a, b, radius). A capsule is all points within the radius (m) of the
     /// segment from a (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a
     /// URDF.

@@ -18,7 +18,9 @@ pub use quadratic_form::{Linear, QuadraticForm, two_linear_equations};
 use crate::closed_form::angle::Angle;
 
 /// Largest negative radicand, relative to its terms, that counts as a double root.
-pub const CLAMP: f64 = 1e-9;
+///
+/// Rounding needs 1e-9. A pose just beyond the edge of reach, by the tolerances of a caller, is to be noticed too.
+pub const CLAMP: f64 = 1e-4;
 
 /// At most `N` rotations.
 #[derive(Debug, Clone, Copy)]

@@ -6,10 +6,13 @@ mod residuals;
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
-use crate::closed_form::branches::{Branches, Candidates};
+use crate::closed_form::branches::{BranchError, Branches, Candidates};
 use crate::math::Frame;
-use crate::math::arithmetic::{Arithmetic, by_instructions};
+use crate::math::arithmetic::{Arithmetic, Baseline, by_instructions};
 use residuals::{FixedFrames, LANES};
+
+/// Every branch brings the tip nearer to the pose than this (m, rad): entries within [`polish::TOLERANCE`].
+pub(crate) const VERIFIED: f64 = 3.0 * polish::TOLERANCE;
 
 /// Candidates with a larger residual (m, rad) are polished: beside singular poses a residual within [`polish::TOLERANCE`]
 /// leaves more than that in the angles.
@@ -40,6 +43,16 @@ impl<const N: usize> Verifier<N> {
         self.accept_polished(target, candidate.map(Angle::angle), found);
     }
 
+    /// Adds the branch near joint values, if there is one.
+    pub fn add_near(&self, target: &Frame, set: [f64; N], found: &mut Branches<N>) {
+        self.accept_polished(target, set, found);
+    }
+
+    /// The candidates that bring the tip to `target`, as joint values. Where speed matters, [`verified`] and [`verified_seven`].
+    pub fn verified(&self, target: &Frame, candidates: &Candidates<N>) -> Branches<N> {
+        self.branches_by::<Baseline>(target, candidates)
+    }
+
     #[inline(always)]
     fn branches_by<A: Arithmetic>(&self, target: &Frame, candidates: &Candidates<N>) -> Branches<N> {
         let mut found = Branches::none();
@@ -51,7 +64,7 @@ impl<const N: usize> Verifier<N> {
             let angles = angles::angles::<A, N>(&self.slides, candidates, first);
             for lane in 0..LANES.min(candidates.count - first) {
                 let set = std::array::from_fn(|k| angles[k][lane]);
-                self.accept(target, residuals[lane], set, &mut found);
+                self.accept(target, residuals.worst[lane], set, residuals.error(lane), &mut found);
             }
             first += LANES;
         }
@@ -59,9 +72,9 @@ impl<const N: usize> Verifier<N> {
     }
 
     #[inline(always)]
-    fn accept(&self, target: &Frame, residual: f64, set: [f64; N], found: &mut Branches<N>) {
+    fn accept(&self, target: &Frame, residual: f64, set: [f64; N], error: BranchError, found: &mut Branches<N>) {
         if residual <= GOOD {
-            push_new(set, &self.slides, found);
+            push_new(set, error, &self.slides, found);
         } else if residual <= self.worth_polishing {
             self.accept_polished(target, set, found);
         }
@@ -69,8 +82,9 @@ impl<const N: usize> Verifier<N> {
 
     #[cold]
     fn accept_polished(&self, target: &Frame, set: [f64; N], found: &mut Branches<N>) {
-        if let Some(set) = polish::polished(&self.chain, target, set, &mut found.evaluations) {
-            push_new(set, &self.slides, found);
+        match polish::polished(&self.chain, target, set, &mut found.evaluations) {
+            Some((set, error)) => push_new(set, error, &self.slides, found),
+            None => found.nearly = true,
         }
     }
 }
@@ -82,14 +96,21 @@ by_instructions! {
     }
 }
 
+by_instructions! {
+    /// The same for seven joints.
+    pub fn verified_seven(verifier: &Verifier<7>, target: &Frame, candidates: &Candidates<7>) -> Branches<7> {
+        verifier.branches_by::<A>(target, candidates)
+    }
+}
+
 /// Adds a branch unless it is there already.
 #[inline(always)]
-fn push_new<const N: usize>(set: [f64; N], slides: &[bool; N], found: &mut Branches<N>) {
+fn push_new<const N: usize>(set: [f64; N], error: BranchError, slides: &[bool; N], found: &mut Branches<N>) {
     let near = |a: f64, b: f64, slides: bool| {
         let apart = (a - b).abs();
         apart < SAME || !slides && std::f64::consts::TAU - apart < SAME
     };
     if !found.iter().any(|other| (0..N).all(|k| near(other[k], set[k], slides[k]))) {
-        found.push(set);
+        found.push(set, error);
     }
 }

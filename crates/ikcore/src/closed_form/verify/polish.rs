@@ -2,6 +2,7 @@
 
 use super::residuals::difference;
 use crate::closed_form::axis_chain::{AxisChain, AxisMotion};
+use crate::closed_form::branches::BranchError;
 use crate::closed_form::vector::{Vector, add, cross, scaled, sub};
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
@@ -20,31 +21,33 @@ pub fn polished<const N: usize>(
     target: &Frame,
     mut q: [f64; N],
     evaluations: &mut usize,
-) -> Option<[f64; N]> {
+) -> Option<([f64; N], BranchError)> {
     let mut last = f64::INFINITY;
-    let mut best = (f64::INFINITY, q);
+    let mut best = (f64::INFINITY, q, BranchError::default());
     for _ in 0..ITERATIONS {
         *evaluations += 1;
         let (tip, columns) = jacobian(chain, &q);
         let residual = difference(&tip, target);
+        let error = error(&tip, target);
         if residual < best.0 {
-            best = (residual, q);
+            best = (residual, q, BranchError { position: length(&error[..3]), rotation: length(&error[3..]) });
         }
         // Beyond the tolerance while it still pays.
         if !(residual.is_finite()) || residual <= TOLERANCE && residual > 0.1 * last || residual < 1e-14 {
             break;
         }
         last = residual;
-        let error = error(&tip, target);
         let square = error.iter().map(|e| e * e).sum::<f64>();
         let step = damped_step(&columns, &error, 1e-3 * square.min(1.0) + 1e-16);
         (0..N).for_each(|k| q[k] += step[k]);
     }
-    (best.0 <= TOLERANCE).then(|| {
-        std::array::from_fn(
-            |k| if chain.joints[k].motion == AxisMotion::Turns { wrapped(best.1[k]) } else { best.1[k] },
-        )
-    })
+    let (residual, q, error) = best;
+    let turns = |k: usize| chain.joints[k].motion == AxisMotion::Turns;
+    (residual <= TOLERANCE).then(|| (std::array::from_fn(|k| if turns(k) { wrapped(q[k]) } else { q[k] }), error))
+}
+
+fn length(v: &[f64]) -> f64 {
+    v.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
 }
 
 /// The same angle in (-pi, pi].

@@ -1,7 +1,7 @@
 //! Forward kinematics of several candidates side by side.
 
 use crate::closed_form::axis_chain::AxisChain;
-use crate::closed_form::branches::Candidates;
+use crate::closed_form::branches::{BranchError, Candidates};
 use crate::closed_form::vector::{Vector, cross, dot, perpendicular};
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
@@ -27,7 +27,24 @@ impl<const N: usize> FixedFrames<N> {
     }
 }
 
-/// Largest entry by which tip position, x axis and z axis miss the target, for eight candidates from `first` on.
+/// By how much eight candidates miss the target.
+#[derive(Debug, Clone, Copy)]
+pub struct Residuals {
+    /// Largest entry of the differences of position, x axis and z axis.
+    pub worst: Lanes,
+    position: Lanes,
+    rotation: Lanes,
+}
+
+impl Residuals {
+    /// Distance and angle of one candidate.
+    #[inline(always)]
+    pub fn error(&self, lane: usize) -> BranchError {
+        BranchError { position: self.position[lane].sqrt(), rotation: self.rotation[lane].sqrt() }
+    }
+}
+
+/// The residuals of eight candidates from `first` on.
 ///
 /// Runs from tip to base, so that only the three vectors compared are carried.
 #[inline(always)]
@@ -37,7 +54,7 @@ pub fn residuals<A: Arithmetic, const N: usize>(
     target: &Frame,
     candidates: &Candidates<N>,
     first: usize,
-) -> Lanes {
+) -> Residuals {
     let tip = &frames.tip;
     let mut carried = [tip.origin, tip.axes[0], tip.axes[2]].map(|v| v.map(|entry| [entry; LANES]));
     for k in (0..N).rev() {
@@ -58,21 +75,39 @@ pub fn residuals<A: Arithmetic, const N: usize>(
         carried[1] = turned::<A>(frame, &carried[1], &[0.0; 3]);
         carried[2] = turned::<A>(frame, &carried[2], &[0.0; 3]);
     }
+    compared(&mut carried, target)
+}
+
+/// The residuals of position, x axis and z axis, which become differences from the target.
+#[inline(always)]
+fn compared(carried: &mut [[Lanes; 3]; 3], target: &Frame) -> Residuals {
     let mut worst = [0.0; LANES];
-    for (v, goal) in carried.iter().zip([&target.origin, &target.axes[0], &target.axes[2]]) {
+    let mut squares = [[0.0; LANES]; 3];
+    let mut about_y = [0.0; LANES];
+    for ((v, goal), square) in
+        carried.iter_mut().zip([&target.origin, &target.axes[0], &target.axes[2]]).zip(&mut squares)
+    {
         for k in 0..3 {
             for w in 0..LANES {
-                let off = (v[k][w] - goal[k]).abs();
+                v[k][w] -= goal[k];
+                square[w] += v[k][w] * v[k][w];
+                let off = v[k][w].abs();
                 worst[w] = if off > worst[w] { off } else { worst[w] };
             }
         }
     }
-    // NaN compares as not larger: it must not pass.
+    let [position, of_x, of_z] = squares;
+    let mut rotation = [0.0; LANES];
     for w in 0..LANES {
-        let sum = carried[0][0][w] + carried[1][0][w] + carried[2][0][w];
+        // A small rotation w moves x by w cross x: its part about y moves both axes and counts once.
+        about_y[w] = (0..3).map(|k| carried[2][k][w] * target.axes[0][k]).sum();
+        let square = of_x[w] + of_z[w] - about_y[w] * about_y[w];
+        rotation[w] = if square > 0.0 { square } else { 0.0 };
+        // NaN compares as not larger: it must not pass.
+        let sum = position[w] + of_x[w] + of_z[w];
         worst[w] = if sum.is_finite() { worst[w] } else { f64::INFINITY };
     }
-    worst
+    Residuals { worst, position, rotation }
 }
 
 /// A frame at `point` whose z axis is `axis`.

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::obstacle::{Scene, Sweep};
 use crate::planning::collision_checks::{RESERVE, TimedMotion, as_lines, refuse_collision, scene, too_near};
+use crate::planning::cost::tip_travel_along;
 use crate::planning::{Cost, Endpoint, Improvement, MotionLimits, Plan, PointToPointOptions};
 use crate::rng;
 use crate::solver::{Monitor, Status};
@@ -88,11 +89,8 @@ enum Certified {
     Nothing(Status),
 }
 
-/// Sorts pairs by the cost of the straight motion between them. By time they are sorted already.
+/// Sorts pairs by the cost of the straight motion between them.
 fn sort_by_cost(open: &mut Vec<EndPair>, search: &PairSearch, objective: Cost) -> Result<()> {
-    if objective == Cost::Time {
-        return Ok(());
-    }
     let cost = |pair: EndPair| Ok((objective.of(search.robot, &straight(&pair, search.limits)?), pair));
     let mut by_cost = open.drain(..).map(cost).collect::<Result<Vec<(f64, EndPair)>>>()?;
     by_cost.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -109,19 +107,25 @@ struct PathSearch<'s, 'a> {
 }
 
 impl PathSearch<'_, '_> {
-    /// Returns the first collision-free straight motion between `open` pairs; else the cheapest of several paths around
-    /// obstacles.
+    /// Returns the cheapest motion found: straight between the pair of `open` that comes first, if that is collision-free;
+    /// else the cheapest of the first collision-free straight motion and of several paths around obstacles. `open` is
+    /// sorted by the cost of the straight motions.
     fn best(self, open: &[EndPair], monitor: &mut dyn Monitor) -> Result<Certified> {
         let Self { trees, search, options, margin } = self;
         let limits = search.limits;
-        for pair in open {
+        let mut best: Option<(f64, Trajectory)> = None;
+        for (i, pair) in open.iter().enumerate() {
             if search.deadline.is_over() {
                 return Ok(Certified::Nothing(Status::BudgetSpent));
             }
             if trees.is_clear(&pair.start, &pair.end) {
                 let trajectory = straight(pair, limits)?;
                 if keeps_clear(trees, &trajectory, margin) {
-                    return Ok(Certified::Motion(trajectory));
+                    if i == 0 {
+                        return Ok(Certified::Motion(trajectory));
+                    }
+                    best = Some((options.objective.of(search.robot, &trajectory), trajectory));
+                    break;
                 }
             }
         }
@@ -129,12 +133,15 @@ impl PathSearch<'_, '_> {
         let start = &open[0].start;
         let ends: Vec<Vec<f64>> =
             open.iter().filter(|pair| pair.start == *start).map(|pair| pair.end.to_vec()).collect();
-        let mut best: Option<(f64, Trajectory)> = None;
         let motion = |best: (f64, Trajectory)| Certified::Motion(best.1);
+        // In joint space a line is the shortest way, and the quickest, but the tip may take a longer one.
+        let travel = |points: &[Vec<f64>]| tip_travel_along(search.robot, points);
+        let shortens =
+            |old: &[Vec<f64>], new: &[Vec<f64>]| options.objective != Cost::TipTravel || travel(new) <= travel(old);
         for attempt in 1..=PATHS {
             let mut rng = rng::stream(options.seed, attempt);
             let path = match trees.connect(start, &ends, &mut rng, monitor) {
-                Connection::Found(path) => trees.shorten(path, &mut rng, monitor),
+                Connection::Found(path) => trees.shorten(path, &shortens, &mut rng, monitor),
                 Connection::NotFound => break,
                 Connection::Interrupted => {
                     return Ok(best.map_or(Certified::Nothing(Status::Interrupted), motion));
@@ -228,6 +235,8 @@ fn finish(
         accuracy: None,
         reference: None,
         redundancy: vec![],
+        path: vec![],
+        peak: None,
         violations,
         status,
         evaluations,

@@ -45,9 +45,9 @@ impl PairSearch<'_> {
         };
         let each =
             SolveOptions { limits: Some(self.position_limits.clone()), seed: self.seed, ..SolveOptions::default() };
-        let options = AllOptions { each, limit: Some(BRANCHES), ..AllOptions::default() };
+        let options = AllOptions { each, limit: Some(BRANCHES), redundancy: 0, ..AllOptions::default() };
         let found = solve_all(self.robot, target, &options, monitor)?;
         self.evaluations += found.evaluations;
-        Ok(found.solutions.into_iter().map(|solution| solution.q).collect())
+        Ok(found.solutions.iter().map(|solution| Point::from_slice(solution.q)).collect())
     }
 }

@@ -141,14 +141,16 @@ impl<'a> TreeSearch<'a> {
         reached
     }
 
-    /// Shortens a path: removes unnecessary points, then tries random shortcuts.
+    /// Shortens a path: removes unnecessary points, then tries random shortcuts. Takes only what `shortens` an old stretch of
+    /// points by a new one with the same ends.
     pub(super) fn shorten(
         &mut self,
         path: JointPolyline,
+        shortens: &dyn Fn(&[Vec<f64>], &[Vec<f64>]) -> bool,
         rng: &mut LazyRng,
         monitor: &mut dyn Monitor,
     ) -> JointPolyline {
-        let mut points = self.with_longest_lines(path.0);
+        let mut points = self.with_longest_lines(path.0, shortens);
         for _ in 0..SHORTCUTS {
             if points.len() < 3 || self.is_spent() || !monitor.keep_going() {
                 break;
@@ -156,21 +158,33 @@ impl<'a> TreeSearch<'a> {
             let (first, second, lines) = (rng.uniform(), rng.uniform(), (points.len() - 1) as f64);
             let (i, from) = along(&points, first.min(second) * lines);
             let (k, to) = along(&points, first.max(second) * lines);
-            if i < k && self.is_clear(&from, &to) {
+            if i == k {
+                continue;
+            }
+            let mut old = vec![from.clone()];
+            old.extend_from_slice(&points[i + 1..=k]);
+            old.push(to.clone());
+            if shortens(&old, &[from.clone(), to.clone()]) && self.is_clear(&from, &to) {
                 points.splice(i + 1..=k, [from, to]);
                 points.dedup();
             }
         }
-        JointPolyline(self.with_longest_lines(points))
+        JointPolyline(self.with_longest_lines(points, shortens))
     }
 
     /// Connects each point to the farthest one that a straight line can reach.
-    fn with_longest_lines(&mut self, points: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    fn with_longest_lines(
+        &mut self,
+        points: Vec<Vec<f64>>,
+        shortens: &dyn Fn(&[Vec<f64>], &[Vec<f64>]) -> bool,
+    ) -> Vec<Vec<f64>> {
         let last = points.len() - 1;
         let (mut i, mut kept) = (0, vec![points[0].clone()]);
         while i < last {
+            let is_shorter = |k: usize| shortens(&points[i..=k], &[points[i].clone(), points[k].clone()]);
+            let mut ends = (i + 2..=last).rev();
             let farthest =
-                (i + 2..=last).rev().find(|k| !self.deadline.is_over() && self.is_clear(&points[i], &points[*k]));
+                ends.find(|k| !self.deadline.is_over() && is_shorter(*k) && self.is_clear(&points[i], &points[*k]));
             i = farthest.unwrap_or(i + 1);
             kept.push(points[i].clone());
         }
@@ -243,7 +257,7 @@ mod tests {
                 path.0.windows(2).map(|line| search.squared_distance(&line[0], &line[1]).sqrt()).sum()
             };
             let before = length(path);
-            let shorter = search.shorten(path.clone(), &mut rng, &mut Unattended);
+            let shorter = search.shorten(path.clone(), &|_, _| true, &mut rng, &mut Unattended);
             for line in path.0.windows(2).chain(shorter.0.windows(2)) {
                 for i in 0..=200 {
                     let at = |j: usize| line[0][j] + f64::from(i) / 200.0 * (line[1][j] - line[0][j]);

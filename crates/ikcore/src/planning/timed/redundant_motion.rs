@@ -11,6 +11,7 @@ use super::null_space::{null_space, turned};
 use super::projection::project;
 use super::unreachable::unreachable_points;
 use crate::error::{Error, Result};
+use crate::interrupt::checkpoint;
 use crate::math::MAX_DOF;
 use crate::math::cubic_spline::CubicSpline;
 use crate::objective::{Bounds, LeastSquares, Linearization};
@@ -153,6 +154,7 @@ impl<'a> RedundantMotion<'a> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         let mut farthest: Option<Lost> = None;
         for start in starts.chunks_exact(self.dof()) {
+            checkpoint()?;
             match self.follow(start) {
                 Ok(nominal) => {
                     let travel = travel(&nominal, self.dof());

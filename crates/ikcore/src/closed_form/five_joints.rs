@@ -1,0 +1,135 @@
+//! Five revolute joints: the poses that they reach, and all branches of those.
+//!
+//! A virtual sixth joint is added behind the last or before the first, so that a method for six joints fits. The branches that leave
+//! it at zero are those of the arm; a pose without one is out of reach.
+
+use crate::closed_form::axis_chain::{AxisChain, AxisMotion, JointAxis};
+use crate::closed_form::branches::Branches;
+use crate::closed_form::six::{ClosedForm, Structure};
+use crate::closed_form::structure::{EXACT, Pair};
+use crate::closed_form::vector::{Vector, add, cross, perpendicular, scaled, unit};
+use crate::closed_form::verify::Verifier;
+use crate::math::Frame;
+
+/// Where the virtual joint is farther than this from zero (rad), the pose is out of reach; nearer, Newton's method decides.
+const NEAR_ZERO: f64 = 1e-4;
+
+/// The method for a chain of five revolute joints.
+#[derive(Debug, Clone)]
+pub struct FiveJoints {
+    six: ClosedForm,
+    /// The virtual joint is the first.
+    before: bool,
+    verifier: Verifier<5>,
+}
+
+impl FiveJoints {
+    /// Adds the joint that leaves the best structure; `None` where a joint slides.
+    pub fn new(chain: &AxisChain<5>) -> Option<Self> {
+        if chain.joints.iter().any(|joint| joint.motion == AxisMotion::Slides) {
+            return None;
+        }
+        let with = |joint: JointAxis, before: bool| {
+            let mut joints = [joint; 6];
+            joints[usize::from(before)..][..5].copy_from_slice(&chain.joints);
+            (ClosedForm::new(&AxisChain { joints, tip: chain.tip }), before)
+        };
+        let [first, second, .., fourth, fifth] = &chain.joints;
+        let size = chain.size();
+        let virtual_joints = [
+            across(fourth, fifth, size).map(|joint| (joint, false)),
+            across(second, first, size).map(|joint| (joint, true)),
+            Some((aside(fifth, size), false)),
+            Some((aside(first, size), true)),
+        ];
+        let forms = virtual_joints.into_iter().flatten().map(|(joint, before)| with(joint, before));
+        let (six, before) = forms.min_by_key(|(form, _)| match form.structure() {
+            Structure::ThreeMeet { nearly: false, .. } | Structure::ThreeParallel { nearly: false, .. } => 0,
+            Structure::General => 1,
+            _ => 2,
+        })?;
+        Some(Self { six, before, verifier: Verifier::new(chain, 1e-2) })
+    }
+
+    /// The structure with the virtual joint.
+    pub fn structure(&self) -> Structure {
+        self.six.structure()
+    }
+
+    /// All joint angles, in (-pi, pi], that bring the tip to `target`; none where five joints cannot reach it.
+    pub fn solve(&self, target: &Frame) -> Branches<5> {
+        let six = self.six.solve(target);
+        let mut found = Branches::none();
+        for set in six.iter() {
+            let (added, rest) = if self.before { (set[0], &set[1..]) } else { (set[5], &set[..5]) };
+            if added.abs() < NEAR_ZERO {
+                self.verifier.add_near(target, std::array::from_fn(|k| rest[k]), &mut found);
+            }
+        }
+        (found.complete, found.singular) = (six.complete, six.singular);
+        found.evaluations += six.evaluations;
+        found.nearly |= six.nearly;
+        found
+    }
+}
+
+/// A joint through the point where two neighbouring axes meet, across both: the three form a spherical wrist.
+fn across(inner: &JointAxis, outer: &JointAxis, size: f64) -> Option<JointAxis> {
+    match Pair::of(inner, outer, size, EXACT) {
+        Pair::Meet(at) => Some(JointAxis::turning(unit(&cross(&inner.axis, &outer.axis)), at)),
+        _ => None,
+    }
+}
+
+/// A joint that meets an axis at a slant, a little along it.
+fn aside(joint: &JointAxis, size: f64) -> JointAxis {
+    let slanted: Vector = add(&scaled(&joint.axis, 0.3), &perpendicular(&joint.axis));
+    JointAxis::turning(unit(&slanted), add(&joint.point, &scaled(&joint.axis, 0.4 * size)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2 as Q, PI, TAU};
+
+    use super::*;
+    use crate::closed_form::angle::Angle;
+    use crate::math::arithmetic::Baseline;
+    use crate::rng;
+
+    const YOUBOT: [[f64; 4]; 5] = [
+        [0.033, Q, 0.147, 0.0],
+        [0.155, 0.0, 0.0, Q],
+        [0.135, 0.0, 0.0, 0.0],
+        [0.0, Q, 0.0, Q],
+        [0.0, 0.0, 0.2175, 0.0],
+    ];
+    const LAST_TWO_MEET: [[f64; 4]; 5] =
+        [[0.1, 1.2, 0.3, 0.0], [0.3, 0.4, 0.1, 0.0], [0.2, -1.0, 0.2, 0.0], [0.0, 0.9, 0.3, 0.0], [0.0, 0.0, 0.1, 0.0]];
+    const GENERAL: [[f64; 4]; 5] = [
+        [0.1, 1.2, 0.3, 0.0],
+        [0.3, 0.4, 0.1, 0.0],
+        [0.2, -1.0, 0.2, 0.0],
+        [0.15, 0.9, 0.3, 0.0],
+        [0.1, 0.3, 0.1, 0.0],
+    ];
+
+    #[test]
+    fn five_joints_reach_their_own_poses_and_no_tilted_ones() {
+        let mut rng = rng::stream(31, 0);
+        for rows in [YOUBOT, LAST_TWO_MEET, GENERAL] {
+            let chain = AxisChain::of_rows(&rows);
+            let method = FiveJoints::new(&chain).expect("a method");
+            assert_eq!(method.structure() == Structure::General, rows == GENERAL);
+            for _ in 0..if rows == GENERAL { 40 } else { 200 } {
+                let q: [f64; 5] = std::array::from_fn(|_| rng.uniform_in(-PI, PI));
+                let target = chain.tip_at(&q);
+                let near =
+                    |b: &[f64; 5]| b.iter().zip(&q).all(|(b, q)| ((b - q + PI).rem_euclid(TAU) - PI).abs() < 1e-4);
+                assert!(method.solve(&target).iter().any(near), "{rows:?} {q:?}");
+                let axis = unit(&[0.4, 0.7, -0.5]);
+                let tilted = target.then::<Baseline>(&Angle::by(0.03).about_line(&axis, &[0.0; 3]));
+                assert!(method.solve(&tilted).is_empty());
+            }
+        }
+    }
+}

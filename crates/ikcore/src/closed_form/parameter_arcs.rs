@@ -1,0 +1,187 @@
+//! Arcs of an angle on which a quantity that swings with it stays within bounds.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::closed_form::subproblem::CLAMP;
+
+/// An arc that ends by less before a limit (rad) reaches it: rounding.
+const SLACK: f64 = 1e-9;
+
+/// base + swing cos(q - peak).
+#[derive(Debug, Clone, Copy)]
+pub struct Wave {
+    base: f64,
+    swing: f64,
+    peak: f64,
+}
+
+impl Wave {
+    /// Fits a function of one angle that has no higher harmonics, by four samples.
+    pub fn of(value: impl Fn(f64) -> f64) -> Self {
+        let (east, north, west, south) = (value(0.0), value(0.5 * PI), value(PI), value(-0.5 * PI));
+        let (a, b) = (0.5 * (east - west), 0.5 * (north - south));
+        Self { base: 0.25 * (east + north + west + south), swing: a.hypot(b), peak: b.atan2(a) }
+    }
+
+    fn at(&self, q: f64) -> f64 {
+        self.base + self.swing * (q - self.peak).cos()
+    }
+
+    /// Smallest and largest value between two angles.
+    pub fn range(&self, [lower, upper]: [f64; 2]) -> [f64; 2] {
+        if upper - lower >= TAU {
+            return [self.base - self.swing, self.base + self.swing];
+        }
+        // Whether angle + k turns lies between.
+        let passes = |angle: f64| angle + TAU * ((lower - angle) / TAU).ceil() <= upper;
+        let ends = [self.at(lower), self.at(upper)];
+        let least = if passes(self.peak + PI) { self.base - self.swing } else { ends[0].min(ends[1]) };
+        let most = if passes(self.peak) { self.base + self.swing } else { ends[0].max(ends[1]) };
+        [least, most]
+    }
+
+    /// The arcs on which the wave lies between two bounds. Bounds missed by little give an arc without length: whether the parameter
+    /// there has a configuration is to be tried.
+    pub fn arcs_between(&self, [least, most]: [f64; 2]) -> ParameterArcs {
+        let Self { base, swing, peak } = *self;
+        let slack = CLAMP * (base.abs() + swing);
+        if least > base + swing + slack || most < base - swing - slack {
+            return ParameterArcs::NONE;
+        }
+        if swing <= 1e-15 * base.abs() {
+            return ParameterArcs::CIRCLE;
+        }
+        // cos(q - peak) between two bounds: an arc on each side of the peak, joined where a bound is not met.
+        let angle = |bound: f64| ((bound - base) / swing).clamp(-1.0, 1.0).acos();
+        let (near, far) = (angle(most), angle(least));
+        let mut arcs = ParameterArcs::NONE;
+        match (near <= 0.0, far >= PI) {
+            (true, true) => return ParameterArcs::CIRCLE,
+            (true, false) => arcs.push_wrapped(peak - far, peak + far),
+            (false, true) => arcs.push_wrapped(peak + near, peak + TAU - near),
+            (false, false) => {
+                arcs.push_wrapped(peak - far, peak - near);
+                arcs.push_wrapped(peak + near, peak + far);
+            }
+        }
+        arcs
+    }
+}
+
+/// At most six arcs of a parameter (rad, m), each from its start to a larger or equal end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ParameterArcs {
+    arcs: [[f64; 2]; 6],
+    count: usize,
+}
+
+impl ParameterArcs {
+    /// No value.
+    pub const NONE: Self = Self { arcs: [[0.0; 2]; 6], count: 0 };
+
+    /// All angles from -pi to pi.
+    pub const CIRCLE: Self = Self { arcs: [[-PI, PI], [0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2]], count: 1 };
+
+    /// One arc.
+    pub fn one(arc: [f64; 2]) -> Self {
+        let mut arcs = Self::NONE;
+        arcs.push(arc);
+        arcs
+    }
+
+    fn push(&mut self, arc: [f64; 2]) {
+        if self.count < self.arcs.len() && arc[0] <= arc[1] {
+            self.arcs[self.count] = arc;
+            self.count += 1;
+        }
+    }
+
+    /// Adds an arc, its start brought into [-pi, pi).
+    fn push_wrapped(&mut self, start: f64, end: f64) {
+        let turns = ((start + PI) / TAU).floor() * TAU;
+        self.push([start - turns, end - turns]);
+    }
+
+    /// The parts of arcs of an angle that lie within limits, whole turns aside.
+    pub fn within(&self, [lower, upper]: [f64; 2]) -> Self {
+        if upper - lower >= TAU {
+            return *self;
+        }
+        let mut within = Self::NONE;
+        for [start, end] in self.iter() {
+            let (first, last) =
+                (((lower - SLACK - end) / TAU).ceil() as i32, ((upper + SLACK - start) / TAU).floor() as i32);
+            for turns in first..=last {
+                let turn = TAU * f64::from(turns);
+                within.push([start + turn, end + turn].map(|angle| angle.clamp(lower, upper)));
+            }
+        }
+        within
+    }
+
+    /// Values at equal distances along the arcs, `count` of them or a few more: each arc has one at least.
+    pub fn spread(&self, count: usize) -> impl Iterator<Item = f64> {
+        let step = self.length() / count as f64;
+        self.iter().flat_map(move |[start, end]| {
+            let length = end - start;
+            let values = if step > 0.0 { (length / step).round().max(1.0) } else { 1.0 };
+            (0..values as usize).map(move |k| start + length * (k as f64 + 0.5) / values)
+        })
+    }
+
+    /// Their lengths added up.
+    pub fn length(&self) -> f64 {
+        self.iter().map(|[start, end]| end - start).sum()
+    }
+}
+
+impl std::ops::Deref for ParameterArcs {
+    type Target = [[f64; 2]];
+
+    fn deref(&self) -> &[[f64; 2]] {
+        &self.arcs[..self.count]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arcs_hold_exactly_the_values_between() {
+        let wave = Wave::of(|q: f64| 0.7 + 0.4 * (q - 2.9).cos());
+        for bounds in [[0.5, 0.8], [0.0, 0.6], [0.9, 5.0], [0.0, 5.0]] {
+            let arcs = wave.arcs_between(bounds);
+            for k in -312..313 {
+                let q = f64::from(k) * 0.01;
+                let inside = arcs.within([-3.13, 3.13]).iter().any(|[a, b]| *a <= q && q <= *b);
+                let value = wave.at(q);
+                assert_eq!(inside, bounds[0] <= value && value <= bounds[1], "{bounds:?} {q} {arcs:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn limits_a_turn_away_leave_the_same_values() {
+        let arcs = Wave::of(|q: f64| (q - 2.9).cos()).arcs_between([0.1, 0.9]);
+        let (here, there) = (arcs.within([-1.0, 4.0]), arcs.within([-1.0 + 3.0 * TAU, 4.0 + 3.0 * TAU]));
+        assert!(here.length() > 0.5 && (here.length() - there.length()).abs() < 1e-12, "{here:?} {there:?}");
+    }
+
+    #[test]
+    fn an_arc_shrunk_to_a_point_stays() {
+        let wave = Wave::of(|q: f64| 0.7 + 0.4 * (q - 1.0).cos());
+        let arcs = wave.arcs_between([1.1, 2.0]);
+        assert!(arcs.len() == 1 && arcs.length() < 1e-7 && (arcs[0][0] - 1.0).abs() < 1e-7);
+        assert_eq!(wave.arcs_between([1.2, 2.0]).len(), 0);
+    }
+
+    #[test]
+    fn ranges_over_part_of_the_circle() {
+        let wave = Wave::of(|q: f64| (q - 0.5).cos());
+        let [least, most] = wave.range([0.0, 1.0]);
+        assert!((most - 1.0).abs() < 1e-15 && (least - 0.5_f64.cos()).abs() < 1e-15);
+        let [least, most] = wave.range([-3.0, 3.5]);
+        assert!((most - 1.0).abs() < 1e-15 && (least + 1.0).abs() < 1e-12);
+    }
+}
