@@ -117,8 +117,8 @@ def good_solutions(chain: Chain, targets: np.ndarray, calls: Calls) -> np.ndarra
 
 
 COMPLETE_COLUMNS = [
-    *("robot", "structure", "poses", "said_complete", "solutions", "wrong", "known_to_others", "found_by_others_too"),
-    *("missing", "missing_where_said_complete", "missing_beside_a_singularity"),
+    *("arm", "structure", "poses", "said to be complete", "solutions", "wrong", "known to others"),
+    *("found by others too", "missing", "missing where said complete", "missing beside a singularity"),
 ]
 
 
