@@ -351,18 +351,27 @@ def test_wrong_poses_and_trajectories_are_named(
     assert_told(call, error, message)
 
 
+def test_rows_in_place_of_a_path_and_numbers_in_place_of_a_name_are_told() -> None:
+    hint = "path must be a Path, got [[0, 0, 0]]; bik.paths.from_samples(time, positions_or_poses) makes one from rows"
+    with pytest.raises(bik.InvalidInputError) as caught:
+        bik.track(IIWA, [[0, 0, 0]], dt=0.1)  # type: ignore[arg-type]
+    assert str(caught.value) == hint
+    with pytest.raises(bik.InvalidInputError) as caught:
+        bik.Robot.named(14)  # type: ignore[arg-type]
+    names = ", ".join(bik.Robot.names())
+    assert str(caught.value) == f"name must be the name of a built-in robot, got 14; known robots: {names}"
+
+
 @pytest.mark.parametrize(
     ("call", "message", "argument"),
     [
         (lambda: bik.solve("iiwa14", [0.3, 0.3, 1.0]), "'str' object is not an instance of 'Robot'", "robot"),
-        (lambda: bik.track(IIWA, [[0, 0, 0]], dt=0.1), "'list' object is not an instance of 'Path'", "path"),
         (lambda: track(limits=2.0), "'float' object is not an instance of 'Limits'", "limits"),
         (lambda: solve(stop=5), "'int' object is not an instance of 'Stop'", "stop"),
         (lambda: track(dt="0.1"), "must be real number, not str", "dt"),
         (lambda: track(dt=None), "must be real number, not NoneType", "dt"),
         (lambda: circle(diameter="wide"), "must be real number, not str", "diameter"),
         (lambda: bik.BAS(explorations=2.5), "'float' object cannot be interpreted as an integer", "explorations"),
-        (lambda: bik.Robot.named(14), "'int' object is not an instance of 'str'", "name"),
     ],
 )
 def test_a_wrong_type_is_told_with_its_argument(call: Callable[[], object], message: str, argument: str) -> None:

@@ -210,7 +210,7 @@ fn solver_options_out_of_range_are_named() {
         (again(RestartRule { patience: 0, ..rule }), "patience must be at least 1, got 0"),
         (again(RestartRule { min_reduction: 0.5, ..rule }), "min_reduction must be at least 1 and finite, got 0.5"),
     ] {
-        assert_eq!(solve_says(SolveOptions { solver: solver.clone(), ..SolveOptions::default() }), says);
+        assert_eq!(solve_says(SolveOptions { solver: Some(solver.clone()), ..SolveOptions::default() }), says);
         assert_eq!(
             track_says(&[0.0; 5], TrackOptions { rule: TickRule::Solver(solver), ..TrackOptions::default() }),
             says

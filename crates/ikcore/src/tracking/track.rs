@@ -134,7 +134,7 @@ fn first_configuration(
     let tolerance =
         Tolerance { position: 0.1 * options.tolerance.position, rotation: 0.1 * options.tolerance.rotation };
     let target = target(reference, 0);
-    let goals = if options.goals.is_empty() { roomy(&target) } else { options.goals.clone() };
+    let goals = if options.goals.is_empty() { start_goals(&target) } else { options.goals.clone() };
     let TrackOptions { task, seed, .. } = *options;
     let (limits, prefer) = (Some(limits), Prefer::Best);
     let stop = Stop { max_evaluations: CHOOSING, ..Stop::default() };
@@ -148,7 +148,7 @@ fn first_configuration(
 }
 
 /// Default goals of the start: away from singularities and limits.
-fn roomy(target: &Target) -> Vec<Goal> {
+fn start_goals(target: &Target) -> Vec<Goal> {
     let motion = if matches!(target, Target::Position(_)) { Motion::Position } else { Motion::Pose };
     vec![Goal::Manipulability { motion, weight: 1.0 }, Goal::Centring { weight: 1.0 }]
 }

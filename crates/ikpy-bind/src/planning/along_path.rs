@@ -30,7 +30,8 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
 ///         decides how many points of the path the motion passes. None: a thousandth of the path's extent, plus
 ///         the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %.
-///     solver: solver of the search of "timed"; None: differential evolution. `TPBSO` has a solver of its own.
+///     solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
+///         solver of its own.
 ///     stop: budgets; None: the method's own.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     progress: True shows a progress bar; a callable is called with (done, total).

@@ -10,6 +10,7 @@ use super::violation::PyViolation;
 use crate::convert::table;
 use crate::error::raise;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::monitor::long_call;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
@@ -108,7 +109,7 @@ impl PyPlan {
         let robot = self.robot.bind(py);
         let (in_force, resolved) = limits_of_call(py, Some(limits), robot.get(), &Sampling::once())?;
         let arm = robot.get().core.clone();
-        let retimed = py.detach(|| self.core.retime(&arm, resolved.as_ref())).map_err(raise)?;
+        let retimed = long_call(py, || self.core.retime(&arm, resolved.as_ref()))?;
         Self::new(retimed, robot, in_force, self.obstacles.clone_ref(py))
     }
 

@@ -6,7 +6,7 @@ use super::timed_cost::TimedCost;
 use crate::error::{Error, Result, require_positive};
 use crate::limits::Limits;
 use crate::planning::deviation::TipDeviation;
-use crate::planning::search::{Found, Search};
+use crate::planning::search::{Search, SearchResult};
 use crate::planning::time_optimal::{coarse_duration, time_all};
 use crate::planning::tip_path::TipPath;
 use crate::planning::{AlongPathOptions, MotionLimits, Plan, TimingLimits};
@@ -132,7 +132,11 @@ fn plan(
 }
 
 /// Runs the search; `None` if the arm is not redundant.
-fn search(cost: &mut TimedCost<'_>, options: &AlongPathOptions, monitor: &mut dyn Monitor) -> Result<Option<Found>> {
+fn search(
+    cost: &mut TimedCost<'_>,
+    options: &AlongPathOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Option<SearchResult>> {
     let Some(bounds) = cost.bounds() else {
         return match &options.solver {
             None => Ok(None),

@@ -1,5 +1,5 @@
-//! Forward kinematics and Jacobian of four configurations at once, lane by lane to the bits of
-//! [`jacobian`](super::jacobian).
+//! The pass from base to tip for four configurations at once, lane by lane to the bits of
+//! [`forward_pass`](super::forward_pass).
 
 use super::chain::Chain;
 use crate::math::Frame;
@@ -9,40 +9,23 @@ use crate::math::real::{Four, Real};
 use crate::math::sincos::sincos_by_column;
 use crate::math::vec3::Vec3;
 
-/// Four Jacobians: lane l of every number belongs to configuration l.
-pub type FourColumns = [[F64x4; 6]];
-
-/// Writes the Jacobians at `qs`, one entry per independent joint, into `columns` and returns the tips' frames.
+/// Calls `visit(i, frame)` for each stage from the base on, as [`forward_pass`](super::forward_pass::forward_pass), and returns the
+/// last frame. `qs` has one entry per independent joint.
 #[inline(always)]
-pub(super) fn four_jacobians<A: Arithmetic, const N: usize>(
+pub(super) fn four_forward_pass<A: Arithmetic, const N: usize>(
     chain: &Chain,
     qs: &[F64x4],
-    columns: &mut FourColumns,
-) -> Frame<F64x4> {
+    mut visit: impl FnMut(usize, &RunningFrames<A>),
+) -> RunningFrames<A> {
     let (sines, cosines, slides) = stage_motions::<A, N>(chain, qs);
-    let (mut axes, mut origins) = ([[F64x4::ZERO; 3]; N], [[F64x4::ZERO; 3]; N]);
     let stage = |i: usize| RunningFrames::<A>::stage(chain, i, F64x4(sines[i]), F64x4(cosines[i]), slides[i]);
     let mut frame = stage(0);
-    (axes[0], origins[0]) = (frame.z.stored(), frame.origin.stored());
+    visit(0, &frame);
     for i in 1..N {
         frame = frame.then(stage(i));
-        (axes[i], origins[i]) = (frame.z.stored(), frame.origin.stored());
+        visit(i, &frame);
     }
-    let tip = frame.then(RunningFrames::splat(&chain.tip));
-    columns.fill([F64x4::ZERO; 6]);
-    for (i, motion) in chain.motions[..N].iter().enumerate() {
-        let axis = Vec3::of(&axes[i]);
-        let lever = tip.origin - Vec3::of(&origins[i]);
-        let turn = Four::splat(motion.turn_scale);
-        let linear = axis.cross_fma(lever).mul_add(turn, axis * Four::splat(motion.slide_scale));
-        let angular = axis * turn;
-        // Several stages may share a joint (mimics), so columns are summed.
-        let [lx, ly, lz, ax, ay, az] = columns[motion.joint];
-        let [lx, ly, lz] = (Vec3::of(&[lx, ly, lz]) + linear).stored();
-        let [ax, ay, az] = (Vec3::of(&[ax, ay, az]) + angular).stored();
-        columns[motion.joint] = [lx, ly, lz, ax, ay, az];
-    }
-    tip.stored()
+    frame
 }
 
 /// Sines, cosines and slides (m) of all stages.
@@ -64,17 +47,17 @@ fn stage_motions<A: Arithmetic, const N: usize>(
 
 /// Four frames while the pass runs along the chain.
 #[derive(Clone, Copy)]
-struct RunningFrames<A> {
+pub(super) struct RunningFrames<A> {
     x: Vec3<Four<A>>,
     y: Vec3<Four<A>>,
-    z: Vec3<Four<A>>,
-    origin: Vec3<Four<A>>,
+    pub z: Vec3<Four<A>>,
+    pub origin: Vec3<Four<A>>,
 }
 
 impl<A: Arithmetic> RunningFrames<A> {
     /// The same frame four times.
     #[inline(always)]
-    fn splat(frame: &Frame) -> Self {
+    pub fn splat(frame: &Frame) -> Self {
         let [x, y, z] = &frame.axes;
         Self { x: Vec3::splat(x), y: Vec3::splat(y), z: Vec3::splat(z), origin: Vec3::splat(&frame.origin) }
     }
@@ -95,7 +78,7 @@ impl<A: Arithmetic> RunningFrames<A> {
 
     /// self * next, as [`WideFrame::then`](super::wide_frame::WideFrame::then).
     #[inline(always)]
-    fn then(&self, next: Self) -> Self {
+    pub fn then(&self, next: Self) -> Self {
         let p = next.origin;
         Self {
             x: self.turn(next.x),
@@ -106,7 +89,7 @@ impl<A: Arithmetic> RunningFrames<A> {
     }
 
     #[inline(always)]
-    fn stored(self) -> Frame<F64x4> {
+    pub fn stored(self) -> Frame<F64x4> {
         Frame { axes: [self.x.stored(), self.y.stored(), self.z.stored()], origin: self.origin.stored() }
     }
 }
