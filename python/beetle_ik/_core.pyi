@@ -1387,6 +1387,41 @@ def solve_all(
         LimitError: a start outside the limits.
     """
 
+def self_motion(
+    robot: Robot,
+    target: _Pose,
+    *,
+    start: ArrayLike | None = None,
+    spacing: float = 0.05,
+    limits: Limits | None = None,
+    seed: int = 0,
+) -> list[SelfMotion]:
+    """x"""
+
+@final
+class SelfMotion:
+    """x"""
+
+    @property
+    def q(self) -> _Array:
+        """The configurations (k, n) (rad, m) in order, inside the limits."""
+    @property
+    def closed(self) -> bool:
+        """x"""
+    @property
+    def lower_cut(self) -> str | None:
+        """x"""
+    @property
+    def upper_cut(self) -> str | None:
+        """x"""
+    @property
+    def complete(self) -> bool:
+        """x"""
+    @property
+    def length(self) -> float:
+        """x"""
+    def __len__(self) -> int: ...
+
 @final
 class SolutionSet:
     """The distinct solutions for one target, a sequence of `Solution`."""
