@@ -34,7 +34,7 @@ def test_limits_cut_curves_at_the_joint_they_name() -> None:
 
 
 def test_without_limits_curves_are_closed() -> None:
-    wide = bik.Limits(lower=-7.0, upper=7.0)
+    wide = bik.Limits(lower=-np.inf, upper=np.inf)
     for curve in bik.self_motion(PANDA, POSE, limits=wide, spacing=0.1):
         assert curve.closed
         assert (curve.lower_cut, curve.upper_cut) == (None, None)

@@ -169,15 +169,6 @@ fn curves_of_the_self_motion_pass_every_solution() {
 }
 
 #[test]
-fn without_limits_the_curves_are_closed() {
-    let open = robot("panda").with_limits(|_, joint| (joint.lower, joint.upper) = (-7.0, 7.0)).unwrap();
-    for q in configurations(&robot("panda"), 4) {
-        let found = curves(&open, &pose_at(&open, &q), 0.1);
-        assert!(!found.is_empty() && found.iter().all(|curve| curve.closed), "{q:?}");
-    }
-}
-
-#[test]
 fn a_planar_arm_of_three_joints_moves_about_a_position() {
     let arm = Robot::planar(&[0.5, 0.4, 0.3]).unwrap();
     for q in configurations(&arm, 5) {

@@ -31,13 +31,13 @@ impl PySelfMotion {
         self.core.closed
     }
 
-    /// Name of the joint whose limit ends the curve at its first configuration; None if it is closed.
+    /// Name of the joint whose limit ends the curve at its first configuration; None if it is closed, or followed no farther.
     #[getter]
     fn lower_cut(&self) -> Option<&str> {
         self.core.lower_cut.map(|joint| self.joint_names[joint].as_str())
     }
 
-    /// Name of the joint whose limit ends the curve at its last configuration; None if it is closed.
+    /// Name of the joint whose limit ends the curve at its last configuration; None if it is closed, or followed no farther.
     #[getter]
     fn upper_cut(&self) -> Option<&str> {
         self.core.upper_cut.map(|joint| self.joint_names[joint].as_str())

@@ -5,17 +5,14 @@ use crate::objective::Point;
 use crate::robot::{JointKind, Robot};
 use crate::task::Target;
 
-/// Values of the parameter of a closed form at which curves are looked for.
-const VALUES: usize = 64;
-
 /// Configurations, and whether each curve passes through one of them.
 pub(super) struct Seeds {
     pub seeds: Vec<Point>,
     pub complete: bool,
 }
 
-/// Configurations of every branch at [`VALUES`] values of the parameter, limits aside; None without a closed form.
-pub(super) fn by_closed_form(robot: &Robot, attempt: &mut Attempt<'_, '_>) -> Option<Seeds> {
+/// Configurations of every branch at `count` values of the parameter, limits aside; None without a closed form.
+pub(super) fn by_closed_form(robot: &Robot, attempt: &mut Attempt<'_, '_>, count: usize) -> Option<Seeds> {
     let Target::Pose(pose) = attempt.problem.target() else { return None };
     let family = robot.family(pose)?;
     let bounds = attempt.context.bounds();
@@ -26,7 +23,7 @@ pub(super) fn by_closed_form(robot: &Robot, attempt: &mut Attempt<'_, '_>) -> Op
     };
     let (lower, upper) = (limits(bounds.lower(), f64::NEG_INFINITY), limits(bounds.upper(), f64::INFINITY));
     let mut seeds = Vec::new();
-    for value in family.arcs(&lower, &upper).spread(VALUES) {
+    for value in family.arcs(&lower, &upper).spread(count) {
         let branches = family.branches_at(value);
         attempt.budget.evaluations += branches.evaluations;
         seeds.extend(branches.iter().map(|(q, _)| Point::from_slice(q)));

@@ -31,6 +31,16 @@ impl<'a> WrappedLimits<'a> {
         Self { bounds, middle: bounds.ranges().map(middle).collect(), repeats }
     }
 
+    /// The same, with joints that turn without end near `reference` instead of zero.
+    pub fn around(mut self, reference: &[f64]) -> Self {
+        for ((middle, value), (lower, upper)) in self.middle.iter_mut().zip(reference).zip(self.bounds.ranges()) {
+            if !(lower.is_finite() && upper.is_finite()) {
+                *middle = *value;
+            }
+        }
+        self
+    }
+
     /// How many joints there are.
     pub fn joints(&self) -> usize {
         self.repeats.len()

@@ -12,27 +12,26 @@ import numpy as np
 import beetle_ik as bik
 
 robot = bik.Robot.named("panda")
-target = bik.pose([0.45, 0.15, 0.4], rpy=[np.pi, 0.0, 0.3])
+target = robot.fk([0.3, 0.2, -0.4, -1.7, 0.2, 1.9, 0.5])
 curves = bik.self_motion(robot, target)
 print(robot.closed_form)
 for curve in curves[:6]:
     print(curve)
 
 # %%
-# Each curve in the plane of the elbow joint and joint 7, the parameter of the closed form; on the right, the arm along the
-# longest curve. Its tip stays.
+# Each curve over joint 7, the parameter of the closed form; on the right, the arm along the longest curve. Its tip stays.
 figure = plt.figure(figsize=(9, 4.2))
 plane = figure.add_subplot(1, 2, 1)
 for curve in curves:
-    plane.plot(curve.q[:, 6], curve.q[:, 3], linewidth=1.5)
+    plane.plot(curve.q[:, 6], curve.q[:, 0], linewidth=1.5)
     if not curve.closed:
-        plane.plot(curve.q[[0, -1], 6], curve.q[[0, -1], 3], ".", color="black", markersize=5)
-plane.set(xlabel="joint 7 [rad]", ylabel="joint 4 [rad]", title=f"{len(curves)} curves; dots: a joint limit")
+        plane.plot(curve.q[[0, -1], 6], curve.q[[0, -1], 0], ".", color="black", markersize=5)
+plane.set(xlabel="joint 7 [rad]", ylabel="joint 1 [rad]", title=f"{len(curves)} curves; dots: a joint limit")
 
 space = figure.add_subplot(1, 2, 2, projection="3d")
 longest = curves[0]
 for k in np.linspace(0, len(longest) - 1, 9).astype(int):
-    x, y, z = robot.link_poses(longest.q[k])[:, :3, 3].T
+    x, y, z = np.vstack([robot.link_poses(longest.q[k])[:, :3, 3], target[:3, 3]]).T
     space.plot(x, y, z, marker="o", markersize=2, color=plt.get_cmap("viridis")(k / len(longest)))
 space.plot(*target[:3, 3], marker="*", markersize=12, color="black")
 space.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title="along the longest one")
