@@ -343,23 +343,3 @@ fn options_that_do_not_go_together_are_told() {
         "posture of robot 'iiwa14': expected 7 joints, got 6"
     );
 }
-
-#[test]
-fn nearest_is_the_nearest_of_all_branches() {
-    for name in ["ur10", "kr210"] {
-        let robot = robot(name);
-        for pair in configurations(&robot, 20).chunks(2) {
-            let (q, start) = (&pair[0], &pair[1]);
-            let target = pose_at(&robot, q);
-            let each = SolveOptions { start: Some(start.clone()), ..SolveOptions::default() };
-            let options = SolveOptions { prefer: Prefer::Nearest, ..each.clone() };
-            let nearest = solve(&robot, &target, &options, &mut Unattended).unwrap();
-            assert_eq!(nearest.status, Status::Solved);
-            let options = AllOptions { each, ..AllOptions::default() };
-            let all = solve_all(&robot, &target, &options, &mut Unattended).unwrap();
-            let least = all.solutions.iter().map(|one| distance(one.q, start)).fold(f64::INFINITY, f64::min);
-            let found = distance(&nearest.q, start);
-            assert!(found <= least + 1e-9, "{name}: {found} and {least} from {start:?}");
-        }
-    }
-}

@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use super::all_branches::all_branches;
 use super::attempt::Attempt;
 use super::solution::Solution;
 use super::whole_turns::bring_near;
@@ -19,25 +18,9 @@ const PATIENCE: usize = 24;
 /// Distances that differ by less (rad, m) count as equal.
 const SAME: f64 = 1e-9;
 
-/// Returns the nearest solution to `start`: by closed form where that finds all, else by search.
-pub(super) fn nearest_solution(attempt: &mut Attempt<'_, '_>, start: &[f64]) -> Solution {
-    match by_closed_form(attempt, start) {
-        Some(q) => attempt.solution(Status::Solved, q),
-        None => by_search(attempt, start),
-    }
-}
-
-/// The nearest of all branches; None where the closed form does not prove that they are all.
-fn by_closed_form(attempt: &mut Attempt<'_, '_>, start: &[f64]) -> Option<Point> {
-    let mut found = all_branches(attempt, start, 0)?;
-    found.solutions.sort_by_distance(start);
-    let nearest = Point::from_slice(found.solutions.get(0)?.q);
-    (found.complete && !found.singular).then_some(nearest)
-}
-
 /// Returns the nearest solution to `start` found before [`PATIENCE`] consecutive solutions were no nearer; the best
 /// miss if there is none.
-fn by_search(attempt: &mut Attempt<'_, '_>, start: &[f64]) -> Solution {
+pub(super) fn nearest_solution(attempt: &mut Attempt<'_, '_>, start: &[f64]) -> Solution {
     let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
     let goal = Goal::Posture { posture: start.to_vec(), weight: 1.0 };
     let mut goals = Goals::new(&[goal], robot, bounds);

@@ -17,10 +17,9 @@ use crate::task::Target;
 ///
 /// With goals, the solution is moved along its self-motion to the nearest optimum of the goals.
 ///
-/// With [`Prefer::Nearest`], the nearest of all branches is returned where a closed form finds all of them. Otherwise, the
-/// solve is repeated from starts at increasing distances from the given one. Each solution is moved along its
-/// self-motion and by whole turns towards the start, until 24 consecutive solutions are no nearer or the budget is
-/// spent. The distance is |q - start|, with joints in rad and m.
+/// With [`Prefer::Nearest`], the solve is repeated from starts at increasing distances from the given one. Each
+/// solution is moved along its self-motion and by whole turns towards the start, until 24 consecutive solutions are no
+/// nearer or the budget is spent. The distance is |q - start|, with joints in rad and m.
 ///
 /// With [`Prefer::Best`], the solve is repeated from starts all over the joint space. Each solution is moved along its
 /// self-motion, until 40 consecutive solutions are no better for the goals. For an arm with one joint more than its
