@@ -1,10 +1,10 @@
-"""All solutions of a pose: `solve_all` beside other libraries, and whether any is missing.
+"""All solutions of a pose: `solve_all` compared with other libraries, and tested for missing solutions.
 
     python benches/all_solutions.py --arms ur5e kr6_r900 xarm6 --poses 10000 --descents 200 --out DIR
 
-The arms are those whose geometry `ssik` carries, so that most are in no catalog of ours, and those of `--robots`.
-Times: one pose a call, alternating and in a row. Complete: against the union of what the others find and of random
-descents, each of their solutions verified by Pinocchio's forward kinematics and inside the limits before it counts.
+The default arms are part of `ssik`; most of them are not in our own catalog.
+Times: one pose per call, alternating and in a row. Completeness: tested against the union of the solutions of the
+others and of random descents, which count if they reach the pose by Pinocchio's forward kinematics inside the limits.
 """
 
 # ruff: noqa: E402
@@ -21,9 +21,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from peers import arms, closed_form, completeness, restarting
+from peers import arms, closed_form, completeness, restarting, solutions_report
 from peers.adapter import Adapter, load
-from peers.chain import Chain, load_chains
+from peers.chain import Chain
 from peers.measure import Calls, interleave
 from peers.report import plain_section, write_table
 
@@ -37,7 +37,7 @@ SHOWN = 20  # missing solutions written out for an arm
 
 @dataclass
 class Measured:
-    """All figures so far, as lines of tables; and why a library is missing."""
+    """All figures so far, as lines of tables, and the reasons for missing libraries."""
 
     times: list[list[str]] = field(default_factory=list)
     complete: list[list[str]] = field(default_factory=list)
@@ -46,27 +46,22 @@ class Measured:
 
 
 def main() -> None:
-    """Measure everything and write it down, anew after each arm: the run is long."""
+    """Measures all arms and writes the results, again after each arm: the run is long."""
     arguments = parse_arguments()
     arguments.out.mkdir(parents=True, exist_ok=True)
     measured = Measured()
     with tempfile.TemporaryDirectory() as scratch:
-        chains = arms.carried_chains(arguments.arms, Path(scratch))
-        if arguments.robots:
-            chains += load_chains(arguments.robots, Path(scratch))
-        for chain in chains:
+        for chain in arms.chosen(arguments, Path(scratch)):
             print(f"{chain.name} ({chain.dof} joints)", flush=True)
             measure(chain, arguments, measured)
             write(measured, arguments.out)
-    print(f"wrote times.csv, complete.csv and all_solutions.md to {arguments.out}")
+    print(f"wrote summary.csv, times.csv, complete.csv and all_solutions.md to {arguments.out}")
 
 
 def parse_arguments() -> argparse.Namespace:
-    """What to measure, and where the results go."""
+    """Parses the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    every = (*arms.SIX_JOINTS, *arms.SEVEN_JOINTS)
-    parser.add_argument("--arms", nargs="*", default=every, help="names of arms that ssik carries")
-    parser.add_argument("--robots", type=Path, help="directory of URDF files as well, as for compare.py")
+    arms.add_arguments(parser, arms=(*arms.SIX_JOINTS, *arms.SEVEN_JOINTS))
     parser.add_argument("--timed", type=int, default=500, help="poses an arm that are timed (default: 500)")
     parser.add_argument("--poses", type=int, default=1000, help="poses an arm that are searched (default: 1000)")
     parser.add_argument("--descents", type=int, default=200, help="random descents a pose (default: 200)")
@@ -75,8 +70,10 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def measure(chain: Chain, arguments: argparse.Namespace, measured: Measured) -> None:
-    """Times and counts on one arm; whether they are complete where the solutions are finitely many."""
+    """Measures times and counts on one arm, and completeness if its solutions are finitely many."""
     adapters, missing = load(LIBRARIES, chain, TOLERANCE)
+    if reason := missing.get(restarting.BeetleIk.name):
+        raise SystemExit(f"{chain.name}: {reason}")
     measured.notes += [f"- {name}, {chain.name}: {reason}" for name, reason in missing.items()]
     if arguments.timed:
         measure_times(chain, adapters, arguments.timed, measured)
@@ -85,13 +82,13 @@ def measure(chain: Chain, arguments: argparse.Namespace, measured: Measured) -> 
 
 
 TIMES_COLUMNS = [
-    *("robot", "structure", "order", "library", "median_us", "mean_us", "p99_us", "time_over_ours"),
+    *("robot", "joints", "structure", "order", "library", "median_us", "mean_us", "p99_us", "time_over_ours"),
     *("solutions_a_pose", "poses_without", "poses_with_more_than_ours"),
 ]
 
 
 def measure_times(chain: Chain, adapters: list[Adapter], poses: int, measured: Measured) -> None:
-    """How long each library takes for a pose, and how many of its solutions hold."""
+    """Measures the time of each library for a pose, and counts its solutions."""
     targets, starts = chain.targets(poses)
     solvers = {adapter.name: adapter.solve_all for adapter in adapters}
     structure = adapters[0].robot.closed_form
@@ -105,7 +102,7 @@ def measure_times(chain: Chain, adapters: list[Adapter], poses: int, measured: M
         for name, mine in times.items():
             figures = [np.median(mine), mine.mean(), np.quantile(mine, 0.99), mine.mean() / times[ours].mean()]
             held = [counts[name].mean(), (counts[name] == 0).sum(), (counts[name] > counts[ours]).sum()]
-            row = [chain.name, structure, order, name, *(f"{value:.4g}" for value in (*figures, *held))]
+            row = [chain.name, str(chain.dof), structure, order, name, *(f"{value:.4g}" for value in (*figures, *held))]
             measured.times.append(row)
 
 
@@ -128,7 +125,7 @@ COMPLETE_COLUMNS = [
 def measure_completeness(
     chain: Chain, adapters: list[Adapter], arguments: argparse.Namespace, measured: Measured
 ) -> None:
-    """What `solve_all` misses of the union of the other libraries' solutions and of random descents."""
+    """Looks for solutions that `solve_all` misses."""
     import beetle_ik
 
     targets, starts = chain.targets(arguments.poses)
@@ -148,7 +145,7 @@ def measure_completeness(
     ]
     measured.complete.append([chain.name, robot.closed_form, *map(str, counts)])
     for number, q in verdict.missing[:SHOWN]:
-        smallest = np.linalg.svd(completeness.jacobian(chain, q), compute_uv=False)[-1]
+        smallest = completeness.smallest_singular_value(chain, q)
         measured.missing.append(
             f"- {chain.name}, pose {number}{' (said complete)' if said[number] else ''}: {q.tolist()}, "
             f"smallest singular value {smallest:.2g}"
@@ -158,12 +155,15 @@ def measure_completeness(
 def write(measured: Measured, out: Path) -> None:
     """The tables and the report."""
     write_table(out / "times.csv", TIMES_COLUMNS, measured.times)
+    summary = solutions_report.summary_lines([dict(zip(TIMES_COLUMNS, line, strict=True)) for line in measured.times])
+    write_table(out / "summary.csv", solutions_report.SUMMARY_COLUMNS, summary)
     write_table(out / "complete.csv", COMPLETE_COLUMNS, measured.complete)
     settings = [[library.name, library.settings] for library in LIBRARIES]
     sections = [
         "# All solutions\n\nPoses of configurations drawn uniformly inside the limits. Solutions count that reach the "
         f"pose within {completeness.REACHED:g} m and rad inside the limits, each once, whole turns aside.\n",
         plain_section("Libraries and settings", ["library", "settings"], settings),
+        plain_section("In short", solutions_report.SUMMARY_COLUMNS, summary),
         plain_section("Times", TIMES_COLUMNS, measured.times),
         plain_section("Complete", COMPLETE_COLUMNS, measured.complete),
         "Missing:\n",

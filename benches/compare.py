@@ -25,9 +25,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
-from peers import closed_form, local, restarting, stepping, tracking
+from peers import arms, closed_form, local, restarting, stepping, tracking
 from peers.adapter import Adapter, load
-from peers.chain import Chain, load_chains
+from peers.chain import Chain
 from peers.measure import Solver, batch_rate, interleave, judge, per_call
 from peers.report import (
     ROW_COLUMNS,
@@ -93,11 +93,16 @@ class Measured:
     """All figures so far; texts are cells of tables."""
 
     targets: int  # a robot
+    only: list[str] | None  # names of the libraries that are measured; None: all
     rows: list[Row] = field(default_factory=list)
     followed: list[tracking.Followed] = field(default_factory=list)
     kinematics: list[list[str]] = field(default_factory=list)
     batches: list[list[str]] = field(default_factory=list)
     loads: list[float] = field(default_factory=list)  # load averages of the last minute; a busy machine spoils ratios
+
+    def among(self, libraries: list[type[Adapter]]) -> list[type[Adapter]]:
+        """Those of the libraries that are measured."""
+        return [library for library in libraries if self.only is None or library.name in self.only]
 
 
 def main() -> None:
@@ -105,9 +110,9 @@ def main() -> None:
     arguments = parse_arguments()
     warnings.filterwarnings("ignore", category=DeprecationWarning)  # libraries of libraries
     arguments.out.mkdir(parents=True, exist_ok=True)
-    measured = Measured(arguments.targets)
+    measured = Measured(arguments.targets, arguments.only)
     with tempfile.TemporaryDirectory() as scratch:
-        for chain in load_chains(arguments.robots, Path(scratch)):
+        for chain in arms.chosen(arguments, Path(scratch)):
             print(f"{chain.name} ({chain.dof} joints)", flush=True)
             measure(chain, measured)
             measured.loads.append(os.getloadavg()[0])
@@ -118,12 +123,14 @@ def main() -> None:
 def measure(chain: Chain, measured: Measured) -> None:
     """Everything on one robot."""
     for task in TASKS:
-        measured.rows += compare(chain, task, GENERAL, measured.targets, ROUNDS)
-    measured.rows += compare(chain, POSE, LOCAL, max(1, measured.targets // LOCAL_SHARE), 1)
-    measured.kinematics += time_kinematics(chain)
+        measured.rows += compare(chain, task, measured.among(GENERAL), measured.targets, ROUNDS)
+    measured.rows += compare(chain, POSE, measured.among(LOCAL), max(1, measured.targets // LOCAL_SHARE), 1)
+    measured.kinematics += time_kinematics(chain, measured.among([*GENERAL, *LOCAL]))
     measured.batches.append(time_batch(chain))
     if chain.name == tracking.ROBOT:
-        measured.followed += tracking.compare_tracking(chain, load(TRACKING, chain, tracking.TOLERANCE)[0])
+        measured.followed += tracking.compare_tracking(
+            chain, load(measured.among(TRACKING), chain, tracking.TOLERANCE)[0]
+        )
 
 
 def write(measured: Measured, out: Path) -> None:
@@ -140,12 +147,8 @@ def write(measured: Measured, out: Path) -> None:
 def parse_arguments() -> argparse.Namespace:
     """What to measure, and where the results go."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument(
-        "--robots",
-        type=Path,
-        default=Path(__file__).parents[2] / "shared" / "robots",
-        help="directory of URDF files; robots.json in it may give base and tip: {NAME: {base: LINK, tip: LINK}}",
-    )
+    arms.add_arguments(parser, robots=[Path(__file__).parents[2] / "shared" / "robots"])
+    parser.add_argument("--only", nargs="+", help="names of the libraries to measure (default: all)")
     parser.add_argument("--targets", type=int, default=1000, help="targets a robot (default: 1000)")
     parser.add_argument("--out", type=Path, default=Path("compare"), help="where the results go (default: compare)")
     return parser.parse_args()
@@ -172,11 +175,10 @@ def compare(chain: Chain, task: str, libraries: list[type[Adapter]], count: int,
     return rows
 
 
-def time_kinematics(chain: Chain) -> list[list[str]]:
+def time_kinematics(chain: Chain, libraries: list[type[Adapter]]) -> list[list[str]]:
     """Forward kinematics and Jacobian of every library that has them, in ns a call."""
     configurations = np.random.default_rng(0).uniform(chain.lower, chain.upper, (1000, chain.dof))
-    libraries = [library for library in (*GENERAL, *LOCAL) if library.offers("fk")]
-    adapters, _ = load(libraries, chain, TASKS[POSE][1])
+    adapters, _ = load([library for library in libraries if library.offers("fk")], chain, TASKS[POSE][1])
     poses = per_call({adapter.name: adapter.fk for adapter in adapters}, configurations)
     both = [adapter for adapter in adapters if adapter.offers("fk_and_jacobian")]
     jacobians = per_call({adapter.name: adapter.fk_and_jacobian for adapter in both}, configurations)
@@ -210,7 +212,7 @@ def markdown(measured: Measured) -> str:
         plain_section(
             "Libraries and settings",
             ["library", "version", "settings"],
-            [[library.name, versions()[library.name], library.settings] for library in EVERY],
+            [[library.name, versions()[library.name], library.settings] for library in measured.among(EVERY)],
         ),
         *(times_section(task, order, rows) for task in TASKS for order in ORDERS),
         plain_section(

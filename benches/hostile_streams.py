@@ -1,10 +1,10 @@
-"""Hostile streams for `Tracker`: does every tick keep its limits, and can the arm always be stopped?
+"""Hostile streams for `Tracker`: is every tick inside its limits, and can the arm always stop?
 
     python benches/hostile_streams.py --ticks 1000000 --seed 0 --out DIR
 
 Random arms, limits, tick lengths and targets: jumps, noise, dropouts, far out of reach, the edge of reach, singular
 configurations, targets that turn back or are NaN. Finite differences of the commanded joint angles are held against the
-limits; at the end of each stream the arm is told to stop, and must come to rest within the time that it names.
+limits. At the end of each stream `Tracker.stop` is called, and the arm must rest after the time that it returns.
 """
 
 from __future__ import annotations
@@ -22,16 +22,18 @@ import beetle_ik as bik
 
 SLACK = 1e-9  # relative
 ROUNDING = 8.0 * np.finfo(float).eps  # of a finite difference, relative to the joint angles
+HISTORY = 3  # configurations up to the start: as many as a third difference needs
 KINDS = ("velocity", "acceleration", "jerk")
 
 
 @dataclass
 class Outcome:
-    """What the streams of one name did; excess is relative to the limit, beyond rounding."""
+    """Counts over the streams of one kind, and the largest excess over a limit: relative to it, rounding deducted."""
 
     streams: int = 0
     ticks: int = 0
     refused: int = 0  # targets with NaN
+    moving: int = 0  # streams that began in motion
     stops: int = 0
     stopping_ticks: int = 0
     excess: dict[str, float] = field(default_factory=lambda: dict.fromkeys((*KINDS, "position"), 0.0))
@@ -39,7 +41,7 @@ class Outcome:
 
 
 def main() -> None:
-    """Run so many ticks and write down what they did."""
+    """Runs the streams, prints the table and writes it to a file."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--ticks", type=int, default=1_000_000, help="ticks in all (default: 1,000,000)")
     parser.add_argument("--seed", type=int, default=0)
@@ -51,13 +53,14 @@ def main() -> None:
         "streams",
         "ticks",
         "refused",
+        "moving",
         "stops",
         "stopping_ticks",
         *outcomes["jumps"].excess,
         "complaints",
     ]
     lines = [
-        [name, each.streams, each.ticks, each.refused, each.stops, each.stopping_ticks]
+        [name, each.streams, each.ticks, each.refused, each.moving, each.stops, each.stopping_ticks]
         + [f"{value:.1e}" for value in each.excess.values()]
         + [len(each.complaints)]
         for name, each in outcomes.items()
@@ -72,7 +75,7 @@ def main() -> None:
 
 
 def run(ticks: int, seed: int) -> dict[str, Outcome]:
-    """Streams of every kind in turn until so many ticks are done."""
+    """Runs streams of all kinds, one after the other, up to the given number of ticks."""
     outcomes = {name: Outcome() for name in TARGETS}
     number = 0
     while sum(each.ticks for each in outcomes.values()) < ticks:
@@ -83,22 +86,23 @@ def run(ticks: int, seed: int) -> dict[str, Outcome]:
 
 
 def follow(stream: Stream, label: str, outcome: Outcome) -> None:
-    """Run one stream to its end, stop the arm, and check every tick."""
+    """Runs one stream, stops the arm, and checks every tick."""
     tracker = bik.Tracker(stream.robot, stream.start, dt=stream.dt, limits=bik.Limits(**stream.limits))
-    commanded = [stream.start]
+    commanded = _begin(tracker, stream)
+    outcome.moving += commanded[0] is not stream.start
     for target in stream.targets:
         if target is not None and np.isnan(target).any():
             outcome.refused += _refuses(tracker, target)
         else:
             commanded.append(tracker.step(target).q)
     outcome.streams += 1
-    outcome.ticks += len(commanded) - 1
+    outcome.ticks += len(commanded) - HISTORY
     stopped = _stop(tracker, stream)
     outcome.stops += 1
     outcome.stopping_ticks += len(stopped)
     q = np.array([*commanded, *stopped])
     if len(stopped) and not np.array_equal(q[-1], q[-2]):
-        outcome.complaints.append(f"{label}: does not rest after its stop")
+        outcome.complaints.append(f"{label}: still moves after its stop")
     for kind, excess in excesses(stream, q).items():
         outcome.excess[kind] = max(outcome.excess[kind], excess)
         if excess > SLACK:
@@ -107,8 +111,22 @@ def follow(stream: Stream, label: str, outcome: Outcome) -> None:
             )
 
 
+def _begin(tracker: bik.Tracker, stream: Stream) -> list[np.ndarray]:
+    """Starts in motion if the stream asks for it and the arm can stop; returns the configurations up to the start."""
+    at_rest = [stream.start] * HISTORY
+    if stream.moving is None:
+        return at_rest
+    qd, qdd = stream.moving
+    try:
+        tracker.reset(stream.start, qd=qd, qdd=qdd)
+    except bik.BeetleIkError:
+        return at_rest
+    before = stream.start - stream.dt * qd
+    return [before - stream.dt * (qd - stream.dt * qdd), before, stream.start]
+
+
 def _refuses(tracker: bik.Tracker, target: np.ndarray) -> int:
-    """A target that is not a number must be refused and leave the tracker as it was."""
+    """Checks that a target with NaN is refused and leaves the tracker unchanged; returns 1."""
     before = tracker.q, tracker.time
     try:
         tracker.step(target)
@@ -120,22 +138,25 @@ def _refuses(tracker: bik.Tracker, target: np.ndarray) -> int:
 
 
 def _stop(tracker: bik.Tracker, stream: Stream) -> list[np.ndarray]:
-    """Stop the arm, and let it rest for two ticks more."""
+    """Stops the arm; the last two ticks must be at rest."""
     ticks = round(tracker.stop() / stream.dt) + 2
     return [tracker.step(None).q for _ in range(ticks)]
 
 
 def excesses(stream: Stream, q: np.ndarray) -> dict[str, float]:
-    """By how much each finite difference exceeds its limit, relative to it and beyond rounding; at most 0 is kept."""
+    """Returns the largest excess of each finite difference over its limit, relative to it, rounding deducted.
+
+    The first `HISTORY` rows of `q` are the configurations up to the start.
+    """
     dt, rounding = stream.dt, ROUNDING * np.abs(q).max()
-    moved = np.vstack([np.tile(q[0], (3, 1)), q])  # at rest before
-    found = {"position": _outside(stream, q)}
+    ticks = len(q) - HISTORY
+    found = {"position": _outside(stream, q[HISTORY - 1 :])}
     for order, kind in enumerate(KINDS, 1):
         limit = stream.limits.get(kind)
         if limit is None:
             continue
-        rates = np.abs(np.diff(moved, order, axis=0))[-(len(q) - 1) :]
-        bounds = lowest(limit, dt, len(rates)) * dt**order
+        rates = np.abs(np.diff(q, order, axis=0))[-ticks:]
+        bounds = lowest(limit, dt, ticks) * dt**order
         found[kind] = float(((rates - rounding) / bounds).max()) - 1.0
     return found
 
@@ -147,7 +168,7 @@ def _outside(stream: Stream, q: np.ndarray) -> float:
 
 
 def lowest(limit: Any, dt: float, ticks: int) -> np.ndarray:
-    """The smallest value of a limit over each tick: (ticks, 1) or (ticks, n)."""
+    """Returns the smallest value of a limit over each tick: (ticks, 1) or (ticks, n)."""
     if not isinstance(limit, bik.Sinusoid):
         return np.tile(np.atleast_1d(limit), (ticks, 1))
     time = dt * np.arange(ticks + 1)

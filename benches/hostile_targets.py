@@ -20,7 +20,7 @@ DROPOUTS, NOT_A_NUMBER = 0.3, 0.01  # shares of the ticks of a stream that has t
 
 @dataclass(frozen=True)
 class Stream:
-    """One tracker and what it is told; a target is None where none arrives."""
+    """A tracker and its targets, one per tick; None where no target arrives."""
 
     name: str
     robot: bik.Robot
@@ -28,20 +28,23 @@ class Stream:
     dt: float
     limits: dict[str, Any]  # arguments of `Limits`
     targets: list[np.ndarray | None]
+    moving: tuple[np.ndarray, np.ndarray] | None = None  # velocity and acceleration at the start, if the arm can stop
 
 
 def draw(name: str, random: np.random.Generator) -> Stream:
-    """A stream whose arm, tick, limits and length are random too."""
+    """Draws arm, tick, limits, length and targets of a stream."""
     robot = bik.Robot.named(str(random.choice(bik.Robot.names())))
     lower, upper = np.maximum(robot.lower, -np.pi), np.minimum(robot.upper, np.pi)
     start = lower + (upper - lower) * random.uniform(0.05, 0.95, robot.dof)
     limits = _limits(robot, start, random)
     targets = list(TARGETS[name](robot, start, int(random.integers(*LENGTHS)), random))
-    return Stream(name, robot, start, float(random.choice(TICKS)), limits, targets)
+    moving = random.uniform(-2.0, 2.0, robot.dof), random.uniform(-5.0, 5.0, robot.dof)
+    dt = float(random.choice(TICKS))
+    return Stream(name, robot, start, dt, limits, targets, moving if random.random() < 0.5 else None)
 
 
 def _limits(robot: bik.Robot, start: np.ndarray, random: np.random.Generator) -> dict[str, Any]:
-    """Between a crawl and more than a real arm can do; some vary with time, some begin at the start itself."""
+    """Draws limits: slow to unrealistically fast; some vary with time, some position limits touch the start."""
     limits: dict[str, Any] = {"velocity": _spread(random, 0.1, 4.0, robot.dof)}
     limits["acceleration"] = _spread(random, 0.5, 50.0, robot.dof)
     if random.random() < 0.7:
@@ -60,7 +63,7 @@ def _limits(robot: bik.Robot, start: np.ndarray, random: np.random.Generator) ->
 
 
 def _spread(random: np.random.Generator, low: float, high: float, size: int) -> np.ndarray:
-    """Evenly on a logarithmic scale; half of the time the same for all joints."""
+    """Draws log-uniform values; half of the time equal for all joints."""
     values = np.exp(random.uniform(np.log(low), np.log(high), size))
     return values if random.random() < 0.5 else np.full(size, values[0])
 
@@ -69,7 +72,7 @@ Targets = Callable[[bik.Robot, np.ndarray, int, np.random.Generator], np.ndarray
 
 
 def _held(poses: np.ndarray, ticks: int, random: np.random.Generator) -> np.ndarray:
-    """Each tick one of the poses, which change now and then."""
+    """Holds each of the poses for some fifty ticks."""
     changes = random.random(ticks) < 0.02
     return poses[np.cumsum(changes) % len(poses)]
 
@@ -109,7 +112,7 @@ def _far(robot: bik.Robot, start: np.ndarray, ticks: int, random: np.random.Gene
 
 
 def _edge(robot: bik.Robot, start: np.ndarray, ticks: int, random: np.random.Generator) -> np.ndarray:
-    """Positions around the edge of what the arm reaches in the direction of random configurations."""
+    """Positions at 0.9 to 1.1 of the reach, in random directions."""
     points = robot.fk(robot.random_configurations(200, seed=int(random.integers(2**31))))[:, :3, 3]
     reach = np.linalg.norm(points, axis=1).max()
     farther = points / np.linalg.norm(points, axis=1, keepdims=True) * reach * random.uniform(0.9, 1.1, (200, 1))
@@ -117,14 +120,14 @@ def _edge(robot: bik.Robot, start: np.ndarray, ticks: int, random: np.random.Gen
 
 
 def _singular(robot: bik.Robot, start: np.ndarray, ticks: int, random: np.random.Generator) -> np.ndarray:
-    """Through configurations whose joints are at zero or at a limit, all or some of them."""
+    """Poses of configurations with joints at zero or at a limit."""
     places = np.stack([np.clip(np.zeros(robot.dof), robot.lower, robot.upper), robot.lower, robot.upper, start])
     chosen = random.integers(0, 4, (30, robot.dof))
     return _held(robot.fk(np.clip(np.take_along_axis(places.T, chosen.T, axis=1).T, -6.0, 6.0)), ticks, random)
 
 
 def _turning_back(robot: bik.Robot, start: np.ndarray, ticks: int, random: np.random.Generator) -> np.ndarray:
-    """To and fro between two poses, as fast as every few ticks."""
+    """Two poses by turns, for 1 to 40 ticks each."""
     two = robot.fk(robot.random_configurations(2, seed=int(random.integers(2**31))))
     return two[np.arange(ticks) // int(random.integers(1, 40)) % 2]
 

@@ -1,6 +1,6 @@
-"""Live targets that jump and are noisy: `Tracker` beside what others command, tick by tick.
+"""Live targets that jump and are noisy: `Tracker` compared with other libraries, tick by tick.
 
-    python benches/noisy_targets.py --robots DIR --arms panda ur5 iiwa14 --out DIR
+    python benches/noisy_targets.py --arms franka_panda ur5e iiwa14 --out DIR
 
 Three parts, on the same targets for all: jumps of 0.2 m under noise (settling, deviation from the straight way, shaking
 at rest, time a tick), a smooth path without noise (lag), and a noisy stream of 60 Hz (lag, error, acceleration, jerk).
@@ -22,10 +22,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from peers import beetle_movers, differential_movers, motion, planned_movers
+from peers import arms, beetle_movers, differential_movers, motion, planned_movers
 from peers.adapter import load
-from peers.chain import Chain, load_chains
-from peers.figures import plot_jumps
+from peers.chain import Chain
+from peers.live_report import (
+    OVER_NOISE_COLUMNS,
+    SUMMARY_COLUMNS,
+    over_noise_lines,
+    plot_over_noise,
+    rows,
+    summary_lines,
+)
 from peers.live_targets import (
     JUMP,
     PERIOD,
@@ -67,7 +74,7 @@ STREAM_TICK = 2e-3  # s
 
 @dataclass
 class Measured:
-    """All figures so far, as lines of tables; and why a library is missing."""
+    """All figures so far, as lines of tables, and the reasons for missing libraries."""
 
     jumps: list[list[str]] = field(default_factory=list)
     smooth: list[list[str]] = field(default_factory=list)
@@ -76,36 +83,28 @@ class Measured:
 
 
 def main() -> None:
-    """Measure everything and write it down, anew after each arm: the run is long."""
+    """Measures all arms and writes the results, again after each arm: the run is long."""
     arguments = parse_arguments()
     warnings.filterwarnings("ignore")  # of libraries, about solvers and deprecated calls
     arguments.out.mkdir(parents=True, exist_ok=True)
     measured = Measured()
     with tempfile.TemporaryDirectory() as scratch:
-        chains = {chain.name: chain for chain in load_chains(arguments.robots, Path(scratch))}
-        for name in arguments.arms:
-            chain = chains[name]
+        for chain in arms.chosen(arguments, Path(scratch)):
             for jerk in JERKS:
                 for dt in arguments.ticks:
-                    print(f"{name}, {1e3 * dt:g} ms, jerk {limit_name(jerk)}", flush=True)
+                    print(f"{chain.name}, {1e3 * dt:g} ms, jerk {limit_name(jerk)}", flush=True)
                     setting = Setting(dt, VELOCITY, ACCELERATION, jerk)
                     measure_jumps(chain, setting, arguments, measured)
                     measure_smooth(chain, setting, measured)
                 measure_stream(chain, Setting(STREAM_TICK, VELOCITY, ACCELERATION, jerk), measured)
             write(measured, arguments.out)
-    print(f"wrote jumps.csv, smooth.csv, stream.csv, noisy_targets.md and noisy_targets.png to {arguments.out}")
+    print(f"wrote the tables, noisy_targets.md and noisy_targets.png to {arguments.out}")
 
 
 def parse_arguments() -> argparse.Namespace:
-    """What to measure, and where the results go."""
+    """Parses the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument(
-        "--robots",
-        type=Path,
-        default=Path(__file__).parents[2] / "shared" / "robots",
-        help="directory of URDF files, as for compare.py",
-    )
-    parser.add_argument("--arms", nargs="+", default=["panda", "ur5", "iiwa14"], help="names of the files to take")
+    arms.add_arguments(parser, arms=("franka_panda", "ur5e", "iiwa14"))
     parser.add_argument("--ticks", nargs="+", type=float, default=TICKS, help="tick lengths (s)")
     parser.add_argument("--noises", nargs="+", type=float, default=NOISES, help="standard deviations (m and rad)")
     parser.add_argument("--jumps", type=int, default=3, help="jumps an arm (default: 3)")
@@ -122,7 +121,7 @@ JUMP_COLUMNS = [
 
 
 def measure_jumps(chain: Chain, setting: Setting, arguments: argparse.Namespace, measured: Measured) -> None:
-    """Every library at the same jumps, for each level of noise."""
+    """Measures all libraries at the same jumps, for each level of noise."""
     movers = available(JUMPING, chain, setting, measured)
     ticks = round(arguments.seconds / setting.dt)
     for noise in arguments.noises:
@@ -144,7 +143,7 @@ def measure_jumps(chain: Chain, setting: Setting, arguments: argparse.Namespace,
 def judge_jump(
     chain: Chain, commanded: motion.Commanded, goal: np.ndarray, setting: Setting, noise: float
 ) -> list[float]:
-    """The figures of one jump but for the time in a row; what happens at rest is that of the last third."""
+    """The figures of one jump except the time in a row; the last third of the time counts as rest."""
     points, dt = motion.tips(chain, commanded.q), setting.dt
     at_rest = commanded.q[-len(commanded.q) // 3 :]
     return [
@@ -159,7 +158,7 @@ def judge_jump(
 
 
 def over_limits(q: np.ndarray, setting: Setting) -> tuple[float, float]:
-    """The largest acceleration and jerk over their limits; NaN where there is none. The arm was at rest before."""
+    """The largest acceleration and jerk relative to their limits, NaN where there is none; the arm starts at rest."""
     q = np.vstack([q[:1], q[:1], q])
     acceleration = motion.excess(q, 2, setting.dt, setting.acceleration)
     return acceleration, np.nan if setting.jerk is None else motion.excess(q, 3, setting.dt, setting.jerk)
@@ -169,7 +168,7 @@ SMOOTH_COLUMNS = ["robot", "tick_ms", "jerk_limit", "library", "lag_ms", "error_
 
 
 def measure_smooth(chain: Chain, setting: Setting, measured: Measured) -> None:
-    """The lag of every library behind a smooth path that begins at rest."""
+    """Measures the lag of all libraries behind a smooth path that begins at rest."""
     start, path = smooth_path(chain, setting.dt)
     for name, commanded in motion.drive(available(JUMPING, chain, setting, measured), start, path[1:]).items():
         points = motion.tips(chain, commanded.q)
@@ -190,7 +189,7 @@ STREAM_COLUMNS = [
 
 
 def measure_stream(chain: Chain, setting: Setting, measured: Measured) -> None:
-    """Lag, error and shaking of every library after the same slow, late and noisy stream along the smooth path."""
+    """Measures lag, error, acceleration and jerk of all libraries on the same slow, late and noisy stream."""
     start, path = smooth_path(chain, setting.dt)
     arrivals = stream(path, setting.dt)
     for mover in available(STREAMING, chain, setting, measured):
@@ -218,19 +217,19 @@ def rms(differences: np.ndarray) -> float:
 
 
 def available(movers: list[type[Mover]], chain: Chain, setting: Setting, measured: Measured) -> list[Mover]:
-    """Those that are installed and take this arm and these limits; what is missing is noted."""
+    """The libraries that are installed and accept this arm and these limits; notes the others."""
     found, missing = load(movers, chain, setting)
     measured.missing |= dict.fromkeys(f"- {name}, {chain.name}: {reason}" for name, reason in missing.items())
     return found
 
 
 def limit_name(jerk: float | None) -> str:
-    """As in the tables."""
+    """The limit as printed in the tables."""
     return "none" if jerk is None else f"{jerk:g}"
 
 
 def cell(value: float) -> str:
-    """A figure of a table; a dash for what did not happen or is not limited."""
+    """The figure as printed in the tables; a dash if it is not finite."""
     return f"{value:.4g}" if np.isfinite(value) else "-"
 
 
@@ -240,7 +239,15 @@ def write(measured: Measured, out: Path) -> None:
     write_table(out / "smooth.csv", SMOOTH_COLUMNS, measured.smooth)
     write_table(out / "stream.csv", STREAM_COLUMNS, measured.stream)
     (out / "noisy_targets.md").write_text(markdown(measured), encoding="utf-8")
-    plot_jumps(measured.jumps, JUMP_COLUMNS, out / "noisy_targets.png")
+    over_noise = over_noise_lines(rows(JUMP_COLUMNS, measured.jumps))
+    write_table(out / "over_noise.csv", OVER_NOISE_COLUMNS, over_noise)
+    write_table(out / "summary.csv", SUMMARY_COLUMNS, summarised(measured))
+    plot_over_noise(over_noise, out / "noisy_targets.png")
+
+
+def summarised(measured: Measured) -> list[list[str]]:
+    """The lines of the short table."""
+    return summary_lines(rows(JUMP_COLUMNS, measured.jumps), rows(SMOOTH_COLUMNS, measured.smooth))
 
 
 def markdown(measured: Measured) -> str:
@@ -255,6 +262,7 @@ def markdown(measured: Measured) -> str:
         plain_section(
             "Libraries and settings", ["library", "settings"], [[each.name, each.settings] for each in every]
         ),
+        plain_section("Medians over arms and ticks", SUMMARY_COLUMNS, summarised(measured)),
         plain_section(f"Jumps of {JUMP:g} m", JUMP_COLUMNS, measured.jumps),
         plain_section(f"A smooth path, {RADIUS:g} m and {PERIOD:g} s a turn", SMOOTH_COLUMNS, measured.smooth),
         plain_section(

@@ -1,11 +1,15 @@
 """Configuration of Sphinx: `make docs`."""
 
+import logging
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 
 import beetle_ik
+
+# Examples log what they solve; the pages show their output alone.
+logging.getLogger("beetle_ik").setLevel(logging.WARNING)
 
 project = "beetle-ik"
 copyright = "the beetle-ik developers"

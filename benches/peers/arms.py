@@ -1,19 +1,20 @@
-"""The arms whose geometry `ssik` carries, as URDF files: some seventy real ones, most of them in no catalog of ours."""
+"""The seventy-two arms whose geometry is part of `ssik`, as URDF files; most are not in our own catalog."""
 
 from __future__ import annotations
 
+import argparse
 import importlib
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
-from .chain import Chain
+from .chain import Chain, load_chains, some_mass
 
-# Every structure that has a closed form, and arms without one.
+# All structures with a closed form, and arms without one.
 SIX_JOINTS = (
     *("irb120", "irb6700", "vs060", "lrmate200id", "kr6_r900", "rv4fr", "rx160", "viperx300s", "puma560", "gp8"),
     *("ur3e", "ur5", "ur5e", "ur16e", "z1", "standardbots_core"),
@@ -22,8 +23,28 @@ SIX_JOINTS = (
 SEVEN_JOINTS = ("franka_panda", "fr3", "iiwa7", "iiwa14", "gen3", "xarm7", "rizon4")
 
 
-def carried_chains(names: Iterable[str], scratch: Path) -> list[Chain]:
-    """The chains of these arms, with files in `scratch`."""
+def add_arguments(parser: argparse.ArgumentParser, *, arms: Iterable[str] = (), robots: Iterable[Path] = ()) -> None:
+    """Adds the options that choose the arms."""
+    parser.add_argument("--arms", nargs="*", default=arms, help="names of arms in ssik")
+    parser.add_argument(
+        "--robots",
+        nargs="*",
+        type=Path,
+        default=robots,
+        help="URDF files or directories of them; a robots.json beside them may give base and tip: "
+        "{NAME: {base: LINK, tip: LINK}}",
+    )
+
+
+def chosen(arguments: argparse.Namespace, scratch: Path) -> list[Chain]:
+    """Returns the chains of the chosen arms, with files in `scratch`."""
+    return [*carried_chains(arguments.arms, scratch), *load_chains(arguments.robots, scratch)]
+
+
+def carried_chains(names: Collection[str], scratch: Path) -> list[Chain]:
+    """Returns the chains of these arms of `ssik`, with files in `scratch`."""
+    if not names:
+        return []
     import ssik
 
     paths = {arm.name.removesuffix("_ik"): arm.import_path for arm in ssik.list_arms()}
@@ -33,22 +54,34 @@ def carried_chains(names: Iterable[str], scratch: Path) -> list[Chain]:
 
 
 def _chain(name: str, import_path: str, scratch: Path) -> Chain:
+    """Writes the arm with each joint about its own z axis: not all libraries read other axes exactly."""
     module = importlib.import_module(import_path)
     robot = ET.Element("robot", name=name)
     link = module.BASE_LINK
     ET.SubElement(robot, "link", name=link)
+    placement = np.eye(4)
     for i, joint in enumerate(_joints(module)):
         before, axis, limits, after = joint
         lower, upper = limits or (-np.pi, np.pi)
-        turning = _add(robot, f"joint_{i + 1}", "revolute", link, f"turning_{i + 1}", before)
-        ET.SubElement(turning, "axis", xyz=_text(axis))
-        ET.SubElement(turning, "limit", lower=repr(lower), upper=repr(upper), velocity="1", effort="0")
-        last = i + 1 == module.DOF
-        link = module.EE_LINK if last else f"link_{i + 1}"
-        _add(robot, f"fixed_{i + 1}", "fixed", f"turning_{i + 1}", link, after)
+        turn = _frame_about(axis)
+        moving = _add(robot, f"joint_{i + 1}", "revolute", link, f"moved_{i + 1}", placement @ before @ turn)
+        ET.SubElement(moving, "axis", xyz="0 0 1")
+        ET.SubElement(moving, "limit", lower=repr(lower), upper=repr(upper), velocity="1", effort="0")
+        link, placement = f"moved_{i + 1}", turn.T @ after
+    _add(robot, "to_tip", "fixed", link, module.EE_LINK, placement)
     path = scratch / f"{name}.urdf"
     ET.ElementTree(robot).write(path)
     return Chain(name, path, module.BASE_LINK, module.EE_LINK, import_path)
+
+
+def _frame_about(axis: np.ndarray) -> np.ndarray:
+    """A frame (4, 4) at the origin whose z axis is this one."""
+    z = axis / np.linalg.norm(axis)
+    x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
+    x /= np.linalg.norm(x)
+    frame = np.eye(4)
+    frame[:3, :3] = np.column_stack([x, np.cross(z, x), z])
+    return frame
 
 
 def _joints(module: Any) -> Iterable[tuple[np.ndarray, np.ndarray, tuple[float, float] | None, np.ndarray]]:
@@ -57,17 +90,13 @@ def _joints(module: Any) -> Iterable[tuple[np.ndarray, np.ndarray, tuple[float, 
 
 
 def _add(robot: ET.Element, name: str, kind: str, parent: str, child: str, placement: np.ndarray) -> ET.Element:
-    """A joint and the link that it carries."""
+    """A joint and the link that it carries, with the mass that simulators insist on."""
     joint = ET.SubElement(robot, "joint", name=name, type=kind)
     ET.SubElement(joint, "parent", link=parent)
     ET.SubElement(joint, "child", link=child)
-    ET.SubElement(
-        joint,
-        "origin",
-        xyz=_text(placement[:3, 3]),
-        rpy=_text(pin.rpy.matrixToRpy(np.ascontiguousarray(placement[:3, :3]))),
-    )
-    ET.SubElement(robot, "link", name=child)
+    rotation = pin.rpy.matrixToRpy(np.ascontiguousarray(placement[:3, :3]))
+    ET.SubElement(joint, "origin", xyz=_text(placement[:3, 3]), rpy=_text(rotation))
+    ET.SubElement(robot, "link", name=child).append(some_mass())
     return joint
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import math
 import xml.etree.ElementTree as ET
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -69,16 +70,17 @@ class Chain:
         return np.array([self.pose(q) for q in goals]), starts
 
 
-def load_chains(directory: Path, scratch: Path) -> list[Chain]:
-    """The chain of every URDF in `directory`; `robots.json` beside them may name base and tip links."""
-    index = directory / "robots.json"
-    ends = json.loads(index.read_text()) if index.exists() else {}
+def load_chains(places: Iterable[Path], scratch: Path) -> list[Chain]:
+    """The chain of every URDF file named or in a directory; a `robots.json` beside it may name base and tip links."""
     chains = []
-    for urdf in sorted(directory.glob("*.urdf")):
-        robot = ends.get(urdf.stem, {})
-        chains.append(_cut(urdf, robot.get("base"), robot.get("tip"), scratch))
-    if not chains:
-        raise SystemExit(f"no .urdf file in {directory}: give a directory that has some with --robots")
+    for place in places:
+        files = [place] if place.suffix == ".urdf" else sorted(place.glob("*.urdf"))
+        if not files:
+            raise SystemExit(f"no .urdf file in {place}: give a directory that has some with --robots")
+        for urdf in files:
+            index = urdf.with_name("robots.json")
+            ends = json.loads(index.read_text()).get(urdf.stem, {}) if index.exists() else {}
+            chains.append(_cut(urdf, ends.get("base"), ends.get("tip"), scratch))
     return chains
 
 
@@ -112,13 +114,13 @@ def _cut(urdf: Path, base: str | None, tip: str | None, scratch: Path) -> Chain:
             limit.set("upper", str(math.pi))
         chain.append(joint)
         moved = ET.SubElement(chain, "link", name=joint.find("child").get("link"))
-        moved.append(_some_mass())
+        moved.append(some_mass())
     path = scratch / urdf.name
     ET.ElementTree(chain).write(path)
     return Chain(urdf.stem, path, link, tip)
 
 
-def _some_mass() -> ET.Element:
+def some_mass() -> ET.Element:
     """The simulators among the libraries insist on it."""
     inertial = ET.Element("inertial")
     ET.SubElement(inertial, "mass", value="1")

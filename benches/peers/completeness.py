@@ -1,4 +1,4 @@
-"""Whether a set of solutions is complete, against what others find."""
+"""Completeness of a set of solutions, tested against the solutions of other libraries and of random descents."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CHUNK = 100_000  # descents at once
 
 @dataclass
 class Verdict:
-    """What the comparison found on one arm."""
+    """The result of the comparison on one arm."""
 
     known: int = 0  # solutions of the union, each counted once
     missing: list[tuple[int, np.ndarray]] = field(default_factory=list)  # number of the pose, solution
@@ -31,7 +31,7 @@ class Verdict:
 
 
 def judge(chain: Chain, targets: np.ndarray, ours: list[np.ndarray], theirs: list[np.ndarray]) -> Verdict:
-    """Compare two lists of solutions (k, n), one entry a pose; those of others are verified before they count."""
+    """Compares two lists of solutions (k, n), one entry per pose; those of others count once they are verified."""
     verdict = Verdict()
     for number, (target, mine, others) in enumerate(zip(targets, ours, theirs, strict=True)):
         good = distinct(verified(chain, target, mine))
@@ -43,16 +43,20 @@ def judge(chain: Chain, targets: np.ndarray, ours: list[np.ndarray], theirs: lis
         verdict.known += len(union)
         verdict.found_again += int(again)
         for q in union[(distances >= SAME).all(axis=1)]:
-            _note(chain, target, number, q, good, verdict)
+            polished = polish(
+                chain, target, q
+            )  # near a singularity, a small error of the pose is a large one of the joints
+            if polished is None or (apart(polished[None], good) < SAME).any():
+                verdict.known -= 1
+            else:
+                smallest = smallest_singular_value(chain, polished)
+                (verdict.singular if smallest < SINGULAR else verdict.missing).append((number, polished))
     return verdict
 
 
-def _note(chain: Chain, target: np.ndarray, number: int, q: np.ndarray, good: np.ndarray, verdict: Verdict) -> None:
-    """Look again with the candidate polished: within the tolerance of a pose it may be far from its solution."""
-    polished = polish(chain, target, q)
-    if polished is not None and (apart(polished[None], good) >= SAME).all():
-        smallest = np.linalg.svd(jacobian(chain, polished), compute_uv=False)[-1]
-        (verdict.singular if smallest < SINGULAR else verdict.missing).append((number, polished))
+def smallest_singular_value(chain: Chain, q: np.ndarray) -> float:
+    """Of the Jacobian, m and rad mixed."""
+    return float(np.linalg.svd(jacobian(chain, q), compute_uv=False)[-1])
 
 
 def apart(some: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -62,13 +66,13 @@ def apart(some: np.ndarray, others: np.ndarray) -> np.ndarray:
 
 
 def distinct(solutions: np.ndarray) -> np.ndarray:
-    """Each solution once."""
+    """The solutions without repetitions."""
     near = np.triu(apart(solutions, solutions) < SAME, 1)
     return solutions[~near.any(axis=0)]
 
 
 def verified(chain: Chain, target: np.ndarray, solutions: np.ndarray) -> np.ndarray:
-    """Those that reach the pose inside the limits, brought there by whole turns."""
+    """The solutions that reach the pose inside the limits, after whole turns."""
     inside = chain.unwound(np.asarray(solutions, dtype=float).reshape(-1, chain.dof) + LIMIT_SLACK) - LIMIT_SLACK
     inside = inside[(inside <= chain.upper + LIMIT_SLACK).all(axis=1)]
     return inside[[bool(np.abs(_error(chain, q, target)).max() <= REACHED) for q in inside]] if len(inside) else inside
@@ -93,13 +97,13 @@ def jacobian(chain: Chain, q: np.ndarray) -> np.ndarray:
 
 
 def _error(chain: Chain, q: np.ndarray, target: np.ndarray) -> np.ndarray:
-    """(6,): what is left to the pose, in m and as a rotation vector, world-aligned."""
+    """Error of the pose (6,): m, and a rotation vector (rad), world-aligned."""
     pose = chain.pose(q)
     return np.concatenate([target[:3, 3] - pose[:3, 3], pin.log3(target[:3, :3] @ pose[:3, :3].T)])
 
 
 def descents(robot: Any, chain: Chain, targets: np.ndarray, count: int) -> Iterable[np.ndarray]:
-    """What `count` Levenberg-Marquardt descents from random configurations find for each pose, distinct ones (k, n)."""
+    """The distinct solutions (k, n) found by `count` Levenberg-Marquardt descents from random starts, pose by pose."""
     import beetle_ik
 
     random = np.random.default_rng(1)

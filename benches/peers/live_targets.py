@@ -12,12 +12,12 @@ from .motion import noisy
 JUMP = 0.2  # m
 RADIUS, PERIOD = 0.08, 4.0  # of the smooth path, m and s
 STREAM_RATE, STREAM_NOISE = 60.0, 1e-3  # Hz, m and rad
-STREAM_LATENCY, STREAM_JITTER = 20e-3, 4e-3  # s: a target arrives this late, and up to so much later
+STREAM_LATENCY, STREAM_JITTER = 20e-3, 4e-3  # s: smallest delay of a target, and the range of its random part
 SEED = 20261
 
 
 def jumps(chain: Chain, count: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Starts (n,), and goals (4, 4) with the same orientation, some 0.2 m away and well inside reach and limits."""
+    """Starts (n,) and goals (4, 4): 0.2 m away, same orientation, well inside reach and limits."""
     import beetle_ik
 
     robot = beetle_ik.Robot.from_urdf(chain.urdf, base=chain.base, tip=chain.tip)
@@ -39,7 +39,7 @@ def jumps(chain: Chain, count: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
 
 
 def smooth_path(chain: Chain, dt: float) -> tuple[np.ndarray, np.ndarray]:
-    """A start and poses (k, 4, 4): twice round a circle whose speed grows smoothly from rest, then stays."""
+    """A start and poses (k, 4, 4): twice round a circle, the speed rising smoothly from zero to a constant."""
     start, goal = next(jumps(chain, 1))
     first = chain.pose(start)
     along = (goal[:3, 3] - first[:3, 3]) / JUMP
@@ -53,13 +53,13 @@ def smooth_path(chain: Chain, dt: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def eased(time: np.ndarray, rise: float) -> np.ndarray:
-    """Time that runs at speed 0 at first and at speed 1 from `rise` on, twice differentiable in its speed."""
+    """Time whose rate rises smoothly from 0 to 1 until `rise` (s)."""
     s = np.minimum(time / rise, 1.0)
     return rise * (s**4 * (2.5 - 3.0 * s + s**2)) + np.maximum(time - rise, 0.0)
 
 
 def stream(path: np.ndarray, dt: float) -> dict[int, tuple[np.ndarray, float]]:
-    """The tick in which a target arrives, the noisy target, and when it was measured (s)."""
+    """Noisy targets and their times of measurement (s), by the tick in which they arrive."""
     random = np.random.default_rng(SEED)
     measured_at = np.arange(0.0, dt * (len(path) - 1), 1.0 / STREAM_RATE)
     ticks = np.round(measured_at / dt).astype(int)

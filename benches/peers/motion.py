@@ -1,4 +1,4 @@
-"""Figures of a motion that was commanded tick by tick."""
+"""Figures of a motion commanded tick by tick."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Commanded:
 def drive(
     movers: Sequence[Mover], start: np.ndarray, targets: np.ndarray, *, in_a_row: int = 1
 ) -> dict[str, Commanded]:
-    """Every library after the same targets (k, 4, 4), `in_a_row` ticks by one before the next has its turn.
+    """Gives all libraries the same targets (k, 4, 4), `in_a_row` ticks to one library before the next.
 
     With 1, each tick comes after other work and finds the caches cold, as in a loop that also does something else.
     """
@@ -57,7 +57,7 @@ def tips(chain: Chain, q: np.ndarray) -> np.ndarray:
 
 
 def settling_time(distances: np.ndarray, dt: float, noise: float) -> float:
-    """Time (s) from which on the tip stays near the goal; NaN if it is not near it at the end."""
+    """Time (s) after which the tip stays near the goal; NaN if it is not near it at the end."""
     near = distances <= max(SETTLED, SETTLED_DEVIATIONS * noise)
     if not near[-1]:
         return np.nan
@@ -73,13 +73,13 @@ def off_the_line(points: np.ndarray, start: np.ndarray, goal: np.ndarray) -> flo
 
 
 def lag(points: np.ndarray, path: np.ndarray, dt: float) -> float:
-    """By how much (s) the points come after the path, both (k, 3): least squares over its velocity."""
+    """Delay (s) of the points behind the path, both (k, 3): least-squares fit along the velocity of the path."""
     velocity = np.gradient(path, dt, axis=0)
     return float(((path - points) * velocity).sum() / (velocity**2).sum())
 
 
 def delayed(path: np.ndarray, ticks: float) -> np.ndarray:
-    """The path (k, 3) so many ticks later."""
+    """The path (k, 3), delayed by `ticks`."""
     time = np.arange(len(path))
     return np.column_stack([np.interp(time - ticks, time, axis) for axis in path.T])
 
@@ -90,12 +90,12 @@ def rms_rate(q: np.ndarray, order: int, dt: float) -> float:
 
 
 def excess(q: np.ndarray, order: int, dt: float, limit: float) -> float:
-    """Largest finite difference of some joint over its limit; up to 1, within rounding, it is kept."""
+    """Largest finite difference of a joint relative to its limit; at most 1, within rounding, if the limit is kept."""
     return float(np.abs(np.diff(q, order, axis=0)).max()) / dt**order / limit
 
 
 def noisy(poses: np.ndarray, deviation: float, random: np.random.Generator) -> np.ndarray:
-    """Poses (k, 4, 4) with normal noise on each coordinate: so many m, and as many rad about each axis."""
+    """Poses (k, 4, 4) with normal noise of this standard deviation on each coordinate (m) and about each axis (rad)."""
     moved = poses.copy()
     moved[:, :3, 3] += deviation * random.standard_normal((len(poses), 3))
     turns = deviation * random.standard_normal((len(poses), 3))
@@ -113,7 +113,7 @@ def rotations(vectors: np.ndarray) -> np.ndarray:
 
 
 def median(values: Iterable[float]) -> float:
-    """The median in which NaN, what was never reached, counts as the longest."""
+    """The median; NaN counts as infinite, and an infinite median is returned as NaN."""
     finite = np.nan_to_num(np.fromiter(values, float), nan=np.inf)
     middle = float(np.median(finite))
     return middle if np.isfinite(middle) else np.nan

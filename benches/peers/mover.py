@@ -1,4 +1,4 @@
-"""What `noisy_targets.py` asks of a library: one configuration a tick, towards a target that moves."""
+"""The interface of `noisy_targets.py` to a library: one configuration per tick, towards a moving target."""
 
 # ruff: noqa: ARG002, D107
 
@@ -23,7 +23,7 @@ class Setting:
 
 
 class Mover:
-    """One library with one arm in its hands. Each step must do what a user's loop would do, conversions included."""
+    """One library moving one arm. Each step must do what a user's loop would do, conversions included."""
 
     name: ClassVar[str]
     distribution: ClassVar[str]
@@ -33,17 +33,17 @@ class Mover:
         raise NotImplementedError
 
     def begin(self, q: np.ndarray) -> None:
-        """Put the arm to rest at `q`."""
+        """Puts the arm to rest at `q`."""
         raise NotImplementedError
 
     def step(self, target: np.ndarray) -> np.ndarray:
-        """The configuration to command at the end of this tick; `target` (4, 4) is the target at that time."""
+        """Returns the configuration to command at the end of this tick; `target` (4, 4) is the target at that time."""
         raise NotImplementedError
 
     def listen(self, target: np.ndarray | None, stamp: float | None) -> np.ndarray:
-        """As `step`, from a slow stream: None in a tick that brings no target; `stamp` is when one was measured (s).
+        """As `step`, from a slow stream: `target` is None in a tick without a new one.
 
-        A library that knows nothing of streams is given the last target again.
+        `stamp` is the time of its measurement (s). A library without support for streams gets the last target again.
         """
         if target is not None:
             self._held = target

@@ -15,16 +15,16 @@ PARALLEL = 1e-6
 
 @dataclass(frozen=True)
 class OpwArm:
-    """The arm stretched upwards: `lengths` by the names of the paper, and where the chain has its zero."""
+    """The arm in the zero position of the paper, stretched upwards; `lengths` has the names of the paper."""
 
     lengths: dict[str, float]  # m
     base: np.ndarray  # (4, 4), the arm's frame in that of the chain's base: z along axis 1, y along axis 2
-    zero: np.ndarray  # (6,), the chain's joints in the arm's zero position
+    zero: np.ndarray  # (6,), joint angles of the chain in that position
     signs: np.ndarray  # (6,)
 
 
 def opw_parameters(chain: Chain) -> OpwArm:
-    """Stretch the arm upwards joint by joint, and measure it there.
+    """Turns the arm joint by joint into the zero position and measures it.
 
     Raises:
         Unsupported: the arm has another structure.
@@ -80,6 +80,6 @@ def _turn(axis: np.ndarray, vector: np.ndarray, wanted: np.ndarray) -> float:
 
 
 def _meeting(p: np.ndarray, q: np.ndarray, r: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """The point nearest to three lines; whether they meet, forward kinematics shows."""
+    """The point nearest to three lines; forward kinematics tells later whether they meet."""
     across = [np.eye(3) - np.outer(axis, axis) for axis in axes]
     return np.linalg.solve(sum(across), sum(each @ point for each, point in zip(across, (p, q, r), strict=True)))

@@ -1,4 +1,4 @@
-"""Inverse kinematics, then a motion planned to its answer in every tick: what users build from two libraries."""
+"""Inverse kinematics and then a planned motion in every tick, as users combine two libraries; and servo-py."""
 
 # The methods are described in mover.py.
 # ruff: noqa: D101, D102, D107
@@ -17,7 +17,7 @@ IK_TOLERANCE = 1e-6  # m and rad
 
 
 class ThenRuckig(Mover):
-    """Each tick, joint angles of the target from those of the tick before, and Ruckig towards them."""
+    """In each tick, joint angles of the target, solved from the last ones, and a Ruckig motion to them."""
 
     distribution = "ruckig"
     library: type[Adapter]
@@ -42,7 +42,7 @@ class ThenRuckig(Mover):
 
     def step(self, target: np.ndarray) -> np.ndarray:
         goal = self._ik.solve_pose(target, self._goal)
-        if goal is not None:  # otherwise it goes on towards the last one
+        if goal is not None:  # otherwise it moves on to the last one
             self._goal = goal
         self._asked.target_position = self._goal
         self._planner.update(self._asked, self._planned)

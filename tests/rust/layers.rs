@@ -8,25 +8,28 @@ use std::path::{Path, PathBuf};
 
 use imports::{SourceFile, Sources, code_of, paths};
 
-const FOUNDATION: &[&str] = &["error", "rng", "math", "stored", "wording"];
+const FOUNDATION: &[&str] = &["error", "interrupt", "rng", "math", "stored", "wording"];
 
 /// Which modules a module may use, besides itself and those of [`FOUNDATION`]. No solver knows of robots, no robot of solvers.
 const LAYERS: &[(&str, &[&str])] = &[
     ("error", &[]),
+    ("interrupt", &[]),
     ("rng", &[]),
     ("math", &[]),
     ("stored", &[]),
     ("wording", &[]),
     ("kinematics", &[]),
+    ("shape", &[]),
     ("starts", &["kinematics"]),
     ("closed_form", &["kinematics"]),
-    ("robot", &["kinematics", "starts", "closed_form"]),
-    ("load", &["kinematics", "robot"]),
+    ("robot", &["kinematics", "starts", "closed_form", "shape"]),
+    ("load", &["kinematics", "shape", "robot"]),
     ("path", &[]),
     ("trajectory", &[]),
     ("objective", &[]),
     ("limits", &["robot", "objective"]),
-    ("obstacle", &["robot", "objective"]),
+    ("motion", &["limits", "trajectory", "objective"]),
+    ("obstacle", &["robot", "objective", "shape"]),
     ("manipulability", &["kinematics", "robot"]),
     ("task", &["kinematics", "robot", "manipulability", "objective"]),
     ("solver", &["objective"]),
@@ -41,12 +44,14 @@ const LAYERS: &[(&str, &[&str])] = &[
     (
         "planning",
         &[
+            "motion",
             "robot",
             "path",
             "trajectory",
             "objective",
             "limits",
             "obstacle",
+            "shape",
             "manipulability",
             "task",
             "solver",
@@ -57,6 +62,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     (
         "tracking",
         &[
+            "motion",
             "kinematics",
             "robot",
             "path",

@@ -161,6 +161,7 @@ fn a_late_sensor_costs_measurements_and_no_accuracy() {
         on_circle(&mut late_plant(1), &ModelFreeOptions { controller: Controller::BroydenBas(broyden), ..options(0) });
     assert_eq!(record.track.status, Status::Solved, "{}", record.message());
     assert!(record.track.evaluations() <= 1400, "{}", record.track.evaluations());
+    assert_eq!(record.sensor_delay, None);
     let plane = Plane::xy([0.3, 0.3, 1.0]).unwrap();
     let fine = Path::new(Circle::new(plane, 0.2, 30.0).unwrap()).sample(1e-3).unwrap();
     let znnbas = Znnbas { sensor_delay: 20, ..Znnbas::default() };
@@ -171,6 +172,73 @@ fn a_late_sensor_costs_measurements_and_no_accuracy() {
     };
     let record = track_model_free(&mut late_plant(20), &fine, &ON_CIRCLE, &options, &mut Unattended).unwrap();
     assert_eq!(record.track.status, Status::Solved, "{}", record.message());
+}
+
+#[test]
+fn a_step_with_a_late_sensor_needs_little_more_than_its_delay() {
+    let broyden = BroydenBas { sensor_delay: 2, max_evaluations_per_step: 60, ..BroydenBas::default() };
+    let tolerance = Tolerance { position: 1e-5, rotation: 1e-5 };
+    let options = ModelFreeOptions { controller: Controller::BroydenBas(broyden), tolerance, ..options(0) };
+    let record = on_circle(&mut late_plant(2), &options);
+    assert_eq!(record.track.status, Status::Solved, "{}", record.message());
+    let steps = record.track.rows() - 1;
+    assert!(record.track.evaluations() <= 4 * steps, "{} for {steps} steps", record.track.evaluations());
+}
+
+/// Runs that fail without the right delay.
+fn run_on(plant: &mut dyn Plant, seed: u64, controller: Controller, dt: f64) -> ModelFreeRecord {
+    let mut rng = rng::stream(seed, 3);
+    let start = ON_CIRCLE.map(|q| q + rng.uniform_in(-0.05, 0.05));
+    let options = ModelFreeOptions { controller, seed, ..options(seed) };
+    track_model_free(plant, &circle_at(dt), &start, &options, &mut Unattended).unwrap()
+}
+
+fn both_controllers() -> [(Controller, f64); 2] {
+    [(Controller::default(), 0.2), (Controller::Znnbas(Znnbas::published()), 0.01)]
+}
+
+#[test]
+fn an_undeclared_delay_is_named() {
+    for late in 1..=5 {
+        for (controller, dt) in both_controllers() {
+            let found = (0..SEEDS).filter(|seed| {
+                let record = run_on(&mut late_plant(late), *seed, controller.clone(), dt);
+                assert!(matches!(record.sensor_delay, None | Some(1..)), "{late}: {:?}", record.sensor_delay);
+                record.sensor_delay == Some(late)
+            });
+            let found = found.count() as u64;
+            assert!(2 * found >= SEEDS, "{controller:?}: {found} of {SEEDS} with {late} late");
+        }
+    }
+    let record = on_circle(&mut late_plant(2), &options(0));
+    let advice =
+        ": the sensor is 2 measurements late; give the controller sensor_delay=2. Over the second half the error was ";
+    assert!(record.message().contains(advice), "{}", record.message());
+}
+
+/// A servo that covers only a part of the way to each command, and a sensor with noise.
+fn slow_plant(pole: f64, noise: f64, seed: u64) -> impl Plant {
+    let (arm, mut rng) = (robot("iiwa14"), rng::stream(seed, 5));
+    let mut at: Option<Vec<f64>> = None;
+    FunctionPlant(move |q: &[f64]| {
+        let at = at.get_or_insert_with(|| q.to_vec());
+        at.iter_mut().zip(q).for_each(|(at, q)| *at = pole * *at + (1.0 - pole) * q);
+        let ([x, y], [z, _]) = (rng.normal_pair(), rng.normal_pair());
+        let tip = arm.tip_position(at);
+        [tip[0] + noise * x, tip[1] + noise * y, tip[2] + noise * z]
+    })
+}
+
+#[test]
+fn noise_and_slow_servos_are_not_taken_for_delay() {
+    for (pole, noise) in [(0.0, 1e-4), (0.0, 1e-3), (0.0, 5e-3), (0.3, 0.0), (0.6, 0.0), (0.9, 0.0), (0.6, 1e-3)] {
+        for (controller, dt) in both_controllers() {
+            for seed in 0..SEEDS {
+                let record = run_on(&mut slow_plant(pole, noise, seed), seed, controller.clone(), dt);
+                assert_eq!(record.sensor_delay, None, "pole {pole}, noise {noise}, seed {seed}, {controller:?}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -313,8 +381,8 @@ fn a_session_gives_the_same_commands_as_the_run() {
         let mut session = ControlSession::new(&controller, &ON_CIRCLE, 0.2, limits, options.tolerance, 3).unwrap();
         for i in 0..=150 {
             let step = loop {
-                let command = session.command(record.track.reference[i]).unwrap().to_vec();
-                if let Some(step) = session.observe(arm.tip_position(&command)).unwrap() {
+                let command = session.command(&record.track.reference[i].into()).unwrap().to_vec();
+                if let Some(step) = session.observe(&arm.tip_position(&command).into()).unwrap() {
                     break step;
                 }
             };
@@ -358,18 +426,21 @@ fn targets_are_positions_or_poses_throughout() {
         ControlSession::new(&Controller::default(), &[0.0; 2], 0.1, limits, Tolerance::default(), 0).unwrap()
     };
     let mut session = start();
-    session.command(&pose).unwrap();
+    session.command(&TipPose::from(&pose)).unwrap();
     let problem = "position: expected a pose (4, 4), like the target, got a position (3,)";
-    assert_eq!(message(session.observe([0.0; 3])), problem);
-    let step = session.observe(&pose).unwrap().unwrap();
+    assert_eq!(message(session.observe(&[0.0; 3].into())), problem);
+    let step = session.observe(&TipPose::from(&pose)).unwrap().unwrap();
     assert_eq!((step.error.position, step.error.rotation), (0.0, 0.0), "the turn is not lost by a mistake");
     let problem = "target: expected a pose (4, 4), as before, got a position (3,)";
-    assert_eq!(message(session.command([0.0; 3])), problem);
+    assert_eq!(message(session.command(&[0.0; 3].into())), problem);
     let mut session = start();
-    session.command([0.0; 3]).unwrap();
-    assert!(session.observe(&pose).unwrap().unwrap().error.rotation.is_nan(), "the orientation is free");
+    session.command(&[0.0; 3].into()).unwrap();
+    assert!(
+        session.observe(&TipPose::from(&pose)).unwrap().unwrap().error.rotation.is_nan(),
+        "the orientation is free"
+    );
     let problem = "target: expected a position (3,), as before, got a pose (4, 4)";
-    assert_eq!(message(session.command(&pose)), problem);
+    assert_eq!(message(session.command(&TipPose::from(&pose))), problem);
 }
 
 #[test]
@@ -378,13 +449,16 @@ fn turns_are_kept() {
         ControlSession::new(&Controller::default(), &[0.0; 2], 0.1, Limits::none_for(2), Tolerance::default(), 0)
             .unwrap();
     let early = "observe: there is no command to answer; call command(target) first";
-    assert_eq!(message(session.observe([0.0; 3])), early);
-    session.command([1.0, 0.0, 0.0]).unwrap();
+    assert_eq!(message(session.observe(&[0.0; 3].into())), early);
+    session.command(&[1.0, 0.0, 0.0].into()).unwrap();
     let late = "command: the last command is not answered yet; call observe(position) first";
-    assert_eq!(message(session.command([1.0, 0.0, 0.0])), late);
-    assert_eq!(message(session.observe([0.0, f64::NAN, 0.0])), "position must be finite, but entry 1 is NaN");
-    assert!(session.observe([0.0; 3]).is_ok(), "the turn is not lost by a mistake");
-    assert_eq!(message(session.command([f64::INFINITY, 0.0, 0.0])), "target must be finite, but entry 0 is inf");
+    assert_eq!(message(session.command(&[1.0, 0.0, 0.0].into())), late);
+    assert_eq!(message(session.observe(&[0.0, f64::NAN, 0.0].into())), "position must be finite, but entry 1 is NaN");
+    assert!(session.observe(&[0.0; 3].into()).is_ok(), "the turn is not lost by a mistake");
+    assert_eq!(
+        message(session.command(&[f64::INFINITY, 0.0, 0.0].into())),
+        "target must be finite, but entry 0 is inf"
+    );
 }
 
 #[test]
@@ -421,7 +495,7 @@ fn wrong_input_is_named() {
         "antenna_length must be positive and finite, got 0"
     );
     let outside = [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let limits = "start: joint 'joint_1' at 3 is outside its limits [-2.9670597283903604, 2.9670597283903604]";
+    let limits = "start: joint 'joint_a1' at 3 is outside its limits [-2.9670597283903604, 2.9670597283903604]";
     assert_eq!(run(Controller::default(), &outside), limits);
     let none = ModelFreeOptions::default();
     let no_joints = track_model_free(&mut exact_plant(), &circle(), &[], &none, &mut Unattended);

@@ -46,12 +46,12 @@
 //!
 //! | layer | modules |
 //! |---|---|
-//! | 0 | [`error`], [`rng`], [`math`], [`stored`], `wording` |
-//! | 1 | [`kinematics`], [`path`], [`trajectory`], [`objective`] |
+//! | 0 | [`error`], [`interrupt`], [`rng`], [`math`], [`stored`], `wording` |
+//! | 1 | [`kinematics`], [`shape`], [`path`], [`trajectory`], [`objective`] |
 //! | 2 | [`starts`], `closed_form` |
 //! | 3 | [`robot`] |
 //! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
-//! | 5 | [`task`], [`solver`] |
+//! | 5 | [`motion`], [`task`], [`solver`] |
 //! | 6 | [`problem`] |
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
 //! | 8 | [`tracking`], [`planning`], [`posture`], [`batch`] |
@@ -60,12 +60,14 @@ pub mod batch;
 mod closed_form;
 pub mod error;
 pub mod ik;
+pub mod interrupt;
 pub mod kinematics;
 pub mod limits;
 pub mod load;
 pub mod manipulability;
 pub mod math;
 pub mod minimize;
+pub mod motion;
 pub mod objective;
 pub mod obstacle;
 pub mod path;
@@ -74,6 +76,7 @@ pub mod posture;
 pub mod problem;
 pub mod rng;
 pub mod robot;
+pub mod shape;
 pub mod solver;
 pub mod starts;
 pub mod stored;

@@ -1,6 +1,7 @@
 //! Conversion of Python values to Rust and back. The only file that depends on numpy's memory layout.
 
 use std::ops::Deref;
+use std::path::PathBuf;
 
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix3, Matrix4};
@@ -15,6 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyBytes, PyList, PyString, PyTuple, PyType};
 
 use crate::error::{invalid, raise};
+use crate::monitor::check_signals_at;
 
 /// A float64 array of any shape.
 pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -145,6 +147,17 @@ pub fn optional_text<'a>(value: &'a Bound<'_, PyAny>) -> PyResult<Option<&'a str
     if value.is_none() { Ok(None) } else { text(value).map(Some) }
 }
 
+/// Reads a file, or text; `what` names it.
+pub fn path_or_text(what: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
+    if let Ok(text) = value.extract::<String>() {
+        return Ok(text);
+    }
+    match value.extract::<PathBuf>() {
+        Ok(path) => Ok(path.to_string_lossy().into_owned()),
+        Err(_) => Err(invalid(format!("{what} must be a path, or XML as text, got {}", summary(value)))),
+    }
+}
+
 /// Reads an optional list of words.
 pub fn optional_texts(value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
     if value.is_none() {
@@ -256,7 +269,11 @@ pub fn rigid_rows(what: &str, rows: &[f64]) -> PyResult<Pose> {
 /// Makes rigid transforms from stacked 4x4 matrices.
 pub fn rigid_matrices(numbers: &[f64]) -> PyResult<Vec<Pose>> {
     let matrices = numbers.chunks_exact(16).enumerate();
-    matrices.map(|(i, rows)| rigid_rows(&format!("pose {i}"), rows)).collect()
+    let read = |(i, rows)| {
+        Python::attach(|py| check_signals_at(py, i))?;
+        rigid_rows(&format!("pose {i}"), rows)
+    };
+    matrices.map(read).collect()
 }
 
 /// Reads a 3x3 matrix.

@@ -21,8 +21,8 @@ impl Classes {
     fn of(&self, error: &Error) -> &Py<PyType> {
         match error {
             Error::InRow { error, .. } => self.of(error),
-            Error::UnknownRobot { .. } | Error::UnknownLink { .. } => &self.unknown_name,
-            Error::Urdf { .. } | Error::AmbiguousTip { .. } => &self.urdf,
+            Error::UnknownRobot { .. } | Error::UnknownLink { .. } | Error::NotHeld { .. } => &self.unknown_name,
+            Error::Urdf { .. } | Error::Srdf { .. } | Error::AmbiguousTip { .. } => &self.urdf,
             Error::EmptyRange { .. }
             | Error::OutsideLimits { .. }
             | Error::OutsideRegion { .. }
@@ -110,8 +110,17 @@ pub fn raise(error: Error) -> PyErr {
 
 /// Makes an `InvalidInputError`, for arguments checked in the binding.
 pub fn invalid(message: String) -> PyErr {
+    made(|classes| &classes.invalid_input, message)
+}
+
+/// Makes a `LimitError`, for limits checked in the binding.
+pub fn limit_error(message: String) -> PyErr {
+    made(|classes| &classes.limit, message)
+}
+
+fn made(class: impl Fn(&Classes) -> &Py<PyType>, message: String) -> PyErr {
     Python::attach(|py| match classes(py) {
-        Ok(classes) => PyErr::from_type(classes.invalid_input.bind(py).clone(), message),
+        Ok(classes) => PyErr::from_type(class(classes).bind(py).clone(), message),
         Err(failure) => failure,
     })
 }

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use crate::convert::{array, copied, point, rigid_rows, shape_text, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
-use crate::monitor::Watcher;
+use crate::monitor::watched;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
@@ -143,9 +143,7 @@ pub fn solve(
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let asked = SolveArguments { task, solver, position_tolerance, rotation_tolerance, goals, prefer, stop, seed };
     let options = asked.read(start.map(|start| vector("start", start)).transpose()?, resolved)?;
-    let mut watcher = Watcher::new();
-    let core = py.detach(|| ik::solve(&robot.core, &target, &options, &mut watcher)).map_err(raise)?;
-    watcher.finish()?;
+    let core = watched(py, None, |watcher| ik::solve(&robot.core, &target, &options, watcher))?;
     Ok(PySolution::new(py, core, in_force))
 }
 

@@ -1,7 +1,13 @@
-//! Ctrl-C and progress in long calls.
+//! Ctrl-C and progress in long calls. Every call that may take longer than 50 ms goes through [`long_call`], [`watched`],
+//! [`in_pieces`] or [`on_a_thread`].
 
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
 use std::time::Duration;
 
+use ikcore::interrupt::{checkpoint, interruptible};
 use ikcore::solver::Monitor;
 use ikcore::solver::Stopwatch;
 use pyo3::prelude::*;
@@ -15,24 +21,88 @@ use crate::python_calls;
 /// nothing.
 const INTERVAL: Duration = Duration::from_millis(20);
 
-/// Monitors a long call: checks for Ctrl-C and reports progress.
+/// Monitors a search: ends it at Ctrl-C, and reports progress.
 pub struct Watcher {
-    since_last_look: Stopwatch,
     since_last_report: Stopwatch,
     progress: Option<Py<PyAny>>,
     failure: Option<PyErr>,
 }
 
-impl Watcher {
-    /// A watcher that only checks for Ctrl-C.
-    pub fn new() -> Self {
-        let now = Stopwatch::start();
-        Self { since_last_look: now, since_last_report: now, progress: None, failure: None }
-    }
+/// Runs `call`; checkpoints and monitors in it check for Ctrl-C. Returns its result and the exception of Ctrl-C, if any,
+/// after which the result is incomplete.
+fn with_signals<T>(call: impl FnOnce() -> T) -> (T, Option<PyErr>) {
+    let failure = Rc::new(RefCell::new(None));
+    let (seen, mut since) = (Rc::clone(&failure), Stopwatch::start());
+    let keep_going = move || {
+        if seen.borrow().is_none() && due(&mut since) {
+            let raised = Python::attach(|py| py.check_signals()).err();
+            seen.replace(raised);
+        }
+        seen.borrow().is_none()
+    };
+    let result = interruptible(keep_going, call);
+    (result, failure.take())
+}
 
-    /// Returns the exception that occurred during the call, if any.
-    pub fn finish(self) -> PyResult<()> {
-        self.failure.map_or(Ok(()), Err)
+/// Runs a computation of the core without the interpreter. Ctrl-C ends it at its next checkpoint.
+pub fn long_call<T: Send>(py: Python<'_>, call: impl FnOnce() -> ikcore::Result<T> + Send) -> PyResult<T> {
+    let (found, stopped) = with_signals(|| py.detach(call));
+    stopped.map_or_else(|| found.map_err(raise), Err)
+}
+
+/// Rows of a piece for [`in_pieces`], where a row takes a tenth of a microsecond.
+pub const QUICK_ROWS: usize = 1 << 17;
+
+/// Runs `work` on rows of `n` numbers without the interpreter, and checks for Ctrl-C after every `piece` of rows.
+pub fn in_pieces(
+    py: Python<'_>,
+    rows: &[f64],
+    n: usize,
+    piece: usize,
+    work: impl Fn(&[f64]) -> ikcore::Result<Vec<f64>> + Sync,
+) -> PyResult<Vec<f64>> {
+    if rows.len() <= piece * n {
+        return py.detach(|| work(rows)).map_err(raise);
+    }
+    let mut results = vec![];
+    for piece in rows.chunks(piece * n) {
+        py.check_signals()?;
+        // On an error, run again on all rows: its message counts from the first one.
+        results.extend(py.detach(|| work(piece).or_else(|_| work(rows))).map_err(raise)?);
+    }
+    Ok(results)
+}
+
+/// Checks for Ctrl-C at every 4096th call, some milliseconds: functions written in C do not check themselves.
+pub fn check_signals_at(py: Python<'_>, call: usize) -> PyResult<()> {
+    if call % 4096 == 4095 { py.check_signals() } else { Ok(()) }
+}
+
+/// Runs code of other libraries, which has no checkpoints, on a thread of its own. Ctrl-C ends the call; the thread ends
+/// when it is done, and its result is dropped.
+pub fn on_a_thread<T: Send + 'static>(
+    py: Python<'_>,
+    call: impl FnOnce() -> ikcore::Result<T> + Send + 'static,
+) -> PyResult<T> {
+    let (sender, mut receiver) = mpsc::sync_channel(1);
+    // After Ctrl-C nobody receives.
+    let work = move || _ = sender.send(call());
+    let worker =
+        thread::Builder::new().spawn(work).map_err(|error| invalid(format!("cannot start a thread: {error}")))?;
+    loop {
+        let (returned, answer) = py.detach(move || {
+            let answer = receiver.recv_timeout(INTERVAL);
+            (receiver, answer)
+        });
+        receiver = returned;
+        match answer {
+            Ok(found) => return found.map_err(raise),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => {
+                let Err(panic) = worker.join() else { return Err(invalid("a thread gave no result".into())) };
+                std::panic::resume_unwind(panic)
+            }
+        }
     }
 }
 
@@ -54,10 +124,10 @@ pub fn watched_keeping_result<T>(
     call: impl FnOnce(&mut Watcher) -> T,
 ) -> PyResult<(T, Option<PyErr>)> {
     let progress = progress.map_or(Ok(Progress::default()), Progress::new)?;
-    let mut watcher = Watcher { progress: progress.update(py), ..Watcher::new() };
-    let found = call(&mut watcher);
+    let mut watcher = Watcher { since_last_report: Stopwatch::start(), progress: progress.update(py), failure: None };
+    let (found, stopped) = with_signals(|| call(&mut watcher));
     progress.close(py)?;
-    Ok((found, watcher.failure))
+    Ok((found, stopped.or(watcher.failure)))
 }
 
 /// Runs a long call of the core, which releases the interpreter.
@@ -80,10 +150,7 @@ fn due(since: &mut Stopwatch) -> bool {
 
 impl Monitor for Watcher {
     fn keep_going(&mut self) -> bool {
-        if self.failure.is_none() && due(&mut self.since_last_look) {
-            self.failure = Python::attach(|py| py.check_signals()).err();
-        }
-        self.failure.is_none()
+        self.failure.is_none() && checkpoint().is_ok()
     }
 
     fn progress(&mut self, done: usize, total: usize) {

@@ -1,5 +1,6 @@
 //! `Trajectory`.
 
+use ikcore::interrupt::checkpoint_at;
 use ikcore::trajectory::{Coefficients, POWERS, Trajectory};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -8,6 +9,7 @@ use pyo3::types::IntoPyDict;
 use crate::convert::{Array, array, copied, counted, row, shape_text, table, times, vector};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
+use crate::monitor::long_call;
 use crate::options::NewArguments;
 use crate::python_calls;
 
@@ -63,8 +65,8 @@ impl PyTrajectory {
             polynomial[..powers].copy_from_slice(given);
             polynomial
         });
-        let core = Trajectory::new(names(joint_names, n)?, vector("time", time)?, padded.collect());
-        core.map(Self).map_err(raise)
+        let (joints, knots, coefficients) = (names(joint_names, n)?, vector("time", time)?, padded.collect());
+        long_call(time.py(), || Trajectory::new(joints, knots, coefficients)).map(Self)
     }
 
     /// Makes a trajectory through samples q (k, n) at `time` (k,) (s). Segments are linear; cubic if velocities qd (k, n)
@@ -78,7 +80,7 @@ impl PyTrajectory {
         qdd: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
     ) -> PyResult<Self> {
-        let time = vector("time", time)?;
+        let (py, time) = (time.py(), vector("time", time)?);
         let read = |what: &str, value: &Bound<'_, PyAny>| {
             let values = array(what, value)?;
             match values.shape() {
@@ -92,8 +94,8 @@ impl PyTrajectory {
         let (q, n) = read("q", q)?;
         let qd = qd.map(|value| read("qd", value)).transpose()?.map(|(values, _)| values);
         let qdd = qdd.map(|value| read("qdd", value)).transpose()?.map(|(values, _)| values);
-        let core = Trajectory::from_samples(names(joint_names, n)?, &time, &q, qd.as_deref(), qdd.as_deref());
-        core.map(Self).map_err(raise)
+        let joints = names(joint_names, n)?;
+        long_call(py, || Trajectory::from_samples(joints, &time, &q, qd.as_deref(), qdd.as_deref())).map(Self)
     }
 
     /// The knots (k,) (s).
@@ -107,7 +109,7 @@ impl PyTrajectory {
     fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         let (polynomials, n) = (self.0.coefficients(), self.0.joints().len());
         let powers = self.0.degree() + 1;
-        let used = polynomials.iter().flat_map(|polynomial| polynomial[..powers].to_vec()).collect();
+        let used = polynomials.iter().flat_map(|polynomial| polynomial[..powers].iter().copied()).collect();
         table(py, used, &[polynomials.len() / n, n, powers])
     }
 
@@ -142,20 +144,20 @@ impl PyTrajectory {
     }
 
     /// Returns the largest speed of each joint (n,) (rad/s, m/s), exact over all times.
-    fn max_velocity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.0.max_velocity())
+    fn max_velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(row(py, long_call(py, || Ok(self.0.max_velocity()))?))
     }
 
     /// Returns the largest acceleration of each joint (n,) (rad/s^2, m/s^2), exact within the segments. Jumps of the
     /// velocity at knots are not included.
-    fn max_acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.0.max_acceleration())
+    fn max_acceleration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(row(py, long_call(py, || Ok(self.0.max_acceleration()))?))
     }
 
     /// Returns the largest jerk of each joint (n,) (rad/s^3, m/s^3), exact within the segments. Jumps of the acceleration
     /// at knots are not included.
-    fn max_jerk<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.0.max_jerk())
+    fn max_jerk<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(row(py, long_call(py, || Ok(self.0.max_jerk()))?))
     }
 
     /// Returns (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside the trajectory are clamped.
@@ -178,8 +180,8 @@ impl PyTrajectory {
 
     /// Returns this trajectory followed by a rest of `pause` (s) and by `motion`, which must begin where this one ends.
     #[pyo3(signature = (motion, *, pause=0.0))]
-    fn then(&self, motion: &Self, pause: f64) -> PyResult<Self> {
-        self.0.then(&motion.0, pause).map(Self).map_err(raise)
+    fn then(&self, py: Python<'_>, motion: &Self, pause: f64) -> PyResult<Self> {
+        long_call(py, || self.0.then(&motion.0, pause)).map(Self)
     }
 
     /// Writes samples as CSV: every `dt` (s) and at the end; None: at the knots. The file appears complete or not at all.
@@ -238,9 +240,18 @@ impl PyTrajectory {
     ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
         let n = self.0.joints().len();
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; times.len() * n]);
-        for (i, t) in times.iter().enumerate() {
-            let row = i * n..(i + 1) * n;
-            self.0.at(*t, &mut q[row.clone()], &mut qd[row.clone()], &mut qdd[row]).map_err(raise)?;
+        let mut fill = || {
+            for (i, t) in times.iter().enumerate() {
+                checkpoint_at(i)?;
+                let row = i * n..(i + 1) * n;
+                self.0.at(*t, &mut q[row.clone()], &mut qd[row.clone()], &mut qdd[row])?;
+            }
+            Ok(())
+        };
+        if single {
+            fill().map_err(raise)?
+        } else {
+            long_call(py, fill)?
         }
         let shape = if single { vec![n] } else { vec![times.len(), n] };
         Ok((table(py, q, &shape)?, table(py, qd, &shape)?, table(py, qdd, &shape)?))

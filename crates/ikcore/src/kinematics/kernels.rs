@@ -29,6 +29,8 @@ pub(crate) struct Kernels {
     pub torques: Torques,
     /// Writes the frames of all stages.
     pub stage_frames: fn(&Chain, &[f64], &mut StageFrames),
+    /// The frames of all stages for four configurations, bit-identical.
+    pub stage_frames_four: fn(&Chain, &[F64x4], &mut StageFrames<F64x4>),
 }
 
 type Torques = fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Frame;
@@ -92,6 +94,7 @@ macro_rules! table {
             jacobian_four: |chain, qs, columns| four_jacobians::four_jacobians::<$a, $n>(chain, qs, columns),
             torques: |chain, q, wrench, torques| torques::torques::<$a, $n, $l>(chain, q, wrench, torques),
             stage_frames: |chain, q, reached| link_frames::stage_frames::<$a, $n, $l>(chain, q, reached),
+            stage_frames_four: |chain, qs, reached| link_frames::four_stage_frames::<$a, $n>(chain, qs, reached),
         }
     };
 }
@@ -136,10 +139,15 @@ mod tests {
                 let qs: Vec<F64x4> = (0..joints).map(|i| F64x4(std::array::from_fn(|lane| angle(i, lane)))).collect();
                 let mut four = vec![[F64x4::ZERO; 6]; joints];
                 let tips = (kernels.jacobian_four)(&chain, &qs, &mut four);
+                let mut frames = [Frame::of([&Frame::IDENTITY; 4]); MAX_DOF + 1];
+                (kernels.stage_frames_four)(&chain, &qs, &mut frames);
                 for lane in 0..4 {
                     let q: Vec<f64> = qs.iter().map(|lanes| lanes.0[lane]).collect();
                     let mut columns = [[0.0; 6]; MAX_DOF];
                     let tip = (kernels.jacobian)(&chain, &q, &mut columns);
+                    let mut reached = [Frame::IDENTITY; MAX_DOF + 1];
+                    (kernels.stage_frames)(&chain, &q, &mut reached);
+                    assert!((0..=joints).all(|i| frames[i].lane(lane) == reached[i]), "{joints} joints");
                     assert_eq!(tips.axes.map(|axis| axis.map(|k| k.0[lane])), tip.axes, "{joints} joints");
                     assert_eq!(tips.origin.map(|k| k.0[lane]), tip.origin, "{joints} joints");
                     let column = |j: usize| four[j].map(|row| row.0[lane]);

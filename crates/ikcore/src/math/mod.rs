@@ -10,6 +10,7 @@
 //! | `arithmetic`, `f64x4`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
 //! | `gram`, `ldl`, `box_step`, `four_box_steps`, `secant`, `singular_values` | small linear systems, and the bounded step |
+//! | `one_joint` | time-optimal motions of one joint between two states |
 //! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `sampling_range` | functions of one variable |
 
 pub(crate) mod arctangent;
@@ -25,6 +26,7 @@ pub(crate) mod hermite;
 mod knots;
 pub(crate) mod ldl;
 pub(crate) mod logarithm;
+pub mod one_joint;
 pub mod polynomial;
 pub mod pose;
 pub(crate) mod real;

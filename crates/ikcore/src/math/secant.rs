@@ -25,18 +25,18 @@ impl Secant {
         self.columns[j] = difference.map(|change| change / length);
     }
 
-    /// The predicted change of r by a step dx: J dx.
-    pub fn predict(&self, dx: impl Iterator<Item = f64>) -> [f64; ROWS] {
-        let mut sum = [0.0; ROWS];
+    /// The predicted change of the first `R` rows of r by a step dx: J dx.
+    pub fn predict<const R: usize>(&self, dx: impl Iterator<Item = f64>) -> [f64; R] {
+        let mut sum = [0.0; R];
         for (column, dx) in self.columns.iter().zip(dx) {
-            (0..ROWS).for_each(|k| sum[k] += column[k] * dx);
+            (0..R).for_each(|k| sum[k] += column[k] * dx);
         }
         sum
     }
 
     /// Updates J after a step `dx` that changed r by `surprise` more than predicted: J + share surprise dx' / |dx|^2,
     /// the least change of J that explains it (Broyden 1965, eq. 4.5), or a fraction `share` of it if r is noisy.
-    pub fn learn(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; ROWS], share: f64) {
+    pub fn learn<const R: usize>(&mut self, dx: impl Iterator<Item = f64> + Clone, surprise: &[f64; R], share: f64) {
         let squared: f64 = dx.clone().map(|dx| dx * dx).sum();
         if squared < SHORTEST * SHORTEST {
             return;
@@ -44,7 +44,7 @@ impl Secant {
         let scale = share / squared;
         for (column, dx) in self.columns.iter_mut().zip(dx) {
             let weight = scale * dx;
-            (0..ROWS).for_each(|k| column[k] += weight * surprise[k]);
+            (0..R).for_each(|k| column[k] += weight * surprise[k]);
         }
     }
 
@@ -77,10 +77,11 @@ mod tests {
         secant.set_column(0, 0.1, &[0.1, 0.2, 0.0, 0.0, 0.0, 0.0]);
         secant.set_column(1, -0.5, &[0.5, 0.0, -1.0, 0.0, 0.0, 0.0]);
         let (dx, across) = ([0.3, 0.4], [0.4, -0.3]);
-        let (predicted, untouched) = (secant.predict(dx.into_iter()), secant.predict(across.into_iter()));
+        let (predicted, untouched) =
+            (secant.predict::<ROWS>(dx.into_iter()), secant.predict::<ROWS>(across.into_iter()));
         let seen = [0.7, -0.2, 0.1, 0.0, 0.0, 0.0];
-        secant.learn(dx.into_iter(), &std::array::from_fn(|k| seen[k] - predicted[k]), 1.0);
-        let (along, beside) = (secant.predict(dx.into_iter()), secant.predict(across.into_iter()));
+        secant.learn::<ROWS>(dx.into_iter(), &std::array::from_fn(|k| seen[k] - predicted[k]), 1.0);
+        let (along, beside) = (secant.predict::<ROWS>(dx.into_iter()), secant.predict::<ROWS>(across.into_iter()));
         for k in 0..ROWS {
             assert!((along[k] - seen[k]).abs() < 1e-15 && (beside[k] - untouched[k]).abs() < 1e-15);
         }

@@ -3,6 +3,7 @@
 use nalgebra::Matrix3;
 
 use crate::error::Result;
+use crate::interrupt::checkpoint_at;
 use crate::math::pose;
 
 /// Returns the rotation, made exactly orthonormal; `what` names it in errors.
@@ -12,5 +13,9 @@ pub(super) fn check_rotation(what: &str, rotation: &Matrix3<f64>) -> Result<Matr
 
 /// Returns the rotations of all rows, made exactly orthonormal; errors name the row.
 pub(super) fn check_rotations(rows: impl Iterator<Item = Matrix3<f64>>) -> Result<Vec<Matrix3<f64>>> {
-    rows.enumerate().map(|(row, rotation)| check_rotation(&format!("path rotation of row {row}"), &rotation)).collect()
+    let check = |(row, rotation)| {
+        checkpoint_at(row)?;
+        check_rotation(&format!("path rotation of row {row}"), &rotation)
+    };
+    rows.enumerate().map(check).collect()
 }

@@ -7,6 +7,7 @@ use nalgebra::Matrix3;
 use super::orientation::check_rotation;
 use super::{Curve, Reference};
 use crate::error::Result;
+use crate::interrupt::checkpoint_at;
 use crate::math::ticks::ticks_of_path;
 use crate::math::{Pose, pose};
 
@@ -73,7 +74,8 @@ impl Path {
     /// more than 10 million ticks would result.
     pub fn sample(&self, dt: f64) -> Result<Reference> {
         let times = (0..=ticks_of_path(self.duration(), dt)?).map(|i| i as f64 * dt);
-        let positions = times.clone().map(|t| self.position(t)).collect();
+        let position = |(i, t)| checkpoint_at(i).map(|()| self.position(t));
+        let positions = times.clone().enumerate().map(position).collect::<Result<_>>()?;
         let rotations = times.map(|t| self.rotation(t)).collect();
         Reference::new(dt, positions, rotations)
     }

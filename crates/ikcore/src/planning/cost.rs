@@ -89,6 +89,22 @@ fn joint_travel(trajectory: &Trajectory) -> f64 {
     trajectory.coefficients().iter().enumerate().map(of_piece).sum()
 }
 
+/// Chords per line of a joint polyline, for comparing paths.
+const CHORDS_A_LINE: usize = 32;
+
+/// Returns the tip travel (m) along straight lines in joint space, measured by chords.
+pub(super) fn tip_travel_along(robot: &Robot, points: &[Vec<f64>]) -> f64 {
+    let of_line = |ends: &[Vec<f64>]| {
+        let at = |i: usize| {
+            let share = i as f64 / CHORDS_A_LINE as f64;
+            let q: Vec<f64> = ends[0].iter().zip(&ends[1]).map(|(from, to)| from + share * (to - from)).collect();
+            robot.tip_position(&q)
+        };
+        (1..=CHORDS_A_LINE).map(|i| distance(&at(i), &at(i - 1))).sum::<f64>()
+    };
+    points.windows(2).map(of_line).sum()
+}
+
 /// Returns the tip travel, measured by chords.
 fn tip_travel(robot: &Robot, trajectory: &Trajectory) -> f64 {
     let n = trajectory.joints().len();

@@ -97,8 +97,8 @@ impl<O: Residual + ?Sized> Solver<O> for BroydenBas {
         let trial_value = evaluator.residual(&mut trial, &mut trial_residual)?;
         if trial_value.is_finite() {
             let dx = || trial.iter().zip(x.iter()).map(|(to, from)| to - from);
-            let predicted = jacobian.predict(dx());
-            let surprise = std::array::from_fn(|k| trial_residual[k] - residual[k] - predicted[k]);
+            let predicted: [f64; ROWS] = jacobian.predict(dx());
+            let surprise: [f64; ROWS] = std::array::from_fn(|k| trial_residual[k] - residual[k] - predicted[k]);
             jacobian.learn(dx(), &surprise, 1.0);
         }
         let reduction = trial_value / *value;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::controller::{ControlSession, Controller};
+use super::late_sensor::FirstMeasurements;
 use super::plant::{Fault, Plant, check};
 use super::record::Record;
 use super::step::Step;
@@ -50,6 +51,9 @@ pub struct ModelFreeRecord {
     pub command: Vec<f64>,
     /// Why the plant ended the run, if it did.
     pub fault: Option<Fault>,
+    /// The delay of the sensor (measurements), if the run failed and the delay clearly differs from the controller's
+    /// `sensor_delay`.
+    pub sensor_delay: Option<usize>,
 }
 
 /// Follows `reference` with the tip of `plant`, from `start` (n,). Row 0 is one measurement at the start.
@@ -74,7 +78,8 @@ pub fn track_model_free(
     let track =
         Record::new(start.len(), reference.len(), limits, LimitAt::Interval, (*tolerance).into(), reference.dt());
     let command = Vec::with_capacity(reference.len() * start.len());
-    let mut record = ModelFreeRecord { track, command, fault: None };
+    let mut record = ModelFreeRecord { track, command, fault: None, sensor_delay: None };
+    let mut first = FirstMeasurements::new(start.len());
     let mut interrupted = false;
     for i in 0..=ticks {
         if i % plant.ticks_between_looks() == 0 {
@@ -84,7 +89,7 @@ pub fn track_model_free(
             }
         }
         let target = reference.pose(i).map_or_else(|| reference.position(i).into(), |pose| TipPose::from(&pose));
-        match tick(plant, &mut session, target, &mut record.track)? {
+        match tick(plant, &mut session, &target, &mut record.track, &mut first)? {
             Ok(step) => record.push(&session, reference.position(i), &step),
             Err(fault) if i == 0 => return Err(Error::PlantFailed { problem: fault.0 }),
             Err(fault) => {
@@ -95,6 +100,9 @@ pub fn track_model_free(
         monitor.progress(i, ticks);
     }
     record.finish(interrupted, &stopwatch);
+    if matches!(record.track.status, Status::Lost | Status::Improved | Status::Capped) {
+        record.sensor_delay = first.delay_other_than(controller.sensor_delay());
+    }
     Ok(record)
 }
 
@@ -112,21 +120,28 @@ fn check_delay(controller: &Controller, ticks: usize) -> Result<()> {
 fn tick(
     plant: &mut dyn Plant,
     session: &mut ControlSession,
-    target: TipPose,
+    target: &TipPose,
     track: &mut Record,
+    first: &mut FirstMeasurements,
 ) -> Result<Result<Step, Fault>> {
     loop {
-        let measured = plant.measure(session.command(target)?).and_then(|tip| check(tip, &target));
+        let command = session.command(target)?;
+        let measured = plant.measure(command);
+        if let Ok(tip) = &measured {
+            first.note(command, tip);
+        }
         if let Some((excess, joint, sent)) = session.excess() {
             track.note_excess(excess, joint, sent, session.time() + session.dt());
         }
-        match measured {
-            Err(fault) => return Ok(Err(fault)),
-            Ok(tip) => {
-                if let Some(step) = session.observe(tip)? {
-                    return Ok(Ok(step));
-                }
-            }
+        let tip = match &measured {
+            Err(fault) => return Ok(Err(fault.clone())),
+            Ok(tip) => tip,
+        };
+        if let Err(fault) = check(tip, target) {
+            return Ok(Err(fault));
+        }
+        if let Some(step) = session.observe(tip)? {
+            return Ok(Ok(step));
         }
     }
 }
@@ -156,14 +171,24 @@ impl ModelFreeRecord {
             let when = time(rows as f64 * self.track.dt());
             return format!("the plant {reason} at t = {when} s; the {rows} rows before are recorded");
         }
-        let message = self.track.message();
-        match self.track.status {
-            Status::Solved | Status::Interrupted => message,
+        let typical = TipError { position: self.settled_error(), rotation: settled(&self.track.rotation_error) };
+        match (self.track.status, self.sensor_delay) {
+            (Status::Solved | Status::Interrupted, _) => self.track.message(),
+            (_, Some(delay)) => {
+                let late = match delay {
+                    0 => "not late".into(),
+                    1 => "1 measurement late".into(),
+                    _ => format!("{delay} measurements late"),
+                };
+                let advice = format!("the sensor is {late}; give the controller sensor_delay={delay}");
+                let message = self.track.message_with(&advice);
+                format!("{message}. Over the second half the error was {typical} (root mean square)")
+            }
             _ => format!(
-                "{message}. Over the second half the error was {} (root mean square): a position_tolerance below what the \
+                "{}. Over the second half the error was {typical} (root mean square): a position_tolerance below what the \
                  sensor and the controller can keep is never met; if the sensor is late, give the controller its \
                  sensor_delay",
-                TipError { position: self.settled_error(), rotation: settled(&self.track.rotation_error) }
+                self.track.message(),
             ),
         }
     }

@@ -1,5 +1,7 @@
 //! What a sensor measures of the tip, and what a path asks of it.
 
+use std::borrow::Cow;
+
 use crate::error::{Result, require_finite};
 use crate::math::box_step::ROWS;
 use crate::math::so3::{rotated, rotation_between};
@@ -7,25 +9,46 @@ use crate::math::vector::{median, norm, squared_distance};
 use crate::math::{Frame, Pose};
 use crate::task::TipError;
 
-/// A position of the tip, with its orientation if that is measured or asked for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TipPose {
-    /// Axes as in the base where there is no orientation.
-    frame: Frame,
-    oriented: bool,
+/// The position of the tip, or its pose. Not `Copy`, because a copy always moves the 13 words of a pose.
+#[derive(Debug, PartialEq)]
+pub enum TipPose {
+    /// The position alone (m).
+    Position([f64; 3]),
+    /// The position (m) and the orientation.
+    Pose(Frame),
+}
+
+impl Clone for TipPose {
+    #[inline]
+    fn clone(&self) -> Self {
+        match self {
+            Self::Position(position) => Self::Position(*position),
+            Self::Pose(frame) => Self::Pose(*frame),
+        }
+    }
+
+    /// Writes in place: the derived form would copy a whole pose, four times in each tick of a controller.
+    #[inline]
+    fn clone_from(&mut self, source: &Self) {
+        if let (Self::Position(position), Self::Position(source)) = (&mut *self, source) {
+            *position = *source;
+        } else {
+            *self = source.clone();
+        }
+    }
 }
 
 impl From<[f64; 3]> for TipPose {
     #[inline]
     fn from(position: [f64; 3]) -> Self {
-        Self { frame: Frame { origin: position, ..Frame::IDENTITY }, oriented: false }
+        Self::Position(position)
     }
 }
 
 impl From<Frame> for TipPose {
     #[inline]
     fn from(frame: Frame) -> Self {
-        Self { frame, oriented: true }
+        Self::Pose(frame)
     }
 }
 
@@ -37,71 +60,99 @@ impl From<&Pose> for TipPose {
 
 impl TipPose {
     /// Before anything is measured.
-    pub(super) const UNKNOWN: Self =
-        Self { frame: Frame { origin: [f64::NAN; 3], ..Frame::IDENTITY }, oriented: false };
+    pub(super) const UNKNOWN: Self = Self::Position([f64::NAN; 3]);
 
     /// The position (m).
     #[inline]
-    pub fn position(&self) -> [f64; 3] {
-        self.frame.origin
+    pub fn position(&self) -> &[f64; 3] {
+        match self {
+            Self::Position(position) => position,
+            Self::Pose(frame) => &frame.origin,
+        }
     }
 
     /// The pose, if there is an orientation.
     pub fn pose(&self) -> Option<Pose> {
-        self.oriented.then(|| self.frame.into())
+        match self {
+            Self::Position(_) => None,
+            Self::Pose(frame) => Some((*frame).into()),
+        }
     }
 
     /// Whether there is an orientation.
     #[inline]
     pub fn is_oriented(&self) -> bool {
-        self.oriented
+        matches!(self, Self::Pose(_))
     }
 
     /// For messages.
     pub(super) fn kind(&self) -> &'static str {
-        if self.oriented { "a pose (4, 4)" } else { "a position (3,)" }
+        if self.is_oriented() { "a pose (4, 4)" } else { "a position (3,)" }
     }
 
     /// As much of it as `target` asks for; None where that asks for an orientation and there is none.
     #[inline]
-    pub(super) fn as_asked_by(mut self, target: &Self) -> Option<Self> {
-        if target.oriented && !self.oriented {
-            return None;
+    pub(super) fn as_asked_by(&self, target: &Self) -> Option<Cow<'_, Self>> {
+        match (self, target) {
+            (Self::Position(_), Self::Pose(_)) => None,
+            (Self::Pose(frame), Self::Position(_)) => Some(Cow::Owned(Self::Position(frame.origin))),
+            _ => Some(Cow::Borrowed(self)),
         }
-        self.oriented = target.oriented;
-        Some(self)
+    }
+
+    /// Whether every number is finite.
+    #[inline]
+    pub(super) fn is_finite(&self) -> bool {
+        match self {
+            Self::Position(position) => position.iter().all(|x| x.is_finite()),
+            Self::Pose(frame) => frame.origin.iter().chain(frame.axes.as_flattened()).all(|x| x.is_finite()),
+        }
     }
 
     /// Err unless every number is finite; `what` names it.
+    #[inline]
     pub(super) fn require_finite(&self, what: &str) -> Result<()> {
-        require_finite(what, &self.frame.origin, |k| format!("entry {k}"))?;
-        if self.oriented {
-            require_finite(what, self.frame.axes.as_flattened(), |k| format!("rotation entry {k}"))?;
+        if self.is_finite() { Ok(()) } else { self.not_finite(what) }
+    }
+
+    #[cold]
+    fn not_finite(&self, what: &str) -> Result<()> {
+        require_finite(what, self.position(), |k| format!("entry {k}"))?;
+        match self {
+            Self::Position(_) => Ok(()),
+            Self::Pose(frame) => require_finite(what, frame.axes.as_flattened(), |k| format!("rotation entry {k}")),
         }
-        Ok(())
     }
 
     /// r = (p - p_d, log(R R_d')), in base coordinates (m, rad), as tasks define it; the angular rows are zero without an
     /// orientation. Seen from another measurement, it is the motion of the tip.
     #[inline]
     pub(super) fn residual(&self, target: &Self) -> [f64; ROWS] {
-        let (p, d) = (&self.frame.origin, &target.frame.origin);
+        let (p, d) = (self.position(), target.position());
         let [a, b, c] = self.rotation(target).unwrap_or_default();
         [p[0] - d[0], p[1] - d[1], p[2] - d[2], a, b, c]
     }
 
+    /// The rotation from `target` to this one (rad), if both have an orientation.
     #[inline]
     fn rotation(&self, target: &Self) -> Option<[f64; 3]> {
-        (self.oriented && target.oriented).then(|| rotation_between(&target.frame, &self.frame))
+        match (self, target) {
+            (Self::Pose(tip), Self::Pose(target)) => Some(rotation_between(target, tip)),
+            _ => None,
+        }
+    }
+
+    #[inline]
+    fn squared_distance(&self, target: &Self) -> f64 {
+        squared_distance(target.position(), self.position())
     }
 
     /// r'r: a radian counts as much as a metre.
     #[inline]
     pub(super) fn squared_error(&self, target: &Self) -> f64 {
-        let position = squared_distance(&target.frame.origin, &self.frame.origin);
         match self.rotation(target) {
-            Some([x, y, z]) => position + (x * x + y * y + z * z),
-            None => position,
+            Some([x, y, z]) => self.squared_distance(target) + (x * x + y * y + z * z),
+            None => self.squared_distance(target),
         }
     }
 
@@ -115,21 +166,21 @@ impl TipPose {
     #[inline]
     pub(super) fn error(&self, target: &Self) -> TipError {
         TipError {
-            position: squared_distance(&target.frame.origin, &self.frame.origin).sqrt(),
+            position: self.squared_distance(target).sqrt(),
             rotation: self.rotation(target).map_or(f64::NAN, |phi| norm(&phi)),
         }
     }
 
     /// The middle one of three, in each direction.
-    pub(super) fn median([a, b, c]: [Self; 3]) -> Self {
-        let origin = std::array::from_fn(|k| median(a.frame.origin[k], b.frame.origin[k], c.frame.origin[k]));
-        let axes = match (b.rotation(&a), c.rotation(&a)) {
-            (Some(to_b), Some(to_c)) => {
+    pub(super) fn median([a, b, c]: &[Self; 3]) -> Self {
+        let (p, q, r) = (a.position(), b.position(), c.position());
+        let origin = std::array::from_fn(|k| median(p[k], q[k], r[k]));
+        match (a, b.rotation(a), c.rotation(a)) {
+            (Self::Pose(frame), Some(to_b), Some(to_c)) => {
                 let turn = std::array::from_fn(|k| median(0.0, to_b[k], to_c[k]));
-                a.frame.axes.map(|axis| rotated(&axis, &turn))
+                Self::Pose(Frame { axes: frame.axes.map(|axis| rotated(&axis, &turn)), origin })
             }
-            _ => a.frame.axes,
-        };
-        Self { frame: Frame { axes, origin }, ..a }
+            _ => Self::Position(origin),
+        }
     }
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::coefficients::{Coefficients, POWERS};
 use super::hermite_segment;
 use crate::error::{Error, Result, require_finite, require_positive};
+use crate::interrupt::checkpoint_at;
 use crate::math::Knots;
 use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range};
 use crate::math::ticks::ticks;
@@ -86,6 +87,7 @@ impl Trajectory {
         }
         let mut coefficients = Vec::with_capacity(q.len());
         for (row, ends) in times.windows(2).enumerate() {
+            checkpoint_at(row)?;
             let h = ends[1] - ends[0];
             for i in row * n..(row + 1) * n {
                 let pair = |samples: &[f64]| [samples[i], samples[i + n]];
@@ -209,6 +211,9 @@ impl Trajectory {
     fn largest(&self, quantity: impl Fn(&Coefficients) -> Short) -> Vec<f64> {
         let mut largest = vec![0.0_f64; self.joints.len()];
         for segment in 0..self.knots.segments() {
+            if checkpoint_at(segment).is_err() {
+                break; // the interrupted caller discards the result
+            }
             for (largest, position) in largest.iter_mut().zip(self.segment(segment)) {
                 let in_segment = largest_magnitude(&quantity(position), 0.0, self.knots.span(segment));
                 *largest = largest.max(in_segment);
@@ -220,6 +225,7 @@ impl Trajectory {
     /// Checks that every segment starts where the previous one ends.
     fn check_continuity(&self) -> Result<()> {
         for next in 1..self.knots.segments() {
+            checkpoint_at(next)?;
             let span = self.knots.span(next - 1);
             let polynomials = self.segment(next - 1).iter().zip(self.segment(next));
             for (name, (before, after)) in self.joints.iter().zip(polynomials) {

@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyTuple};
 use super::given::GivenLimit;
 use super::per_joint::PerJoint;
 use super::sampling::Sampling;
-use crate::error::raise;
+use crate::error::{limit_error, raise};
 use crate::options::NewArguments;
 use crate::traversal::traversed;
 
@@ -47,6 +47,13 @@ impl PyLimits {
         let mut given = [const { None }; 5];
         for ((slot, field), value) in given.iter_mut().zip(FIELDS).zip([lower, upper, velocity, acceleration, jerk]) {
             *slot = value.map(|value| GivenLimit::read(field, value)).transpose()?;
+            if let Some(GivenLimit::Numbers(numbers)) = slot
+                && !matches!(field, Field::Lower | Field::Upper)
+                && let Some((j, value)) = numbers.values.iter().enumerate().find(|(_, value)| **value < 0.0)
+            {
+                let joint = if numbers.single { String::new() } else { format!(" of joint {}", j + 1) };
+                return Err(limit_error(format!("{field} limit{joint} is {value}: a limit cannot be negative")));
+            }
         }
         Ok(Self { given })
     }
@@ -134,6 +141,16 @@ impl PyLimits {
                 None,
             ],
         }
+    }
+
+    /// The robot's own limits with those of its maker on acceleration and jerk, where they are known.
+    pub fn rated(robot: &Robot) -> Self {
+        let mut limits = Self::of(robot);
+        let known = |values: Vec<f64>| if values.iter().any(|v| v.is_finite()) { numbers(values) } else { None };
+        let joints = robot.joints().iter();
+        limits.given[Field::Acceleration as usize] = known(joints.clone().map(|j| j.rated_acceleration).collect());
+        limits.given[Field::Jerk as usize] = known(joints.map(|j| j.rated_jerk).collect());
+        limits
     }
 
     /// A box.

@@ -10,5 +10,5 @@ mod sinusoid;
 pub use joint_limits::PyLimits;
 pub use of_call::{limits_of_call, limits_without_robot};
 pub use per_joint::PerJoint;
-pub use sampling::{CALLS_BETWEEN_SIGNAL_CHECKS, Sampling};
+pub use sampling::Sampling;
 pub use sinusoid::PySinusoid;

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 
 use crate::convert::scalar_or_vector;
 use crate::error::invalid;
+use crate::monitor::check_signals_at;
 
 /// When functions of time are sampled: before the core runs, since callables never reach its threads.
 pub struct Sampling {
@@ -26,16 +27,11 @@ impl Sampling {
     }
 }
 
-/// Calls between two checks for Ctrl-C, some milliseconds; functions written in C do not check themselves.
-pub const CALLS_BETWEEN_SIGNAL_CHECKS: usize = 4096;
-
 /// Samples a function at all times, for each of `n` joints or for all of them.
 pub fn sampled(function: &Bound<'_, PyAny>, field: Field, sampling: &Sampling, n: usize) -> PyResult<Vec<Profile>> {
     let mut columns: Vec<Vec<f64>> = vec![];
     for i in 0..sampling.count {
-        if i % CALLS_BETWEEN_SIGNAL_CHECKS == 0 {
-            function.py().check_signals()?;
-        }
+        check_signals_at(function.py(), i)?;
         let t = i as f64 * sampling.step;
         let what = format!("{field} limit at t = {t} s");
         let (values, _) = scalar_or_vector(&what, &function.call1((t,))?)?;

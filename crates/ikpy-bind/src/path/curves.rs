@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use super::reference::{Curve, Orientation, PyPath};
 use crate::convert::{array, count, point, rigid_matrices, shape_text, vector};
 use crate::error::{invalid, raise};
+use crate::monitor::long_call;
 
 /// A direction in the plane of a curve.
 pub struct Direction([f64; 3]);
@@ -108,11 +109,18 @@ pub fn polyline(points: &Bound<'_, PyAny>, duration: f64) -> PyResult<PyPath> {
 pub fn from_samples(time: &Bound<'_, PyAny>, positions_or_poses: &Bound<'_, PyAny>) -> PyResult<PyPath> {
     let time = vector("time", time)?;
     let values = array("positions_or_poses", positions_or_poses)?;
+    let py = positions_or_poses.py();
     let samples = match values.shape() {
-        [_, 4, 4] => Samples::from_poses(time, &rigid_matrices(values.as_slice()?)?),
-        _ => Samples::from_positions(time, positions("positions_or_poses", positions_or_poses)?),
+        [_, 4, 4] => {
+            let poses = rigid_matrices(values.as_slice()?)?;
+            long_call(py, || Samples::from_poses(time, &poses))
+        }
+        _ => {
+            let positions = positions("positions_or_poses", positions_or_poses)?;
+            long_call(py, || Samples::from_positions(time, positions))
+        }
     };
-    Ok(Path::new(samples.map_err(raise)?).into())
+    Ok(Path::new(samples?).into())
 }
 
 /// A path given by `function(t)`, which returns a position (3,) (m) for t (s) in [0, duration]. Trackers sample it at the

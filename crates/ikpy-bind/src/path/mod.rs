@@ -6,7 +6,7 @@ mod sampled;
 
 use pyo3::prelude::*;
 
-pub use reference::PyPath;
+pub use reference::{PyPath, path_argument};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyPath>()?;

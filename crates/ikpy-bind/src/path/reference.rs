@@ -11,6 +11,7 @@ use pyo3::{PyTraverseError, PyVisit};
 
 use crate::convert::{Array, matrix3, point, row, summary, table, times};
 use crate::error::{invalid, raise};
+use crate::monitor::check_signals_at;
 use crate::pickling::{self, Reduced};
 use crate::traversal::{Traversed, traversed};
 
@@ -181,6 +182,16 @@ impl Curve {
     }
 }
 
+/// Reads a `path` argument.
+pub fn path_argument<'a, 'py>(value: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py, PyPath>> {
+    value.cast::<PyPath>().map_err(|_| {
+        let got = summary(value);
+        invalid(format!(
+            "path must be a Path, got {got}; bik.paths.from_samples(time, positions_or_poses) makes one from rows"
+        ))
+    })
+}
+
 impl PyPath {
     /// Returns the state for pickling and hashing: (curve, duration, orientation), each as bytes or as the function given.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
@@ -240,7 +251,8 @@ fn each<'py, const D: usize>(
 ) -> PyResult<Array<'py>> {
     let (times, single) = times(t)?;
     let mut values = vec![];
-    for t in &times {
+    for (i, t) in times.iter().enumerate() {
+        check_signals_at(py, i)?;
         values.extend(value(*t)?);
     }
     let mut full = if single { vec![] } else { vec![times.len()] };

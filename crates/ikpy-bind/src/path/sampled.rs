@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use super::reference::{Curve, Orientation, PyPath};
 use crate::error::raise;
-use crate::limits::CALLS_BETWEEN_SIGNAL_CHECKS;
+use crate::monitor::{check_signals_at, long_call};
 
 /// Positions (m), and orientations if the path has them.
 type Sampled = (Vec<[f64; 3]>, Option<Vec<Matrix3<f64>>>);
@@ -17,7 +17,7 @@ impl PyPath {
     /// Samples the path at all tick times.
     pub fn reference(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
         if let (Curve::Core(path), Orientation::OfCurve) = (&self.curve, &self.orientation) {
-            return path.sample(dt).map_err(raise);
+            return long_call(py, || path.sample(dt));
         }
         let count = ticks_of_path(self.duration(), dt).map_err(raise)? + 1;
         let (positions, rotations) = self.at(py, (0..count).map(|i| (i as f64 * dt).min(self.duration())))?;
@@ -27,9 +27,11 @@ impl PyPath {
     /// Samples positions, orientations and velocities at all tick times.
     pub fn reference_with_velocities(&self, py: Python<'_>, dt: f64) -> PyResult<Reference> {
         let reference = self.reference(py, dt)?;
-        let velocities = (0..reference.len())
-            .map(|i| self.velocity_at(py, reference.time(i).min(self.duration())))
-            .collect::<PyResult<_>>()?;
+        let velocity = |i: usize| {
+            check_signals_at(py, i)?;
+            self.velocity_at(py, reference.time(i).min(self.duration()))
+        };
+        let velocities = (0..reference.len()).map(velocity).collect::<PyResult<_>>()?;
         reference.with_velocities(velocities).map_err(raise)
     }
 
@@ -48,9 +50,7 @@ impl PyPath {
     fn at(&self, py: Python<'_>, times: impl Iterator<Item = f64>) -> PyResult<Sampled> {
         let (mut positions, mut rotations) = (vec![], vec![]);
         for (i, t) in times.enumerate() {
-            if i % CALLS_BETWEEN_SIGNAL_CHECKS == 0 {
-                py.check_signals()?;
-            }
+            check_signals_at(py, i)?;
             positions.push(self.position_at(py, t)?);
             rotations.extend(self.rotation_at(py, t)?);
         }

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use crate::convert::{array, optional_count, shape_text, vector};
 use crate::error::{invalid, raise};
 use crate::limits::PyLimits;
+use crate::monitor::long_call;
 use crate::trajectory::{PyTrajectory, names};
 
 /// Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
@@ -61,22 +62,22 @@ pub fn time_optimal(
     let limits = limits.for_joints(py, &joints)?;
     let knots = knots.map(|knots| vector("knots", knots)).transpose()?;
     let waypoints = waypoints.as_slice()?;
-    let path = if spline == "polyline" {
+    let options = TimingOptions { gridpoints: optional_count("gridpoints", gridpoints)?, start_speed, end_speed };
+    let limits = TimingLimits::new(&limits, "time_optimal").map_err(raise)?;
+    let path: Box<dyn FnOnce() -> ikcore::Result<JointPath> + Send> = if spline == "polyline" {
         if knots.is_some() {
             return Err(invalid(
                 "knots can only be given for a spline: the parameter of a polyline is its length".into(),
             ));
         }
-        JointPath::polyline(joints, waypoints, blend.unwrap_or(0.0))
+        Box::new(|| JointPath::polyline(joints, waypoints, blend.unwrap_or(0.0)))
     } else {
         let ends = spline.parse::<SplineEnds>().map_err(raise)?;
         if blend.is_some() {
             return Err(invalid(format!("blend can only be given for spline='polyline': '{spline}' has no corners")));
         }
-        JointPath::spline(joints, waypoints, knots.as_deref(), ends)
+        let knots = knots.as_deref();
+        Box::new(move || JointPath::spline(joints, waypoints, knots, ends))
     };
-    let path = path.map_err(raise)?;
-    let options = TimingOptions { gridpoints: optional_count("gridpoints", gridpoints)?, start_speed, end_speed };
-    let limits = TimingLimits::new(&limits, "time_optimal").map_err(raise)?;
-    py.detach(|| fastest(&path, &limits, &options)).map(PyTrajectory::from).map_err(raise)
+    long_call(py, || fastest(&path()?, &limits, &options)).map(PyTrajectory::from)
 }

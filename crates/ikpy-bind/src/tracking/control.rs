@@ -47,7 +47,7 @@ impl PyControlSession {
     /// last accepted configuration.
     fn command<'py>(&self, py: Python<'py>, target: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let target = tip_pose("target", target)?;
-        Ok(copied(py, self.session().command(target).map_err(raise)?))
+        Ok(copied(py, self.session().command(&target).map_err(raise)?))
     }
 
     /// Takes the `position` (3,) (m) or the pose (4, 4) of the tip, measured at the last command; it must be a pose if the
@@ -55,7 +55,7 @@ impl PyControlSession {
     fn observe(&self, py: Python<'_>, position: &Bound<'_, PyAny>) -> PyResult<Option<PyStep>> {
         let position = tip_pose("position", position)?;
         let (watch, mut session) = (Stopwatch::start(), self.session());
-        let step = session.observe(position).map_err(raise)?;
+        let step = session.observe(&position).map_err(raise)?;
         Ok(step.map(|step| {
             let motion = [session.q().to_vec(), session.qd().to_vec()];
             PyStep::new(py, step, motion, self.limits.clone_ref(py), watch.elapsed())

@@ -16,7 +16,7 @@ use crate::error::raise;
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::monitor::{Watcher, watched_with_interpreter};
 use crate::outcome::outcome;
-use crate::path::PyPath;
+use crate::path::path_argument;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
 use crate::traversal::traversed;
@@ -150,7 +150,7 @@ impl PyModelFreeResult {
 pub fn track_model_free(
     py: Python<'_>,
     plant: &Bound<'_, PyAny>,
-    path: &PyPath,
+    path: &Bound<'_, PyAny>,
     start: &Bound<'_, PyAny>,
     dt: f64,
     controller: Option<&Bound<'_, PyAny>>,
@@ -160,7 +160,7 @@ pub fn track_model_free(
     seed: i128,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyModelFreeResult> {
-    let reference = path.reference(py, dt)?;
+    let reference = path_argument(path)?.get().reference(py, dt)?;
     let start = vector("start", start)?;
     let sampling = Sampling::of_ticks(dt, reference.len() - 1);
     let (in_force, limits) = limits_without_robot(py, limits, start.len(), &sampling)?;

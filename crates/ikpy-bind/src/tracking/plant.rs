@@ -81,7 +81,7 @@ impl PyKinematicPlant {
         let tip = plant.measure(&q).map_err(|Fault(reason)| invalid(format!("the plant {reason}")))?;
         match tip.pose() {
             Some(pose) => Ok(pose_array(py, &pose)?.into_any()),
-            None => Ok(PyArray1::from_slice(py, &tip.position()).into_any()),
+            None => Ok(PyArray1::from_slice(py, tip.position()).into_any()),
         }
     }
 

@@ -4,7 +4,7 @@ use std::sync::Mutex;
 
 use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
-use ikcore::tracking::Session;
+use ikcore::tracking::{Session, TickRule};
 use pyo3::prelude::*;
 
 use super::arguments::{TrackArguments, tick_rule};
@@ -14,6 +14,7 @@ use crate::convert::{point, vector};
 use crate::error::raise;
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::monitor::watched_with_interpreter;
 use crate::robot::PyRobot;
 use crate::traversal::traversed;
 
@@ -38,6 +39,8 @@ use crate::traversal::traversed;
 #[pyclass(name = "Tracker", module = "beetle_ik", frozen)]
 pub struct PyTracker {
     session: Mutex<Session>,
+    /// Whether a solver of any budget runs in each step; other rules take microseconds.
+    runs_solver: bool,
     /// The robot.
     #[pyo3(get)]
     robot: Py<PyRobot>,
@@ -73,10 +76,11 @@ impl PyTracker {
         limits.map_or(Ok(()), |limits| limits.require_no_functions("Tracker", "track"))?;
         let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
         let rule = tick_rule(solver)?;
+        let runs_solver = matches!(rule, TickRule::Solver(_));
         let asked = TrackArguments { rule, task, goals, position_tolerance, rotation_tolerance, seed, limit_at };
         let options = asked.read(resolved)?;
         let session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
-        Ok(Self { session: Mutex::new(session), robot: robot.clone().unbind(), limits: in_force })
+        Ok(Self { session: Mutex::new(session), runs_solver, robot: robot.clone().unbind(), limits: in_force })
     }
 
     /// Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
@@ -90,7 +94,13 @@ impl PyTracker {
         let target = read_target("target", target)?;
         let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
         let (watch, mut session) = (Stopwatch::start(), self.session());
-        let core = session.step_moving(&target, velocity, &mut Unattended).map_err(raise)?;
+        let core = if self.runs_solver {
+            watched_with_interpreter(py, None, |watcher| {
+                session.step_moving(&target, velocity, watcher).map_err(raise)
+            })?
+        } else {
+            session.step_moving(&target, velocity, &mut Unattended).map_err(raise)?
+        };
         let motion = [session.q().to_vec(), session.qd().to_vec()];
         Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()))
     }

@@ -141,14 +141,16 @@ impl<'a> TreeSearch<'a> {
         reached
     }
 
-    /// Shortens a path: removes unnecessary points, then tries random shortcuts.
+    /// Shortens a path: removes unnecessary points, then tries random shortcuts. Takes only what `shortens` an old stretch of
+    /// points by a new one with the same ends.
     pub(super) fn shorten(
         &mut self,
         path: JointPolyline,
+        shortens: Shortens<'_>,
         rng: &mut LazyRng,
         monitor: &mut dyn Monitor,
     ) -> JointPolyline {
-        let mut points = self.with_longest_lines(path.0);
+        let mut points = self.with_longest_lines(path.0, shortens);
         for _ in 0..SHORTCUTS {
             if points.len() < 3 || self.is_spent() || !monitor.keep_going() {
                 break;
@@ -156,21 +158,29 @@ impl<'a> TreeSearch<'a> {
             let (first, second, lines) = (rng.uniform(), rng.uniform(), (points.len() - 1) as f64);
             let (i, from) = along(&points, first.min(second) * lines);
             let (k, to) = along(&points, first.max(second) * lines);
-            if i < k && self.is_clear(&from, &to) {
+            if i == k {
+                continue;
+            }
+            let mut old = vec![from.clone()];
+            old.extend_from_slice(&points[i + 1..=k]);
+            old.push(to.clone());
+            if shortens(&old, &[from.clone(), to.clone()]) && self.is_clear(&from, &to) {
                 points.splice(i + 1..=k, [from, to]);
                 points.dedup();
             }
         }
-        JointPolyline(self.with_longest_lines(points))
+        JointPolyline(self.with_longest_lines(points, shortens))
     }
 
     /// Connects each point to the farthest one that a straight line can reach.
-    fn with_longest_lines(&mut self, points: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    fn with_longest_lines(&mut self, points: Vec<Vec<f64>>, shortens: Shortens<'_>) -> Vec<Vec<f64>> {
         let last = points.len() - 1;
         let (mut i, mut kept) = (0, vec![points[0].clone()]);
         while i < last {
+            let is_shorter = |k: usize| shortens(&points[i..=k], &[points[i].clone(), points[k].clone()]);
+            let mut ends = (i + 2..=last).rev();
             let farthest =
-                (i + 2..=last).rev().find(|k| !self.deadline.is_over() && self.is_clear(&points[i], &points[*k]));
+                ends.find(|k| !self.deadline.is_over() && is_shorter(*k) && self.is_clear(&points[i], &points[*k]));
             i = farthest.unwrap_or(i + 1);
             kept.push(points[i].clone());
         }
@@ -178,6 +188,9 @@ impl<'a> TreeSearch<'a> {
         kept
     }
 }
+
+/// Whether a new stretch of points is shorter than an old one with the same ends.
+type Shortens<'f> = &'f dyn Fn(&[Vec<f64>], &[Vec<f64>]) -> bool;
 
 /// Number of random shortcuts tried.
 const SHORTCUTS: usize = 60;
@@ -217,9 +230,9 @@ impl Tree {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::obstacle::Obstacle;
     use crate::rng;
     use crate::robot::Robot;
+    use crate::shape::Shape;
     use crate::solver::Unattended;
 
     const MARGIN: f64 = 0.01;
@@ -229,7 +242,7 @@ mod tests {
     }
 
     /// Searches with `budget` from `start` to `end`; returns what was found, and how many configurations it examined.
-    fn connect(obstacle: Obstacle, budget: usize, monitor: &mut dyn Monitor) -> (Connection, usize) {
+    fn connect(obstacle: Shape, budget: usize, monitor: &mut dyn Monitor) -> (Connection, usize) {
         let (robot, obstacles) = (arm(), [obstacle]);
         let limits = MotionLimits::new(&robot, None, "this test").unwrap();
         let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
@@ -243,7 +256,7 @@ mod tests {
                 path.0.windows(2).map(|line| search.squared_distance(&line[0], &line[1]).sqrt()).sum()
             };
             let before = length(path);
-            let shorter = search.shorten(path.clone(), &mut rng, &mut Unattended);
+            let shorter = search.shorten(path.clone(), &|_, _| true, &mut rng, &mut Unattended);
             for line in path.0.windows(2).chain(shorter.0.windows(2)) {
                 for i in 0..=200 {
                     let at = |j: usize| line[0][j] + f64::from(i) / 200.0 * (line[1][j] - line[0][j]);
@@ -261,13 +274,13 @@ mod tests {
 
     #[test]
     fn a_path_round_an_obstacle_is_clear_and_shortened() {
-        let (found, _) = connect(Obstacle::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Unattended);
+        let (found, _) = connect(Shape::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Unattended);
         assert!(matches!(found, Connection::Found(_)), "{found:?}");
     }
 
     #[test]
     fn the_budget_ends_a_search_without_a_way() {
-        let wall = Obstacle::cuboid([1.05, 0.0, 0.0], [1.9, 0.02, 1.0], None).unwrap();
+        let wall = Shape::cuboid([1.05, 0.0, 0.0], [1.9, 0.02, 1.0], None).unwrap();
         let (found, examined) = connect(wall, 2000, &mut Unattended);
         assert_eq!(found, Connection::NotFound);
         assert!(examined < 2200, "{examined}"); // an edge that was begun is examined to its end
@@ -275,7 +288,7 @@ mod tests {
 
     #[test]
     fn a_search_without_a_single_clear_step_ends_too() {
-        let everywhere = Obstacle::sphere([0.0, 0.0, 0.0], 0.5).unwrap();
+        let everywhere = Shape::sphere([0.0, 0.0, 0.0], 0.5).unwrap();
         assert_eq!(connect(everywhere, 2000, &mut Unattended), (Connection::NotFound, 0));
     }
 
@@ -287,7 +300,7 @@ mod tests {
                 false
             }
         }
-        let (found, _) = connect(Obstacle::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Impatient);
+        let (found, _) = connect(Shape::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Impatient);
         assert_eq!(found, Connection::Interrupted);
     }
 }

@@ -9,6 +9,7 @@ use super::joint_path::JointPath;
 use super::reachability::SpeedProfile;
 use super::timing_limits::TimingLimits;
 use crate::error::{Error, Result};
+use crate::interrupt::checkpoint_at;
 use crate::trajectory::Trajectory;
 
 /// Narrowest and widest window, relative to the duration.
@@ -49,29 +50,35 @@ pub(super) fn smooth(
     let clock = Clock::new(path, profile);
     let played = |window: f64| {
         let smoothed = Smoothed { path, clock: &clock, window };
-        (clock.duration() + window) * smoothed.stretch(limits, jerk)
+        Ok((clock.duration() + window) * smoothed.stretch(limits, jerk)?)
     };
-    let window = shortest(played, clock.duration());
+    let window = shortest(played, clock.duration())?;
     Smoothed { path, clock: &clock, window }.trajectory(limits, jerk)
 }
 
 /// Returns the window with approximately the smallest duration `played`.
-fn shortest(played: impl Fn(f64) -> f64, duration: f64) -> f64 {
+fn shortest(played: impl Fn(f64) -> Result<f64>, duration: f64) -> Result<f64> {
     let [narrowest, widest] = WINDOWS.map(f64::ln);
     let step = (widest - narrowest) / (SCANNED - 1) as f64;
     let window = |logarithm: f64| duration * logarithm.exp();
-    let scanned = (0..SCANNED).map(|i| narrowest + i as f64 * step);
-    let best = scanned.min_by(|a, b| played(window(*a)).total_cmp(&played(window(*b)))).unwrap_or(widest);
-    let [mut lower, mut upper] = [best - step, best + step];
+    let mut best = (f64::INFINITY, narrowest);
+    for i in 0..SCANNED {
+        let logarithm = narrowest + i as f64 * step;
+        let duration = played(window(logarithm))?;
+        if duration < best.0 {
+            best = (duration, logarithm);
+        }
+    }
+    let [mut lower, mut upper] = [best.1 - step, best.1 + step];
     for _ in 0..CUTS {
         let third = (upper - lower) / 3.0;
-        if played(window(lower + third)) < played(window(upper - third)) {
+        if played(window(lower + third))? < played(window(upper - third))? {
             upper -= third;
         } else {
             lower += third;
         }
     }
-    window(0.5 * (lower + upper))
+    Ok(window(0.5 * (lower + upper)))
 }
 
 /// The path parameter s over time, with its integral; s is constant before and after.
@@ -146,9 +153,13 @@ impl Smoothed<'_> {
     }
 
     /// Factor by which the motion must be slowed down to keep all limits at its knots; below 1 it can be faster.
-    fn stretch(&self, limits: &TimingLimits, jerk: &[f64]) -> f64 {
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    fn stretch(&self, limits: &TimingLimits, jerk: &[f64]) -> Result<f64> {
         let mut largest = 0.0_f64;
-        for t in self.knots() {
+        for (i, t) in self.knots().into_iter().enumerate() {
+            checkpoint_at(i)?;
             let [s, rate, acceleration, change] = self.parameter(t);
             let (piece, from) = self.path.locate(s);
             for j in 0..jerk.len() {
@@ -162,12 +173,12 @@ impl Smoothed<'_> {
                 largest = largest.max(scale(derivatives, [limits.velocity[j], limits.acceleration[j], jerk[j]]));
             }
         }
-        largest
+        Ok(largest)
     }
 
     /// Returns the motion as quintics, as fast as their exact extremes allow.
     fn trajectory(&self, limits: &TimingLimits, jerk: &[f64]) -> Result<Trajectory> {
-        let expected = self.stretch(limits, jerk);
+        let expected = self.stretch(limits, jerk)?;
         let mut knots = self.knots();
         for _ in 0..HALVINGS {
             let (played, stretch) = self.interpolated(&knots, limits, jerk)?;
@@ -184,7 +195,8 @@ impl Smoothed<'_> {
     fn interpolated(&self, knots: &[f64], limits: &TimingLimits, jerk: &[f64]) -> Result<(Trajectory, f64)> {
         let n = jerk.len();
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| Vec::with_capacity(knots.len() * n));
-        for t in knots {
+        for (i, t) in knots.iter().enumerate() {
+            checkpoint_at(i)?;
             let [s, rate, acceleration, _] = self.parameter(*t);
             let (piece, from) = self.path.locate(s);
             for j in 0..n {

@@ -12,6 +12,7 @@ use super::strips::{Line, Strips};
 use super::timing_limits::TimingLimits;
 use super::velocity_curve::{UNLIMITED, maximum_velocity_curve};
 use crate::error::{Error, Result};
+use crate::interrupt::{checkpoint, checkpoint_at};
 
 /// Smallest and largest admissible squared path speed at a point.
 pub(super) type Range = [f64; 2];
@@ -36,6 +37,7 @@ impl SpeedProfile {
     ) -> Result<Self> {
         let mut derivatives = PathDerivatives::new(path.joints().len());
         let mut strips = Strips::new(path.joints().len());
+        checkpoint()?;
         let velocity_curve = maximum_velocity_curve(path, limits, &segments, &mut derivatives);
         let mut pass = Pass { path, limits, segments: &segments, derivatives: &mut derivatives, strips: &mut strips };
         let controllable = pass.backward(velocity_curve, end)?;
@@ -81,6 +83,7 @@ impl Pass<'_> {
             return Err(too_fast("end"));
         }
         for i in (0..last).rev() {
+            checkpoint_at(i)?;
             let segment = self.enter(i);
             let [lowest, highest] = sets[i + 1];
             let launch = LAUNCH_SHARE * (2.0 * segment.length * self.strips.launch).min(highest);
@@ -109,6 +112,7 @@ impl Pass<'_> {
         let mut xs = Vec::with_capacity(sets.len());
         xs.push(x);
         for i in 0..self.segments.len() {
+            checkpoint_at(i)?;
             let segment = self.enter(i);
             let u = self.strips.upper(x).at(x);
             let [lowest, highest] = sets[i + 1];

@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use super::joint_path::{JointPath, POWERS, check_waypoints};
 use crate::error::{Error, Result, require_finite};
+use crate::interrupt::checkpoint;
 use crate::math::cubic_spline::{CubicSpline, SplineEnds};
 
 impl FromStr for SplineEnds {
@@ -38,6 +39,7 @@ impl JointPath {
         let mut coefficients = vec![0.0; POWERS * (rows - 1) * n];
         for j in 0..n {
             values.iter_mut().zip(waypoints.chunks_exact(n)).for_each(|(value, row)| *value = row[j]);
+            checkpoint()?;
             spline.curvatures(&values, &mut curvatures);
             for piece in 0..rows - 1 {
                 let of_joint = spline.piece(piece, &values, &curvatures).coefficients();

@@ -1,7 +1,8 @@
 //! Joint splines through waypoints on a path, dense enough that the tip stays on the path between them.
 
 use super::projection::project;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::interrupt::checkpoint_at;
 use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Linearization};
 use crate::planning::deviation::TipDeviation;
@@ -67,6 +68,15 @@ impl Interpolation<'_> {
     /// # Errors
     /// None in practice: waypoints that differ define a spline.
     pub(super) fn path(&self, waypoints: &JointWaypoints) -> Result<JointPath> {
+        let joined = JointPath::joined(self.stretches(waypoints)?);
+        joined.ok_or_else(|| Error::InvalidPath { problem: "it has no points".into() })
+    }
+
+    /// Returns the parts of that path between stops.
+    ///
+    /// # Errors
+    /// As [`path`](Self::path).
+    pub(super) fn stretches(&self, waypoints: &JointWaypoints) -> Result<Vec<JointPath>> {
         let n = self.robot.dof();
         let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
         // Natural ends, i.e. zero curvature, would be less accurate.
@@ -76,13 +86,12 @@ impl Interpolation<'_> {
         };
         let last = waypoints.knots.len() - 1;
         if self.corners == Corners::Passed {
-            return spline(0, last);
+            return Ok(vec![spline(0, last)?]);
         }
         let mut ends = vec![0];
         ends.extend(self.tip_path.corners().map(|corner| waypoints.knots.partition_point(|knot| *knot < corner)));
         ends.push(last);
-        let stretches = ends.windows(2).map(|ends| spline(ends[0], ends[1])).collect::<Result<Vec<_>>>()?;
-        JointPath::joined(stretches).map_or_else(|| spline(0, last), Ok)
+        ends.windows(2).map(|ends| spline(ends[0], ends[1])).collect()
     }
 
     /// Returns the waypoints with knots added until the tip is within `accuracy` (m, rad) of the path, or until more
@@ -98,12 +107,14 @@ impl Interpolation<'_> {
                 tip_path: self.tip_path,
                 configurations: |share: f64, q: &mut [f64]| path.position(share, q),
             };
-            let is_coarse = |i: &usize| {
-                let [from, to] = [waypoints.knots[*i], waypoints.knots[*i + 1]];
+            let is_coarse = |i: usize| {
+                checkpoint_at(i)?;
+                let [from, to] = [waypoints.knots[i], waypoints.knots[i + 1]];
                 // A given start may be off the path.
-                deviation.between(from, to, SAMPLES) > ENOUGH * accuracy + deviation.at(from)
+                Ok((deviation.between(from, to, SAMPLES) > ENOUGH * accuracy + deviation.at(from)).then_some(i))
             };
-            let coarse: Vec<usize> = (0..waypoints.knots.len() - 1).filter(is_coarse).collect();
+            let intervals = 0..waypoints.knots.len() - 1;
+            let coarse: Vec<usize> = intervals.filter_map(|i| is_coarse(i).transpose()).collect::<Result<_>>()?;
             if coarse.is_empty() || waypoints.knots.len() + coarse.len() > MOST_KNOTS {
                 break;
             }

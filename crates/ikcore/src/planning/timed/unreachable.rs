@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::ik::{SolveOptions, solve};
+use crate::interrupt::checkpoint;
 use crate::planning::tip_path::TipPath;
 use crate::robot::Robot;
 use crate::solver::{Status, Stop, Unattended};
@@ -26,6 +27,7 @@ pub(super) fn unreachable_points(robot: &Robot, tip_path: &TipPath, seed: u64) -
     let mut farthest: Option<TipError> = None;
     let stride = points.len().div_ceil(MOST_POINTS).max(1);
     for (point, share) in points.iter().enumerate().step_by(stride) {
+        checkpoint()?;
         let solution = solve(robot, &tip_path.target(*share), &options, &mut Unattended)?;
         if solution.status == Status::Solved {
             continue;

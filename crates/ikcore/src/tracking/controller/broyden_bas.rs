@@ -7,10 +7,13 @@
 //! do not update the Jacobian, and the tick ends there. Larger steps update the Jacobian only by the change above the
 //! noise level, and an error below that level does not put out antennae. The initial noise level comes from three
 //! measurements of the start.
+//!
+//! With a late sensor every further step costs the whole delay. So the first step of a tick also corrects what the first
+//! step of the last tick missed its prediction by, which changes little along a smooth path.
 
 use super::control_tick::{ControlTick, TickProgress};
 use super::noise::Noise;
-use crate::math::box_step::LEAST_DAMPING;
+use crate::math::box_step::{LEAST_DAMPING, ROWS};
 use crate::math::secant::{Secant, antenna};
 use crate::math::vector::norm;
 use crate::objective::Point;
@@ -54,6 +57,10 @@ pub(super) struct BroydenBasState {
     noise: Noise,
     /// How many more times the last command is sent, for a sensor with delay.
     due: usize,
+    /// With such a sensor: what the first step of the last tick missed its prediction by (m, rad), and whether the next step
+    /// is the first of its tick.
+    lead: [f64; ROWS],
+    first_step: bool,
     /// Measurements in this tick.
     measurements: usize,
 }
@@ -81,7 +88,7 @@ impl BroydenBasState {
             jacobian: Secant::default(),
             q: start.into(),
             tip: TipPose::UNKNOWN,
-            earlier: [TipPose::UNKNOWN; 2],
+            earlier: [const { TipPose::UNKNOWN }; 2],
             sent: start.into(),
             purpose: Purpose::Stand,
             next: Purpose::Antenna { joint: 0 },
@@ -91,12 +98,15 @@ impl BroydenBasState {
             fresh: false,
             noise: Noise::default(),
             due: 0,
+            lead: [0.0; ROWS],
+            first_step: true,
             measurements: 0,
         })
     }
 
     pub(super) fn begin(&mut self, tip: &TipPose) {
-        (self.tip, self.earlier[0]) = (*tip, *tip);
+        self.tip.clone_from(tip);
+        self.earlier[0].clone_from(tip);
         self.next = Purpose::Repeat { measured: 1 };
     }
 
@@ -158,7 +168,10 @@ impl BroydenBasState {
     }
 
     fn step(&mut self, tick: ControlTick<'_>) {
-        let residual = self.tip.residual(tick.target);
+        let mut residual = self.tip.residual(tick.target);
+        if self.first_step {
+            residual.iter_mut().zip(&self.lead).for_each(|(r, lead)| *r += lead);
+        }
         let bounds = [tick.bounds.lower(), tick.bounds.upper()];
         self.jacobian.step(&residual, self.damping(), &self.q, bounds, &mut self.sent);
     }
@@ -178,7 +191,7 @@ impl BroydenBasState {
         self.due -= 1;
         let verdict = if self.due == 0 { self.learn(tick, tip) } else { TickProgress::GoOn };
         if spent || verdict == TickProgress::TickOver {
-            self.measurements = 0;
+            (self.measurements, self.first_step) = (0, true);
             return TickProgress::TickOver;
         }
         TickProgress::GoOn
@@ -188,24 +201,26 @@ impl BroydenBasState {
     fn learn(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
         let verdict = match self.purpose {
             Purpose::Repeat { measured: 1 } => {
-                (self.earlier[1], self.next) = (*tip, Purpose::Repeat { measured: 2 });
+                self.earlier[1].clone_from(tip);
+                self.next = Purpose::Repeat { measured: 2 };
                 TickProgress::GoOn
             }
             Purpose::Repeat { .. } => {
-                let [first, second] = self.earlier;
-                self.know_start([first, second, *tip]);
+                let [first, second] = &self.earlier;
+                self.know_start([first.clone(), second.clone(), tip.clone()]);
                 TickProgress::GoOn
             }
             Purpose::Stand => {
-                (self.tip, self.next) = (*tip, Purpose::Antenna { joint: 0 });
+                self.tip.clone_from(tip);
+                self.next = Purpose::Antenna { joint: 0 };
                 TickProgress::GoOn
             }
             Purpose::Antenna { joint } => {
-                self.feel(joint, tip);
+                self.set_column(joint, tip);
                 TickProgress::GoOn
             }
-            Purpose::Step => self.believe(tick, tip, false),
-            Purpose::Again => self.believe(tick, tip, true),
+            Purpose::Step | Purpose::Again if tip.is_oriented() => self.process_step::<6>(tick, tip),
+            Purpose::Step | Purpose::Again => self.process_step::<3>(tick, tip),
         };
         let near_enough = self.tolerance.at_least(NEAR_ENOUGH * self.noise.level());
         let arrived = self.next == Purpose::Step && self.tip.error(tick.target).within(&near_enough);
@@ -214,12 +229,12 @@ impl BroydenBasState {
 
     /// Estimates tip and noise level at the start from three measurements, one of which may be an outlier.
     fn know_start(&mut self, measurements: [TipPose; 3]) {
-        self.tip = TipPose::median(measurements);
-        self.noise.note_three(measurements);
+        self.tip = TipPose::median(&measurements);
+        self.noise.note_three(&measurements);
         self.next = Purpose::Antenna { joint: 0 };
     }
 
-    fn feel(&mut self, joint: usize, tip: &TipPose) {
+    fn set_column(&mut self, joint: usize, tip: &TipPose) {
         self.jacobian.set_column(joint, self.sent[joint] - self.q[joint], &tip.residual(&self.tip));
         self.next = Purpose::Antenna { joint: joint + 1 };
         if joint + 1 == self.q.len() {
@@ -227,19 +242,21 @@ impl BroydenBasState {
         }
     }
 
-    /// Processes the measurement of a step, which may be a repeated one.
-    fn believe(&mut self, tick: ControlTick<'_>, tip: &TipPose, repeated: bool) -> TickProgress {
+    /// Processes the measurement of a step, which may be a repeated one. The residual has `R` rows, three for positions.
+    fn process_step<const R: usize>(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
+        let repeated = self.purpose == Purpose::Again;
         let Self { q, sent, jacobian, .. } = self;
         let dq = || sent.iter().zip(q.iter()).map(|(to, from)| to - from);
-        let predicted = jacobian.predict(dq());
+        let predicted = jacobian.predict::<R>(dq());
         let seen = tip.residual(&self.tip);
-        let surprise = std::array::from_fn(|k| seen[k] - predicted[k]);
+        let surprise: [f64; R] = std::array::from_fn(|k| seen[k] - predicted[k]);
         let (motion, miss) = (norm(&predicted), norm(&surprise));
         let surprising = miss > SURPRISING * motion;
         self.next = Purpose::Step;
         let mut noisy = self.noise.explains(motion);
         if surprising && !repeated && !noisy {
-            (self.earlier[0], self.next) = (*tip, Purpose::Again);
+            self.earlier[0].clone_from(tip);
+            self.next = Purpose::Again;
             return TickProgress::GoOn;
         }
         if surprising && repeated {
@@ -249,6 +266,14 @@ impl BroydenBasState {
                 noisy = true;
             }
         }
+        if self.first_step && self.options.sensor_delay > 0 {
+            self.lead = [0.0; ROWS];
+            if !noisy && !surprising {
+                let share = self.noise.share(miss);
+                self.lead[..R].copy_from_slice(&surprise.map(|missed| share * missed));
+            }
+        }
+        self.first_step = false;
         if !noisy {
             jacobian.learn(dq(), &surprise, self.noise.share(miss));
         }
@@ -261,7 +286,7 @@ impl BroydenBasState {
         let (before, after) = (self.tip.squared_error(tick.target), tip.squared_error(tick.target));
         if after < before {
             self.q.copy_from_slice(&self.sent);
-            self.tip = *tip;
+            self.tip.clone_from(tip);
             self.damping = (self.damping * 0.1).max(LEAST_DAMPING);
             (self.fresh, self.failed) = (false, 0);
             let slow = after > 0.25 * before && !noisy && !self.noise.explains(after.sqrt());

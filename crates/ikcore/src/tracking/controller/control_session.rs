@@ -140,8 +140,7 @@ impl ControlSession {
     /// # Errors
     /// [`Error::NotFinite`] for the target, [`Error::Contradiction`] for a pose after positions or a position after poses,
     /// [`Error::OutOfTurn`] if a measurement is due.
-    pub fn command(&mut self, target: impl Into<TipPose>) -> Result<&[f64]> {
-        let target = target.into();
+    pub fn command(&mut self, target: &TipPose) -> Result<&[f64]> {
         target.require_finite("target")?;
         let first = match self.stage {
             Stage::Sent { .. } => {
@@ -160,7 +159,7 @@ impl ControlSession {
             }
             Stage::Within => false,
         };
-        self.target = target;
+        self.target.clone_from(target);
         if !first {
             let tick = ControlTick { target: &self.target, bounds: &self.tick_box.bounds };
             self.running.choose_command(tick, &mut self.rng);
@@ -175,12 +174,11 @@ impl ControlSession {
     /// # Errors
     /// [`Error::NotFinite`] for the measurement, [`Error::Contradiction`] for a position if the target is a pose,
     /// [`Error::OutOfTurn`] if no measurement is due.
-    pub fn observe(&mut self, position: impl Into<TipPose>) -> Result<Option<Step>> {
+    pub fn observe(&mut self, tip: &TipPose) -> Result<Option<Step>> {
         let Stage::Sent { first } = self.stage else {
             let remedy = "there is no command to answer; call command(target) first".into();
             return Err(Error::OutOfTurn { call: "observe".into(), remedy });
         };
-        let tip = position.into();
         tip.require_finite("position")?;
         let Some(tip) = tip.as_asked_by(&self.target) else {
             let problem = "position: expected a pose (4, 4), like the target, got a position (3,)".into();
@@ -189,19 +187,20 @@ impl ControlSession {
         self.measurements += 1;
         if first {
             self.running.begin(&self.target, &tip);
-            return Ok(Some(self.end_tick()));
+        } else {
+            let tick = ControlTick { target: &self.target, bounds: &self.tick_box.bounds };
+            if self.running.observe(tick, &tip) == TickProgress::GoOn {
+                self.stage = Stage::Within;
+                return Ok(None);
+            }
+            self.before.copy_from_slice(&self.q);
+            self.q.copy_from_slice(self.running.accepted());
+            self.ticks += 1;
         }
-        let tick = ControlTick { target: &self.target, bounds: &self.tick_box.bounds };
-        if self.running.observe(tick, &tip) == TickProgress::GoOn {
-            self.stage = Stage::Within;
-            return Ok(None);
-        }
-        self.before.copy_from_slice(&self.q);
-        self.q.copy_from_slice(self.running.accepted());
-        self.ticks += 1;
         Ok(Some(self.end_tick()))
     }
 
+    #[inline]
     fn end_tick(&mut self) -> Step {
         let tip = self.running.measured().1;
         let (error, distance, position) = (tip.error(&self.target), tip.distance(&self.target), tip.position());
@@ -215,7 +214,7 @@ impl ControlSession {
         Step {
             status,
             error,
-            position,
+            position: *position,
             evaluations,
             iterations: evaluations,
             inside_limits: self.inside_limits,

@@ -37,6 +37,14 @@ impl Controller {
         }
     }
 
+    /// The delay of the sensor that it assumes (measurements).
+    pub(in crate::tracking) fn sensor_delay(&self) -> usize {
+        match self {
+            Self::BroydenBas(broyden) => broyden.sensor_delay,
+            Self::Znnbas(znnbas) => znnbas.sensor_delay,
+        }
+    }
+
     pub(super) fn start(&self, start: &[f64], dt: f64, tolerance: Tolerance) -> RunningController {
         match self {
             Self::BroydenBas(broyden) => {

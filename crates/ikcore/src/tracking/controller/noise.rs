@@ -29,8 +29,8 @@ impl Noise {
     }
 
     /// Takes three measurements of one command. One of them may be an outlier, so the nearest two count.
-    pub(super) fn note_three(&mut self, [a, b, c]: [TipPose; 3]) {
-        let nearest = a.distance(&b).min(b.distance(&c)).min(a.distance(&c));
+    pub(super) fn note_three(&mut self, [a, b, c]: &[TipPose; 3]) {
+        let nearest = a.distance(b).min(b.distance(c)).min(a.distance(c));
         (0..2).for_each(|_| self.note(TWO_OVER_NEAREST_OF_THREE * nearest));
     }
 

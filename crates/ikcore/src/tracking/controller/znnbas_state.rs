@@ -37,6 +37,8 @@ pub(super) struct ZnnbasState {
 struct OnTheWay {
     sent: Vec<f64>,
     targets: Vec<TipPose>,
+    /// The target of the command measured now.
+    due: TipPose,
     ticks: usize,
 }
 
@@ -65,6 +67,7 @@ impl ZnnbasState {
             on_the_way: OnTheWay {
                 sent: start.repeat(options.sensor_delay),
                 targets: vec![TipPose::UNKNOWN; options.sensor_delay],
+                due: TipPose::UNKNOWN,
                 ticks: 0,
             },
             past: Past { sent: vec![0.0; delay * n], values: vec![0.0; delay], ticks: 0 },
@@ -72,9 +75,11 @@ impl ZnnbasState {
     }
 
     pub(super) fn begin(&mut self, target: &TipPose, tip: &TipPose) {
-        (self.tip, self.standing, self.value) = (*tip, *tip, tip.squared_error(target));
+        self.tip.clone_from(tip);
+        self.standing.clone_from(tip);
+        self.value = tip.squared_error(target);
         // Until the first measurement arrives, the arm is at the start.
-        self.on_the_way.targets.fill(*target);
+        self.on_the_way.targets.fill(target.clone());
     }
 
     pub(super) fn accepted(&self) -> &[f64] {
@@ -107,15 +112,15 @@ impl ZnnbasState {
     }
 
     pub(super) fn observe(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
-        self.tip = *tip;
+        self.tip.clone_from(tip);
         self.answered.copy_from_slice(&self.sent);
-        let target = self.on_the_way.swap(&mut self.answered, *tick.target);
-        self.value = tip.squared_error(&target); // h of (12)
+        let target = self.on_the_way.swap(&mut self.answered, tick.target);
+        self.value = tip.squared_error(target); // h of (12)
         match self.accept {
             UpdateRule::Always => self.move_theta(),
             UpdateRule::Improving if tip.squared_error(tick.target) < self.standing.squared_error(tick.target) => {
                 self.theta.copy_from_slice(&self.answered);
-                self.standing = *tip;
+                self.standing.clone_from(tip);
             }
             UpdateRule::Improving => {}
         }
@@ -143,14 +148,16 @@ impl ZnnbasState {
 
 impl OnTheWay {
     /// Stores the newest command with its target, and returns those that the sensor measures now.
-    fn swap(&mut self, command: &mut [f64], target: TipPose) -> TipPose {
+    fn swap<'a>(&'a mut self, command: &mut [f64], target: &'a TipPose) -> &'a TipPose {
         if self.targets.is_empty() {
             return target;
         }
         let slot = self.ticks % self.targets.len();
         self.ticks += 1;
         self.sent[slot * command.len()..][..command.len()].swap_with_slice(command);
-        std::mem::replace(&mut self.targets[slot], target)
+        self.due.clone_from(&self.targets[slot]);
+        self.targets[slot].clone_from(target);
+        &self.due
     }
 }
 

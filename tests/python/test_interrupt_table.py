@@ -1,0 +1,249 @@
+"""Ctrl-C ends any call: every public callable is interrupted in the middle, or listed with the reason why it is short.
+
+No clock decides: a signal comes every 10 ms, and its handler raises at the third one. A call that does not look for
+signals meets the handler once, after it has returned, and nothing is raised.
+"""
+
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+from iiwa_circle import IIWA, START
+from test_every_call import CALLS, MADE_BY_THE_LIBRARY
+
+import beetle_ik as bik
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no timer sends signals on Windows")
+
+ENDLESS = bik.Stop(max_evaluations=10**12, max_iterations=10**12)
+CAPSULES = IIWA.with_capsules(radius=0.05)
+UR5 = bik.Robot.named("ur5")
+PLANAR = bik.Robot.planar([0.5] * 3)
+INSIDE_SHOULDER = [0.0, 0.0, 0.36]
+FAST = bik.Limits(velocity=1.0, acceleration=5.0)
+CIRCLE = bik.paths.circle((0.3, 0.3, 1.0), diameter=0.2, duration=1000.0)
+ORIENTED = CIRCLE.with_orientation(np.eye(3))
+
+
+def rows(count: int, n: int = 7) -> np.ndarray:
+    return np.zeros((count, n))
+
+
+def wave(knots: int) -> bik.Trajectory:
+    t = np.arange(knots) * 1e-3
+    q, qd, qdd = np.sin(t)[:, None], np.cos(t)[:, None], -np.sin(t)[:, None]
+    both = np.ones((1, 2))
+    return bik.Trajectory.from_samples(t, q * both, qd=qd * both, qdd=qdd * both)
+
+
+def urdf(links: int) -> str:
+    joints = "".join(
+        f'<link name="l{i}"/><joint name="j{i}" type="fixed"><parent link="l{i - 1}"/><child link="l{i}"/></joint>'
+        for i in range(1, links)
+    )
+    turning = '<joint name="turn" type="continuous"><parent link="base"/><child link="l0"/></joint>'
+    return f'<robot name="long"><link name="base"/><link name="l0"/>{turning}{joints}</robot>'
+
+
+def walled_in() -> list[bik.obstacles.Box]:
+    """Walls that leave a gap around the base, too narrow to pass: the search for a way does not end."""
+    sides = [bik.obstacles.Box((x, 0.0, 1.0), size=(2.0, 0.02, 2.0)) for x in (-1.12, 1.12)]
+    return [*sides, bik.obstacles.Box((0.0, 0.0, 1.62), size=(0.24, 0.02, 2.0))]
+
+
+def table() -> dict[str, Callable[[], Callable[[], object]]]:
+    """For each call a function that prepares its input, and returns the long call."""
+    far = bik.paths.circle((5.0, 5.0, 5.0), diameter=0.2, duration=3600.0)
+    slow = bik.BAS(explorations=10**9)
+    return {
+        "Path.position": lambda: with_times(CIRCLE.position),
+        "Path.velocity": lambda: with_times(CIRCLE.velocity),
+        "Path.pose": lambda: with_times(ORIENTED.pose, 1_500_000),
+        "Path.sample": lambda: lambda: CIRCLE.sample(1.2e-4),
+        "Robot.fk": lambda: with_rows(IIWA.fk, 2_000_000),
+        "Robot.clip": lambda: with_rows(IIWA.clip, 4_000_000),
+        "Robot.jacobian": lambda: with_rows(IIWA.jacobian, 800_000),
+        "Robot.manipulability": lambda: with_rows(IIWA.manipulability, 1_000_000),
+        "Robot.random_configurations": lambda: lambda: IIWA.random_configurations(10_000_000),
+        "Robot.from_urdf": lambda: with_text(urdf(60_000)),
+        "Tracker.step": lambda: with_target(bik.Tracker(IIWA, START, dt=0.1, solver=slow)),
+        "Trajectory.max_velocity": lambda: wave(1_500_000).max_velocity,
+        "Trajectory.max_acceleration": lambda: wave(1_500_000).max_acceleration,
+        "Trajectory.max_jerk": lambda: wave(1_500_000).max_jerk,
+        "Trajectory.at": lambda: with_times(wave(100_000).at, 6_000_000),
+        "Trajectory.sample": lambda: sampled(wave(100_000)),
+        "Trajectory.from_samples": lambda: lambda: wave(3_000_000),
+        "minimize": lambda: lambda: bik.minimize(np.sum, [-1] * 9, [1] * 9, stop=ENDLESS),
+        "obstacles.ConvexMesh": lambda: hull(30_000),
+        "obstacles.Grid": lambda: occupied(300),
+        "obstacles.Mesh": lambda: soup(1_000_000),
+        "obstacles.PointCloud": lambda: cloud(3_000_000),
+        "obstacles.clearance": lambda: with_rows(lambda q: bik.obstacles.clearance(CAPSULES, q), 400_000),
+        "paths.from_samples": lambda: posed(500_000),
+        "plan_along_path": lambda: lambda: bik.plan_along_path(IIWA, CIRCLE, limits=FAST, stop=ENDLESS),
+        "plan_point_to_point": lambda: (
+            lambda: bik.plan_point_to_point(
+                CAPSULES,
+                start_q=[1.57, 1.0, 0, 0, 0, 0, 0],
+                end_q=[-1.57, 1.0, 0, 0, 0, 0, 0],
+                limits=FAST,
+                obstacles=walled_in(),
+                stop=ENDLESS,
+            )
+        ),
+        "planar_posture": lambda: (
+            lambda: bik.planar_posture(
+                PLANAR, [0.5, 0.5, 0.0], swarm=bik.CircleSwarm(population=1000, generations=10**6)
+            )
+        ),
+        "self_motion": lambda: lambda: bik.self_motion(IIWA, IIWA.fk(START), spacing=1e-3),
+        "solve": lambda: lambda: bik.solve(IIWA, INSIDE_SHOULDER, stop=ENDLESS),
+        "solve_all": lambda: lambda: bik.solve_all(IIWA, [0.5, 0.0, 0.6], limit=10**9, stop=ENDLESS),
+        "solve_batch": lambda: lambda: bik.solve_batch(IIWA, [INSIDE_SHOULDER] * 9, stop=ENDLESS),
+        "time_optimal": lambda: waypoints(100_000),
+        "track": lambda: lambda: bik.track(IIWA, far, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12),
+        "track_model_free": lambda: (
+            lambda: bik.track_model_free(bik.KinematicPlant(IIWA), CIRCLE, START, dt=5e-4, controller=bik.ZNNBAS())
+        ),
+    }
+
+
+def with_rows(call: Callable[[np.ndarray], object], count: int) -> Callable[[], object]:
+    q = rows(count)
+    return lambda: call(q)
+
+
+def with_times(call: Callable[[np.ndarray], object], count: int = 3_000_000) -> Callable[[], object]:
+    t = np.linspace(0.0, 50.0, count)
+    return lambda: call(t)
+
+
+def with_text(text: str) -> Callable[[], object]:
+    return lambda: bik.Robot.from_urdf(text)
+
+
+def with_target(tracker: bik.Tracker) -> Callable[[], object]:
+    return lambda: tracker.step([5.0, 5.0, 5.0])
+
+
+def sampled(motion: bik.Trajectory) -> Callable[[], object]:
+    return lambda: motion.sample(1.5e-5)
+
+
+def hull(count: int) -> Callable[[], object]:
+    points = np.random.default_rng(0).standard_normal((count, 3))
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    return lambda: bik.obstacles.ConvexMesh(points)
+
+
+def occupied(count: int) -> Callable[[], object]:
+    voxels = np.random.default_rng(0).random((count, count, count)) < 0.3
+    return lambda: bik.obstacles.Grid([0, 0, 0], 0.01, voxels)
+
+
+def soup(count: int) -> Callable[[], object]:
+    corners = np.random.default_rng(0).random((3 * count, 3))
+    faces = np.arange(3 * count).reshape(count, 3)
+    return lambda: bik.obstacles.Mesh(corners, faces)
+
+
+def cloud(count: int) -> Callable[[], object]:
+    points = np.random.default_rng(0).random((count, 3))
+    return lambda: bik.obstacles.PointCloud(points, 0.01)
+
+
+def posed(count: int) -> Callable[[], object]:
+    time, poses = np.arange(count) * 1e-3, np.tile(np.eye(4), (count, 1, 1))
+    poses[:, 0, 3] = time
+    return lambda: bik.paths.from_samples(time, poses)
+
+
+def waypoints(count: int) -> Callable[[], object]:
+    q = np.cumsum(np.random.default_rng(0).standard_normal((count, 12)), axis=0)
+    return lambda: bik.time_optimal(q, FAST)
+
+
+PLANNED = "a plan has at most some thousand knots"
+CONSTANT = "its work does not grow with any argument"
+ONE = "one configuration of at most 32 joints"
+COPIES = "as fast as its arrays are copied"
+PYTHON = "Python and matplotlib, which the interpreter interrupts"
+SHORT: dict[str, str] = {
+    **dict.fromkeys(MADE_BY_THE_LIBRARY, "made by other calls"),
+    **dict.fromkeys(
+        [
+            "APPS", "APPS.paper", "BAS", "PSO", "QPSO", "TPBSO", "ZNNBAS", "ZNNBAS.session", "BeeColony", "BeetleSwarm",
+            "BroydenBAS", "BroydenBAS.session", "CircleSwarm", "DifferentialEvolution", "Firefly", "Genetic",
+            "JacobianTranspose", "KinematicPlant", "LevenbergMarquardt", "MultiStart", "NewtonRaphson",
+            "Path.with_orientation", "Sinusoid", "Stop", "WeightedPseudoInverse", "show_versions", "tasks.Orientation",
+            "tasks.Pointing", "tasks.Pose", "tasks.Position", "goals.Centring", "goals.LinkManipulability",
+            "goals.Manipulability", "goals.Posture", "paths.circle", "paths.from_function", "paths.hypotrochoid",
+            "paths.letter_m", "paths.pentagram", "paths.rose", "obstacles.Box", "obstacles.Capsule",
+            "obstacles.Cylinder", "obstacles.Ellipse", "obstacles.Ellipsoid", "obstacles.HalfSpace", "obstacles.Sphere",
+        ],
+        CONSTANT,
+    ),
+    **dict.fromkeys(
+        [
+            "ControlSession.command", "ControlSession.observe", "KinematicPlant.move", "Limits", "Robot.from_dh",
+            "Robot.planar", "Robot.named", "Robot.names", "Robot.link_poses", "Robot.with_tool", "Robot.with_base",
+            "Robot.with_limits", "Robot.with_capsules", "Robot.with_errors", "Robot.manipulability_gradient",
+            "Robot.link_manipulability", "Robot.velocity_ellipsoid", "Tracker", "Tracker.reset", "pose",
+            "state_to_state", "obstacles.nearest", "Robot.all_link_poses", "Robot.with_held", "Robot.with_attached",
+            "Robot.with_collision_pairs", "Robot.with_srdf",
+        ],
+        ONE,
+    ),
+    "Plan.retime": PLANNED,
+    **dict.fromkeys(
+        ["Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"],
+        COPIES,
+    ),
+    **dict.fromkeys(
+        [
+            "Robot.from_mjcf", "Robot.from_description",
+            "ModelFreeResult.plot", "Plan.plot", "TrackResult.plot", "Trajectory.plot", "Trajectory.to_csv",
+            "Trajectory.from_csv", "plot.animation", "plot.model_free", "plot.plan", "plot.robot", "plot.saturation",
+            "plot.track", "plot.trajectory",
+        ],
+        PYTHON,
+    ),
+}  # fmt: skip
+LONG = table()
+
+
+@contextmanager
+def a_signal_every_10_ms() -> Iterator[None]:
+    """Raises KeyboardInterrupt at the third signal that the handler sees."""
+    seen = 0
+
+    def handle(*_: object) -> None:
+        nonlocal seen
+        seen += 1
+        if seen == 3:
+            raise KeyboardInterrupt
+
+    earlier = signal.signal(signal.SIGALRM, handle)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.01, 0.01)
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, earlier)
+
+
+def test_every_public_call_is_in_one_table() -> None:
+    assert set(LONG) | set(SHORT) == set(CALLS)
+    assert not set(LONG) & set(SHORT)
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_a_long_call_looks_for_signals(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    call = LONG[name]()
+    with pytest.raises(KeyboardInterrupt), a_signal_every_10_ms():
+        call()
