@@ -19,7 +19,8 @@ for curve in curves[:6]:
     print(curve)
 
 # %%
-# Each curve over joint 7, the parameter of the closed form; on the right, the arm along the longest curve. Its tip stays.
+# Each curve over joint 7, the parameter of the closed form; on the right, the arm along the longest curve. Its tip
+# stays.
 figure = plt.figure(figsize=(9, 4.2))
 plane = figure.add_subplot(1, 2, 1)
 for curve in curves:

@@ -2,8 +2,8 @@
 //!
 //! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds the state of
 //! one target: problem, random numbers, monitor, `budget`. `nearest` and `best` choose among several solutions,
-//! `goal_descent` moves a solution along its self-motion, `self_motion` follows the whole of it, `solve_all` collects solutions (`all_branches` by the closed
-//! form), `side_by_side` solves four targets at once for batches. [`problem`](crate::problem) explains why a target was
+//! `goal_descent` moves a solution along its self-motion, `self_motion` follows the whole of it, `solve_all` collects
+//! solutions (`all_branches` by the closed form), `side_by_side` solves four targets at once for batches. [`problem`](crate::problem) explains why a target was
 //! missed.
 
 mod all_branches;
