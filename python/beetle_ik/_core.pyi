@@ -5,7 +5,7 @@
 # SI units and radians throughout; results are read-only.
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from typing import Any, Literal, Never, Protocol, TypeAlias, final, overload, type_check_only
 
@@ -71,30 +71,91 @@ class InfeasibleError(InvalidInputError):
 
 @final
 class Robot:
-    """A robot arm: the chain of joints from a base link to a tip link. Immutable; made by `from_urdf`, `from_dh`, `planar` or
-    `named`.
+    """A robot arm: the chain of joints from a base link to a tip link, and the links that branch off it. Immutable; made by
+    `from_urdf`, `from_dh`, `planar` or `named`.
 
-    Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow them. Poses are 4x4 matrices in
-    the frame of the robot's base.
+    Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow them, and joints beside the chain
+    are held. Poses are 4x4 matrices in the frame of the robot's base.
     """
 
     def __new__(cls, *_arguments: Never, **_options: Never) -> Robot: ...
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None) -> Robot:
-        """Makes a robot from a URDF file or a string of XML.
+    def from_urdf(
+        path_or_xml: str | os.PathLike[str],
+        *,
+        base: str | None = None,
+        tip: str | None = None,
+        hold: Mapping[str, float] | None = None,
+        srdf: str | os.PathLike[str] | None = None,
+        collision: Literal["primitives", "fit"] | None = "primitives",
+        package_dirs: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None = None,
+    ) -> Robot:
+        """Makes a robot from a URDF file or a string of XML. Links and joints beside the chain are kept: see `all_link_names` and
+        `held_joints`.
 
         Args:
-            path_or_xml: a file, or text that contains "<".
+            path_or_xml: a file, or text that contains "<". A file that ends in ".xacro" is expanded by the package xacro, of the
+                extra "robots".
             base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
             tip: link at the end of the chain; None: the only leaf.
+            hold: values (rad, m) of joints beside the chain, such as {"finger_joint": 0.04}; the others are held at zero, or at
+                the limit nearest to it.
+            srdf: an SRDF, file or text, whose disabled pairs of links are not tested against each other, see `with_srdf`.
+            collision: what becomes of collision shapes. "primitives": spheres, cylinders, capsules and boxes become `capsules` that
+                enclose them, and meshes are named but not read. "fit": meshes (STL, OBJ, DAE) too are covered by few capsules that
+                hold all of them; `mesh_fits` says how well. They are kept in the user's cache directory. None: none is read.
+            package_dirs: folders in which `package://` is looked for first; then come the variables ROS_PACKAGE_PATH and
+                AMENT_PREFIX_PATH, and the folders above the file.
 
-        Joints may be revolute, continuous, prismatic, fixed or mimic. Collision spheres, cylinders, capsules and boxes become
-        `capsules` that enclose them; visuals, meshes and unknown tags are ignored, and so is `safety_controller`. A missing
-        velocity limit means infinite; zero locks the joint.
+        Joints may be revolute, continuous, prismatic, fixed or mimic. Visuals and unknown tags are ignored, and so is
+        `safety_controller`. A missing velocity limit means infinite; zero locks the joint.
 
         Raises:
             UrdfError: not XML, no joint, a cycle, two roots, a zero axis, or several leaves and no `tip`.
             UnknownNameError: no link of that name; the message lists them.
+        """
+    @staticmethod
+    def from_mjcf(
+        model: Any, *, base: str | None = None, tip: str | None = None, hold: Mapping[str, float] | None = None
+    ) -> Robot:
+        """Makes a robot from a MuJoCo model, as compiled by MuJoCo. Joint positions equal MuJoCo's qpos. Needs the extra "sim".
+
+        Args:
+            model: an MJCF file, text that contains "<", or a `mujoco.MjModel`.
+            base: body whose frame is the reference frame; None: "world".
+            tip: body or site at the end of the chain; None: the only leaf body.
+            hold: as in `from_urdf`.
+
+        Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples linearly
+        follow their master. Geoms that collide become `capsules` if they are spheres, capsules, cylinders or boxes.
+
+        Raises:
+            BeetleIkError: MuJoCo is not installed.
+            UnknownNameError: no body or site of that name; the message lists them.
+            InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or one that is coupled in
+                another way.
+        """
+    @staticmethod
+    def from_description(
+        name: str,
+        *,
+        base: str | None = None,
+        tip: str | None = None,
+        hold: Mapping[str, float] | None = None,
+        srdf: str | os.PathLike[str] | None = None,
+        collision: Literal["primitives", "fit"] | None = None,
+    ) -> Robot:
+        """Makes a robot by its name in the package robot_descriptions, such as "panda_description" or "panda_mj_description", which
+        downloads it at first use. Needs the extra "robots".
+
+        Args:
+            name: a name of robot_descriptions.
+            base, tip, hold: as in `from_urdf`.
+            srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take neither.
+
+        Raises:
+            BeetleIkError: robot_descriptions is not installed.
+            UnknownNameError: no description of that name; the message names the nearest.
         """
     @staticmethod
     def from_dh(
@@ -163,6 +224,32 @@ class Robot:
     def link_names(self) -> list[str]:
         """Names of the links along the chain, base first, tip last."""
     @property
+    def all_link_names(self) -> list[str]:
+        """Names of all links: those of the chain as in `link_names`, then those that branch off it."""
+    @property
+    def held_joints(self) -> dict[str, float]:
+        """The joints beside the chain, with the values (rad, m) at which they are held."""
+    @property
+    def mesh_fits(self) -> list[tuple[str, str, float, float]]:
+        """Meshes that capsules were fitted to, each (link, file, volume ratio, largest distance): the volume of the capsules over that
+        of the mesh, NaN for one that is not closed; and the largest distance (m) of the capsules from it.
+        """
+    @property
+    def unread_collision_shapes(self) -> list[str]:
+        """Collision shapes that did not become `capsules`, such as "a mesh of link 'hand'": `from_urdf(..., collision="fit")` reads
+        meshes.
+        """
+    @property
+    def collision_pairs(self) -> list[tuple[str, str]]:
+        """Pairs of links that are tested against each other, each (link, link). Links that are fixed to each other never are. Without
+        an SRDF and without `with_collision_pairs` neither are neighbours, links that touch with all joints in the middle of their
+        ranges or in nearly all of 1,000 random configurations, and links that come no nearer than 20 mm in 10,000. Found at the
+        first call, always alike.
+        """
+    @property
+    def stances(self) -> dict[str, _Array]:
+        """Named configurations (n,) of an SRDF, such as "ready"."""
+    @property
     def lower(self) -> _Array:
         """Lower position limits (n,) (rad, m); -inf for none."""
     @property
@@ -188,6 +275,13 @@ class Robot:
     ) -> Robot:
         """Returns a copy with other limits, each a number or (n,) (rad, m; rad/s, m/s); None keeps the present ones."""
     @property
+    def rated_limits(self) -> Limits:
+        """The limits that the maker rates the arm for: `limits`, with acceleration and jerk limits where it publishes them
+        (`panda` and `fr3`, from the maker's "Robot and interface specifications"). Give them as `limits=` where they are
+        wanted; nothing uses them on its own.
+        """
+
+    @property
     def capsules(self) -> list[tuple[str, _Array, _Array, float]]:
         """Collision capsules of the links, each (link, a, b, radius). A capsule is all points within the radius (m) of the
         segment from a (3,) to b (3,) in the frame of the link. Empty unless given, or fitted to the collision shapes of a
@@ -202,6 +296,42 @@ class Robot:
 
         Raises:
             UnknownNameError: no link of that name; the message lists them.
+        """
+    def with_held(self, hold: Mapping[str, float]) -> Robot:
+        """Returns a copy with joints beside the chain held elsewhere, such as `with_held({"finger_joint": 0.04})` (rad, m).
+
+        Raises:
+            UnknownNameError: no held joint of that name; the message lists them.
+            LimitError: a value outside the limits of the joint.
+        """
+    def with_attached(
+        self, link: str, shape: Obstacle, *, touch: Sequence[str] | None = None, name: str | None = None
+    ) -> Robot:
+        """Returns a copy that carries `shape`, in the frame of `link`, as a body of its own, such as a grasped part.
+
+        Args:
+            link: the link that carries it.
+            shape: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`; the body is the capsule that
+                encloses it.
+            touch: links that it may touch, besides those that move with `link`.
+            name: its name in messages and in `all_link_names`; None: "attached", "attached_2" and so on.
+
+        Raises:
+            UnknownNameError: no link of that name; the message lists them.
+        """
+    def with_collision_pairs(self, pairs: Sequence[tuple[str, str]]) -> Robot:
+        """Returns a copy with these pairs of links tested against each other, and no others: each (link, link). To leave some out:
+        `robot.with_collision_pairs([pair for pair in robot.collision_pairs if "camera" not in pair])`.
+
+        Raises:
+            UnknownNameError: no link of that name; the message lists them.
+        """
+    def with_srdf(self, path_or_xml: str | os.PathLike[str]) -> Robot:
+        """Returns a copy with what an SRDF says: `path_or_xml` is a file, or text that contains "<". Pairs of links that it disables
+        are not tested against each other, and its states that give all joints of the robot become `stances`.
+
+        Raises:
+            UrdfError: no SRDF, or that of another robot.
         """
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot:
         """Returns a copy with random manufacturing errors: each constant offset between two joints changes by up to `length`
@@ -221,15 +351,26 @@ class Robot:
         """For `beetle_ik.interop`: joints are (name, kind, lower, upper, velocity), elements ("fixed", pose (4, 4)), ("moving",
         joint, turns, axis (3,), scale, offset) or ("link", name).
         """
-    def fk(self, q: ArrayLike) -> _Array:
-        """Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics."""
+    def fk(self, q: ArrayLike, *, link: str | None = None) -> _Array:
+        """Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics. With `link`, that of any link
+        of the robot; `all_link_names` lists them.
+
+        Raises:
+            UnknownNameError: no link of that name; the message lists them.
+        """
     def clip(self, q: ArrayLike) -> _Array:
         """Clips q to the position limits: (n,) for q (n,), (m, n) for q (m, n)."""
     def link_poses(self, q: ArrayLike) -> _Array:
-        """Returns the poses of all links at q (n,), in the order of `link_names`: (links, 4, 4)."""
-    def jacobian(self, q: ArrayLike) -> _Array:
+        """Returns the poses of the links of the chain at q (n,), in the order of `link_names`: (links, 4, 4)."""
+    def all_link_poses(self, q: ArrayLike) -> _Array:
+        """Returns the poses of all links at q (n,), in the order of `all_link_names`: (links, 4, 4)."""
+    def jacobian(self, q: ArrayLike, *, link: str | None = None) -> _Array:
         """Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m),
-        then angular rows, along the axes of the base.
+        then angular rows, along the axes of the base. With `link`, that of the origin of any link of the robot;
+        `all_link_names` lists them.
+
+        Raises:
+            UnknownNameError: no link of that name; the message lists them.
         """
     def random_configurations(self, m: int, seed: int = 0) -> _Array:
         """Draws m configurations uniformly within the limits, (m, n). Joints without limits: one turn, or 2 m, around zero."""
@@ -1822,6 +1963,7 @@ def track(
     rotation_tolerance: float = 1e-6,
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
+    ease: bool = False,
     progress: _Progress = None,
 ) -> TrackResult:
     """Follows a path with the tip of the robot, tick by tick, inside the limits.
@@ -1847,6 +1989,8 @@ def track(
         seed: seed of the random draws; the same seed gives the same bits.
         limit_at: which velocity limit holds in a tick: the smallest over its "interval", or, as in the paper, the one at its
             "start".
+        ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
+            that meets the moving path, after which the arm is on it. The tip is off the path until then.
         progress: True shows a progress bar; a callable is called with (done, total).
 
     Returns:
@@ -1934,7 +2078,10 @@ class TrackResult:
         """The robot."""
     @property
     def trajectory(self) -> Trajectory:
-        """The joint trajectory, linear between the ticks: its velocities are exactly `qd`."""
+        """The joint trajectory. Without acceleration and jerk limits it is linear between the ticks: its velocities are exactly
+        `qd`. With them it is a cubic spline that keeps them at every instant, and passes each configuration at a sixth of
+        its acceleration times dt^2 (rad, m).
+        """
     def plot(self) -> Figure:
         """Draws the path of the tip, the errors, joint positions, velocities with their limits, and evaluations; returns a
         matplotlib figure.
@@ -2046,11 +2193,13 @@ class Step:
 
 @disjoint_base
 class Obstacle:
-    """The base class of obstacles: a convex body, fixed in the frame of the robot's base."""
+    """The base class of obstacles: a shape, fixed in the frame of the robot's base."""
 
     @property
     def triangles(self) -> _Array:
-        """Triangles of the surface (t, 3, 3) (m), for drawing. The corners of triangles lie on the surface."""
+        """Triangles of the surface (t, 3, 3) (m), for drawing. Their corners lie on the surface; a half-space is a square of 4 m,
+        a point cloud octahedra about at most 2,000 of its points.
+        """
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -2096,6 +2245,38 @@ class Capsule(Obstacle):
         """Radius (m)."""
 
 @final
+class Cylinder(Obstacle):
+    """A cylinder with flat ends: centre (3,), axis (3,) of any length, radius and length (m)."""
+
+    def __new__(cls, center: ArrayLike, axis: ArrayLike, radius: float, length: float) -> Cylinder: ...
+    @property
+    def center(self) -> _Array:
+        """Centre (3,) (m)."""
+    @property
+    def axis(self) -> _Array:
+        """Axis (3,), of unit length."""
+    @property
+    def radius(self) -> float:
+        """Radius (m)."""
+    @property
+    def length(self) -> float:
+        """Length along the axis (m)."""
+
+@final
+class HalfSpace(Obstacle):
+    """All points x with normal . x <= offset, for a normal (3,) of unit length: `HalfSpace([0, 0, 1], 0.0)` is a floor. A
+    normal of another length is scaled; `offset` (m) is not.
+    """
+
+    def __new__(cls, normal: ArrayLike, offset: float) -> HalfSpace: ...
+    @property
+    def normal(self) -> _Array:
+        """Outward normal (3,), of unit length."""
+    @property
+    def offset(self) -> float:
+        """Distance of the surface from the origin, along the normal (m)."""
+
+@final
 class Ellipsoid(Obstacle):
     """An ellipsoid: centre (3,), lengths of the semi-axes (3,) (m), and their rotation (3, 3)."""
 
@@ -2136,9 +2317,97 @@ class ConvexMesh(Obstacle):
     def points(self) -> _Array:
         """The points as given (k, 3) (m)."""
 
+@final
+class Mesh(Obstacle):
+    """A mesh of triangles: vertices (k, 3) (m) and faces (t, 3), indices of vertices. It need not be convex. If it is closed,
+    its inside counts too; else it is a surface without thickness.
+    """
+
+    def __new__(cls, vertices: ArrayLike, faces: ArrayLike) -> Mesh: ...
+    @property
+    def vertices(self) -> _Array:
+        """The vertices (k, 3) (m)."""
+    @property
+    def faces(self) -> NDArray[np.uint32]:
+        """The faces (t, 3): indices of vertices."""
+    @property
+    def closed(self) -> bool:
+        """Whether the mesh encloses a volume: every edge belongs to two triangles that run along it in opposite directions."""
+
+@final
+class PointCloud(Obstacle):
+    """Balls of one `radius` (m) about points (k, 3) (m), such as from a depth camera."""
+
+    def __new__(cls, points: ArrayLike, radius: float) -> PointCloud: ...
+    @property
+    def points(self) -> _Array:
+        """The points (k, 3) (m)."""
+    @property
+    def radius(self) -> float:
+        """Radius of the ball about each point (m)."""
+
+@final
+class Grid(Obstacle):
+    """The occupied voxels of a grid: cubes with edges of `voxel` (m), the first with its lowest corner at `origin` (3,) (m).
+    `occupied` is a boolean array (nx, ny, nz).
+    """
+
+    def __new__(cls, origin: ArrayLike, voxel: float, occupied: ArrayLike) -> Grid: ...
+    @property
+    def origin(self) -> _Array:
+        """Lowest corner of the first voxel (3,) (m)."""
+    @property
+    def voxel(self) -> float:
+        """Edge of a voxel (m)."""
+    @property
+    def occupied(self) -> NDArray[np.bool_]:
+        """Whether each voxel is occupied (nx, ny, nz)."""
+
+@final
+class Nearest:
+    """The nearest two bodies at a configuration, from `obstacles.nearest`."""
+
+    @property
+    def body(self) -> str:
+        """The link of the robot."""
+    @property
+    def other(self) -> str:
+        """What it is near to: "obstacle 0 (Box)" or "link 'panda_link0'"."""
+    @property
+    def distance(self) -> float:
+        """Distance between their surfaces (m); negative by how deep they reach into each other."""
+    @property
+    def point(self) -> _Array:
+        """The nearest point of the link (3,) (m), in the frame of the robot's base. That of the other body is
+        `point - distance * normal`.
+        """
+    @property
+    def normal(self) -> _Array:
+        """Unit vector (3,) from the other body to the link, along which the distance grows fastest."""
+    @property
+    def gradient(self) -> _Array:
+        """Derivative of the distance by each joint (n,) (m/rad, m/m)."""
+
+def nearest(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Nearest | None:
+    """Returns the two bodies that are nearest to each other: a link and an obstacle, or two links; the deepest overlap if
+    bodies overlap. None if nothing can touch. The pairs and the meaning of the distance are those of `clearance`.
+
+    Args:
+        robot: an arm with capsules.
+        q: joint positions (n,) (rad, m).
+        obstacles: obstacles in the frame of the robot's base.
+
+    Raises:
+        InvalidInputError: a robot without capsules, or an obstacle that is not of `bik.obstacles`.
+    """
+
 def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any:
     """Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
     for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
+
+    Never more than the true distance, and at most 1e-9 m less. Where a capsule reaches into an obstacle, the depth is that of
+    the deepest point of its axis, plus its radius: to the surface of a closed mesh (to 1 % or 0.1 mm), in the nearest block of
+    voxels of a grid, in the nearest ball of a point cloud. An open mesh has no inside.
 
     Args:
         robot: an arm with capsules.
@@ -2161,6 +2430,7 @@ def plan_point_to_point(
     *,
     start_q: ArrayLike | None = None,
     end_q: ArrayLike | None = None,
+    start_qd: ArrayLike | None = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
@@ -2170,13 +2440,15 @@ def plan_point_to_point(
     seed: int = 0,
     progress: _Progress = None,
 ) -> Plan:
-    """Plans a motion between two ends, from rest to rest.
+    """Plans a motion between two ends, to rest at the end.
 
     Args:
         robot: the arm.
         start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration.
         start_q, end_q: joint positions (n,) instead.
-        limits: position, velocity and acceleration limits; None: the robot's.
+        start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
+            rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.
+        limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
             "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
         objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
@@ -2193,7 +2465,45 @@ def plan_point_to_point(
     Raises:
         InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance).
         LimitError: limits that contradict each other or exclude an end.
-        UnsupportedLimit: jerk limits, or limits that vary in time.
+        InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
+        UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
+    """
+
+def state_to_state(
+    q0: ArrayLike,
+    q1: ArrayLike,
+    limits: Limits,
+    *,
+    qd0: ArrayLike | None = None,
+    qdd0: ArrayLike | None = None,
+    qd1: ArrayLike | None = None,
+    qdd1: ArrayLike | None = None,
+    joint_names: list[str] | None = None,
+) -> Trajectory:
+    """Computes the fastest motion of all joints from one state to another, in which they arrive together.
+
+    The limits hold at every instant. With jerk limits the acceleration is continuous; without them it jumps, and qdd0 and
+    qdd1 have no effect. A joint with velocity limits alone moves at constant velocity, and qd0 and qd1 have no effect. A
+    joint that begins outside its velocity or acceleration limits, or about to leave them, first returns inside them as
+    quickly as its limits allow. The joint that needs longest moves as fast as it can; the others spread their motion over
+    the same time (Berscheid and Kroeger 2021 treat the same problem).
+
+    Args:
+        q0, q1: positions at the start and at the end (n,) (rad, m).
+        limits: constant limits; each joint needs one of `velocity`, `acceleration` and `jerk`. Missing fields are unlimited.
+        qd0, qd1: velocities (n,) (rad/s, m/s); None: zero.
+        qdd0, qdd1: accelerations (n,) (rad/s^2, m/s^2); None: zero.
+        joint_names: n names; None: "q1", "q2" and so on.
+
+    Returns:
+        A `Trajectory` of cubic segments.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN, limits that are not positive, or two equal states.
+        LimitError: a position outside its limits.
+        InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
+            limits.
+        UnsupportedLimit: limits that vary in time.
     """
 
 def time_optimal(
@@ -2257,14 +2567,15 @@ def plan_along_path(
         robot: the arm.
         path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
         start_q: joint positions (n,) at the start; None: chosen by the planner.
-        limits: position, velocity and acceleration limits; None: the robot's.
+        limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
             uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
         objective: quantity to minimise, "time" or "joint_travel".
         accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
             decides how many points of the path the motion passes. None: a thousandth of the path's extent, plus
             the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %.
-        solver: solver of the search of "timed"; None: differential evolution. `TPBSO` has a solver of its own.
+        solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
+            solver of its own.
         stop: budgets; None: the method's own.
         seed: seed of the random draws; the same seed gives the same bits.
         progress: True shows a progress bar; a callable is called with (done, total).
@@ -2275,7 +2586,8 @@ def plan_along_path(
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two points, or points out of reach.
         LimitError: limits that contradict each other.
-        UnsupportedLimit: jerk limits, or limits that vary in time.
+        UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
+            (`Plan.retime` adds them).
     """
 
 @final
@@ -2359,6 +2671,21 @@ class Plan:
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:
         """The obstacles, as given."""
+    def retime(self, limits: Limits) -> Plan:
+        """Returns the plan with other limits: the same path, as fast as they allow. Clearance and accuracy remain.
+
+        A plan of `plan_along_path` with method "timed" gets a new optimal timing. Any other motion is scaled in time as a
+        whole and passes the very same configurations.
+
+        Args:
+            limits: position, velocity, acceleration and jerk limits; a field that is not given is the robot's.
+
+        Raises:
+            InfeasibleError: a plan with violations, a path outside the position limits, or jerk limits on a motion whose
+                acceleration jumps.
+            UnsupportedLimit: limits that vary in time.
+        """
+
     def plot(self) -> Figure:
         """Draws the arm along its path, the cost over evaluations, and the joint motions with their limits; returns a matplotlib
         figure.

@@ -1,9 +1,9 @@
 """Writes trajectories to files and reads them.
 
 npz stores the polynomial segments themselves. CSV stores samples at the knots, with the derivatives that determine the
-segments: positions for degree 1, velocities too up to degree 3, accelerations too up to degree 5. Samples at knots do
-not determine segments of degree 6, which `time_optimal` produces: CSV then stores positions and velocities, and reads
-back as cubics.
+segments: positions for degree 1, velocities too up to degree 3, accelerations too up to degree 5 or where they are
+continuous. Samples at knots do not determine segments of degree 6 with jumps of the acceleration, which `time_optimal`
+produces: CSV then stores positions and velocities, and reads back as cubics.
 """
 
 import os
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ._core import InvalidInputError, Trajectory
 from ._csv import read_table, write_table
+from ._derivatives import has_continuous_acceleration
 from ._files import path_of, whole_file
 from ._text import listed
 
@@ -49,7 +50,10 @@ def to_csv(trajectory: Trajectory, file: str | os.PathLike[str], dt: float | Non
         dt: time between samples (s); the end is always included. None: samples at the knots.
     """
     degree = trajectory.coefficients.shape[2] - 1
-    kept = _DERIVATIVES[: max(degree, 1) // 2 + 1 if degree <= _QUINTIC else 2]
+    count = max(degree, 1) // 2 + 1 if degree <= _QUINTIC else 2
+    if degree > 1 and has_continuous_acceleration(trajectory):
+        count = len(_DERIVATIVES)
+    kept = _DERIVATIVES[:count]
     knots = trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd
     time, *samples = knots if dt is None else trajectory.sample(dt)
     columns = ["time", *(f"{derivative}:{joint}" for derivative in kept for joint in trajectory.joint_names)]

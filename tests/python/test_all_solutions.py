@@ -19,7 +19,7 @@ POSE = UR.fk(Q)
         (bik.Robot.named("kr210"), "spherical wrist; at most 8 solutions"),
         (
             bik.Robot.named("panda"),
-            "spherical shoulder; at most 8 solutions for each value of joint 'joint_7'",
+            "spherical shoulder; at most 8 solutions for each value of joint 'panda_joint7'",
         ),
         (bik.Robot.planar([0.5, 0.4, 0.2]), "planar; at most 2 solutions"),
         (bik.Robot.planar([1.0] * 8), "none: 8 joints; closed forms are for 3 to 7"),

@@ -189,12 +189,12 @@ MISTAKES: list[Case] = [
     (
         lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH),
         Limit,
-        "row 3: start: joint 'joint_6' at 9 is outside its limits [-0.0175, 3.7525]",
+        "row 3: start: joint 'panda_joint6' at 9 is outside its limits [-0.0175, 3.7525]",
     ),
     (
         lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH[3], on_invalid="skip"),
         Limit,
-        "start: joint 'joint_6' at 9 is outside its limits [-0.0175, 3.7525]",
+        "start: joint 'panda_joint6' at 9 is outside its limits [-0.0175, 3.7525]",
     ),
     (
         lambda: bik.solve_batch(PANDA, [[0, 0, 0], [0, np.inf, 0]]),

@@ -86,11 +86,11 @@ def test_the_classes_of_errors() -> None:
         ),
         (lambda: solve(start=[0.0] * 6), Invalid, "start of robot 'iiwa14': expected 7 joints, got 6"),
         (lambda: solve(start=np.zeros((1, 7))), Invalid, "start: expected one dimension, got shape (1, 7)"),
-        (lambda: solve(start=with_entry(6, np.nan)), Invalid, "start must be finite, but joint 'joint_7' is NaN"),
+        (lambda: solve(start=with_entry(6, np.nan)), Invalid, "start must be finite, but joint 'joint_a7' is NaN"),
         (
             lambda: solve(start=with_entry(0, 3.0)),
             Limit,
-            f"start: joint 'joint_1' at 3 is outside its limits [-{TURN}, {TURN}]",
+            f"start: joint 'joint_a1' at 3 is outside its limits [-{TURN}, {TURN}]",
         ),
         (lambda: solve(solver="BAS"), Invalid, f"{SOLVERS}, got 'BAS'"),
         (
@@ -104,7 +104,7 @@ def test_the_classes_of_errors() -> None:
         (
             lambda: solve(limits=bik.Limits(lower=1, upper=-1)),
             Limit,
-            "joint 'joint_1': lower limit 1 is above upper limit -1",
+            "joint 'joint_a1': lower limit 1 is above upper limit -1",
         ),
         (
             lambda: solve(limits=bik.Limits(lower=[1, 2])),
@@ -163,7 +163,7 @@ def test_wrong_solver_options_are_named(call: Callable[[], object], error: type[
         (
             lambda: track(START + 9),
             Limit,
-            f"start: joint 'joint_1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}]",
+            f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}]",
         ),
         (lambda: track("home"), Invalid, "start must be an array of numbers, got 'home'"),
         (lambda: track(solver="bas"), Invalid, f"{SOLVERS} or WeightedPseudoInverse, got 'bas'"),
@@ -189,12 +189,12 @@ def test_wrong_solver_options_are_named(call: Callable[[], object], error: type[
         (
             lambda: track(limits=bik.Limits(lower=lambda t: t - 1, upper=1.5)),
             Limit,
-            "joint 'joint_1': lower limit 1.6 is above upper limit 1.5 at t = 2.5 s",
+            "joint 'joint_a1': lower limit 1.6 is above upper limit 1.5 at t = 2.5 s",
         ),
         (
             lambda: track(limits=bik.Limits(velocity=np.nan)),
             Invalid,
-            "velocity limit of joint 'joint_1' must be a number, got NaN",
+            "velocity limit of joint 'joint_a1' must be a number, got NaN",
         ),
     ]
 )
@@ -351,18 +351,27 @@ def test_wrong_poses_and_trajectories_are_named(
     assert_told(call, error, message)
 
 
+def test_rows_in_place_of_a_path_and_numbers_in_place_of_a_name_are_told() -> None:
+    hint = "path must be a Path, got [[0, 0, 0]]; bik.paths.from_samples(time, positions_or_poses) makes one from rows"
+    with pytest.raises(bik.InvalidInputError) as caught:
+        bik.track(IIWA, [[0, 0, 0]], dt=0.1)  # type: ignore[arg-type]
+    assert str(caught.value) == hint
+    with pytest.raises(bik.InvalidInputError) as caught:
+        bik.Robot.named(14)  # type: ignore[arg-type]
+    names = ", ".join(bik.Robot.names())
+    assert str(caught.value) == f"name must be the name of a built-in robot, got 14; known robots: {names}"
+
+
 @pytest.mark.parametrize(
     ("call", "message", "argument"),
     [
         (lambda: bik.solve("iiwa14", [0.3, 0.3, 1.0]), "'str' object is not an instance of 'Robot'", "robot"),
-        (lambda: bik.track(IIWA, [[0, 0, 0]], dt=0.1), "'list' object is not an instance of 'Path'", "path"),
         (lambda: track(limits=2.0), "'float' object is not an instance of 'Limits'", "limits"),
         (lambda: solve(stop=5), "'int' object is not an instance of 'Stop'", "stop"),
         (lambda: track(dt="0.1"), "must be real number, not str", "dt"),
         (lambda: track(dt=None), "must be real number, not NoneType", "dt"),
         (lambda: circle(diameter="wide"), "must be real number, not str", "diameter"),
         (lambda: bik.BAS(explorations=2.5), "'float' object cannot be interpreted as an integer", "explorations"),
-        (lambda: bik.Robot.named(14), "'int' object is not an instance of 'str'", "name"),
     ],
 )
 def test_a_wrong_type_is_told_with_its_argument(call: Callable[[], object], message: str, argument: str) -> None:

@@ -19,12 +19,12 @@ def dh(**fields: object) -> bik.Robot:
 
 @told(
     [
-        (lambda: IIWA.fk(with_entry(2, np.nan)), Invalid, "joint angles must be finite, but joint 'joint_3' is NaN"),
-        (lambda: IIWA.fk(with_entry(6, np.inf)), Invalid, "joint angles must be finite, but joint 'joint_7' is inf"),
+        (lambda: IIWA.fk(with_entry(2, np.nan)), Invalid, "joint angles must be finite, but joint 'joint_a3' is NaN"),
+        (lambda: IIWA.fk(with_entry(6, np.inf)), Invalid, "joint angles must be finite, but joint 'joint_a7' is inf"),
         (
             lambda: IIWA.jacobian([[0.0] * 7, with_entry(3, -np.inf)]),
             Invalid,
-            "joint angles must be finite, but joint 'joint_4' of configuration 1 is -inf",
+            "joint angles must be finite, but joint 'joint_a4' of configuration 1 is -inf",
         ),
         (lambda: IIWA.fk([0.0] * 6), Invalid, "joint angles of robot 'iiwa14': expected 7 joints, got 6"),
         (lambda: IIWA.jacobian([]), Invalid, "joint angles of robot 'iiwa14': expected 7 joints, got 0"),
@@ -123,7 +123,7 @@ def test_wrong_joint_positions_are_named(call: Callable[[], object], error: type
         (
             lambda: IIWA.with_limits(lower=3.0),
             Limit,
-            "joint 'joint_1': lower limit 3 is above upper limit 2.9670597283903604",
+            "joint 'joint_a1': lower limit 3 is above upper limit 2.9670597283903604",
         ),
         (
             lambda: IIWA.with_limits(upper=[1.0] * 6),

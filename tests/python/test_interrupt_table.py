@@ -79,27 +79,36 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "Trajectory.from_samples": lambda: lambda: wave(3_000_000),
         "minimize": lambda: lambda: bik.minimize(np.sum, [-1] * 9, [1] * 9, stop=ENDLESS),
         "obstacles.ConvexMesh": lambda: hull(30_000),
+        "obstacles.Grid": lambda: occupied(300),
+        "obstacles.Mesh": lambda: soup(1_000_000),
+        "obstacles.PointCloud": lambda: cloud(3_000_000),
         "obstacles.clearance": lambda: with_rows(lambda q: bik.obstacles.clearance(CAPSULES, q), 400_000),
         "paths.from_samples": lambda: posed(500_000),
         "plan_along_path": lambda: lambda: bik.plan_along_path(IIWA, CIRCLE, limits=FAST, stop=ENDLESS),
-        "plan_point_to_point": lambda: lambda: bik.plan_point_to_point(
-            CAPSULES, start_q=[1.57, 1.0, 0, 0, 0, 0, 0], end_q=[-1.57, 1.0, 0, 0, 0, 0, 0], limits=FAST,
-            obstacles=walled_in(), stop=ENDLESS,
+        "plan_point_to_point": lambda: (
+            lambda: bik.plan_point_to_point(
+                CAPSULES,
+                start_q=[1.57, 1.0, 0, 0, 0, 0, 0],
+                end_q=[-1.57, 1.0, 0, 0, 0, 0, 0],
+                limits=FAST,
+                obstacles=walled_in(),
+                stop=ENDLESS,
+            )
         ),
-        "planar_posture": lambda: lambda: bik.planar_posture(
-            PLANAR, [0.5, 0.5, 0.0], swarm=bik.CircleSwarm(population=1000, generations=10**6)
+        "planar_posture": lambda: (
+            lambda: bik.planar_posture(
+                PLANAR, [0.5, 0.5, 0.0], swarm=bik.CircleSwarm(population=1000, generations=10**6)
+            )
         ),
         "solve": lambda: lambda: bik.solve(IIWA, INSIDE_SHOULDER, stop=ENDLESS),
         "solve_all": lambda: lambda: bik.solve_all(IIWA, [0.5, 0.0, 0.6], limit=10**9, stop=ENDLESS),
         "solve_batch": lambda: lambda: bik.solve_batch(IIWA, [INSIDE_SHOULDER] * 9, stop=ENDLESS),
         "time_optimal": lambda: waypoints(100_000),
         "track": lambda: lambda: bik.track(IIWA, far, START, dt=0.01, solver=bik.BAS(), position_tolerance=1e-12),
-        "track_model_free": lambda: lambda: bik.track_model_free(
-            bik.KinematicPlant(IIWA), CIRCLE, START, dt=5e-4, controller=bik.ZNNBAS()
+        "track_model_free": lambda: (
+            lambda: bik.track_model_free(bik.KinematicPlant(IIWA), CIRCLE, START, dt=5e-4, controller=bik.ZNNBAS())
         ),
     }
-
-
 
 
 def with_rows(call: Callable[[np.ndarray], object], count: int) -> Callable[[], object]:
@@ -130,6 +139,22 @@ def hull(count: int) -> Callable[[], object]:
     return lambda: bik.obstacles.ConvexMesh(points)
 
 
+def occupied(count: int) -> Callable[[], object]:
+    voxels = np.random.default_rng(0).random((count, count, count)) < 0.3
+    return lambda: bik.obstacles.Grid([0, 0, 0], 0.01, voxels)
+
+
+def soup(count: int) -> Callable[[], object]:
+    corners = np.random.default_rng(0).random((3 * count, 3))
+    faces = np.arange(3 * count).reshape(count, 3)
+    return lambda: bik.obstacles.Mesh(corners, faces)
+
+
+def cloud(count: int) -> Callable[[], object]:
+    points = np.random.default_rng(0).random((count, 3))
+    return lambda: bik.obstacles.PointCloud(points, 0.01)
+
+
 def posed(count: int) -> Callable[[], object]:
     time, poses = np.arange(count) * 1e-3, np.tile(np.eye(4), (count, 1, 1))
     poses[:, 0, 3] = time
@@ -141,6 +166,7 @@ def waypoints(count: int) -> Callable[[], object]:
     return lambda: bik.time_optimal(q, FAST)
 
 
+PLANNED = "a plan has at most some thousand knots"
 CONSTANT = "its work does not grow with any argument"
 ONE = "one configuration of at most 32 joints"
 COPIES = "as fast as its arrays are copied"
@@ -156,7 +182,7 @@ SHORT: dict[str, str] = {
             "tasks.Pointing", "tasks.Pose", "tasks.Position", "goals.Centring", "goals.LinkManipulability",
             "goals.Manipulability", "goals.Posture", "paths.circle", "paths.from_function", "paths.hypotrochoid",
             "paths.letter_m", "paths.pentagram", "paths.rose", "obstacles.Box", "obstacles.Capsule",
-            "obstacles.Ellipse", "obstacles.Ellipsoid", "obstacles.Sphere",
+            "obstacles.Cylinder", "obstacles.Ellipse", "obstacles.Ellipsoid", "obstacles.HalfSpace", "obstacles.Sphere",
         ],
         CONSTANT,
     ),
@@ -166,12 +192,19 @@ SHORT: dict[str, str] = {
             "Robot.planar", "Robot.named", "Robot.names", "Robot.link_poses", "Robot.with_tool", "Robot.with_base",
             "Robot.with_limits", "Robot.with_capsules", "Robot.with_errors", "Robot.manipulability_gradient",
             "Robot.link_manipulability", "Robot.velocity_ellipsoid", "Tracker", "Tracker.reset", "pose",
+            "state_to_state", "obstacles.nearest", "Robot.all_link_poses", "Robot.with_held", "Robot.with_attached",
+            "Robot.with_collision_pairs", "Robot.with_srdf",
         ],
         ONE,
     ),
-    **dict.fromkeys(["Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"], COPIES),
+    "Plan.retime": PLANNED,
+    **dict.fromkeys(
+        ["Trajectory", "Trajectory.then", "Trajectory.to_npz", "Trajectory.from_npz", "paths.polyline"],
+        COPIES,
+    ),
     **dict.fromkeys(
         [
+            "Robot.from_mjcf", "Robot.from_description",
             "ModelFreeResult.plot", "Plan.plot", "TrackResult.plot", "Trajectory.plot", "Trajectory.to_csv",
             "Trajectory.from_csv", "plot.animation", "plot.model_free", "plot.plan", "plot.robot", "plot.saturation",
             "plot.track", "plot.trajectory",

@@ -160,7 +160,7 @@ MISTAKES: list[tuple[Callable[[], Any], str]] = [
     ),
     (
         lambda: between(limits=bik.Limits(velocity=3, jerk=4)),
-        'method="tpbso" cannot honour jerk limits: retime the plan with a jerk limit afterwards',
+        'method="tpbso" cannot honour jerk limits: leave them out, and add them with plan.retime(limits)',
     ),
     (
         lambda: between(limits=bik.Limits(velocity=bik.Sinusoid(mean=2, amplitude=1, angular_frequency=1))),

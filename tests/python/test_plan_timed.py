@@ -104,7 +104,7 @@ def test_an_arm_without_redundancy_is_timed() -> None:
 def test_mistakes_are_named() -> None:
     robot = bik.Robot.named("iiwa14")
     message = (
-        "method=\"timed\" cannot honour infinite acceleration limits: joint 'joint_1' could start at any speed; give "
+        "method=\"timed\" cannot honour infinite acceleration limits: joint 'joint_a1' could start at any speed; give "
         "acceleration limits"
     )
     with pytest.raises(bik.UnsupportedLimit, match=f"^{re.escape(message)}$"):

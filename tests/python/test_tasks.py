@@ -267,7 +267,7 @@ def solve(**options: object) -> bik.Solution:
         (
             lambda: solve(goals=goals.Posture(with_entry(2, np.inf))),
             Invalid,
-            "posture must be finite, but joint 'joint_3' is inf",
+            "posture must be finite, but joint 'joint_a3' is inf",
         ),
         (
             lambda: solve(goals="Centring"),
@@ -296,7 +296,7 @@ def solve(**options: object) -> bik.Solution:
         (
             lambda: bik.solve_all(IIWA, POSE, start=with_entry(1, 2.5)),
             Limit,
-            "start: joint 'joint_2' at 2.5 is outside its limits [-2.0943951023931953, 2.0943951023931953]",
+            "start: joint 'joint_a2' at 2.5 is outside its limits [-2.0943951023931953, 2.0943951023931953]",
         ),
         (lambda: IIWA.clip([0.0] * 3), Invalid, "joint angles of robot 'iiwa14': expected 7 joints, got 3"),
     ]

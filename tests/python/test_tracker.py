@@ -75,7 +75,7 @@ def test_wrong_input_is_named() -> None:
     with pytest.raises(bik.InvalidInputError, match="target must be finite, but coordinate y is NaN"):
         tracker.step([0.0, np.nan, 0.0])
     assert tracker.time == 0.0
-    with pytest.raises(bik.LimitError, match="q: joint 'joint_1' at 9 is outside its limits"):
+    with pytest.raises(bik.LimitError, match="q: joint 'joint_a1' at 9 is outside its limits"):
         tracker.reset([9, 0, 0, 0, 0, 0, 0])
     with pytest.raises(
         bik.UnsupportedLimit, match="Tracker cannot honour callable velocity limits: it has no end time"

@@ -81,7 +81,7 @@ fn the_structure_is_told() {
         ("ur10", "axes 2 to 4 parallel; at most 8 solutions"),
         ("kr210", "spherical wrist; at most 8 solutions"),
         ("iiwa14", "spherical shoulder and wrist; at most 8 solutions for each arm angle"),
-        ("panda", "spherical shoulder; at most 8 solutions for each value of joint 'joint_7'"),
+        ("panda", "spherical shoulder; at most 8 solutions for each value of joint 'panda_joint7'"),
     ];
     for (name, structure) in told {
         assert_eq!(robot(name).closed_form(), structure, "{name}");

@@ -61,11 +61,12 @@ fn a_wrong_number_of_joint_positions_is_named() {
 fn joint_positions_that_are_not_finite_are_named() {
     let iiwa = robot("iiwa14");
     let q = |value| [0.0, 0.0, value, 0.0, 0.0, 0.0, 0.0];
-    assert_eq!(message(iiwa.fk(&q(NAN))), "joint angles must be finite, but joint 'joint_3' is NaN");
-    assert_eq!(message(iiwa.jacobian(&q(INFINITE))), "joint angles must be finite, but joint 'joint_3' is inf");
-    assert_eq!(message(iiwa.link_poses(&q(-INFINITE))), "joint angles must be finite, but joint 'joint_3' is -inf");
-    let says = "start must be finite, but joint 'joint_3' is NaN";
+    assert_eq!(message(iiwa.fk(&q(NAN))), "joint angles must be finite, but joint 'joint_a3' is NaN");
+    assert_eq!(message(iiwa.jacobian(&q(INFINITE))), "joint angles must be finite, but joint 'joint_a3' is inf");
+    assert_eq!(message(iiwa.link_poses(&q(-INFINITE))), "joint angles must be finite, but joint 'joint_a3' is -inf");
+    let says = "start must be finite, but joint 'joint_a3' is NaN";
     assert_eq!(solve_says(SolveOptions { start: Some(q(NAN).to_vec()), ..SolveOptions::default() }), says);
+    let says = "start must be finite, but joint 'joint_3' is NaN";
     assert_eq!(track_says(&[0.0, 0.0, NAN, 0.0, 0.0], TrackOptions::default()), says);
 }
 
@@ -74,7 +75,7 @@ fn starts_outside_their_limits_are_named() {
     let mut start = vec![0.0; 7];
     start[1] = 2.5;
     let limit = 120.0_f64.to_radians();
-    let says = format!("start: joint 'joint_2' at 2.5 is outside its limits [{}, {limit}]", -limit);
+    let says = format!("start: joint 'joint_a2' at 2.5 is outside its limits [{}, {limit}]", -limit);
     assert_eq!(solve_says(SolveOptions { start: Some(start), ..SolveOptions::default() }), says);
     let says = format!("start: joint 'joint_1' at -4 is outside its limits [{}, {PI}]", -PI);
     assert_eq!(track_says(&[-4.0, 0.0, 0.0, 0.0, 0.0], TrackOptions::default()), says);
@@ -126,7 +127,7 @@ fn impossible_limits_of_joints_are_named() {
     assert_eq!(message(hinge(joint(0.0, 1.0).with_velocity(NAN))), says);
     let says = "velocity limit of joint 'hinge' is -2 at t = 0 s: a limit cannot be negative";
     assert_eq!(message(hinge(joint(0.0, 1.0).with_velocity(-2.0))), says);
-    let says = "joint 'joint_2': lower limit 2 is above upper limit 1";
+    let says = "joint 'shoulder_lift_joint': lower limit 2 is above upper limit 1";
     let crossed = robot("ur5e").with_limits(|i, joint| {
         if i == 1 {
             (joint.lower, joint.upper) = (2.0, 1.0);
@@ -319,7 +320,7 @@ fn crossing_position_limits_are_named() {
     assert_eq!(track_says(&[0.0; 5], within(Field::Lower, Profile::Constant(4.0))), says);
     let limits = Limits::of(&robot("iiwa14")).replace(Field::Upper, vec![Profile::Constant(-3.0)]).unwrap();
     let lower = (-170.0_f64).to_radians();
-    let says = format!("joint 'joint_1': lower limit {lower} is above upper limit -3");
+    let says = format!("joint 'joint_a1': lower limit {lower} is above upper limit -3");
     assert_eq!(solve_says(SolveOptions { limits: Some(limits), ..SolveOptions::default() }), says);
 }
 

@@ -495,7 +495,7 @@ fn wrong_input_is_named() {
         "antenna_length must be positive and finite, got 0"
     );
     let outside = [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let limits = "start: joint 'joint_1' at 3 is outside its limits [-2.9670597283903604, 2.9670597283903604]";
+    let limits = "start: joint 'joint_a1' at 3 is outside its limits [-2.9670597283903604, 2.9670597283903604]";
     assert_eq!(run(Controller::default(), &outside), limits);
     let none = ModelFreeOptions::default();
     let no_joints = track_model_free(&mut exact_plant(), &circle(), &[], &none, &mut Unattended);

@@ -329,7 +329,7 @@ fn a_position_limit_that_outruns_its_joint_is_no_success() {
     let record = task.track_with(&TrackOptions { limits: Some(limits), ..task.options(descent(), 1e-6, 0) });
     assert_eq!(record.status, Status::Lost);
     // At 0.5 s the limit is -1 rad, and since the start at 0.1 rad the joint has come down by 0.5 rad/s.
-    let says = "joint 'joint_7' is 0.9000 (rad or m) beyond its limits at t = 0.6 s: a limit closes in faster than the \
+    let says = "joint 'joint_a7' is 0.9000 (rad or m) beyond its limits at t = 0.6 s: a limit closes in faster than the \
                 joint may move; slow it down, raise the velocity or acceleration limit, or start farther inside";
     assert_eq!(record.message(), says);
 }
@@ -343,6 +343,6 @@ fn position_limits_that_move_together_are_no_contradiction() {
     assert_eq!(limits.validate(DT, 150), Ok(()));
     let crossing = limits.replace(Field::Upper, vec![Profile::Constant(-1.5)]).unwrap();
     let error = crossing.validate(DT, 150).unwrap_err().to_string();
-    assert!(error.starts_with("joint 'joint_1': lower limit -1.4"), "{error}");
+    assert!(error.starts_with("joint 'joint_a1': lower limit -1.4"), "{error}");
     assert!(error.contains(" is above upper limit -1.5 at t = "), "{error}");
 }

@@ -47,11 +47,11 @@
 //! | layer | modules |
 //! |---|---|
 //! | 0 | [`error`], [`interrupt`], [`rng`], [`math`], [`stored`], `wording` |
-//! | 1 | [`kinematics`], [`path`], [`trajectory`], [`objective`] |
+//! | 1 | [`kinematics`], [`shape`], [`path`], [`trajectory`], [`objective`] |
 //! | 2 | [`starts`], `closed_form` |
 //! | 3 | [`robot`] |
 //! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
-//! | 5 | [`task`], [`solver`] |
+//! | 5 | [`motion`], [`task`], [`solver`] |
 //! | 6 | [`problem`] |
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
 //! | 8 | [`tracking`], [`planning`], [`posture`], [`batch`] |
@@ -67,6 +67,7 @@ pub mod load;
 pub mod manipulability;
 pub mod math;
 pub mod minimize;
+pub mod motion;
 pub mod objective;
 pub mod obstacle;
 pub mod path;
@@ -75,6 +76,7 @@ pub mod posture;
 pub mod problem;
 pub mod rng;
 pub mod robot;
+pub mod shape;
 pub mod solver;
 pub mod starts;
 pub mod stored;

@@ -10,6 +10,7 @@ mod indexing;
 mod limits;
 mod minimize;
 mod monitor;
+mod motion;
 mod obstacle;
 mod options;
 mod outcome;
@@ -56,6 +57,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(minimize::minimize_function, module)?)?;
     path::register(module)?;
     obstacle::register(module)?;
+    module.add_function(wrap_pyfunction!(motion::state_to_state, module)?)?;
     planning::register(module)?;
     tracking::register(module)?;
     module.add_class::<trajectory::PyTrajectory>()?;

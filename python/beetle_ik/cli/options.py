@@ -42,6 +42,10 @@ Acceleration = Annotated[
     str | None,
     typer.Option("--acceleration-limit", help="rad/s^2: one number, or one per joint: a1,a2,...; default: none."),
 ]
+Jerk = Annotated[
+    str | None,
+    typer.Option("--jerk-limit", help="rad/s^3: one number, or one per joint: j1,j2,...; default: none."),
+]
 Seed = Annotated[int, typer.Option(help="Seed of all random draws: the same seed gives the same bits.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for machines instead of tables.")]
 

@@ -14,6 +14,7 @@ from .options import (
     Acceleration,
     AsJson,
     BaseLink,
+    Jerk,
     RobotName,
     Seed,
     SolverName,
@@ -88,6 +89,11 @@ def track(
         ),
     ] = None,
     acceleration: Acceleration = None,
+    jerk: Jerk = None,
+    ease: Annotated[
+        bool,
+        typer.Option("--ease", help="Begin with an approach from rest that meets the moving path within the limits."),
+    ] = False,
     solver: Annotated[
         SolverName | None,
         typer.Option(help="Default: the model-based rule. bas, chain and greedy are beetle antennae search."),
@@ -120,7 +126,7 @@ def track(
     given: dict[str, Any] = {name: numbers(f"--{name}", text, 3) for name, text in triples.items() if text is not None}
     given |= {name: value for name, value in others.items() if value is not None}
     path = _reference(arm, curve, points, duration, given)
-    limits, limits_from = _limits(velocity, velocity_sinusoid, acceleration)
+    limits, limits_from = _limits(velocity, velocity_sinusoid, acceleration, jerk)
     with results_folder(out) as folder:
         result = track_path(
             arm,
@@ -131,6 +137,7 @@ def track(
             limits=limits,
             position_tolerance=position_tolerance,
             seed=seed,
+            ease=ease,
             progress=not as_json,
         )
         summary = summarize(result, solver or "model-based", dt, seed, limits_from)
@@ -144,7 +151,7 @@ def track(
 
 
 def _limits(
-    velocity: str | None, velocity_sinusoid: str | None, acceleration: str | None
+    velocity: str | None, velocity_sinusoid: str | None, acceleration: str | None, jerk: str | None
 ) -> tuple[Limits | None, str | None]:
     """Returns the given limits, and the name of the option that gave the velocity limit."""
     if velocity is not None and velocity_sinusoid is not None:
@@ -159,6 +166,8 @@ def _limits(
         given["velocity"] = limit(limits_from, velocity)
     if acceleration is not None:
         given["acceleration"] = limit("--acceleration-limit", acceleration)
+    if jerk is not None:
+        given["jerk"] = limit("--jerk-limit", jerk)
     return Limits(**given) if given else None, limits_from
 
 

@@ -2,17 +2,26 @@
 
 import json
 import os
+from collections.abc import Sequence
 from typing import Any
 
 from .._arguments import require_text
 from .._core import InvalidInputError, Trajectory
+from .._derivatives import has_continuous_acceleration
 from .._files import whole_file
 from .samples import samples
 
 _NANO = 1_000_000_000
+_CUBIC = 3
 
 
-def to_ros(trajectory: Trajectory, *, dt: float | None = None, frame_id: str = "") -> dict[str, Any]:
+def to_ros(
+    trajectory: Trajectory,
+    *,
+    dt: float | None = None,
+    frame_id: str = "",
+    joint_names: Sequence[str] | None = None,
+) -> dict[str, Any]:
     """Converts a trajectory to the fields of a ROS 2 `trajectory_msgs/JointTrajectory`, as a dict of plain values.
 
     Args:
@@ -20,17 +29,23 @@ def to_ros(trajectory: Trajectory, *, dt: float | None = None, frame_id: str = "
         dt: time between points (s). Needed if the controller interpolates with another degree, or if derivatives of
             the trajectory jump. None: points at the knots.
         frame_id: frame_id of the header.
+        joint_names: the controller's names of the joints, in the order of q; None: those of the trajectory.
 
-    Points contain velocities if the degree is 2 or more, and accelerations if it is 4 or more. A controller that
-    interpolates with the lowest degree then reproduces the trajectory.
+    Points contain velocities if the degree is 2 or more, and accelerations if it is 4 or more or the acceleration is
+    continuous. A controller that interpolates with the lowest degree then reproduces the trajectory.
 
     Raises:
-        InvalidInputError: `dt` is not positive, or two points fall into the same nanosecond.
+        InvalidInputError: `dt` is not positive, two points fall into the same nanosecond, or `joint_names` has another
+            number of joints.
     """
     time, *values_of = samples(trajectory, dt)
     require_text("frame_id", frame_id)
+    names = list(trajectory.joint_names if joint_names is None else joint_names)
+    if len(names) != len(trajectory.joint_names):
+        raise InvalidInputError(f"joint_names: expected {len(trajectory.joint_names)}, one per joint, got {len(names)}")
     degree = trajectory.coefficients.shape[2] - 1
-    fields = ("positions", "velocities", "accelerations")[: 1 + (degree > 1) + (degree > 3)]
+    with_accelerations = degree > _CUBIC or (degree > 1 and has_continuous_acceleration(trajectory))
+    fields = ("positions", "velocities", "accelerations")[: 1 + (degree > 1) + with_accelerations]
     nanoseconds = [round(float(t) * _NANO) for t in time]
     for i in range(1, len(nanoseconds)):
         if nanoseconds[i] <= nanoseconds[i - 1]:
@@ -41,14 +56,19 @@ def to_ros(trajectory: Trajectory, *, dt: float | None = None, frame_id: str = "
         point |= {name: values[i].tolist() for name, values in zip(fields, values_of, strict=False)}
         points.append(point | {"time_from_start": _duration(nanosecond)})
     header = {"stamp": _duration(0), "frame_id": frame_id}
-    return {"header": header, "joint_names": list(trajectory.joint_names), "points": points}
+    return {"header": header, "joint_names": names, "points": points}
 
 
 def to_ros_yaml(
-    trajectory: Trajectory, file: str | os.PathLike[str], *, dt: float | None = None, frame_id: str = ""
+    trajectory: Trajectory,
+    file: str | os.PathLike[str],
+    *,
+    dt: float | None = None,
+    frame_id: str = "",
+    joint_names: Sequence[str] | None = None,
 ) -> None:
     """Writes `to_ros(trajectory, ...)` as YAML for `ros2 topic pub` and parameter files; complete or not at all."""
-    message = to_ros(trajectory, dt=dt, frame_id=frame_id)
+    message = to_ros(trajectory, dt=dt, frame_id=frame_id, joint_names=joint_names)
     header, points = message["header"], message["points"]
     lines = ["header:", f"  stamp: {_flow(header['stamp'])}", f"  frame_id: {_flow(header['frame_id'])}"]
     lines += [f"joint_names: {_flow(message['joint_names'])}", "points:"]

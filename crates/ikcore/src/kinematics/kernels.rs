@@ -7,6 +7,7 @@ use super::tip;
 use super::torques::{self, Wrench};
 use crate::math::Frame;
 use crate::math::arithmetic::by_instructions;
+use crate::math::f64x4::F64x4;
 
 /// The kernels compiled for one padded number of stages and one instruction set.
 #[derive(Debug, Clone, Copy)]
@@ -25,6 +26,8 @@ pub(crate) struct Kernels {
     pub torques: Torques,
     /// Writes the frames of all stages.
     pub stage_frames: fn(&Chain, &[f64], &mut StageFrames),
+    /// The frames of all stages for four configurations, bit-identical.
+    pub stage_frames_four: fn(&Chain, &[F64x4], &mut StageFrames<F64x4>),
 }
 
 type Torques = fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Frame;
@@ -87,6 +90,7 @@ macro_rules! table {
             jacobian: |chain, q, columns| jacobian::jacobian::<$a, $n, $l>(chain, q, columns),
             torques: |chain, q, wrench, torques| torques::torques::<$a, $n, $l>(chain, q, wrench, torques),
             stage_frames: |chain, q, reached| link_frames::stage_frames::<$a, $n, $l>(chain, q, reached),
+            stage_frames_four: |chain, qs, reached| link_frames::four_stage_frames::<$a, $n>(chain, qs, reached),
         }
     };
 }
@@ -120,6 +124,25 @@ mod tests {
 
     fn baseline(stages: usize) -> Kernels {
         for_each_size!(stages, table, Baseline)
+    }
+
+    #[test]
+    fn four_side_by_side_are_what_each_is_alone_to_the_bit() {
+        for joints in SIZES {
+            let chain = arm(joints);
+            for kernels in [for_stages(joints), baseline(joints)] {
+                let angle = |joint: usize, lane: usize| (1.7 * joint as f64 + 0.9 * lane as f64).sin();
+                let qs: Vec<F64x4> = (0..joints).map(|i| F64x4(std::array::from_fn(|lane| angle(i, lane)))).collect();
+                let mut frames = [Frame::of([&Frame::IDENTITY; 4]); MAX_DOF + 1];
+                (kernels.stage_frames_four)(&chain, &qs, &mut frames);
+                for lane in 0..4 {
+                    let q: Vec<f64> = qs.iter().map(|lanes| lanes.0[lane]).collect();
+                    let mut reached = [Frame::IDENTITY; MAX_DOF + 1];
+                    (kernels.stage_frames)(&chain, &q, &mut reached);
+                    assert!((0..=joints).all(|i| frames[i].lane(lane) == reached[i]), "{joints} joints");
+                }
+            }
+        }
     }
 
     #[test]

@@ -8,7 +8,9 @@
 //! | `chain`, `stages` | constant frames, and the joint that drives each stage |
 //! | `forward_pass`, `wide_frame` | from the base to the tip, one frame per stage |
 //! | `tip`, `jacobian`, `torques`, `link_frames` | the kernels |
+//! | `four_forward_pass` | the pass for four configurations at once |
 //! | `kernels` | table of compiled kernels |
+//! | `link_tree` | all links, with those that branch off the chain |
 //! | `screws` | axis and velocity of every stage |
 //! | `reach`, `fixed_direction` | bounds on the positions of the tip |
 //! | `task_rank` | rank of the Jacobian by task |
@@ -16,9 +18,11 @@
 pub(crate) mod chain;
 mod fixed_direction;
 mod forward_pass;
+mod four_forward_pass;
 mod jacobian;
 pub(crate) mod kernels;
 pub(crate) mod link_frames;
+pub(crate) mod link_tree;
 mod reach;
 mod screws;
 mod stages;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Field, Profile};
 use crate::error::{Error, Result};
 use crate::objective::Bounds;
-use crate::robot::Robot;
+use crate::robot::{Joint, Robot};
 
 /// The limits of all joints: a function of time for each joint and field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -29,6 +29,20 @@ impl Limits {
             velocity: joints.iter().map(|joint| Profile::Constant(joint.velocity)).collect(),
             acceleration: None,
             jerk: None,
+        }
+    }
+
+    /// The robot's own limits with those of its maker on acceleration and jerk, where they are known.
+    pub fn rated(robot: &Robot) -> Self {
+        let of = |value: fn(&Joint) -> f64| {
+            let values: Vec<f64> = robot.joints().iter().map(value).collect();
+            let known = values.iter().any(|value| value.is_finite());
+            known.then(|| values.into_iter().map(Profile::Constant).collect())
+        };
+        Self {
+            acceleration: of(|joint| joint.rated_acceleration),
+            jerk: of(|joint| joint.rated_jerk),
+            ..Self::of(robot)
         }
     }
 
@@ -80,6 +94,26 @@ impl Limits {
             Field::Acceleration => self.acceleration.as_deref(),
             Field::Jerk => self.jerk.as_deref(),
         }
+    }
+
+    /// The constant limits that are inside these from `from` to `to` (s).
+    ///
+    /// # Errors
+    /// None in practice: the limits were checked.
+    pub(crate) fn narrowest(&self, from: f64, to: f64) -> Result<Self> {
+        let mut narrowest = Self::none(self.joints.clone());
+        let ranges: Vec<[f64; 2]> = (0..self.joints.len()).map(|j| self.position_range(j, from, to)).collect();
+        let constants = |values: Vec<f64>| values.into_iter().map(Profile::Constant).collect();
+        narrowest = narrowest.replace(Field::Lower, constants(ranges.iter().map(|range| range[0]).collect()))?;
+        narrowest = narrowest.replace(Field::Upper, constants(ranges.iter().map(|range| range[1]).collect()))?;
+        for field in [Field::Velocity, Field::Acceleration, Field::Jerk] {
+            let smallest = self.field(field).unwrap_or_default().iter().map(|profile| profile.smallest(from, to).1);
+            let smallest: Vec<f64> = smallest.collect();
+            if !smallest.is_empty() {
+                narrowest = narrowest.replace(field, constants(smallest))?;
+            }
+        }
+        Ok(narrowest)
     }
 
     /// Checks, for `ticks` ticks of `dt` (s) or for t = 0 alone, that no velocity, acceleration or jerk limit is
@@ -143,7 +177,8 @@ impl Limits {
         self.field(field).unwrap_or_default().iter().map(constant).collect()
     }
 
-    pub(super) fn is_finite(&self, field: Field) -> bool {
+    /// Whether any joint has a limit in this field.
+    pub(crate) fn is_finite(&self, field: Field) -> bool {
         self.field(field).unwrap_or_default().iter().any(|profile| *profile != Profile::Constant(f64::INFINITY))
     }
 
@@ -155,6 +190,11 @@ impl Limits {
         self.validate(0.0, 0)?;
         let constants = |field: Field| self.constants(field, "solve", "one configuration has no time; give numbers");
         Bounds::new(&constants(Field::Lower)?, &constants(Field::Upper)?)
+    }
+
+    /// Names of the joints.
+    pub(crate) fn joint_names(&self) -> &[String] {
+        &self.joints
     }
 
     /// Name of a joint.

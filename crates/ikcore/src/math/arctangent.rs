@@ -1,11 +1,11 @@
-//! The angle for a sine and a cosine without branches, so that a loop over several is vectorised.
+//! The angle for a sine and a cosine without branches, for one pair or one per lane.
 //!
 //! Rotations by multiples of an eighth of a turn bring the quotient into [-tan(pi/8), tan(pi/8)], where a minimax
 //! polynomial has a relative error of 2e-18; it was fitted for this file by Remez exchange.
 
 use std::f64::consts::FRAC_PI_4;
 
-use super::comparison::{larger, smaller};
+use super::real::Real;
 
 /// atan x = x + x u P(u), u = x^2.
 const P: [f64; 11] = [
@@ -29,34 +29,43 @@ const FRAC_PI_4_REST: f64 = 3.061616997868383e-17;
 /// Returns the angle (rad, from 0 to pi) of a point at (`cosine`, `sine`), at any nonzero distance; `sine` is not
 /// negative.
 #[inline(always)]
-pub fn angle_of(sine: f64, cosine: f64) -> f64 {
-    let size = if cosine < 0.0 { -cosine } else { cosine };
-    let (less, more) = (smaller(sine, size), larger(size, sine));
+pub fn angle_of<R: Real>(sine: R, cosine: R) -> R {
+    let (zero, one) = (R::splat(0.0), R::splat(1.0));
+    let size = cosine.choose_below(zero, -cosine, cosine);
+    let (less, more) = (sine.smaller(size), size.larger(sine));
     // The angle is a multiple of pi/4, plus or minus the arctangent of a small quotient.
-    let quarter = if more * EIGHTH < less { 1.0 } else { 0.0 };
+    let quarter = (more * R::splat(EIGHTH)).choose_below(less, one, zero);
     let quotient = (less - quarter * more) / (more + quarter * less);
-    let (quarters, sign) = (quarter, 1.0);
-    let (quarters, sign) = if size < sine { (2.0 - quarters, -sign) } else { (quarters, sign) };
-    let (quarters, sign) = if cosine < 0.0 { (4.0 - quarters, -sign) } else { (quarters, sign) };
-    let small = sign * arctangent(quotient) + quarters * FRAC_PI_4_REST;
-    quarters * FRAC_PI_4 + small
+    let (quarters, sign) = (quarter, one);
+    let steep = |then: R, otherwise: R| size.choose_below(sine, then, otherwise);
+    let (quarters, sign) = (steep(R::splat(2.0) - quarters, quarters), steep(-sign, sign));
+    let backward = |then: R, otherwise: R| cosine.choose_below(zero, then, otherwise);
+    let (quarters, sign) = (backward(R::splat(4.0) - quarters, quarters), backward(-sign, sign));
+    let small = sign * arctangent(quotient) + quarters * R::splat(FRAC_PI_4_REST);
+    quarters * R::splat(FRAC_PI_4) + small
 }
 
 /// atan x for |x| <= tan(pi/8).
 #[inline(always)]
-fn arctangent(x: f64) -> f64 {
+fn arctangent<R: Real>(x: R) -> R {
     let u = x * x;
     let (u2, u4) = (u * u, (u * u) * (u * u));
     // Pairs, then pairs of pairs, and so on: shorter dependency chains than in Horner's scheme.
-    let pair = |k: usize| P[k] + P[k + 1] * u;
+    let pair = |k: usize| R::splat(P[k]) + R::splat(P[k + 1]) * u;
     let four = |k: usize| pair(k) + pair(k + 2) * u2;
-    let last = pair(8) + P[10] * u2;
+    let last = pair(8) + R::splat(P[10]) * u2;
     x + x * u * (four(0) + four(4) * u4 + last * (u4 * u4))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::arithmetic::NoFma;
+    use super::super::real::One;
     use super::*;
+
+    fn angle(sine: f64, cosine: f64) -> f64 {
+        angle_of(One::<NoFma>::of(sine), One::of(cosine)).stored()
+    }
 
     #[test]
     fn agrees_with_the_standard_library_to_an_ulp_or_two() {
@@ -64,7 +73,7 @@ mod tests {
             let turn = f64::from(k) / 400_000.0 * std::f64::consts::PI;
             let (sine, cosine) = (turn.sin().max(0.0), turn.cos());
             for scale in [1.0, 3e-7] {
-                let (ours, exact) = (angle_of(scale * sine, scale * cosine), f64::atan2(scale * sine, scale * cosine));
+                let (ours, exact) = (angle(scale * sine, scale * cosine), f64::atan2(scale * sine, scale * cosine));
                 assert!((ours - exact).abs() <= 4.5e-16 * exact, "{turn}: {ours} {exact}");
             }
         }
@@ -72,7 +81,7 @@ mod tests {
 
     #[test]
     fn tiny_sines_and_the_ends_are_exact() {
-        assert_eq!((angle_of(0.0, 1.0), angle_of(1e-300, 1.0), angle_of(1e-9, 1.0)), (0.0, 1e-300, 1e-9));
-        assert_eq!((angle_of(1.0, 0.0), angle_of(0.0, -1.0)), (std::f64::consts::FRAC_PI_2, std::f64::consts::PI));
+        assert_eq!((angle(0.0, 1.0), angle(1e-300, 1.0), angle(1e-9, 1.0)), (0.0, 1e-300, 1e-9));
+        assert_eq!((angle(1.0, 0.0), angle(0.0, -1.0)), (std::f64::consts::FRAC_PI_2, std::f64::consts::PI));
     }
 }

@@ -41,6 +41,30 @@ pub trait Arithmetic: Copy {
     fn sub_x4(a: F64x4, b: F64x4) -> F64x4 {
         F64x4(std::array::from_fn(|k| a.0[k] - b.0[k]))
     }
+
+    /// a / b, lane by lane.
+    #[inline(always)]
+    fn div_x4(a: F64x4, b: F64x4) -> F64x4 {
+        F64x4(std::array::from_fn(|k| a.0[k] / b.0[k]))
+    }
+
+    /// The square root, lane by lane.
+    #[inline(always)]
+    fn sqrt_x4(a: F64x4) -> F64x4 {
+        F64x4(a.0.map(f64::sqrt))
+    }
+
+    /// `then` in lanes with a < b, else `otherwise` (also for NaN).
+    #[inline(always)]
+    fn choose_below_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
+        F64x4(std::array::from_fn(|k| if a.0[k] < b.0[k] { then.0[k] } else { otherwise.0[k] }))
+    }
+
+    /// `then` in lanes with a = b, else `otherwise` (also for NaN).
+    #[inline(always)]
+    fn choose_equal_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
+        F64x4(std::array::from_fn(|k| if a.0[k] == b.0[k] { then.0[k] } else { otherwise.0[k] }))
+    }
 }
 
 /// Product and sum rounded separately: runs on any machine.
@@ -76,7 +100,7 @@ impl Arithmetic for Fma {
 
     #[inline(always)]
     fn mul_add_x4(a: F64x4, b: F64x4, c: F64x4) -> F64x4 {
-        // SAFETY (all four): code over `Fma` runs only where `has_fma` found the instructions.
+        // SAFETY (all eight): code over `Fma` runs only where `has_fma` found the instructions.
         from_register(unsafe { x86::_mm256_fmadd_pd(register(a), register(b), register(c)) })
     }
 
@@ -93,6 +117,32 @@ impl Arithmetic for Fma {
     #[inline(always)]
     fn sub_x4(a: F64x4, b: F64x4) -> F64x4 {
         from_register(unsafe { x86::_mm256_sub_pd(register(a), register(b)) })
+    }
+
+    #[inline(always)]
+    fn div_x4(a: F64x4, b: F64x4) -> F64x4 {
+        from_register(unsafe { x86::_mm256_div_pd(register(a), register(b)) })
+    }
+
+    #[inline(always)]
+    fn sqrt_x4(a: F64x4) -> F64x4 {
+        from_register(unsafe { x86::_mm256_sqrt_pd(register(a)) })
+    }
+
+    #[inline(always)]
+    fn choose_below_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
+        from_register(unsafe {
+            let smaller = x86::_mm256_cmp_pd::<{ x86::_CMP_LT_OQ }>(register(a), register(b));
+            x86::_mm256_blendv_pd(register(otherwise), register(then), smaller)
+        })
+    }
+
+    #[inline(always)]
+    fn choose_equal_x4(a: F64x4, b: F64x4, then: F64x4, otherwise: F64x4) -> F64x4 {
+        from_register(unsafe {
+            let equal = x86::_mm256_cmp_pd::<{ x86::_CMP_EQ_OQ }>(register(a), register(b));
+            x86::_mm256_blendv_pd(register(otherwise), register(then), equal)
+        })
     }
 }
 

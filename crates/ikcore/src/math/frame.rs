@@ -3,15 +3,42 @@
 use nalgebra::Matrix3;
 
 use super::arithmetic::Arithmetic;
+use super::f64x4::F64x4;
 use super::{Pose, pose};
 
-/// A rigid transform: the columns of its rotation (its axes in base coordinates) and its origin (m).
+/// A rigid transform: the columns of its rotation (its axes in base coordinates) and its origin (m). With `F64x4`
+/// entries, four transforms, one per lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
+pub struct Frame<T = f64> {
     /// x, y and z axis.
-    pub axes: [[f64; 3]; 3],
+    pub axes: [[T; 3]; 3],
     /// Position of the origin (m).
-    pub origin: [f64; 3],
+    pub origin: [T; 3],
+}
+
+impl Frame<F64x4> {
+    /// These frames, one per lane.
+    #[inline(always)]
+    pub(crate) fn of(frames: [&Frame; 4]) -> Self {
+        let mut all = Self { axes: [[F64x4::ZERO; 3]; 3], origin: [F64x4::ZERO; 3] };
+        frames.into_iter().enumerate().for_each(|(lane, frame)| all.set_lane(lane, frame));
+        all
+    }
+
+    /// The frame in lane `lane`.
+    pub(crate) fn lane(&self, lane: usize) -> Frame {
+        Frame { axes: self.axes.map(|axis| axis.map(|k| k.0[lane])), origin: self.origin.map(|k| k.0[lane]) }
+    }
+
+    /// Puts `frame` into lane `lane`.
+    pub(crate) fn set_lane(&mut self, lane: usize, frame: &Frame) {
+        for k in 0..3 {
+            self.origin[k].0[lane] = frame.origin[k];
+            for axis in 0..3 {
+                self.axes[axis][k].0[lane] = frame.axes[axis][k];
+            }
+        }
+    }
 }
 
 impl Frame {
@@ -52,6 +79,17 @@ impl Frame {
         let axes: [[f64; 3]; 3] = std::array::from_fn(|row| std::array::from_fn(|column| self.axes[column][row]));
         let origin = self.axes.map(|axis| -(0..3).map(|k| axis[k] * self.origin[k]).sum::<f64>());
         Self { axes, origin }
+    }
+
+    /// The homogeneous matrix, row-major.
+    pub(crate) fn rows(&self) -> [f64; 16] {
+        let ([x, y, z], p) = (self.axes, self.origin);
+        [
+            x[0], y[0], z[0], p[0], //
+            x[1], y[1], z[1], p[1], //
+            x[2], y[2], z[2], p[2], //
+            0.0, 0.0, 0.0, 1.0,
+        ]
     }
 
     /// This frame rotated about its own z axis, given sine and cosine of the angle.

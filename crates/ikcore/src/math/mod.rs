@@ -1,14 +1,16 @@
 //! Mathematics without robots: plain arrays in hot code, nalgebra elsewhere.
 //!
-//! Kernels are compiled with and without FMA (`arithmetic`).
+//! Kernels are compiled with and without FMA (`arithmetic`). Kernels for one number or four, one per lane of a register
+//! (`F64x4`), are written over `Real`.
 //!
 //! | files | what |
 //! |---|---|
 //! | `pose`, `frame` | rigid transforms: `pose` for checked input, `frame` for kernels |
 //! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
-//! | `arithmetic`, `f64x4` | instructions, and four numbers in a register |
+//! | `arithmetic`, `f64x4`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
 //! | `gram`, `ldl`, `box_step`, `secant`, `singular_values` | small linear systems, and the bounded step |
+//! | `one_joint` | time-optimal motions of one joint between two states |
 //! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `sampling_range` | functions of one variable |
 
 pub(crate) mod arctangent;
@@ -23,8 +25,10 @@ pub(crate) mod hermite;
 mod knots;
 pub(crate) mod ldl;
 pub(crate) mod logarithm;
+pub mod one_joint;
 pub mod polynomial;
 pub mod pose;
+pub(crate) mod real;
 pub(crate) mod sampling_range;
 pub(crate) mod secant;
 pub(crate) mod sincos;

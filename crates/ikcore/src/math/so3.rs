@@ -2,6 +2,8 @@
 
 use super::Frame;
 use super::arctangent::angle_of;
+use super::arithmetic::NoFma;
+use super::real::{One, Real};
 use super::vec3::Vec3;
 
 /// Below this angle (rad), series replace quotients that would lose digits.
@@ -11,11 +13,11 @@ const SMALL: f64 = 1e-4;
 const NEAR_HALF_TURN: f64 = -0.9;
 
 /// The columns of rotations: their axes in base coordinates.
-pub type Axes = [Vec3; 3];
+pub type Axes<R> = [Vec3<R>; 3];
 
 /// The axes of `frame`.
 #[inline(always)]
-pub fn axes_of(frame: &Frame) -> Axes {
+pub fn axes_of(frame: &Frame) -> Axes<One<NoFma>> {
     let [x, y, z] = &frame.axes;
     [Vec3::of(x), Vec3::of(y), Vec3::of(z)]
 }
@@ -30,52 +32,56 @@ pub fn rotation_between(target: &Frame, frame: &Frame) -> [f64; 3] {
 
 /// [`rotation_between`], and its derivative with respect to a small rotation applied on the left.
 #[inline(always)]
-pub fn rotation_and_jacobian(target: &Axes, frame: &Axes) -> (Vec3, InverseLeftJacobian) {
+pub fn rotation_and_jacobian<R: Real>(target: &Axes<R>, frame: &Axes<R>) -> (Vec3<R>, InverseLeftJacobian<R>) {
     let turn = Turn::between(target, frame);
     let phi = turn.vector(target, frame);
     (phi, InverseLeftJacobian::at(phi, turn.half_cotangent()))
 }
 
 /// R R_d', given by sine and cosine of its angle theta.
-struct Turn {
+struct Turn<R> {
     /// sin(theta), times the axis.
-    sine_axis: Vec3,
-    sine: f64,
-    cosine: f64,
+    sine_axis: Vec3<R>,
+    sine: R,
+    cosine: R,
 }
 
-impl Turn {
+impl<R: Real> Turn<R> {
     #[inline(always)]
-    fn between(target: &Axes, frame: &Axes) -> Self {
+    fn between(target: &Axes<R>, frame: &Axes<R>) -> Self {
         // With R R_d' = sum of r_k d_k' over the columns: its trace is sum r_k . d_k, and the vector of its
         // antisymmetric part, sin(theta) axis, is half the sum of d_k x r_k.
-        let half = 0.5;
+        let half = R::splat(0.5);
         let ([dx, dy, dz], [rx, ry, rz]) = (target, frame);
         let trace = dx.dot(*rx) + dy.dot(*ry) + dz.dot(*rz);
         let sine_axis = dx.cross(*rx) * half + dy.cross(*ry) * half + dz.cross(*rz) * half;
-        Self { sine_axis, sine: sine_axis.dot(sine_axis).sqrt(), cosine: half * (trace - 1.0) }
+        Self { sine_axis, sine: sine_axis.dot(sine_axis).sqrt(), cosine: half * (trace - R::splat(1.0)) }
     }
 
     #[inline(always)]
-    fn vector(&self, target: &Axes, frame: &Axes) -> Vec3 {
+    fn vector(&self, target: &Axes<R>, frame: &Axes<R>) -> Vec3<R> {
         let Self { sine_axis, sine, cosine } = *self;
         let angle = angle_of(sine, cosine);
-        if cosine < NEAR_HALF_TURN {
-            return Vec3::of(&near_half_turn(
-                &target.map(Vec3::stored),
-                &frame.map(Vec3::stored),
-                angle,
-                &sine_axis.stored(),
-            ));
+        let series = R::splat(1.0) + sine * sine / R::splat(6.0);
+        let mut vector = sine_axis * sine.choose_below(R::splat(SMALL), series, angle / sine);
+        for lane in 0..R::LANES {
+            if cosine.lane(lane) < NEAR_HALF_TURN {
+                let ([dx, dy, dz], [rx, ry, rz]) = (target, frame);
+                let target = [dx.lane(lane), dy.lane(lane), dz.lane(lane)];
+                let frame = [rx.lane(lane), ry.lane(lane), rz.lane(lane)];
+                let exact = near_half_turn(&target, &frame, angle.lane(lane), &sine_axis.lane(lane));
+                vector = vector.with_lane(lane, &exact);
+            }
         }
-        sine_axis * if sine < SMALL { 1.0 + sine * sine / 6.0 } else { angle / sine }
+        vector
     }
 
     /// cot(theta/2), by the quotient without cancellation; infinite for the identity.
     #[inline(always)]
-    fn half_cotangent(&self) -> f64 {
+    fn half_cotangent(&self) -> R {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let Self { sine, cosine, .. } = *self;
-        if 0.0 < cosine { (1.0 + cosine) / sine } else { sine / (1.0 - cosine) }
+        zero.choose_below(cosine, one + cosine, sine) / zero.choose_below(cosine, sine, one - cosine)
     }
 }
 
@@ -100,26 +106,25 @@ fn near_half_turn(target: &[[f64; 3]; 3], frame: &[[f64; 3]; 3], angle: f64, sin
 /// The inverse left Jacobian of SO(3) at a rotation vector: the derivative of the logarithm with respect to a small
 /// rotation applied on the left.
 #[derive(Debug, Clone, Copy)]
-pub struct InverseLeftJacobian {
-    columns: [Vec3; 3],
+pub struct InverseLeftJacobian<R> {
+    columns: [Vec3<R>; 3],
 }
 
-impl InverseLeftJacobian {
+impl<R: Real> InverseLeftJacobian<R> {
     /// I - \[phi\]/2 + quadratic \[phi\]^2 at the rotation vector `phi` (rad), given the cotangent of half its length.
     #[inline(always)]
-    fn at(phi: Vec3, half_cotangent: f64) -> Self {
+    fn at(phi: Vec3<R>, half_cotangent: R) -> Self {
+        let (half, one) = (R::splat(0.5), R::splat(1.0));
         let Vec3 { x, y, z } = phi;
         let squared = phi.dot(phi);
-        let quadratic = if squared < SMALL {
-            1.0 / 12.0 + squared * (1.0 / 720.0 + squared / 30240.0)
-        } else {
-            (1.0 - 0.5 * squared.sqrt() * half_cotangent) / squared
-        };
+        let series = R::splat(1.0 / 12.0) + squared * (R::splat(1.0 / 720.0) + squared / R::splat(30240.0));
+        let quotient = (one - half * squared.sqrt() * half_cotangent) / squared;
+        let quadratic = squared.choose_below(R::splat(SMALL), series, quotient);
         // [phi]^2 = phi phi' - |phi|^2 I
-        let diagonal = 1.0 - quadratic * squared;
+        let diagonal = one - quadratic * squared;
         let [qx, qy, qz] = [quadratic * x, quadratic * y, quadratic * z];
         let [xy, yz, zx] = [qx * y, qy * z, qz * x];
-        let [hx, hy, hz] = [0.5 * x, 0.5 * y, 0.5 * z];
+        let [hx, hy, hz] = [half * x, half * y, half * z];
         Self {
             columns: [
                 Vec3 { x: diagonal + qx * x, y: xy - hz, z: zx + hy },
@@ -131,7 +136,7 @@ impl InverseLeftJacobian {
 
     /// Returns the product with `w`.
     #[inline(always)]
-    pub fn apply(&self, w: Vec3) -> Vec3 {
+    pub fn apply(&self, w: Vec3<R>) -> Vec3<R> {
         let [a, b, c] = self.columns;
         a * w.x + b * w.y + c * w.z
     }

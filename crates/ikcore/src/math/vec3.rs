@@ -1,40 +1,72 @@
-//! Vectors of three numbers for kernels. Operations are written out entry by entry: closures over arrays would be
+//! Vectors of three [`Real`]s for kernels. Operations are written out entry by entry: closures over arrays would be
 //! compiled without the instructions of the calling kernel.
 
-use std::ops::{Add, Mul};
+use std::ops::{Add, Mul, Sub};
 
-/// A vector.
+use super::real::Real;
+
+/// A vector, or one per lane.
 #[derive(Debug, Clone, Copy)]
-pub struct Vec3 {
+pub struct Vec3<R> {
     /// First entry.
-    pub x: f64,
+    pub x: R,
     /// Second entry.
-    pub y: f64,
+    pub y: R,
     /// Third entry.
-    pub z: f64,
+    pub z: R,
 }
 
-impl Vec3 {
-    /// From its entries.
+impl<R: Real> Vec3<R> {
+    /// From its stored form.
     #[inline(always)]
-    pub fn of(entries: &[f64; 3]) -> Self {
-        let [x, y, z] = *entries;
-        Self { x, y, z }
+    pub fn of(stored: &[R::Stored; 3]) -> Self {
+        let [x, y, z] = *stored;
+        Self { x: R::of(x), y: R::of(y), z: R::of(z) }
     }
 
-    /// Its entries.
+    /// Its stored form.
     #[inline(always)]
-    pub fn stored(self) -> [f64; 3] {
-        [self.x, self.y, self.z]
+    pub fn stored(self) -> [R::Stored; 3] {
+        [self.x.stored(), self.y.stored(), self.z.stored()]
     }
 
-    /// The scalar product.
+    /// The same vector in all lanes.
     #[inline(always)]
-    pub fn dot(self, other: Self) -> f64 {
+    pub fn splat(vector: &[f64; 3]) -> Self {
+        let [x, y, z] = *vector;
+        Self { x: R::splat(x), y: R::splat(y), z: R::splat(z) }
+    }
+
+    /// The vector in lane `lane`.
+    #[inline(always)]
+    pub fn lane(self, lane: usize) -> [f64; 3] {
+        [self.x.lane(lane), self.y.lane(lane), self.z.lane(lane)]
+    }
+
+    /// The same with another vector in lane `lane`.
+    #[inline(always)]
+    pub fn with_lane(self, lane: usize, vector: &[f64; 3]) -> Self {
+        let [x, y, z] = *vector;
+        Self { x: self.x.with_lane(lane, x), y: self.y.with_lane(lane, y), z: self.z.with_lane(lane, z) }
+    }
+
+    /// self * factor + addend.
+    #[inline(always)]
+    pub fn mul_add(self, factor: R, addend: Self) -> Self {
+        Self {
+            x: self.x.mul_add(factor, addend.x),
+            y: self.y.mul_add(factor, addend.y),
+            z: self.z.mul_add(factor, addend.z),
+        }
+    }
+
+    /// The scalar product, without FMA.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> R {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
-    /// The cross product.
+    /// The cross product, without FMA.
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self {
@@ -43,22 +75,41 @@ impl Vec3 {
             z: self.x * other.y - self.y * other.x,
         }
     }
+
+    /// The cross product, with FMA if the arithmetic has it.
+    #[inline(always)]
+    pub fn cross_fma(self, other: Self) -> Self {
+        Self {
+            x: self.y.mul_add(other.z, -(self.z * other.y)),
+            y: self.z.mul_add(other.x, -(self.x * other.z)),
+            z: self.x.mul_add(other.y, -(self.y * other.x)),
+        }
+    }
 }
 
-impl Mul<f64> for Vec3 {
+impl<R: Real> Mul<R> for Vec3<R> {
     type Output = Self;
 
     #[inline(always)]
-    fn mul(self, factor: f64) -> Self {
+    fn mul(self, factor: R) -> Self {
         Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
     }
 }
 
-impl Add for Vec3 {
+impl<R: Real> Add for Vec3<R> {
     type Output = Self;
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
+    }
+}
+
+impl<R: Real> Sub for Vec3<R> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
     }
 }

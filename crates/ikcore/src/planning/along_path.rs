@@ -1,6 +1,7 @@
 //! Planning along a given path.
 
 use super::cost::Cost;
+use super::motion_limits::MotionLimits;
 use super::plan::Plan;
 use super::planner_options::{AlongPathMethod, AlongPathOptions};
 use super::tip_path::TipPath;
@@ -23,11 +24,13 @@ pub fn plan_along_path(
     if options.objective == Cost::TipTravel {
         return Err(Error::unknown_option("objective along a path", "tip_travel", &["time", "joint_travel"]));
     }
-    match &options.method {
+    let mut plan = match &options.method {
         AlongPathMethod::Timed => timed::along_path(robot, tip_path, options, monitor),
         AlongPathMethod::Tpbso(_) if options.solver.is_some() => Err(Error::Contradiction {
             problem: "solver is the search of method=\"timed\": give method=TPBSO(solver=...) its own".into(),
         }),
         AlongPathMethod::Tpbso(tpbso) => tpbso::along_path(robot, tip_path, tpbso, options, monitor),
-    }
+    }?;
+    plan.name_peak(&MotionLimits::new(robot, options.limits.as_ref(), "plan_along_path")?);
+    Ok(plan)
 }

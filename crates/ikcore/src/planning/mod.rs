@@ -10,6 +10,7 @@
 //! | `endpoint` | [`Endpoint`]: a start or an end, by target or configuration |
 //! | `tip_path` | [`TipPath`]: the curve that the tip follows |
 //! | `plan`, `violation` | the result |
+//! | `retime` | [`Plan::retime`]: other limits for a finished plan |
 //! | `cost` | [`Cost`]: duration, joint travel or tip travel |
 //! | `motion_limits` | constant limits of each joint, and their violations by a trajectory |
 //! | `minmax` | between two ends: the nearest configurations, joined directly or around obstacles |
@@ -34,6 +35,7 @@ mod plan;
 mod planar_arm;
 mod planner_options;
 mod point_to_point;
+mod retime;
 mod search;
 mod time_optimal;
 mod timed;
@@ -45,7 +47,7 @@ pub use along_path::plan_along_path;
 pub use cost::Cost;
 pub use endpoint::Endpoint;
 pub(crate) use motion_limits::MotionLimits;
-pub use plan::{Improvement, Plan};
+pub use plan::{Improvement, Peak, Plan};
 pub use planar_arm::{Elbow, Orientation, Orientations, PlanarArm, PlanarTarget};
 pub use planner_options::{AlongPathMethod, AlongPathOptions, PointToPointMethod, PointToPointOptions};
 pub use point_to_point::plan_point_to_point;

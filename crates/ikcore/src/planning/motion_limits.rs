@@ -20,6 +20,8 @@ pub(crate) struct MotionLimits {
     pub velocity: Vec<f64>,
     /// Acceleration limits (rad/s^2, m/s^2).
     pub acceleration: Vec<f64>,
+    /// Jerk limits (rad/s^3, m/s^3).
+    pub jerk: Vec<f64>,
     joints: Vec<(String, JointKind)>,
 }
 
@@ -30,26 +32,50 @@ impl MotionLimits {
     /// The limits for `robot`; `None` means its own. `method` names the planner in errors.
     ///
     /// # Errors
-    /// [`Error::UnsupportedLimit`] for jerk limits and limits that vary over time, [`Error::OutOfRange`] for a velocity
-    /// or acceleration limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`], [`Error::WrongLength`].
+    /// [`Error::UnsupportedLimit`] for limits that vary over time, [`Error::OutOfRange`] for a velocity, acceleration or
+    /// jerk limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`], [`Error::WrongLength`].
     pub(crate) fn new(robot: &Robot, limits: Option<&Limits>, method: &str) -> Result<Self> {
         let limits = limits.cloned().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
-        limits.require_none(&[Field::Jerk], method, "retime the plan with a jerk limit afterwards")?;
         limits.validate(0.0, 0)?;
         let constants = |field: Field| limits.constants(field, method, "give numbers");
         let joints = robot.joints().iter().map(|joint| (joint.name.clone(), joint.kind)).collect();
-        let mut acceleration = constants(Field::Acceleration)?;
-        acceleration.resize(robot.dof(), f64::INFINITY);
+        let or_unlimited = |mut values: Vec<f64>| {
+            values.resize(robot.dof(), f64::INFINITY);
+            values
+        };
         let limits = Self {
             lower: constants(Field::Lower)?,
             upper: constants(Field::Upper)?,
             velocity: constants(Field::Velocity)?,
-            acceleration,
+            acceleration: or_unlimited(constants(Field::Acceleration)?),
+            jerk: or_unlimited(constants(Field::Jerk)?),
             joints,
         };
         limits.require_motion()?;
         Ok(limits)
+    }
+
+    /// Whether any joint has a jerk limit.
+    pub(crate) fn limit_jerk(&self) -> bool {
+        self.jerk.iter().any(|limit| limit.is_finite())
+    }
+
+    /// Checks that no joint has a jerk limit, which `method` cannot keep.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`].
+    pub(crate) fn refuse_jerk(&self, method: &str) -> Result<()> {
+        if !self.limit_jerk() {
+            return Ok(());
+        }
+        let remedy = "leave them out, and add them with plan.retime(limits)".into();
+        Err(Error::UnsupportedLimit { field: "jerk".into(), method: method.into(), remedy })
+    }
+
+    /// Unit of the acceleration of a joint.
+    pub(crate) fn acceleration_unit(&self, joint: usize) -> &'static str {
+        if self.joints[joint].1.turns() { "rad/s^2" } else { "m/s^2" }
     }
 
     /// Number of joints.
@@ -74,12 +100,13 @@ impl MotionLimits {
         sampling_range::finite(lower, upper, PI)
     }
 
-    /// Time (s) of the slowest joint through its range, at full speed or from rest to rest at full acceleration.
+    /// Time (s) of the slowest joint through its range, at full speed or from rest to rest at full acceleration or jerk.
     pub(crate) fn whole_range_time(&self) -> f64 {
         let time = |j: usize| {
             let (lower, upper) = self.finite_range(j);
             let range = upper - lower;
-            (range / self.velocity[j]).max(2.0 * (range / self.acceleration[j]).sqrt())
+            let by_jerk = (32.0 * range / self.jerk[j]).cbrt();
+            (range / self.velocity[j]).max(2.0 * (range / self.acceleration[j]).sqrt()).max(by_jerk)
         };
         (0..self.dof()).map(time).fold(0.0, f64::max)
     }
@@ -109,10 +136,15 @@ impl MotionLimits {
 
     /// Returns the limits that `trajectory` violates, by the exact extremes of its polynomials.
     pub(crate) fn violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
-        let (velocity, acceleration) = (trajectory.max_velocity(), trajectory.max_acceleration());
+        let [velocity, acceleration, jerk] =
+            [trajectory.max_velocity(), trajectory.max_acceleration(), trajectory.max_jerk()];
         let mut found = vec![];
         for (j, (lowest, highest)) in trajectory.position_range().into_iter().enumerate() {
-            let units = if self.joints[j].1.turns() { ["rad", "rad/s", "rad/s^2"] } else { ["m", "m/s", "m/s^2"] };
+            let units = if self.joints[j].1.turns() {
+                ["rad", "rad/s", "rad/s^2", "rad/s^3"]
+            } else {
+                ["m", "m/s", "m/s^2", "m/s^3"]
+            };
             let checks = [
                 ("lowest position", lowest, self.lower[j], self.lower[j] - lowest, units[0]),
                 ("highest position", highest, self.upper[j], highest - self.upper[j], units[0]),
@@ -124,6 +156,7 @@ impl MotionLimits {
                     acceleration[j] - self.acceleration[j],
                     units[2],
                 ),
+                ("jerk", jerk[j], self.jerk[j], jerk[j] - self.jerk[j], units[3]),
             ];
             for (quantity, value, bound, excess, unit) in checks {
                 if excess > ROUNDING * bound.abs().max(1.0) {
@@ -137,7 +170,8 @@ impl MotionLimits {
 
     /// Checks that no joint is locked by a zero limit.
     fn require_motion(&self) -> Result<()> {
-        for (name, values) in [("velocity", &self.velocity), ("acceleration", &self.acceleration)] {
+        for (name, values) in [("velocity", &self.velocity), ("acceleration", &self.acceleration), ("jerk", &self.jerk)]
+        {
             if let Some(j) = values.iter().position(|value| *value <= 0.0) {
                 let what = format!("{name} limit of joint '{}'", self.joint_name(j));
                 return Err(Error::out_of_range(what, "positive", values[j]));

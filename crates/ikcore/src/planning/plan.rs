@@ -5,7 +5,9 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::cost::Cost;
+use super::motion_limits::MotionLimits;
 use super::planar_arm::Orientations;
+use super::time_optimal::JointPath;
 use super::violation::Violation;
 use crate::error::{Error, Result};
 use crate::solver::Status;
@@ -33,6 +35,11 @@ pub struct Plan {
     /// The orientations chosen for the free links of a planar arm, at every point of the path, from the last link
     /// inwards; empty for other arms.
     pub redundancy: Vec<Orientations>,
+    /// The joint paths whose timing was optimised, each from rest to rest; empty if the trajectory is the only record of
+    /// its path.
+    pub path: Vec<JointPath>,
+    /// The largest acceleration of a joint without an acceleration limit; `None` if all joints have one.
+    pub peak: Option<Peak>,
     /// Bounds that the trajectory violates; empty for a plan that succeeded.
     pub violations: Vec<Violation>,
     /// [`Status::Solved`] for a trajectory without violations; else why the search ended.
@@ -41,6 +48,17 @@ pub struct Plan {
     pub evaluations: usize,
     /// Time taken.
     pub elapsed: Duration,
+}
+
+/// The largest acceleration of a plan that no limit bounds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Peak {
+    /// Name of the joint.
+    pub joint: String,
+    /// Acceleration (rad/s^2, m/s^2).
+    pub acceleration: f64,
+    /// The unit, "rad/s^2" or "m/s^2".
+    pub unit: String,
 }
 
 /// An improvement during a search.
@@ -69,11 +87,23 @@ impl Plan {
         Ok(plan)
     }
 
+    /// Notes the largest acceleration of joints that have no acceleration limit in `limits`.
+    pub(super) fn name_peak(&mut self, limits: &MotionLimits) {
+        let reached = self.trajectory.max_acceleration();
+        let unlimited = (0..limits.dof()).filter(|j| limits.acceleration[*j].is_infinite());
+        let highest = unlimited.max_by(|i, k| reached[*i].total_cmp(&reached[*k]));
+        self.peak = highest.map(|j| Peak {
+            joint: limits.joint_name(j).into(),
+            acceleration: reached[j],
+            unit: limits.acceleration_unit(j).into(),
+        });
+    }
+
     /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
         match self.status {
-            Status::Solved => format!("planned with {cost}"),
+            Status::Solved => format!("planned with {cost}{}", self.peak_in_words()),
             Status::Interrupted if self.violations.is_empty() => {
                 format!("stopped with {cost}: {}", self.status.advice())
             }
@@ -83,6 +113,13 @@ impl Plan {
                 self.advice()
             ),
         }
+    }
+
+    fn peak_in_words(&self) -> String {
+        self.peak.as_ref().map_or_else(String::new, |Peak { joint, acceleration, unit }| {
+            let acceleration = number(*acceleration);
+            format!("; without an acceleration limit joint '{joint}' accelerates with up to {acceleration} {unit}")
+        })
     }
 
     fn advice(&self) -> &'static str {

@@ -1,17 +1,18 @@
 //! Planning from point to point.
 
 use super::endpoint::Endpoint;
+use super::motion_limits::MotionLimits;
 use super::plan::Plan;
 use super::planner_options::{PointToPointMethod, PointToPointOptions};
 use super::{minmax, tpbso};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 
-/// Plans a motion of `robot` from rest at `start` to rest at `end`.
+/// Plans a motion of `robot` from `start` to rest at `end`. It begins at rest, or with the velocity of the options.
 ///
 /// # Errors
-/// Any [`Error`](crate::Error) for wrong input, [`Error::Unreachable`](crate::Error::Unreachable) if an end is out of
+/// Any [`Error`] for wrong input, [`Error::Unreachable`] if an end is out of
 /// reach. A plan that violates limits is a status, not an error.
 pub fn plan_point_to_point(
     robot: &Robot,
@@ -23,8 +24,13 @@ pub fn plan_point_to_point(
     start.check("start", robot)?;
     end.check("end", robot)?;
     options.kept_margin()?;
-    match &options.method {
+    let mut plan = match &options.method {
         PointToPointMethod::MinMax => minmax::point_to_point(robot, start, end, options, monitor),
+        PointToPointMethod::Tpbso(_) if options.start_velocity.is_some() => Err(Error::Contradiction {
+            problem: "start_qd is kept by method=\"minmax\": method=\"tpbso\" begins at rest".into(),
+        }),
         PointToPointMethod::Tpbso(tpbso) => tpbso::point_to_point(robot, [start, end], tpbso, options, monitor),
-    }
+    }?;
+    plan.name_peak(&MotionLimits::new(robot, options.limits.as_ref(), "plan_point_to_point")?);
+    Ok(plan)
 }

@@ -19,7 +19,7 @@ pub(super) struct Search {
 }
 
 /// Result of a search.
-pub(super) struct Found {
+pub(super) struct SearchResult {
     /// The best decision vector.
     pub x: Point,
     /// Improvements, in the order of evaluations.
@@ -29,7 +29,7 @@ pub(super) struct Found {
     status: Status,
 }
 
-impl Found {
+impl SearchResult {
     /// Returns the status of a plan: solved if `keeps_everything`, else why the search ended.
     pub(super) fn status(&self, keeps_everything: bool) -> Status {
         match self.status {
@@ -45,7 +45,12 @@ impl Search {
     ///
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for wrong options of the solver or a budget of zero.
-    pub(super) fn run(&self, cost: &mut dyn Objective, bounds: &Bounds, monitor: &mut dyn Monitor) -> Result<Found> {
+    pub(super) fn run(
+        &self,
+        cost: &mut dyn Objective,
+        bounds: &Bounds,
+        monitor: &mut dyn Monitor,
+    ) -> Result<SearchResult> {
         let Self { solver, stop, seed } = self;
         solver.validate()?;
         stop.validate()?;
@@ -62,7 +67,7 @@ impl Search {
         let (x, evaluations) = (evaluator.best().x.clone(), evaluator.evaluations());
         let history = recorded.history;
         monitor.progress(evaluations, evaluations);
-        Ok(Found { x, history, evaluations, status })
+        Ok(SearchResult { x, history, evaluations, status })
     }
 }
 

@@ -39,6 +39,10 @@ pub struct Joint {
     pub upper: f64,
     /// Velocity limit (rad/s or m/s); infinity where unknown, zero locks the joint.
     pub velocity: f64,
+    /// The maker's acceleration limit (rad/s^2 or m/s^2); infinity where unknown. Only the rated limits use it.
+    pub rated_acceleration: f64,
+    /// The maker's jerk limit (rad/s^3 or m/s^3), likewise.
+    pub rated_jerk: f64,
 }
 
 /// Half-width of the sampling range of an unlimited prismatic joint (m).
@@ -48,7 +52,9 @@ impl Joint {
     /// A joint without limits.
     pub fn new(name: impl Into<String>, kind: JointKind) -> Self {
         let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
-        Self { name: name.into(), kind, lower, upper, velocity: f64::INFINITY }
+        let velocity = f64::INFINITY;
+        let (rated_acceleration, rated_jerk) = (f64::INFINITY, f64::INFINITY);
+        Self { name: name.into(), kind, lower, upper, velocity, rated_acceleration, rated_jerk }
     }
 
     /// The same joint between these position limits (rad or m).

@@ -7,6 +7,7 @@ use super::target::Target;
 use super::tip_error::SquaredError;
 use crate::math::Frame;
 use crate::math::box_step::ROWS;
+use crate::math::real::Real;
 use crate::math::so3::axes_of;
 use crate::objective::Linearization;
 
@@ -54,7 +55,7 @@ impl Target {
                 let Linearization { residual, columns } = out;
                 let (target, tip) = (axes_of(target), axes_of(tip));
                 let rotation = orientation::linearize(&target, &tip, residual, &mut columns[..dof]);
-                summed(SquaredError { position: None, rotation: Some(rotation) })
+                summed(SquaredError { position: None, rotation: Some(rotation.stored()) })
             }
         }
     }

@@ -12,6 +12,8 @@
 //! | file | what |
 //! |---|---|
 //! | `track`, `track_options` | the call for a whole path, and its options |
+//! | `approach_motion` | the approach from rest onto a moving path, `TrackOptions::ease` |
+//! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: accepted configuration, clock, box and rule; one [`Step`] per tick |
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
 //! | `record` | [`Record`]: one row per tick, violations, status and message |
@@ -19,6 +21,8 @@
 //! | `late_sensor` | detects a sensor delay that the controller does not assume |
 //! | `controller` | controllers, which only command and observe |
 
+mod approach_motion;
+mod commanded_motion;
 mod controller;
 mod late_sensor;
 mod model_free;

@@ -4,12 +4,15 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use super::commanded_motion::{FEWEST, spline};
 use super::step::Step;
+use crate::error::Result;
 use crate::kinematics::Beyond;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::math::comparison::larger;
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
+use crate::trajectory::Trajectory;
 use crate::wording::{number, time};
 
 /// Excess over a limit that counts as rounding, in units in the last place of q.
@@ -55,8 +58,20 @@ pub struct Record {
     pub status: Status,
     /// Time taken.
     pub elapsed: Duration,
+    /// The approach at the start, if one was asked for.
+    ease: Ease,
     limit_at: LimitAt,
     dt: f64,
+}
+
+/// The approach that a track begins with.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+enum Ease {
+    NotAsked,
+    /// No motion within the limits meets the path before it ends.
+    Impossible,
+    /// It takes so many ticks.
+    Ticks(usize),
 }
 
 /// Configuration and box of the last tick.
@@ -95,6 +110,7 @@ impl Record {
             out_of_reach: None,
             status: Status::Lost,
             elapsed: Duration::ZERO,
+            ease: Ease::NotAsked,
             limit_at,
             dt,
         }
@@ -103,6 +119,16 @@ impl Record {
     /// The time step (s).
     pub(super) fn dt(&self) -> f64 {
         self.dt
+    }
+
+    /// Notes that the ticks so far were an approach of this many `ticks`.
+    pub(super) fn note_approach(&mut self, ticks: usize) {
+        self.ease = Ease::Ticks(ticks);
+    }
+
+    /// Notes that no approach meets the path.
+    pub(super) fn note_no_approach(&mut self) {
+        self.ease = Ease::Impossible;
     }
 
     /// Appends the result of a tick.
@@ -223,9 +249,24 @@ impl Record {
         at_rest.chain(moving).collect()
     }
 
-    /// The first row in the band, or as near to it as the region allows.
+    /// The motion of joints of these names. Without acceleration and jerk limits it is linear between the ticks, with the
+    /// velocities of [`qd`](Self::qd); with them it is a cubic spline that keeps them at every instant and passes each
+    /// configuration at a sixth of its acceleration times dt^2.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`](crate::Error::WrongLength) for a wrong number of names, or for a record of one row.
+    pub fn trajectory(&self, joints: Vec<String>) -> Result<Trajectory> {
+        let is_smooth = [Field::Acceleration, Field::Jerk].into_iter().any(|field| self.limits.is_finite(field));
+        if is_smooth && self.rows() >= FEWEST && joints.len() == self.dof {
+            return Trajectory::new(joints, self.time(), spline(&self.q, self.dof, self.dt));
+        }
+        Trajectory::from_samples(joints, &self.time(), &self.q, None, None)
+    }
+
+    /// The first row in the band, or as near to it as the region allows; not before the approach has met the path.
     pub fn joined(&self) -> Option<usize> {
-        self.step_status.iter().position(is_in_place)
+        let first = if let Ease::Ticks(ticks) = self.ease { ticks } else { 0 };
+        (first..self.rows()).find(|row| is_in_place(&self.step_status[*row]))
     }
 
     /// Total evaluations of the forward kinematics.
@@ -236,6 +277,14 @@ impl Record {
     /// Returns a sentence: what happened, and what to try.
     pub fn message(&self) -> String {
         let advice = match &self.out_of_reach {
+            None if self.ease == Ease::Impossible => {
+                "no motion within the limits meets the path before it ends: slow it down or raise the limits".into()
+            }
+            None if self.starts_too_fast() => {
+                "the path moves at its start, where the arm is at rest: ease=True (--ease) begins with an approach \
+                 within the limits"
+                    .into()
+            }
             None => Status::Lost.advice().into(),
             Some((beyond, when)) => {
                 format!("the path is {beyond} at t = {} s: {}", time(*when), Status::OutOfReach.advice())
@@ -285,6 +334,13 @@ impl Record {
         format!(
             "joined the path at t = {since} s, then outside the band of {band} in {outside} of {last} steps, by up to {worst}: {advice}"
         )
+    }
+
+    /// Whether the arm begins on the path, loses it at once, and its velocity may not jump.
+    fn starts_too_fast(&self) -> bool {
+        let limited = [Field::Acceleration, Field::Jerk].into_iter().any(|field| self.limits.is_finite(field));
+        let lost_at_once = self.joined() == Some(0) && self.step_status.get(1) != Some(&Status::Solved);
+        limited && lost_at_once && self.ease == Ease::NotAsked
     }
 
     /// Formats errors (m, rad) with their units; components that the task leaves out are omitted.

@@ -233,6 +233,29 @@ impl Session {
         Ok(Step { status, error: error.into(), position, evaluations, iterations, inside_limits, interrupted })
     }
 
+    /// Moves by one tick to `q`, which the caller has found inside the limits, instead of asking the rule. The rule starts
+    /// anew from there.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub(super) fn drive(&mut self, q: &[f64], target: &Target, velocity: Option<[f64; 3]>) -> Result<Step> {
+        let target = self.read(target)?;
+        let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
+        let inside_limits = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
+        self.before.copy_from_slice(&self.q);
+        self.q.copy_from_slice(q);
+        let Assessment { score, error } = target.assess(&self.robot, q, &self.criterion);
+        let status = match self.last_value {
+            _ if score.solved => Status::Solved,
+            Some(last) if score.value >= last => Status::Capped,
+            _ => Status::Improved,
+        };
+        self.last_target = Some((*target, velocity));
+        (self.last_value, self.ticks, self.running) = (Some(score.value), self.ticks + 1, self.rule.start());
+        let (position, error) = (self.robot.tip_position(q), error.into());
+        Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits, interrupted: false })
+    }
+
     /// Shortens a tick that would take the tip out of its region. The tick starts inside the region and the box is
     /// convex, so any fraction of the tick ends in the box.
     fn keep_in_region(&mut self, target: &Target, found: &mut TickResult) {

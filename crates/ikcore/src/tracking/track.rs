@@ -1,5 +1,6 @@
 //! Tracking of a whole path.
 
+use super::approach_motion::ApproachMotion;
 use super::record::Record;
 use super::session::Session;
 use super::track_options::TrackOptions;
@@ -39,6 +40,13 @@ pub fn track(
     let mut record = Record::new(start.len(), reference.len(), limits, options.limit_at, criterion, reference.dt());
     let beginning = session.begin(&target(reference, 0), reference.velocity(0))?;
     record.push(&session.accepted(), reference.position(0), &beginning);
+    if options.ease {
+        let target = |i: usize| target(reference, i);
+        match ApproachMotion::find(robot, reference, &start, options, target, monitor)? {
+            Some(approach) => drive(&approach, reference, &mut session, &mut record)?,
+            None => record.note_no_approach(),
+        }
+    }
     let finished = follow(reference, &mut session, &mut record, monitor)?;
     record.finish(!finished, stopwatch.elapsed());
     if finished && !matches!(record.status, Status::Solved | Status::HeldInRegion) {
@@ -61,6 +69,16 @@ fn farthest_out_of_reach(reference: &Reference, first: usize, session: &Session)
     Ok(farthest)
 }
 
+/// Drives the approach.
+fn drive(approach: &ApproachMotion, reference: &Reference, session: &mut Session, record: &mut Record) -> Result<()> {
+    for i in 1..=approach.ticks {
+        let step = session.drive(&approach.at(reference.time(i))?, &target(reference, i), reference.velocity(i))?;
+        record.push(&session.accepted(), reference.position(i), &step);
+    }
+    record.note_approach(approach.ticks);
+    Ok(())
+}
+
 /// Steps to the end of `reference`; returns false if the monitor asked to stop before.
 fn follow(
     reference: &Reference,
@@ -69,7 +87,7 @@ fn follow(
     monitor: &mut dyn Monitor,
 ) -> Result<bool> {
     let last = reference.len() - 1;
-    for i in 1..=last {
+    for i in record.rows()..=last {
         // Polled here too, since most ticks end before the evaluator polls the monitor.
         if !monitor.keep_going() {
             return Ok(false);
@@ -116,7 +134,7 @@ fn first_configuration(
     let tolerance =
         Tolerance { position: 0.1 * options.tolerance.position, rotation: 0.1 * options.tolerance.rotation };
     let target = target(reference, 0);
-    let goals = if options.goals.is_empty() { roomy(&target) } else { options.goals.clone() };
+    let goals = if options.goals.is_empty() { start_goals(&target) } else { options.goals.clone() };
     let TrackOptions { task, seed, .. } = *options;
     let (limits, prefer) = (Some(limits), Prefer::Best);
     let stop = Stop { max_evaluations: CHOOSING, ..Stop::default() };
@@ -130,7 +148,7 @@ fn first_configuration(
 }
 
 /// Default goals of the start: away from singularities and limits.
-fn roomy(target: &Target) -> Vec<Goal> {
+fn start_goals(target: &Target) -> Vec<Goal> {
     let motion = if matches!(target, Target::Position(_)) { Motion::Position } else { Motion::Pose };
     vec![Goal::Manipulability { motion, weight: 1.0 }, Goal::Centring { weight: 1.0 }]
 }

@@ -21,6 +21,9 @@ pub struct TrackOptions {
     pub limits: Option<Limits>,
     /// The time within a tick at which its velocity limit is evaluated.
     pub limit_at: LimitAt,
+    /// Whether [`track`](super::track()) begins with an approach that meets the moving path within acceleration and jerk
+    /// limits. Sessions ignore it.
+    pub ease: bool,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
 }

@@ -143,6 +143,16 @@ impl PyLimits {
         }
     }
 
+    /// The robot's own limits with those of its maker on acceleration and jerk, where they are known.
+    pub fn rated(robot: &Robot) -> Self {
+        let mut limits = Self::of(robot);
+        let known = |values: Vec<f64>| if values.iter().any(|v| v.is_finite()) { numbers(values) } else { None };
+        let joints = robot.joints().iter();
+        limits.given[Field::Acceleration as usize] = known(joints.clone().map(|j| j.rated_acceleration).collect());
+        limits.given[Field::Jerk as usize] = known(joints.map(|j| j.rated_jerk).collect());
+        limits
+    }
+
     /// A box.
     pub fn of_box(lower: Vec<f64>, upper: Vec<f64>) -> Self {
         Self { given: [numbers(lower), numbers(upper), None, None, None] }

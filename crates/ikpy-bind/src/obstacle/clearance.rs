@@ -9,8 +9,15 @@ use crate::error::raise;
 use crate::monitor::in_pieces;
 use crate::robot::PyRobot;
 
+/// Rows between two checks for Ctrl-C; among many obstacles a row takes a millisecond.
+const ROWS: usize = 128;
+
 /// Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
 /// for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
+///
+/// Never more than the true distance, and at most 1e-9 m less. Where a capsule reaches into an obstacle, the depth is that of
+/// the deepest point of its axis, plus its radius: to the surface of a closed mesh (to 1 % or 0.1 mm), in the nearest block of
+/// voxels of a grid, in the nearest ball of a point cloud. An open mesh has no inside.
 ///
 /// Args:
 ///     robot: an arm with capsules.
@@ -35,7 +42,7 @@ pub fn clearance<'py>(
     match rows("joint angles", robot.core.name(), robot.core.dof(), q)? {
         Rows::One(q) => Ok(scene.clearance(q.as_slice()?).map_err(raise)?.into_pyobject(py)?.into_any()),
         Rows::Many(q, _) => {
-            let clearances = in_pieces(py, q.as_slice()?, robot.core.dof(), |q| scene.clearances(q))?;
+            let clearances = in_pieces(py, q.as_slice()?, robot.core.dof(), ROWS, |q| scene.clearances(q))?;
             Ok(row(py, clearances).into_any())
         }
     }

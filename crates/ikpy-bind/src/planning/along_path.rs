@@ -23,14 +23,15 @@ use crate::solver::{PyStop, derivative_free_solver};
 ///     robot: the arm.
 ///     path: a `Path`, of which only the shape counts, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
 ///     start_q: joint positions (n,) at the start; None: chosen by the planner.
-///     limits: position, velocity and acceleration limits; None: the robot's.
+///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
 ///     method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
 ///         uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
 ///     objective: quantity to minimise, "time" or "joint_travel".
 ///     accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it (rad). It
 ///         decides how many points of the path the motion passes. None: a thousandth of the path's extent, plus
 ///         the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %.
-///     solver: solver of the search of "timed"; None: differential evolution. `TPBSO` has a solver of its own.
+///     solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
+///         solver of its own.
 ///     stop: budgets; None: the method's own.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
@@ -41,7 +42,8 @@ use crate::solver::{PyStop, derivative_free_solver};
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, fewer than two points, or points out of reach.
 ///     LimitError: limits that contradict each other.
-///     UnsupportedLimit: jerk limits, or limits that vary in time.
+///     UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
+///         (`Plan.retime` adds them).
 #[pyfunction]
 #[pyo3(signature = (robot, path, *, start_q=None, limits=None, method=None, objective="time", accuracy=None, solver=None,
                     stop=None, seed=0, progress=None),

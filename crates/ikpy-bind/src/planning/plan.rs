@@ -9,7 +9,8 @@ use pyo3::types::PyTuple;
 use super::violation::PyViolation;
 use crate::convert::table;
 use crate::error::raise;
-use crate::limits::PyLimits;
+use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::monitor::long_call;
 use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
@@ -90,6 +91,26 @@ impl PyPlan {
     #[getter]
     fn violations(&self) -> Vec<PyViolation> {
         self.core.violations.iter().cloned().map(PyViolation).collect()
+    }
+
+    /// Returns the plan with other limits: the same path, as fast as they allow. Clearance and accuracy remain.
+    ///
+    /// A plan of `plan_along_path` with method "timed" gets a new optimal timing. Any other motion is scaled in time as a
+    /// whole and passes the very same configurations.
+    ///
+    /// Args:
+    ///     limits: position, velocity, acceleration and jerk limits; a field that is not given is the robot's.
+    ///
+    /// Raises:
+    ///     InfeasibleError: a plan with violations, a path outside the position limits, or jerk limits on a motion whose
+    ///         acceleration jumps.
+    ///     UnsupportedLimit: limits that vary in time.
+    fn retime(&self, py: Python<'_>, limits: &PyLimits) -> PyResult<Self> {
+        let robot = self.robot.bind(py);
+        let (in_force, resolved) = limits_of_call(py, Some(limits), robot.get(), &Sampling::once())?;
+        let arm = robot.get().core.clone();
+        let retimed = long_call(py, || self.core.retime(&arm, resolved.as_ref()))?;
+        Self::new(retimed, robot, in_force, self.obstacles.clone_ref(py))
     }
 
     /// Draws the arm along its path, the cost over evaluations, and the joint motions with their limits; returns a matplotlib

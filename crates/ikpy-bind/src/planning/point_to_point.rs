@@ -16,13 +16,15 @@ use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::PyStop;
 
-/// Plans a motion between two ends, from rest to rest.
+/// Plans a motion between two ends, to rest at the end.
 ///
 /// Args:
 ///     robot: the arm.
 ///     start, end: position (3,) (m) or pose (4, 4) of the tip; the planner chooses the configuration.
 ///     start_q, end_q: joint positions (n,) instead.
-///     limits: position, velocity and acceleration limits; None: the robot's.
+///     start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
+///         rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.
+///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
 ///     method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
 ///         "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
 ///     objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
@@ -39,11 +41,12 @@ use crate::solver::PyStop;
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance).
 ///     LimitError: limits that contradict each other or exclude an end.
-///     UnsupportedLimit: jerk limits, or limits that vary in time.
+///     InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
+///     UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
 #[pyfunction]
-#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method=None, objective="time",
+#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, limits=None, method=None, objective="time",
                     obstacles=None, margin=None, stop=None, seed=0, progress=None),
-       text_signature = "(robot, start=None, end=None, *, start_q=None, end_q=None, limits=None, method='minmax', \
+       text_signature = "(robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, limits=None, method='minmax', \
                          objective='time', obstacles=None, margin=None, stop=None, seed=0, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point(
@@ -53,6 +56,7 @@ pub fn plan_point_to_point(
     end: Option<&Bound<'_, PyAny>>,
     start_q: Option<&Bound<'_, PyAny>>,
     end_q: Option<&Bound<'_, PyAny>>,
+    start_qd: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     method: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] objective: &str,
@@ -68,6 +72,7 @@ pub fn plan_point_to_point(
     let obstacles = Obstacles::read(py, obstacles)?;
     let given = obstacles.tuple;
     let options = PointToPointOptions {
+        start_velocity: start_qd.map(|qd| vector("start_qd", qd)).transpose()?,
         method: read_method(method)?,
         objective: objective.parse().map_err(raise)?,
         obstacles: obstacles.core,

@@ -9,7 +9,7 @@ use super::PyRobot;
 use crate::convert::{Rows, row, rows, table, vector};
 use crate::error::raise;
 use crate::hash::content_hash;
-use crate::monitor::in_pieces;
+use crate::monitor::{QUICK_ROWS, in_pieces};
 use crate::pickling::{self, Reduced};
 
 /// The ellipsoid of tip velocities for unit joint speeds, |q'| = 1. It has one semi-axis for each direction in which the
@@ -88,7 +88,7 @@ impl PyRobot {
             }
             Rows::Many(q, _) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                let values = in_pieces(py, q, robot.dof(), |q| manipulability_all(robot, motion, q))?;
+                let values = in_pieces(py, q, robot.dof(), QUICK_ROWS, |q| manipulability_all(robot, motion, q))?;
                 Ok(row(py, values).into_any())
             }
         }

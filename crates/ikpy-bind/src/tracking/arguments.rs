@@ -32,6 +32,7 @@ impl TrackArguments<'_, '_> {
             goals: read_goals(self.goals)?,
             tolerance: Tolerance { position: self.position_tolerance, rotation: self.rotation_tolerance },
             limits,
+            ease: false,
             limit_at: self.limit_at.parse::<LimitAt>().map_err(raise)?,
             seed: count("seed", self.seed)?,
         })

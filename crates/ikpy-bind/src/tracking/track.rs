@@ -1,8 +1,7 @@
 //! `track` and `TrackResult`.
 
 use ikcore::stored::{from_bytes, to_bytes};
-use ikcore::tracking::{self, Record};
-use ikcore::trajectory::Trajectory;
+use ikcore::tracking::{self, Record, TrackOptions};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 
@@ -74,13 +73,13 @@ impl PyTrackResult {
         self.core.limit_margin
     }
 
-    /// The joint trajectory, linear between the ticks: its velocities are exactly `qd`.
+    /// The joint trajectory. Without acceleration and jerk limits it is linear between the ticks: its velocities are exactly
+    /// `qd`. With them it is a cubic spline that keeps them at every instant, and passes each configuration at a sixth of
+    /// its acceleration times dt^2 (rad, m).
     #[getter]
     fn trajectory(&self) -> PyResult<PyTrajectory> {
         let names = self.robot.get().core.joints().iter().map(|joint| joint.name.clone()).collect();
-        Trajectory::from_samples(names, &self.core.time(), &self.core.q, None, None)
-            .map(PyTrajectory::from)
-            .map_err(raise)
+        self.core.trajectory(names).map(PyTrajectory::from).map_err(raise)
     }
 
     /// Draws the path of the tip, the errors, joint positions, velocities with their limits, and evaluations; returns a
@@ -141,6 +140,8 @@ impl PyTrackResult {
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     limit_at: which velocity limit holds in a tick: the smallest over its "interval", or, as in the paper, the one at its
 ///         "start".
+///     ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
+///         that meets the moving path, after which the arm is on it. The tip is off the path until then.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
 /// Returns:
@@ -152,7 +153,8 @@ impl PyTrackResult {
 ///     UnsupportedLimit: jerk limits, which this tracker does not keep.
 #[pyfunction]
 #[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
-                    position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval", progress=None))]
+                    position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval", ease=false,
+                    progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn track(
     py: Python<'_>,
@@ -168,6 +170,7 @@ pub fn track(
     rotation_tolerance: f64,
     seed: i128,
     #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
+    ease: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTrackResult> {
     let arm = robot.get().core.clone();
@@ -179,7 +182,7 @@ pub fn track(
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
     let start = start.map(|start| vector("start", start)).transpose()?;
     let asked = TrackArguments { rule, task, goals, position_tolerance, rotation_tolerance, seed, limit_at };
-    let options = asked.read(resolved)?;
+    let options = TrackOptions { ease, ..asked.read(resolved)? };
     let record =
         watched(py, progress, |watcher| tracking::track(&arm, &reference, start.as_deref(), &options, watcher))?;
     python_calls::log(py, format!("track: {}", record.message()))?;

@@ -13,6 +13,7 @@ from ..options import (
     Acceleration,
     AsJson,
     BaseLink,
+    Jerk,
     RobotName,
     Seed,
     StartQ,
@@ -54,6 +55,7 @@ def along_path(
     start_q: StartQ = None,
     velocity: Velocity = None,
     acceleration: Acceleration = None,
+    jerk: Jerk = None,
     solver: Solver = None,
     max_evaluations: Budget = None,
     seed: Seed = 0,
@@ -67,7 +69,7 @@ def along_path(
     """Plan a motion that moves the tip along a path."""
     arm = load_robot(robot, urdf, base, tip)
     path = _path(arm, curve, points)
-    chosen = _method(method, solver) | options(velocity, acceleration, max_evaluations)
+    chosen = _method(method, solver) | options(velocity, acceleration, jerk, max_evaluations)
     report(
         lambda: plan_along_path(
             arm,

@@ -36,11 +36,15 @@ class SearchName(StrEnum):
 Solver = Annotated[SearchName | None, typer.Option(help="Solver of the search; default: the method's own.")]
 
 
-def options(velocity: str | None, acceleration: str | None, max_evaluations: int | None) -> dict[str, Any]:
+def options(
+    velocity: str | None, acceleration: str | None, jerk: str | None, max_evaluations: int | None
+) -> dict[str, Any]:
     """Returns the keywords that both planners take."""
     chosen: dict[str, Any] = {
         "limits": Limits(
-            velocity=limit("--velocity-limit", velocity), acceleration=limit("--acceleration-limit", acceleration)
+            velocity=limit("--velocity-limit", velocity),
+            acceleration=limit("--acceleration-limit", acceleration),
+            jerk=limit("--jerk-limit", jerk),
         ),
     }
     if max_evaluations is not None:

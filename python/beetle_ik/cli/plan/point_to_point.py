@@ -12,6 +12,7 @@ from ..options import (
     Acceleration,
     AsJson,
     BaseLink,
+    Jerk,
     RobotName,
     Seed,
     TipLink,
@@ -73,6 +74,7 @@ def point_to_point(
     ] = None,
     velocity: Velocity = None,
     acceleration: Acceleration = None,
+    jerk: Jerk = None,
     solver: Solver = None,
     max_evaluations: Budget = None,
     seed: Seed = 0,
@@ -88,7 +90,7 @@ def point_to_point(
     if link_radius is not None:
         arm = arm.with_capsules(radius=link_radius)
     ends = _end("start", start, start_q) | _end("end", end, end_q)
-    chosen = {"method": _method(method, solver)} | options(velocity, acceleration, max_evaluations)
+    chosen = {"method": _method(method, solver)} | options(velocity, acceleration, jerk, max_evaluations)
     obstacles = [] if scene is None else read_obstacles(scene)
     report(
         lambda: plan_point_to_point(

@@ -13,7 +13,7 @@ from ..._csv import read_table
 from ..._text import counted
 from ...export import joint_positions
 from ..files import print_files, results_folder, write_files
-from ..options import AsJson, limit
+from ..options import AsJson, Jerk, limit
 from ..show import listed, print_json, print_pairs
 
 
@@ -38,9 +38,7 @@ def retime(
     velocity: Annotated[
         str | None, typer.Option("--velocity-limit", help="rad/s: one number, or one per joint; default: none.")
     ] = None,
-    jerk: Annotated[
-        str | None, typer.Option("--jerk-limit", help="rad/s^3: one number, or one per joint; default: none.")
-    ] = None,
+    jerk: Jerk = None,
     spline: Annotated[SplineName, typer.Option(help="Curve through the rows.")] = SplineName.NATURAL,
     blend: Annotated[
         float | None, typer.Option(help="Polyline: distance from a corner at which its rounding starts, in rad.")

@@ -5,10 +5,16 @@ use std::f64::consts::PI;
 use super::residuals::LANES;
 use crate::closed_form::branches::Candidates;
 use crate::math::arctangent::angle_of;
+use crate::math::arithmetic::Arithmetic;
+use crate::math::real::{One, Real};
 
 /// Joint values of eight candidates from `first` on, angles in (-pi, pi].
 #[inline(always)]
-pub fn angles<const N: usize>(slides: &[bool; N], candidates: &Candidates<N>, first: usize) -> [[f64; LANES]; N] {
+pub fn angles<A: Arithmetic, const N: usize>(
+    slides: &[bool; N],
+    candidates: &Candidates<N>,
+    first: usize,
+) -> [[f64; LANES]; N] {
     let mut all = [[0.0; LANES]; N];
     for k in 0..N {
         let (cos, sin) = (&candidates.cos[k][first..first + LANES], &candidates.sin[k][first..first + LANES]);
@@ -16,7 +22,7 @@ pub fn angles<const N: usize>(slides: &[bool; N], candidates: &Candidates<N>, fi
             all[k].copy_from_slice(sin);
         } else {
             for w in 0..LANES {
-                all[k][w] = angle(sin[w], cos[w]);
+                all[k][w] = angle::<A>(sin[w], cos[w]);
             }
         }
     }
@@ -24,8 +30,8 @@ pub fn angles<const N: usize>(slides: &[bool; N], candidates: &Candidates<N>, fi
 }
 
 #[inline(always)]
-fn angle(sin: f64, cos: f64) -> f64 {
-    let upper = angle_of(sin.abs(), cos);
+fn angle<A: Arithmetic>(sin: f64, cos: f64) -> f64 {
+    let upper = angle_of(One::<A>::of(sin.abs()), One::of(cos)).stored();
     // The sign of the sine; half a turn is +pi.
     if sin < 0.0 && upper < PI { -upper } else { upper }
 }
@@ -33,16 +39,17 @@ fn angle(sin: f64, cos: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::arithmetic::NoFma;
 
     #[test]
     fn angles_lie_above_minus_pi_and_have_the_sign_of_their_sine() {
         for k in -1000..=1000 {
             let exact = f64::from(k) * PI / 1000.0;
-            let ours = angle(exact.sin(), exact.cos());
+            let ours = angle::<NoFma>(exact.sin(), exact.cos());
             let off = (ours - exact).abs();
             assert!(off < 1e-15 || (off - 2.0 * PI).abs() < 1e-15, "{k} {ours} {exact}");
             assert!(ours > -PI && ours <= PI);
         }
-        assert_eq!((angle(-0.0, -1.0), angle(0.0, 1.0)), (PI, 0.0));
+        assert_eq!((angle::<NoFma>(-0.0, -1.0), angle::<NoFma>(0.0, 1.0)), (PI, 0.0));
     }
 }

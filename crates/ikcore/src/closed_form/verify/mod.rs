@@ -61,7 +61,7 @@ impl<const N: usize> Verifier<N> {
         let mut first = 0;
         while first < candidates.count {
             let residuals = residuals::residuals::<A, N>(&self.frames, &self.slides, target, candidates, first);
-            let angles = angles::angles(&self.slides, candidates, first);
+            let angles = angles::angles::<A, N>(&self.slides, candidates, first);
             for lane in 0..LANES.min(candidates.count - first) {
                 let set = std::array::from_fn(|k| angles[k][lane]);
                 self.accept(target, residuals.worst[lane], set, residuals.error(lane), &mut found);

@@ -12,6 +12,8 @@ pub(super) struct Arm {
     pub convention: Dh,
     /// Rotation of DH frame 0 about the x axis of the base (deg).
     pub base_roll: f64,
+    /// The maker's names of the joints, as in its descriptions for ROS.
+    pub joint_names: &'static [&'static str],
     pub joints: &'static [DhRow],
     /// Distance of the flange from the last DH frame, along its z (m).
     pub flange: f64,
@@ -26,12 +28,23 @@ pub(super) struct DhRow {
     limits: JointRange,
 }
 
-/// Position and velocity limits (rad, rad/s).
+/// Position and velocity limits (rad, rad/s), and rated acceleration and jerk (rad/s^2, rad/s^3; infinite where the maker
+/// publishes none).
+#[derive(Clone, Copy)]
 pub(super) struct JointRange {
     kind: JointKind,
     lower: f64,
     upper: f64,
     velocity: f64,
+    acceleration: f64,
+    jerk: f64,
+}
+
+impl JointRange {
+    /// The same joint with the maker's acceleration and jerk limits (rad/s^2, rad/s^3).
+    pub(super) const fn rated(self, acceleration: f64, jerk: f64) -> Self {
+        Self { acceleration, jerk, ..self }
+    }
 }
 
 /// A row: a and d in m, alpha and theta in degrees.
@@ -41,7 +54,8 @@ pub(super) const fn row(a: f64, alpha: f64, d: f64, theta: f64, limits: JointRan
 
 /// JointRange printed in rad and rad/s.
 pub(super) const fn radians(lower: f64, upper: f64, velocity: f64) -> JointRange {
-    JointRange { kind: JointKind::Revolute, lower, upper, velocity }
+    let (acceleration, jerk) = (f64::INFINITY, f64::INFINITY);
+    JointRange { kind: JointKind::Revolute, lower, upper, velocity, acceleration, jerk }
 }
 
 /// JointRange printed in degrees and degrees per second.
@@ -51,8 +65,7 @@ pub(super) const fn degrees(lower: f64, upper: f64, velocity: f64) -> JointRange
 
 /// A continuous joint, its speed in degrees per second.
 pub(super) const fn endless(velocity: f64) -> JointRange {
-    let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
-    JointRange { kind: JointKind::Continuous, lower, upper, velocity: velocity.to_radians() }
+    JointRange { kind: JointKind::Continuous, ..radians(f64::NEG_INFINITY, f64::INFINITY, velocity.to_radians()) }
 }
 
 impl Arm {
@@ -71,6 +84,11 @@ impl Arm {
         let mut chain = ChainBuilder::new(name, "base");
         chain.fixed(pose::rotation(Vector3::x(), self.base_roll.to_radians()));
         table.append_to(&mut chain)?;
+        for (index, (row, name)) in self.joints.iter().zip(self.joint_names).enumerate() {
+            let joint = chain.joint_mut(index);
+            joint.name = (*name).into();
+            (joint.rated_acceleration, joint.rated_jerk) = (row.limits.acceleration, row.limits.jerk);
+        }
         if self.flange != 0.0 {
             chain.fixed(pose::translation(0.0, 0.0, self.flange));
             chain.link("flange");

@@ -8,6 +8,7 @@ use crate::load::dh::Dh::Standard;
 pub(super) const GEN3: Arm = Arm {
     convention: Standard,
     base_roll: 180.0,
+    joint_names: &["joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6", "joint_7"],
     joints: &[
         row(0.0, 90.0, -(0.1564 + 0.1284), 0.0, endless(79.64)),
         row(0.0, 90.0, -(0.0054 + 0.0064), 180.0, degrees(-128.9, 128.9, 79.64)),

@@ -8,6 +8,7 @@ use crate::load::dh::Dh::{Modified, Standard};
 pub(super) const IIWA14: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,
+    joint_names: &["joint_a1", "joint_a2", "joint_a3", "joint_a4", "joint_a5", "joint_a6", "joint_a7"],
     joints: &[
         row(0.0, -90.0, 0.36, 0.0, degrees(-170.0, 170.0, 85.0)),
         row(0.0, 90.0, 0.0, 0.0, degrees(-120.0, 120.0, 85.0)),
@@ -24,6 +25,7 @@ pub(super) const IIWA14: Arm = Arm {
 pub(super) const IIWA7: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,
+    joint_names: &["joint_a1", "joint_a2", "joint_a3", "joint_a4", "joint_a5", "joint_a6", "joint_a7"],
     joints: &[
         row(0.0, -90.0, 0.34, 0.0, degrees(-170.0, 170.0, 98.0)),
         row(0.0, 90.0, 0.0, 0.0, degrees(-120.0, 120.0, 98.0)),
@@ -41,6 +43,7 @@ pub(super) const IIWA7: Arm = Arm {
 pub(super) const KR210: Arm = Arm {
     convention: Modified,
     base_roll: 0.0,
+    joint_names: &["joint_a1", "joint_a2", "joint_a3", "joint_a4", "joint_a5", "joint_a6"],
     joints: &[
         row(0.0, 180.0, -0.675, 0.0, degrees(-185.0, 185.0, 123.0)),
         row(0.35, 90.0, 0.0, 0.0, degrees(-140.0, -5.0, 115.0)),
@@ -58,6 +61,7 @@ pub(super) const KR210: Arm = Arm {
 pub(super) const KR210_YUAN2016: Arm = Arm {
     convention: Modified,
     base_roll: 0.0,
+    joint_names: &["joint_a1", "joint_a2", "joint_a3", "joint_a4", "joint_a5", "joint_a6"],
     joints: &[
         row(0.0, 180.0, -0.675, 0.0, degrees(-185.0, 185.0, f64::INFINITY)),
         row(0.35, 90.0, 0.0, 0.0, degrees(-95.0, 50.0, f64::INFINITY)),

@@ -5,6 +5,10 @@
 use super::arm::{Arm, JointRange, degrees, endless, row};
 use crate::load::dh::Dh::Standard;
 
+/// Names in the maker's descriptions for ROS.
+const JOINTS: [&str; 6] =
+    ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"];
+
 /// A joint with a range of two full turns, its speed in degrees per second.
 const fn two_turns(speed: f64) -> JointRange {
     degrees(-360.0, 360.0, speed)
@@ -14,6 +18,7 @@ const fn two_turns(speed: f64) -> JointRange {
 pub(super) const UR3E: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,
+    joint_names: &JOINTS,
     joints: &[
         row(0.0, 90.0, 0.15185, 0.0, two_turns(180.0)),
         row(-0.24355, 0.0, 0.0, 0.0, two_turns(180.0)),
@@ -29,6 +34,7 @@ pub(super) const UR3E: Arm = Arm {
 pub(super) const UR5: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,
+    joint_names: &JOINTS,
     joints: &[
         row(0.0, 90.0, 0.089159, 0.0, two_turns(180.0)),
         row(-0.425, 0.0, 0.0, 0.0, two_turns(180.0)),
@@ -44,6 +50,7 @@ pub(super) const UR5: Arm = Arm {
 pub(super) const UR5E: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,
+    joint_names: &JOINTS,
     joints: &[
         row(0.0, 90.0, 0.1625, 0.0, two_turns(180.0)),
         row(-0.425, 0.0, 0.0, 0.0, two_turns(180.0)),
@@ -59,6 +66,7 @@ pub(super) const UR5E: Arm = Arm {
 pub(super) const UR10: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,
+    joint_names: &JOINTS,
     joints: &[
         row(0.0, 90.0, 0.1273, 0.0, two_turns(120.0)),
         row(-0.612, 0.0, 0.0, 0.0, two_turns(120.0)),
@@ -74,6 +82,7 @@ pub(super) const UR10: Arm = Arm {
 pub(super) const UR10E: Arm = Arm {
     convention: Standard,
     base_roll: 0.0,
+    joint_names: &JOINTS,
     joints: &[
         row(0.0, 90.0, 0.1807, 0.0, two_turns(120.0)),
         row(-0.6127, 0.0, 0.0, 0.0, two_turns(120.0)),

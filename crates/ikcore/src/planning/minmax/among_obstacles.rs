@@ -8,6 +8,7 @@ use super::rrt_connect::{Connection, TreeSearch};
 use super::straight_line_plan::{PAIRS, no_pair, straight};
 use crate::error::Result;
 use crate::math::vector::squared_distance;
+use crate::objective::Point;
 use crate::obstacle::{Scene, Sweep};
 use crate::planning::collision_checks::{RESERVE, TimedMotion, as_lines, refuse_collision, scene, too_near};
 use crate::planning::cost::tip_travel_along;
@@ -24,8 +25,8 @@ const FEW_PAIRS: usize = 3;
 const TRIES: usize = 400;
 /// Intervals of a straight line at whose ends its penetration is measured.
 const INTERVALS: usize = 16;
-/// Number of paths searched, of which the cheapest is taken.
-const PATHS: u64 = 4;
+/// Number of paths searched at least, the same number from each start; the cheapest is taken.
+const PATHS: usize = 4;
 /// How often blends are narrowed before the motion stops at every corner instead.
 const NARROWINGS: usize = 12;
 
@@ -55,8 +56,8 @@ pub(super) fn plan(search: &mut PairSearch, options: &PointToPointOptions, monit
         true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),
         true => Certified::Nothing(Status::Stalled),
         false => {
-            sort_by_cost(&mut open, search, options.objective)?;
-            PathSearch { trees: &mut trees, search, options, margin }.best(&open, monitor)?
+            let starts = sort_by_cost(&mut open, search, options.objective)?;
+            PathSearch { trees: &mut trees, search, options, margin }.best(&open, &starts, monitor)?
         }
     };
     search.evaluations += trees.sweep.examined();
@@ -89,13 +90,21 @@ enum Certified {
     Nothing(Status),
 }
 
-/// Sorts pairs by the cost of the straight motion between them.
-fn sort_by_cost(open: &mut Vec<EndPair>, search: &PairSearch, objective: Cost) -> Result<()> {
-    let cost = |pair: EndPair| Ok((objective.of(search.robot, &straight(&pair, search.limits)?), pair));
-    let mut by_cost = open.drain(..).map(cost).collect::<Result<Vec<(f64, EndPair)>>>()?;
+/// Sorts pairs by the cost of the straight motion between them. Returns the starts of the pairs that are cheapest for any
+/// objective: paths are searched from these whatever the objective, so that none of them finds the best for another.
+fn sort_by_cost(open: &mut Vec<EndPair>, search: &PairSearch, objective: Cost) -> Result<Vec<Point>> {
+    let motions = open.iter().map(|pair| straight(pair, search.limits)).collect::<Result<Vec<_>>>()?;
+    let costs_by = |objective: Cost| -> Vec<f64> { motions.iter().map(|m| objective.of(search.robot, m)).collect() };
+    let mut starts: Vec<Point> = vec![];
+    for objective in [Cost::Time, Cost::JointTravel, Cost::TipTravel] {
+        let costs = costs_by(objective);
+        let cheapest = open.iter().zip(&costs).min_by(|one, other| one.1.total_cmp(other.1));
+        starts.extend(cheapest.map(|(pair, _)| pair.start.clone()).filter(|start| !starts.contains(start)));
+    }
+    let mut by_cost: Vec<(f64, EndPair)> = costs_by(objective).into_iter().zip(open.drain(..)).collect();
     by_cost.sort_by(|one, other| one.0.total_cmp(&other.0));
     open.extend(by_cost.into_iter().map(|(_, pair)| pair));
-    Ok(())
+    Ok(starts)
 }
 
 /// The search for a certified motion.
@@ -107,10 +116,10 @@ struct PathSearch<'s, 'a> {
 }
 
 impl PathSearch<'_, '_> {
-    /// Returns the cheapest motion found: straight between the pair of `open` that comes first, if that is collision-free;
-    /// else the cheapest of the first collision-free straight motion and of several paths around obstacles. `open` is
+    /// Returns the cheapest motion found: straight between the first pair of `open`, if that is collision-free; else the
+    /// cheapest of the first collision-free straight motion and of several paths around obstacles from `starts`. `open` is
     /// sorted by the cost of the straight motions.
-    fn best(self, open: &[EndPair], monitor: &mut dyn Monitor) -> Result<Certified> {
+    fn best(self, open: &[EndPair], starts: &[Point], monitor: &mut dyn Monitor) -> Result<Certified> {
         let Self { trees, search, options, margin } = self;
         let limits = search.limits;
         let mut best: Option<(f64, Trajectory)> = None;
@@ -129,31 +138,41 @@ impl PathSearch<'_, '_> {
                 }
             }
         }
-        // The ends of all pairs that share the start of the cheapest: any of them will do.
-        let start = &open[0].start;
-        let ends: Vec<Vec<f64>> =
-            open.iter().filter(|pair| pair.start == *start).map(|pair| pair.end.to_vec()).collect();
-        let motion = |best: (f64, Trajectory)| Certified::Motion(best.1);
-        // In joint space a line is the shortest way, and the quickest, but the tip may take a longer one.
-        let travel = |points: &[Vec<f64>]| tip_travel_along(search.robot, points);
-        let shortens =
-            |old: &[Vec<f64>], new: &[Vec<f64>]| options.objective != Cost::TipTravel || travel(new) <= travel(old);
-        for attempt in 1..=PATHS {
-            let mut rng = rng::stream(options.seed, attempt);
-            let path = match trees.connect(start, &ends, &mut rng, monitor) {
-                Connection::Found(path) => trees.shorten(path, &shortens, &mut rng, monitor),
-                Connection::NotFound => break,
-                Connection::Interrupted => {
-                    return Ok(best.map_or(Certified::Nothing(Status::Interrupted), motion));
-                }
-            };
-            let trajectory = timed(trees, &path, limits, margin)?;
+        let mut keep = |path: &JointPolyline, trees: &mut TreeSearch| -> Result<()> {
+            let trajectory = timed(trees, path, limits, margin)?;
             let cost = options.objective.of(search.robot, &trajectory);
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 best = Some((cost, trajectory));
             }
+            Ok(())
+        };
+        let travel = |points: &[Vec<f64>]| tip_travel_along(search.robot, points);
+        let from_each = PATHS.div_ceil(starts.len());
+        let attempts = starts.iter().flat_map(|start| (0..from_each).map(move |_| start)).zip(1..);
+        let mut ended = Status::BudgetSpent;
+        for (start, attempt) in attempts {
+            // The ends of all pairs that share this start: any of them will do. Their order is that of no objective.
+            let mut sharing: Vec<&EndPair> = open.iter().filter(|pair| pair.start == *start).collect();
+            sharing.sort_by(|one, other| one.duration.total_cmp(&other.duration));
+            let ends: Vec<Vec<f64>> = sharing.into_iter().map(|pair| pair.end.to_vec()).collect();
+            let mut rng = rng::stream(options.seed, attempt);
+            let path = match trees.connect(start, &ends, &mut rng, monitor) {
+                Connection::Found(path) => path,
+                Connection::NotFound => break,
+                Connection::Interrupted => {
+                    ended = Status::Interrupted;
+                    break;
+                }
+            };
+            if options.objective == Cost::TipTravel {
+                // A line is the shortest way of the joints, and the quickest, but not of the tip.
+                let is_shorter = |old: &[Vec<f64>], new: &[Vec<f64>]| travel(new) <= travel(old);
+                let shortened = trees.shorten(path.clone(), &is_shorter, &mut rng.clone(), monitor);
+                keep(&shortened, trees)?;
+            }
+            keep(&trees.shorten(path, &|_, _| true, &mut rng, monitor), trees)?;
         }
-        Ok(best.map_or(Certified::Nothing(Status::BudgetSpent), motion))
+        Ok(best.map_or(Certified::Nothing(ended), |(_, trajectory)| Certified::Motion(trajectory)))
     }
 }
 
@@ -235,6 +254,8 @@ fn finish(
         accuracy: None,
         reference: None,
         redundancy: vec![],
+        path: vec![],
+        peak: None,
         violations,
         status,
         evaluations,

@@ -1,6 +1,7 @@
-//! The quickest smooth motion along straight lines in joint space within velocity and acceleration limits.
+//! The quickest smooth motion along straight lines in joint space within velocity, acceleration and jerk limits.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::math::one_joint::{JointProfile, MotionState, Rates, Transfer};
 use crate::planning::MotionLimits;
 use crate::trajectory::{Coefficients, Trajectory, polynomial};
 
@@ -8,10 +9,17 @@ use crate::trajectory::{Coefficients, Trajectory, polynomial};
 const QUINTIC_SPEED: f64 = 15.0 / 8.0;
 /// Largest acceleration of that quintic, relative to displacement / duration^2: 10 / sqrt(3).
 const QUINTIC_ACCELERATION: f64 = 5.773_502_691_896_258;
+/// Largest jerk of that quintic, relative to displacement / duration^3.
+const QUINTIC_JERK: f64 = 60.0;
 /// Largest acceleration of a blend, relative to change of velocity / duration.
 const BLEND_ACCELERATION: f64 = 1.5;
+/// Largest jerk of a blend, relative to change of velocity / duration^2.
+const BLEND_JERK: f64 = 6.0;
 /// Durations exceed the exact ones by this factor, so that rounding violates no limit.
 const CAUTION: f64 = 1.0 + 1e-12;
+
+/// Fraction by which a blend may be shorter than needed.
+const TOO_SHORT: f64 = 1e-9;
 
 /// Maximum number of rounds in which blends and velocities are adjusted to each other.
 const ROUNDS: usize = 200;
@@ -24,7 +32,9 @@ impl MotionLimits {
             if size == 0.0 {
                 return 0.0;
             }
-            (QUINTIC_SPEED * size / self.velocity[j]).max((QUINTIC_ACCELERATION * size / self.acceleration[j]).sqrt())
+            (QUINTIC_SPEED * size / self.velocity[j])
+                .max((QUINTIC_ACCELERATION * size / self.acceleration[j]).sqrt())
+                .max((QUINTIC_JERK * size / self.jerk[j]).cbrt())
         };
         displacement.enumerate().map(of_joint).fold(0.0, f64::max)
     }
@@ -32,7 +42,9 @@ impl MotionLimits {
     /// Returns how far a quintic can move joint `j` (rad, m) in `duration` (s).
     pub(super) fn quintic_reach(&self, j: usize, duration: f64) -> f64 {
         let by_speed = self.velocity[j] * duration / QUINTIC_SPEED;
-        by_speed.min(self.acceleration[j] * duration * duration / QUINTIC_ACCELERATION)
+        by_speed
+            .min(self.acceleration[j] * duration * duration / QUINTIC_ACCELERATION)
+            .min(self.jerk[j] * duration.powi(3) / QUINTIC_JERK)
     }
 }
 
@@ -41,8 +53,11 @@ impl MotionLimits {
 pub(super) struct JointPolyline(pub Vec<Vec<f64>>);
 
 impl JointPolyline {
-    /// Moves from rest to rest along each line by a quintic: exactly on the lines, stopping at every point.
+    /// Moves from rest to rest along each line, stopping at every point: by a quintic, or as fast as jerk limits allow.
     pub(super) fn with_stops(&self, limits: &MotionLimits) -> Result<Trajectory> {
+        if limits.limit_jerk() {
+            return self.with_stops_and_jerk(limits);
+        }
         let (mut knots, mut coefficients) = (vec![0.0], vec![]);
         let mut time = 0.0;
         for line in self.0.windows(2) {
@@ -51,6 +66,26 @@ impl JointPolyline {
             time += h;
             knots.push(time);
             coefficients.extend((0..limits.dof()).map(|j| quintic(line[0][j], displacement(j), h)));
+        }
+        Trajectory::new(limits.joint_names(), knots, coefficients)
+    }
+
+    /// Moves from rest to rest along each line as fast as the limits up to jerk allow.
+    fn with_stops_and_jerk(&self, limits: &MotionLimits) -> Result<Trajectory> {
+        let (mut knots, mut coefficients) = (vec![0.0], vec![]);
+        for line in self.0.windows(2) {
+            let begin = knots[knots.len() - 1];
+            let shares = line_profile(line, limits)?;
+            let starts = shares.segments.iter().skip(1).map(|segment| begin + segment.time);
+            knots.extend(starts.chain([begin + shares.duration]));
+            for segment in &shares.segments {
+                let MotionState { q, v, a } = segment.state;
+                let share = [q, v, 0.5 * a, segment.jerk / 6.0];
+                coefficients.extend(line[0].iter().zip(&line[1]).map(|(from, to)| {
+                    let [c0, c1, c2, c3] = share.map(|c| c * (to - from));
+                    polynomial([from + c0, c1, c2, c3])
+                }));
+            }
         }
         Trajectory::new(limits.joint_names(), knots, coefficients)
     }
@@ -75,21 +110,25 @@ impl JointPolyline {
                 let room = shares[i] * beside.clone().map(|line| lines[line]).fold(f64::INFINITY, f64::min);
                 let needed = (0..limits.dof()).map(|j| {
                     let change = self.velocity(after, j, &lines) - self.velocity(before, j, &lines);
-                    BLEND_ACCELERATION * change.abs() / limits.acceleration[j]
+                    let by_acceleration = BLEND_ACCELERATION * change.abs() / limits.acceleration[j];
+                    by_acceleration.max((BLEND_JERK * change.abs() / limits.jerk[j]).sqrt())
                 });
                 let needed = CAUTION * needed.fold(0.0, f64::max);
                 // A blend from or to rest costs time, so it is no longer than the acceleration limits require.
                 let at_end = before.is_none() || after.is_none();
                 *blend = if at_end && needed > 0.0 { needed.min(room) } else { room };
-                if needed > room * (1.0 + 1e-9) {
-                    // Half the speed takes a quarter of the acceleration.
+                if needed > room * (1.0 + TOO_SHORT) {
+                    // Half the speed takes a quarter of the acceleration and an eighth of the jerk.
                     let slower = (needed / room).sqrt().min(2.0) * CAUTION;
                     beside.for_each(|line| lines[line] *= slower);
                     settled = false;
                 }
             }
             if settled {
-                return Some(self.blended(limits, &lines, &blends));
+                let motion = self.blended(limits, &lines, &blends);
+                // A blend that is just too short exceeds a jerk limit by twice as much.
+                let excess = if limits.limit_jerk() { 2.0 * TOO_SHORT } else { 0.0 };
+                return Some(if excess > 0.0 { motion.and_then(|motion| motion.slowed(1.0 + excess)) } else { motion });
             }
         }
         None
@@ -141,6 +180,25 @@ fn line_duration(line: &[Vec<f64>], limits: &MotionLimits) -> f64 {
     }
     // Without velocity limits only the acceleration limits matter.
     0.5 * limits.quintic_duration((0..limits.dof()).map(|j| line[1][j] - line[0][j]))
+}
+
+/// The fastest motion from 0 to 1 along a line, as a fraction of it.
+fn line_profile(line: &[Vec<f64>], limits: &MotionLimits) -> Result<JointProfile> {
+    let share = |all: &[f64]| {
+        let of_joint = |j: usize| {
+            let size = (line[1][j] - line[0][j]).abs();
+            if size == 0.0 { f64::INFINITY } else { all[j] / size }
+        };
+        (0..limits.dof()).map(of_joint).fold(f64::INFINITY, f64::min) / CAUTION
+    };
+    let rates = Rates {
+        velocity: share(&limits.velocity),
+        acceleration: share(&limits.acceleration),
+        jerk: share(&limits.jerk),
+    };
+    let transfer = Transfer::new(MotionState::rest(0.0), MotionState::rest(1.0), &rates);
+    let too_long = || Error::Infeasible { problem: "the limits let no motion end".into() };
+    transfer.motion(transfer.duration(0.0)).ok_or_else(too_long)
 }
 
 /// The quintic from rest to rest over `displacement` in `h` (s).

@@ -1,6 +1,7 @@
 //! The min-max planner: end configurations, then a straight line or a path around obstacles.
 
 use super::among_obstacles;
+use super::moving_start::{self, Beginning};
 use super::pair_search::PairSearch;
 use super::straight_line_plan::without_obstacles;
 use crate::error::{Error, Result};
@@ -24,6 +25,17 @@ pub(crate) fn point_to_point(
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
     require_pace(robot, &limits)?;
     let mut search = PairSearch::new(robot, &limits, [start, end], options.seed, deadline)?;
+    if let Some(velocity) = &options.start_velocity {
+        return match moving_start::begin(&mut search, velocity, options, monitor)? {
+            Beginning::Whole(plan) => Ok(*plan),
+            Beginning::Stop(stop) => {
+                let at_rest = Endpoint::Configuration(moving_start::end_of(&stop));
+                let options = PointToPointOptions { start_velocity: None, ..options.clone() };
+                let rest = point_to_point(robot, &at_rest, end, &options, monitor)?;
+                moving_start::followed_by(stop, rest, robot, &options)
+            }
+        };
+    }
     if can_collide(robot, &options.obstacles) {
         among_obstacles::plan(&mut search, options, monitor)
     } else {
@@ -31,9 +43,10 @@ pub(crate) fn point_to_point(
     }
 }
 
-/// Checks that every joint has a velocity or an acceleration limit; without one a motion would take no time.
+/// Checks that every joint has a velocity, acceleration or jerk limit; without one a motion would take no time.
 fn require_pace(robot: &Robot, limits: &MotionLimits) -> Result<()> {
-    let unlimited = |j: &usize| limits.velocity[*j].is_infinite() && limits.acceleration[*j].is_infinite();
+    let unlimited =
+        |j: &usize| [limits.velocity[*j], limits.acceleration[*j], limits.jerk[*j]].iter().all(|x| x.is_infinite());
     match (0..robot.dof()).find(unlimited) {
         None => Ok(()),
         Some(j) => Err(Error::NoPace { joint: limits.joint_name(j).into() }),

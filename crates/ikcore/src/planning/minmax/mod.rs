@@ -10,6 +10,7 @@
 //! | [`straight_line_plan`] | the best of the straight lines between pairs |
 //! | [`line_timing`] | the quickest smooth timing of straight lines |
 //! | [`among_obstacles`] | a path around obstacles, its timing certified |
+//! | [`moving_start`] | motions that begin at a velocity |
 //! | [`rrt_connect`] | RRT-Connect, and shortcuts |
 
 mod among_obstacles;
@@ -18,6 +19,7 @@ mod end_pair;
 mod least_displacement;
 mod line_timing;
 mod minmax_planner;
+mod moving_start;
 mod pair_search;
 mod rrt_connect;
 mod straight_line_plan;

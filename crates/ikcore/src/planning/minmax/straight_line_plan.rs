@@ -37,6 +37,8 @@ pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monito
         accuracy: None,
         reference: None,
         redundancy: vec![],
+        path: vec![],
+        peak: None,
         violations,
         status,
         evaluations,

@@ -1,5 +1,7 @@
 //! Geometric path of the joints: cubics in a path parameter, without timing.
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
 use crate::math::polynomial::{derivative, roots};
@@ -14,7 +16,8 @@ const JUMP_TOLERANCE: f64 = 1e-9;
 const VANISHING: f64 = 1e-12;
 
 /// A continuous path of all joints: piecewise cubics q(s) in the path parameter s.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "(Vec<String>, Vec<f64>, Vec<f64>, Vec<f64>)")]
 pub struct JointPath {
     joints: Vec<String>,
     /// Path parameters of the starts of all pieces, and of the end of the last.
@@ -25,6 +28,24 @@ pub struct JointPath {
     /// Coefficients of powers of s since the start of the piece: by piece, then by power, then by joint, because a grid
     /// point needs one power of all joints.
     coefficients: Vec<f64>,
+}
+
+/// Stored paths are checked again.
+impl TryFrom<(Vec<String>, Vec<f64>, Vec<f64>, Vec<f64>)> for JointPath {
+    type Error = Error;
+
+    fn try_from(parts: (Vec<String>, Vec<f64>, Vec<f64>, Vec<f64>)) -> Result<Self> {
+        let (joints, breaks, lengths, coefficients) = parts;
+        let pieces = lengths.len();
+        let fits = pieces > 0 && breaks.len() == pieces + 1 && coefficients.len() == pieces * POWERS * joints.len();
+        let increases = breaks.windows(2).all(|ends| ends[0] < ends[1]) && lengths.iter().all(|length| *length > 0.0);
+        if joints.is_empty() || !fits || !increases {
+            return Err(Error::InvalidPath { problem: "its parts contradict each other".into() });
+        }
+        require_finite("joint path", &breaks, |i| format!("break {i}"))?;
+        require_finite("joint path", &coefficients, |i| format!("coefficient {i}"))?;
+        Ok(Self::from_parts(joints, breaks, lengths, coefficients))
+    }
 }
 
 /// One of the two ends of a path.

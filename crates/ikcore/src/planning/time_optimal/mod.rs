@@ -32,5 +32,5 @@ mod velocity_curve;
 pub use crate::math::cubic_spline::SplineEnds;
 pub use joint_path::JointPath;
 pub use timing::{TimingOptions, time_optimal};
-pub(super) use timing::{coarse_duration, time};
+pub(super) use timing::{coarse_duration, time_all};
 pub use timing_limits::TimingLimits;

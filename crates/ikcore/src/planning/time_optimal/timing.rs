@@ -65,6 +65,21 @@ pub(crate) fn time(path: &JointPath, limits: &TimingLimits, options: &TimingOpti
     }
 }
 
+/// The fastest motion along `paths`, each from rest to rest, one after the other.
+///
+/// # Errors
+/// As [`time`]; [`Error::InvalidPath`] without a path.
+pub(crate) fn time_all(paths: &[JointPath], limits: &TimingLimits) -> Result<Trajectory> {
+    let none = || Error::InvalidPath { problem: "it has no points".into() };
+    let rest_to_rest = TimingOptions::default();
+    if limits.jerk.is_none() {
+        return time(&JointPath::joined(paths.iter().cloned()).ok_or_else(none)?, limits, &rest_to_rest);
+    }
+    let mut motions = paths.iter().map(|path| time(path, limits, &rest_to_rest));
+    let first = motions.next().ok_or_else(none)??;
+    motions.try_fold(first, |all, next| all.then(&next?, 0.0))
+}
+
 /// Below this fraction of the duration, the rounding of times may make a span exceed its limits.
 const SHORT: f64 = 1e-8;
 

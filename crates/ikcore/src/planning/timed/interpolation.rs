@@ -1,7 +1,7 @@
 //! Joint splines through waypoints on a path, dense enough that the tip stays on the path between them.
 
 use super::projection::project;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
 use crate::math::MAX_DOF;
 use crate::objective::{Bounds, Linearization};
@@ -68,6 +68,15 @@ impl Interpolation<'_> {
     /// # Errors
     /// None in practice: waypoints that differ define a spline.
     pub(super) fn path(&self, waypoints: &JointWaypoints) -> Result<JointPath> {
+        let joined = JointPath::joined(self.stretches(waypoints)?);
+        joined.ok_or_else(|| Error::InvalidPath { problem: "it has no points".into() })
+    }
+
+    /// Returns the parts of that path between stops.
+    ///
+    /// # Errors
+    /// As [`path`](Self::path).
+    pub(super) fn stretches(&self, waypoints: &JointWaypoints) -> Result<Vec<JointPath>> {
         let n = self.robot.dof();
         let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
         // Natural ends, i.e. zero curvature, would be less accurate.
@@ -77,13 +86,12 @@ impl Interpolation<'_> {
         };
         let last = waypoints.knots.len() - 1;
         if self.corners == Corners::Passed {
-            return spline(0, last);
+            return Ok(vec![spline(0, last)?]);
         }
         let mut ends = vec![0];
         ends.extend(self.tip_path.corners().map(|corner| waypoints.knots.partition_point(|knot| *knot < corner)));
         ends.push(last);
-        let stretches = ends.windows(2).map(|ends| spline(ends[0], ends[1])).collect::<Result<Vec<_>>>()?;
-        JointPath::joined(stretches).map_or_else(|| spline(0, last), Ok)
+        ends.windows(2).map(|ends| spline(ends[0], ends[1])).collect()
     }
 
     /// Returns the waypoints with knots added until the tip is within `accuracy` (m, rad) of the path, or until more

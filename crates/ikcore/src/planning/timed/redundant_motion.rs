@@ -152,7 +152,7 @@ impl<'a> RedundantMotion<'a> {
         let mut rng = rng::stream(seed, 0);
         let starts = self.robot.random_configurations(STARTS, &mut rng)?;
         let mut best: Option<(f64, Vec<f64>)> = None;
-        let mut farthest: Option<Lost> = None;
+        let mut farthest: Option<DeadEnd> = None;
         for start in starts.chunks_exact(self.dof()) {
             checkpoint()?;
             match self.follow(start) {
@@ -177,7 +177,7 @@ impl<'a> RedundantMotion<'a> {
     }
 
     /// Names the points that cannot be reached at all; where there are none, the place where the best motion ended.
-    fn error(&self, lost: &Lost, seed: u64) -> Result<Error> {
+    fn error(&self, lost: &DeadEnd, seed: u64) -> Result<Error> {
         if let Some(error) = unreachable_points(self.robot, self.tip_path, seed)? {
             return Ok(error);
         }
@@ -194,7 +194,7 @@ impl<'a> RedundantMotion<'a> {
     }
 
     /// Follows all points from `start`, each from the previous one.
-    fn follow(&mut self, start: &[f64]) -> Result<Vec<f64>, Lost> {
+    fn follow(&mut self, start: &[f64]) -> Result<Vec<f64>, DeadEnd> {
         let n = self.dof();
         let mut nominal = vec![0.0; self.points() * n];
         let mut q = [0.0; MAX_DOF];
@@ -207,7 +207,7 @@ impl<'a> RedundantMotion<'a> {
             };
             let jump = (0..n).map(|j| (q[j] - before[j]).abs()).fold(0.0, f64::max);
             if missed > 0.0 || (point > 0 && jump > JUMP) {
-                return Err(Lost { point, missed });
+                return Err(DeadEnd { point, missed });
             }
             nominal[point * n..(point + 1) * n].copy_from_slice(&q[..n]);
         }
@@ -236,12 +236,12 @@ impl<'a> RedundantMotion<'a> {
 }
 
 /// Knot at which a nominal motion ended, and its distance to the point (m, rad).
-struct Lost {
+struct DeadEnd {
     point: usize,
     missed: f64,
 }
 
-impl Lost {
+impl DeadEnd {
     fn is_farther_than(&self, other: &Self) -> bool {
         self.point > other.point || (self.point == other.point && self.missed < other.missed)
     }

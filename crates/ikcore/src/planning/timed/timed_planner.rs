@@ -6,10 +6,10 @@ use super::timed_cost::TimedCost;
 use crate::error::{Error, Result, require_positive};
 use crate::limits::Limits;
 use crate::planning::deviation::TipDeviation;
-use crate::planning::search::{Found, Search};
-use crate::planning::time_optimal::{coarse_duration, time};
+use crate::planning::search::{Search, SearchResult};
+use crate::planning::time_optimal::{coarse_duration, time_all};
 use crate::planning::tip_path::TipPath;
-use crate::planning::{AlongPathOptions, MotionLimits, Plan, TimingLimits, TimingOptions};
+use crate::planning::{AlongPathOptions, MotionLimits, Plan, TimingLimits};
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
 use crate::solver::{AnySolver, DifferentialEvolution, Monitor, Schedule, Status, Stop};
@@ -100,8 +100,9 @@ fn plan(
     let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
     let (waypoints, _) = cost.waypoints(z);
     let waypoints = cost.interpolation.refined(waypoints, cost.accuracy)?;
+    let stretches = cost.interpolation.stretches(&waypoints)?;
     let path = cost.interpolation.path(&waypoints)?;
-    let trajectory = time(&path, cost.timing_limits, &TimingOptions::default())?;
+    let trajectory = time_all(&stretches, cost.timing_limits)?;
     let Interpolation { robot, tip_path, .. } = cost.interpolation;
     let configurations = |share: f64, q: &mut [f64]| path.position(share, q);
     let deviation = TipDeviation { robot, tip_path, configurations }.largest(&waypoints.knots);
@@ -115,6 +116,8 @@ fn plan(
         accuracy: Some(deviation.distance.value),
         reference: Some(tip_path.positions().to_vec()),
         redundancy: vec![],
+        path: stretches,
+        peak: None,
         violations,
         status: match &found {
             Some(found) => found.status(keeps_everything),
@@ -129,7 +132,11 @@ fn plan(
 }
 
 /// Runs the search; `None` if the arm is not redundant.
-fn search(cost: &mut TimedCost<'_>, options: &AlongPathOptions, monitor: &mut dyn Monitor) -> Result<Option<Found>> {
+fn search(
+    cost: &mut TimedCost<'_>,
+    options: &AlongPathOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Option<SearchResult>> {
     let Some(bounds) = cost.bounds() else {
         return match &options.solver {
             None => Ok(None),

@@ -23,6 +23,7 @@ pub(crate) fn along_path(
     let stopwatch = Stopwatch::start();
     let arm = PlanarArm::of(robot).ok_or_else(|| not_planar(robot))?;
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    limits.refuse_jerk(METHOD)?;
     limits.require_velocities(METHOD)?;
     let start = options.start_within(robot, &limits)?;
     let elbow = start.map_or_else(|| tpbso.elbow_along_path(), |q| Ok(arm.elbow(q)))?;
@@ -45,6 +46,8 @@ pub(crate) fn along_path(
         accuracy: Some(deviation.distance.value),
         reference: Some(tip_path.points().positions().to_vec()),
         redundancy: cost.orientations(&found.x),
+        path: vec![],
+        peak: None,
         status: found.status(violations.is_empty()),
         violations,
         history: found.history,

@@ -23,6 +23,7 @@ pub(crate) fn point_to_point(
 ) -> Result<Plan> {
     let stopwatch = Stopwatch::start();
     let limits = MotionLimits::new(robot, options.limits.as_ref(), METHOD)?;
+    limits.refuse_jerk(METHOD)?;
     limits.require_velocities(METHOD)?;
     let can_collide = can_collide(robot, &options.obstacles);
     let lines = if can_collide { as_lines(robot)? } else { None };
@@ -53,6 +54,8 @@ pub(crate) fn point_to_point(
         accuracy: None,
         reference: None,
         redundancy: vec![],
+        path: vec![],
+        peak: None,
         history: found.history,
         clearance,
         status,

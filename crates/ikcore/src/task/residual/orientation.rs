@@ -5,6 +5,7 @@
 
 use crate::math::Frame;
 use crate::math::box_step::ROWS;
+use crate::math::real::Real;
 use crate::math::so3::{Axes, rotation_and_jacobian, rotation_between};
 use crate::math::vec3::Vec3;
 
@@ -18,7 +19,12 @@ pub(crate) fn error(target: &Frame, tip: &Frame) -> f64 {
 /// Writes the angular rows of residual and derivative, from the tip's geometric Jacobian given in `columns`, and returns the
 /// squared angle.
 #[inline(always)]
-pub(crate) fn linearize(target: &Axes, tip: &Axes, residual: &mut [f64; ROWS], columns: &mut [[f64; ROWS]]) -> f64 {
+pub(crate) fn linearize<R: Real>(
+    target: &Axes<R>,
+    tip: &Axes<R>,
+    residual: &mut [R::Stored; ROWS],
+    columns: &mut [[R::Stored; ROWS]],
+) -> R {
     let (phi, inverse) = rotation_and_jacobian(target, tip);
     for column in columns {
         let [.., x, y, z] = *column;

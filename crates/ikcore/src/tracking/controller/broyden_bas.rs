@@ -216,11 +216,11 @@ impl BroydenBasState {
                 TickProgress::GoOn
             }
             Purpose::Antenna { joint } => {
-                self.feel(joint, tip);
+                self.set_column(joint, tip);
                 TickProgress::GoOn
             }
-            Purpose::Step | Purpose::Again if tip.is_oriented() => self.believe::<6>(tick, tip),
-            Purpose::Step | Purpose::Again => self.believe::<3>(tick, tip),
+            Purpose::Step | Purpose::Again if tip.is_oriented() => self.process_step::<6>(tick, tip),
+            Purpose::Step | Purpose::Again => self.process_step::<3>(tick, tip),
         };
         let near_enough = self.tolerance.at_least(NEAR_ENOUGH * self.noise.level());
         let arrived = self.next == Purpose::Step && self.tip.error(tick.target).within(&near_enough);
@@ -234,7 +234,7 @@ impl BroydenBasState {
         self.next = Purpose::Antenna { joint: 0 };
     }
 
-    fn feel(&mut self, joint: usize, tip: &TipPose) {
+    fn set_column(&mut self, joint: usize, tip: &TipPose) {
         self.jacobian.set_column(joint, self.sent[joint] - self.q[joint], &tip.residual(&self.tip));
         self.next = Purpose::Antenna { joint: joint + 1 };
         if joint + 1 == self.q.len() {
@@ -243,7 +243,7 @@ impl BroydenBasState {
     }
 
     /// Processes the measurement of a step, which may be a repeated one. The residual has `R` rows, three for positions.
-    fn believe<const R: usize>(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
+    fn process_step<const R: usize>(&mut self, tick: ControlTick<'_>, tip: &TipPose) -> TickProgress {
         let repeated = self.purpose == Purpose::Again;
         let Self { q, sent, jacobian, .. } = self;
         let dq = || sent.iter().zip(q.iter()).map(|(to, from)| to - from);

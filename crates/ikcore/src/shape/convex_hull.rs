@@ -1,10 +1,9 @@
-//! Convex hulls, based on the collision crate: the only file that uses its types.
+//! Convex hulls of points.
 
 use nalgebra::Vector3;
-use parry3d_f64::math::Vector;
-use parry3d_f64::query::PointQuery;
-use parry3d_f64::shape::ConvexPolyhedron;
 
+use super::checked_shape::BoundingBall;
+use super::collision_crate::Polyhedron;
 use super::tangent::Tangent;
 
 /// The convex hull of some points.
@@ -14,7 +13,7 @@ pub struct Hull {
     corners: Vec<Vector3<f64>>,
     /// Outward normal n and offset d of each face: n . x <= d inside.
     faces: Vec<(Vector3<f64>, f64)>,
-    polyhedron: ConvexPolyhedron,
+    polyhedron: Polyhedron,
 }
 
 impl PartialEq for Hull {
@@ -40,15 +39,11 @@ impl Hull {
         if thinness(points) < THINNEST {
             return Err(flat());
         }
-        let given: Vec<Vector> = points.iter().map(|[x, y, z]| Vector::new(*x, *y, *z)).collect();
-        let (vertices, triangles) = parry3d_f64::transformation::try_convex_hull(&given).map_err(|_| flat())?;
-        let polyhedron = ConvexPolyhedron::from_convex_mesh(vertices, &triangles).ok_or_else(flat)?;
-        let corners: Vec<Vector3<f64>> = polyhedron.points().iter().map(|p| Vector3::new(p.x, p.y, p.z)).collect();
-        let faces = polyhedron.faces().iter().map(|face| {
-            let normal = Vector3::new(face.normal.x, face.normal.y, face.normal.z);
-            (normal, support(&corners, &normal))
-        });
-        Ok(Self { points: points.to_vec(), faces: faces.collect(), corners, polyhedron })
+        let polyhedron = Polyhedron::hull_of(points).ok_or_else(flat)?;
+        let corners = polyhedron.corners();
+        let with_offset = |normal: Vector3<f64>| (normal, support(&corners, &normal));
+        let faces = polyhedron.normals().into_iter().map(with_offset).collect();
+        Ok(Self { points: points.to_vec(), faces, corners, polyhedron })
     }
 
     /// The points as given (m).
@@ -58,16 +53,14 @@ impl Hull {
 
     /// Corners of the hull's triangles (m), for drawing.
     pub fn triangles(&self) -> Vec<[[f64; 3]; 3]> {
-        let (corners, triangles) = self.polyhedron.to_trimesh();
-        let corner = |i: u32| <[f64; 3]>::from(corners[i as usize]);
-        triangles.into_iter().map(|triangle| triangle.map(corner)).collect()
+        self.polyhedron.triangles()
     }
 
-    /// Centre and radius of a sphere that holds it.
-    pub(super) fn bounding_sphere(&self) -> ([f64; 3], f64) {
+    /// A ball that holds it.
+    pub(super) fn bounding_ball(&self) -> BoundingBall {
         let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;
-        let reach = self.corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
-        (middle.into(), reach)
+        let radius = self.corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
+        BoundingBall { center: middle.into(), radius }
     }
 
     /// The crate proposes the nearest point; the plane through the corners bounds the distance regardless of its error.
@@ -82,8 +75,7 @@ impl Hull {
         if of_face.value <= 0.0 {
             return of_face;
         }
-        let nearest = self.polyhedron.project_local_point(Vector::new(point.x, point.y, point.z), true).point;
-        let away = point - Vector3::new(nearest.x, nearest.y, nearest.z);
+        let away = point - self.polyhedron.nearest_point(point);
         let normal = away.normalize();
         let value = normal.dot(point) - support(&self.corners, &normal);
         if value > of_face.value { Tangent { value, normal } } else { of_face }

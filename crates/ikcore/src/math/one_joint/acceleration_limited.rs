@@ -1,0 +1,65 @@
+//! The motion of a given duration that takes a joint as far as possible in the positive direction, without a jerk limit.
+
+use super::motion_state::{MotionState, Rates};
+use super::phases::{Durations, Phase, Phases, Possible};
+
+/// Full acceleration, the velocity limit if it is reached, full deceleration. Without an acceleration limit, the velocity
+/// limit all the time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AccelerationLimited {
+    from: f64,
+    to: f64,
+    rates: Rates,
+}
+
+impl AccelerationLimited {
+    pub(super) fn new(from: MotionState, to: MotionState, rates: Rates) -> Self {
+        Self { from: from.v, to: to.v, rates }
+    }
+
+    /// The phases for the duration `t` (s); `None` if it is too short for the change of velocity.
+    pub(super) fn phases(&self, t: f64) -> Option<Phases> {
+        let Self { from, to, rates: Rates { velocity, acceleration, .. } } = *self;
+        let mut phases = [Phase::default(); 7];
+        if acceleration.is_infinite() {
+            phases[0].duration = t;
+            return Some(Phases { velocity, phases });
+        }
+        let spare = t - (to - from).abs() / acceleration;
+        if spare < 0.0 {
+            return None;
+        }
+        let top = (from.max(to) + 0.5 * acceleration * spare).min(velocity);
+        let (rise, fall) = ((top - from) / acceleration, (top - to) / acceleration);
+        phases[0] = Phase { duration: rise, acceleration, jerk: 0.0 };
+        phases[1] = Phase { duration: (t - rise - fall).max(0.0), acceleration: 0.0, jerk: 0.0 };
+        phases[2] = Phase { duration: fall, acceleration: -acceleration, jerk: 0.0 };
+        Some(Phases { velocity: from, phases })
+    }
+
+    /// As [`JerkLimited::possible`](super::jerk_limited::JerkLimited::possible).
+    pub(super) fn possible(&self, found: &mut Possible) {
+        let change = (self.to - self.from).abs() / self.rates.acceleration;
+        found.push([change, f64::INFINITY]);
+    }
+
+    /// As [`JerkLimited::critical_durations`](super::jerk_limited::JerkLimited::critical_durations).
+    pub(super) fn critical_durations(&self, found: &mut Durations) {
+        let Self { from, to, rates: Rates { acceleration, .. } } = *self;
+        if acceleration.is_finite() {
+            found.push(-(to + from) / acceleration);
+        }
+    }
+
+    /// The shortest duration (s) in which the motion reaches the velocity limit; infinite without one.
+    pub(super) fn full_speed_duration(&self) -> f64 {
+        let Self { from, to, rates: Rates { velocity, acceleration, .. } } = *self;
+        if acceleration.is_infinite() { 0.0 } else { (2.0 * velocity - from - to) / acceleration }
+    }
+
+    /// As [`JerkLimited::rises_from`](super::jerk_limited::JerkLimited::rises_from).
+    pub(super) fn rises_from(&self, t: f64) -> bool {
+        let Self { from, to, rates: Rates { acceleration, .. } } = *self;
+        from + to + acceleration * t >= 0.0
+    }
+}

@@ -1,0 +1,76 @@
+//! The extremal motions of a joint.
+
+use super::acceleration_limited::AccelerationLimited;
+use super::jerk_limited::JerkLimited;
+use super::motion_state::{MotionState, Rates};
+use super::phases::{Durations, Phases, Possible};
+
+/// The motion of a given duration between two states that takes the joint as far as possible in the positive direction,
+/// whatever its final position.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Extremal {
+    Jerk(JerkLimited),
+    Acceleration(AccelerationLimited),
+}
+
+impl Extremal {
+    pub(super) fn new(from: MotionState, to: MotionState, rates: Rates) -> Self {
+        if rates.jerk.is_finite() {
+            Self::Jerk(JerkLimited::new(from, to, rates))
+        } else {
+            Self::Acceleration(AccelerationLimited::new(from, to, rates))
+        }
+    }
+
+    /// The phases for the duration `t` (s); `None` if no motion of that duration meets the states.
+    pub(super) fn phases(&self, t: f64) -> Option<Phases> {
+        match self {
+            Self::Jerk(extremal) => extremal.phases(t),
+            Self::Acceleration(extremal) => extremal.phases(t),
+        }
+    }
+
+    /// The distance covered in the duration `t` (s).
+    pub(super) fn displacement(&self, t: f64) -> Option<f64> {
+        match self {
+            Self::Jerk(extremal) => extremal.displacement(t),
+            Self::Acceleration(extremal) => extremal.phases(t).map(|phases| phases.displacement()),
+        }
+    }
+
+    /// Intervals of possible durations (s), at most three, in order; the last has no end.
+    pub(super) fn possible(&self) -> Possible {
+        let mut found = Possible::new();
+        match self {
+            Self::Jerk(extremal) => extremal.possible(&mut found),
+            Self::Acceleration(extremal) => extremal.possible(&mut found),
+        }
+        found
+    }
+
+    /// Durations (s) between which the distance is monotone, as far as it is not known to rise.
+    pub(super) fn critical_durations(&self) -> Durations {
+        let mut found = Durations::new();
+        match self {
+            Self::Jerk(extremal) => extremal.critical_durations(&mut found),
+            Self::Acceleration(extremal) => extremal.critical_durations(&mut found),
+        }
+        found
+    }
+
+    /// Whether all motions longer than `t` (s) get farther.
+    pub(super) fn rises_from(&self, t: f64) -> bool {
+        match self {
+            Self::Jerk(extremal) => extremal.rises_from(t),
+            Self::Acceleration(extremal) => extremal.rises_from(t),
+        }
+    }
+
+    /// The shortest duration (s) in which the motion reaches the velocity limit; infinite without one.
+    pub(super) fn full_speed_duration(&self) -> f64 {
+        match self {
+            Self::Jerk(extremal) => extremal.full_speed_duration(),
+            Self::Acceleration(extremal) => extremal.full_speed_duration(),
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! The first duration for which an extremal motion passes a position.
+
+use super::extremal::Extremal;
+use super::phases::Durations;
+
+/// Fraction of the last part of an interval that is left out before its end, where motions cease to exist.
+const INSET: f64 = 1e-13;
+
+/// Most durations that are tried: those where the motion changes its kind, then ever longer ones.
+const TRIES: usize = 400;
+
+/// Most steps of the search for a root; bisection alone ends in fewer.
+const STEPS: usize = 200;
+
+/// The first duration between `start` and `end` for which the extremal motion gets to `goal`, which it misses by the
+/// `error` at the start.
+pub(super) fn first_passing(extremal: &Extremal, goal: f64, [start, end]: [f64; 2], error: f64) -> Option<f64> {
+    let beyond = |t: f64| extremal.displacement(t).map(|displacement| displacement - goal);
+    let mut pauses = if extremal.rises_from(start) { Durations::new() } else { extremal.critical_durations() };
+    pauses.push(extremal.full_speed_duration());
+    pauses.sort_unstable_by(f64::total_cmp);
+    let (mut last, mut before) = (start, error);
+    let mut next = pauses.into_iter().filter(|t| start < *t && *t < end);
+    let mut step: f64 = 1e-9;
+    for _ in 0..TRIES {
+        let (t, is_last) = match next.next() {
+            Some(t) => (t, false),
+            None if end.is_finite() => (end - INSET * (end - last), true),
+            None => (last + step.max(last), false),
+        };
+        step *= 2.0;
+        let Some(error) = beyond(t) else {
+            if is_last {
+                return None;
+            }
+            continue;
+        };
+        if error >= 0.0 {
+            return Some(root(beyond, [last, t], [before, error]));
+        }
+        if is_last {
+            return None;
+        }
+        (last, before) = (t, error);
+    }
+    None
+}
+
+/// The point between `ends` where `error` with these values at them changes its sign, or the nearest point after it: by
+/// the method of Anderson and Bjoerck, and by bisection where that is slow.
+fn root(error: impl Fn(f64) -> Option<f64>, ends: [f64; 2], values: [f64; 2]) -> f64 {
+    let ([mut lower, mut upper], [mut left, mut right]) = (ends, values);
+    let (sign, mut last, mut width) = (left.signum(), 0.0, upper - lower);
+    for step in 1..=STEPS {
+        let secant = upper - right * (upper - lower) / (right - left);
+        let slow = step % 3 == 0 && upper - lower > 0.5 * width;
+        if step % 3 == 0 {
+            width = upper - lower;
+        }
+        let t = if !slow && lower < secant && secant < upper { secant } else { 0.5 * (lower + upper) };
+        if !(lower < t && t < upper) || upper - lower <= f64::EPSILON * upper {
+            break;
+        }
+        let Some(value) = error(t) else { break };
+        if value == 0.0 {
+            return t;
+        }
+        let damped = |value: f64, before: f64| if value / before < 1.0 { 1.0 - value / before } else { 0.5 };
+        if value.signum() == sign {
+            right *= if last == sign { damped(value, left) } else { 1.0 };
+            (lower, left) = (t, value);
+        } else {
+            left *= if last == -sign { damped(value, right) } else { 1.0 };
+            (upper, right) = (t, value);
+        }
+        last = value.signum();
+    }
+    upper
+}

@@ -1,0 +1,134 @@
+//! The motion of one joint in time.
+
+use smallvec::SmallVec;
+
+use super::motion_state::MotionState;
+use super::phases::Phases;
+use crate::math::polynomial::quadratic_roots;
+
+/// A part of a motion with constant jerk: its start (s), and state and jerk there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointSegment {
+    /// Start (s).
+    pub time: f64,
+    /// State at the start.
+    pub state: MotionState,
+    /// Jerk.
+    pub jerk: f64,
+}
+
+/// A motion of one joint from t = 0 on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointProfile {
+    /// The segments, in order; the first starts at zero.
+    pub segments: SmallVec<[JointSegment; 8]>,
+    /// Duration (s).
+    pub duration: f64,
+}
+
+impl JointProfile {
+    /// No motion yet.
+    pub(super) fn empty() -> Self {
+        Self { segments: SmallVec::new(), duration: 0.0 }
+    }
+
+    /// No motion at `state`, which lasts no time.
+    pub fn still(state: MotionState) -> Self {
+        let mut profile = Self::empty();
+        profile.segments.push(JointSegment { time: 0.0, state, jerk: 0.0 });
+        profile
+    }
+
+    /// Appends `duration` (s) of constant jerk from `state` on.
+    pub(super) fn push(&mut self, state: MotionState, jerk: f64, duration: f64) {
+        if duration > 0.0 {
+            self.segments.push(JointSegment { time: self.duration, state, jerk });
+            self.duration += duration;
+        }
+    }
+
+    /// The motion of these phases from the position `q`.
+    pub(super) fn of(phases: &Phases, q: f64) -> Self {
+        let mut motion = Self::empty();
+        let mut state = MotionState { q, v: phases.velocity, a: 0.0 };
+        for phase in &phases.phases {
+            state.a = phase.acceleration;
+            motion.push(state, phase.jerk, phase.duration);
+            state = state.after(phase.jerk, phase.duration);
+        }
+        motion
+    }
+
+    /// JointSegment at time `t` (s), clamped to the motion.
+    pub fn segment_at(&self, t: f64) -> &JointSegment {
+        let started = self.segments.partition_point(|segment| segment.time <= t);
+        &self.segments[started.saturating_sub(1)]
+    }
+
+    /// The state at time `t` (s) from the start to the end.
+    pub fn at(&self, t: f64) -> MotionState {
+        let segment = self.segment_at(t);
+        segment.state.after(segment.jerk, t - segment.time)
+    }
+
+    /// The lowest and the highest position.
+    pub fn range(&self) -> (f64, f64) {
+        let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut visit = |q: f64| range = (range.0.min(q), range.1.max(q));
+        for (i, segment) in self.segments.iter().enumerate() {
+            let end = self.segments.get(i + 1).map_or(self.duration, |next| next.time) - segment.time;
+            let MotionState { v, a, .. } = segment.state;
+            let turns = quadratic_roots(v, a, 0.5 * segment.jerk, 0.0, end);
+            turns.into_iter().chain([0.0, end]).for_each(|t| visit(segment.state.after(segment.jerk, t).q));
+        }
+        range
+    }
+
+    /// The motion weighted by `share`, plus `other` of the same duration weighted by the rest.
+    pub(super) fn mean(&self, share: f64, other: &Self) -> Self {
+        let mut mean = Self { segments: SmallVec::new(), duration: self.duration };
+        let (mut i, mut k) = (0, 0);
+        let start = |motion: &Self, index: usize| motion.segments.get(index).map_or(f64::INFINITY, |s| s.time);
+        let mut time = 0.0;
+        loop {
+            let (one, two) = (&self.segments[i], &other.segments[k]);
+            let (a, b) = (one.state.after(one.jerk, time - one.time), two.state.after(two.jerk, time - two.time));
+            let blend = |x: f64, y: f64| share * x + (1.0 - share) * y;
+            let state = MotionState { q: blend(a.q, b.q), v: blend(a.v, b.v), a: blend(a.a, b.a) };
+            mean.segments.push(JointSegment { time, state, jerk: blend(one.jerk, two.jerk) });
+            let next = start(self, i + 1).min(start(other, k + 1));
+            if next == f64::INFINITY {
+                return mean;
+            }
+            let together = next + ROUNDING * self.duration;
+            if start(self, i + 1) <= together {
+                i += 1;
+            }
+            if start(other, k + 1) <= together {
+                k += 1;
+            }
+            time = next;
+        }
+    }
+
+    /// This motion, then constant velocity until `duration` (s).
+    pub fn extended_to(mut self, duration: f64) -> Self {
+        let last = self.segments.last().map(|segment| segment.state.after(segment.jerk, self.duration - segment.time));
+        let state = MotionState { a: 0.0, ..last.unwrap_or_default() };
+        let more = duration - self.duration;
+        self.push(state, 0.0, more);
+        self
+    }
+
+    /// This motion, then `next`.
+    pub(super) fn then(mut self, next: &Self) -> Self {
+        let start = self.duration;
+        self.segments
+            .extend(next.segments.iter().map(|segment| JointSegment { time: start + segment.time, ..*segment }));
+        self.duration += next.duration;
+        self
+    }
+}
+
+/// Times that are nearer to each other, relative to the duration, count as the same.
+const ROUNDING: f64 = 1e-13;

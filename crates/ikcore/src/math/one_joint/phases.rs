@@ -1,0 +1,49 @@
+//! Phases of constant jerk, and their durations.
+
+use smallvec::SmallVec;
+
+use super::motion_state::MotionState;
+
+/// A phase: its duration (s), and acceleration and jerk at its start.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Phase {
+    pub duration: f64,
+    pub acceleration: f64,
+    pub jerk: f64,
+}
+
+/// Seven phases one after the other; some may last no time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Phases {
+    /// Velocity at the start.
+    pub velocity: f64,
+    pub phases: [Phase; 7],
+}
+
+impl Phases {
+    /// Distance covered in all phases.
+    pub(super) fn displacement(&self) -> f64 {
+        let mut state = MotionState { q: 0.0, v: self.velocity, a: 0.0 };
+        for phase in &self.phases {
+            state.a = phase.acceleration;
+            state = state.after(phase.jerk, phase.duration);
+        }
+        state.q
+    }
+
+    /// The same motion with the direction of the axis reversed.
+    pub(super) fn mirrored(&self) -> Self {
+        let phases = self.phases.map(|phase| Phase {
+            duration: phase.duration,
+            acceleration: -phase.acceleration,
+            jerk: -phase.jerk,
+        });
+        Self { velocity: -self.velocity, phases }
+    }
+}
+
+/// Durations (s).
+pub(super) type Durations = SmallVec<[f64; 16]>;
+
+/// Intervals of durations (s).
+pub(super) type Possible = SmallVec<[[f64; 2]; 3]>;

@@ -1,0 +1,231 @@
+//! The number type of kernels that are written once for one number and for four.
+//!
+//! Each lane of the four performs the operations of the one in the same order, so both agree bit for bit.
+
+use std::marker::PhantomData;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::arithmetic::Arithmetic;
+use super::comparison::{larger, smaller};
+use super::f64x4::F64x4;
+
+/// A real number, or one per lane.
+pub trait Real:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// Its stored form.
+    type Stored: Copy;
+
+    /// Number of lanes.
+    const LANES: usize;
+
+    /// From its stored form.
+    fn of(stored: Self::Stored) -> Self;
+
+    /// Its stored form.
+    fn stored(self) -> Self::Stored;
+
+    /// The same number in all lanes.
+    fn splat(value: f64) -> Self;
+
+    /// The number in lane `lane`.
+    fn lane(self, lane: usize) -> f64;
+
+    /// The same with `value` in lane `lane`.
+    fn with_lane(self, lane: usize, value: f64) -> Self;
+
+    /// self * factor + addend.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+
+    /// The square root.
+    fn sqrt(self) -> Self;
+
+    /// `then` if self < limit, else `otherwise` (also for NaN).
+    fn choose_below(self, limit: Self, then: Self, otherwise: Self) -> Self;
+
+    /// `then` if self = other, else `otherwise` (also for NaN).
+    fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self;
+
+    /// The larger of the two; `other` if either is NaN.
+    fn larger(self, other: Self) -> Self;
+
+    /// The smaller of the two; `other` if either is NaN.
+    fn smaller(self, other: Self) -> Self;
+}
+
+/// One number, by arithmetic `A`.
+#[derive(Debug, Clone, Copy)]
+pub struct One<A>(f64, PhantomData<A>);
+
+/// Four numbers, one per lane, by arithmetic `A`.
+#[derive(Debug, Clone, Copy)]
+pub struct Four<A>(F64x4, PhantomData<A>);
+
+impl<A: Arithmetic> Real for One<A> {
+    type Stored = f64;
+
+    const LANES: usize = 1;
+
+    #[inline(always)]
+    fn of(stored: f64) -> Self {
+        Self(stored, PhantomData)
+    }
+
+    #[inline(always)]
+    fn stored(self) -> f64 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self::of(value)
+    }
+
+    #[inline(always)]
+    fn lane(self, _lane: usize) -> f64 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn with_lane(self, _lane: usize, value: f64) -> Self {
+        Self::of(value)
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Self::of(A::mul_add(self.0, factor.0, addend.0))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::of(self.0.sqrt())
+    }
+
+    #[inline(always)]
+    fn choose_below(self, limit: Self, then: Self, otherwise: Self) -> Self {
+        if self.0 < limit.0 { then } else { otherwise }
+    }
+
+    #[inline(always)]
+    fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
+        if self.0 == other.0 { then } else { otherwise }
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self::of(larger(self.0, other.0))
+    }
+
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        Self::of(smaller(self.0, other.0))
+    }
+}
+
+impl<A: Arithmetic> Real for Four<A> {
+    type Stored = F64x4;
+
+    const LANES: usize = 4;
+
+    #[inline(always)]
+    fn of(stored: F64x4) -> Self {
+        Self(stored, PhantomData)
+    }
+
+    #[inline(always)]
+    fn stored(self) -> F64x4 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self::of(F64x4::splat(value))
+    }
+
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        self.0.0[lane]
+    }
+
+    #[inline(always)]
+    fn with_lane(mut self, lane: usize, value: f64) -> Self {
+        self.0.0[lane] = value;
+        self
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Self::of(A::mul_add_x4(self.0, factor.0, addend.0))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::of(A::sqrt_x4(self.0))
+    }
+
+    #[inline(always)]
+    fn choose_below(self, limit: Self, then: Self, otherwise: Self) -> Self {
+        Self::of(A::choose_below_x4(self.0, limit.0, then.0, otherwise.0))
+    }
+
+    #[inline(always)]
+    fn choose_equal(self, other: Self, then: Self, otherwise: Self) -> Self {
+        Self::of(A::choose_equal_x4(self.0, other.0, then.0, otherwise.0))
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        other.choose_below(self, self, other)
+    }
+
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        self.choose_below(other, self, other)
+    }
+}
+
+/// Implements `$operator` for [`One`] by f64 and for [`Four`] by the arithmetic.
+macro_rules! operator {
+    ($operator:ident, $method:ident, $of_lanes:ident) => {
+        impl<A: Arithmetic> $operator for One<A> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self::of(self.0.$method(other.0))
+            }
+        }
+
+        impl<A: Arithmetic> $operator for Four<A> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self::of(A::$of_lanes(self.0, other.0))
+            }
+        }
+    };
+}
+
+operator!(Add, add, add_x4);
+operator!(Sub, sub, sub_x4);
+operator!(Mul, mul, mul_x4);
+operator!(Div, div, div_x4);
+
+impl<A: Arithmetic> Neg for One<A> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::of(-self.0)
+    }
+}
+
+impl<A: Arithmetic> Neg for Four<A> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::of(-self.0)
+    }
+}

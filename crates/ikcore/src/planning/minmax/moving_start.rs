@@ -1,0 +1,136 @@
+//! Motions that begin at a velocity: directly to the end, or else to a stop from which a plan from rest continues.
+
+use super::pair_search::PairSearch;
+use super::straight_line_plan::{PAIRS, no_pair};
+use crate::error::{Error, Result, require_finite};
+use crate::limits::Limits;
+use crate::motion::{ArmState, state_to_state, stop};
+use crate::obstacle::Sweep;
+use crate::planning::collision_checks::{TimedMotion, as_lines, can_collide, scene};
+use crate::planning::{Endpoint, Improvement, Plan, PointToPointOptions};
+use crate::robot::Robot;
+use crate::solver::{Monitor, Status};
+use crate::trajectory::Trajectory;
+
+/// How a motion with an initial velocity goes on.
+pub(super) enum Beginning {
+    /// Directly to the end.
+    Whole(Box<Plan>),
+    /// To a stop, because no direct motion was found to be free.
+    Stop(Trajectory),
+}
+
+/// Plans the quickest motion from the given configuration and `velocity` directly to the end, or to a stop.
+///
+/// # Errors
+/// [`Error::Contradiction`] without a configuration at the start, [`Error::WrongLength`], [`Error::NotFinite`];
+/// [`Error::Infeasible`] if the joints cannot stop inside their limits or before an obstacle.
+pub(super) fn begin(
+    search: &mut PairSearch,
+    velocity: &[f64],
+    options: &PointToPointOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Beginning> {
+    let Endpoint::Configuration(q) = search.ends[0] else {
+        return Err(Error::Contradiction {
+            problem: "start_qd needs the configuration of the start: give start_q".into(),
+        });
+    };
+    check(search, velocity)?;
+    let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
+    let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
+    let margin = options.kept_margin()?;
+    let collides = can_collide(search.robot, &options.obstacles);
+    let lines = if collides { as_lines(search.robot)? } else { None };
+    let scene = collides.then(|| scene(search.robot, lines.as_ref(), &options.obstacles)).transpose()?;
+    let mut sweep = scene.as_ref().map(Sweep::new);
+    let mut is_free = |motion: &Trajectory| {
+        let check = |sweep: &mut Sweep| sweep.check(&TimedMotion(motion), [0.0, motion.duration()], margin).is_ok();
+        sweep.as_mut().is_none_or(check)
+    };
+    let pairs = search.pairs(PAIRS, monitor)?;
+    let last = pairs.first().ok_or_else(no_pair)?;
+    let direct = |end: &[f64]| state_to_state(&from, &ArmState::at_rest(end), &limits).ok();
+    let mut motions: Vec<Trajectory> = pairs.iter().chain([last]).filter_map(|pair| direct(&pair.end)).collect();
+    motions.sort_by(|one, other| one.duration().total_cmp(&other.duration()));
+    if let Some(trajectory) = motions.into_iter().find(&mut is_free) {
+        let evaluations = search.evaluations;
+        let cost = options.objective.of(search.robot, &trajectory);
+        let nearest =
+            sweep.and_then(|mut sweep| sweep.smallest(&TimedMotion(&trajectory), [0.0, trajectory.duration()]));
+        return Ok(Beginning::Whole(Box::new(Plan {
+            objective: options.objective,
+            cost,
+            history: vec![Improvement { evaluations, cost }],
+            clearance: nearest.map(|near| near.contact.distance.max(margin)),
+            accuracy: None,
+            reference: None,
+            redundancy: vec![],
+            path: vec![],
+            peak: None,
+            violations: search.limits.violations(&trajectory),
+            status: Status::Solved,
+            evaluations,
+            elapsed: search.deadline.elapsed(),
+            trajectory,
+        })));
+    }
+    let braking = stop(&from, &limits)?;
+    if is_free(&braking) {
+        return Ok(Beginning::Stop(braking));
+    }
+    let problem = "at start_qd the arm cannot stop before it comes nearer to an obstacle than the margin".into();
+    Err(Error::Infeasible { problem })
+}
+
+/// Checks that the velocity fits the arm and its limits, and that it cannot simply jump.
+fn check(search: &PairSearch, velocity: &[f64]) -> Result<()> {
+    let limits = search.limits;
+    if velocity.len() != limits.dof() {
+        let expected = format!("{} joints", limits.dof());
+        return Err(Error::WrongLength { what: "start_qd".into(), expected, got: velocity.len() });
+    }
+    require_finite("start_qd", velocity, |j| format!("joint '{}'", limits.joint_name(j)))?;
+    let jumps = |j: &usize| limits.acceleration[*j].is_infinite() && limits.jerk[*j].is_infinite();
+    if let Some(j) = (0..limits.dof()).find(jumps) {
+        return Err(Error::Infeasible {
+            problem: format!(
+                "without an acceleration or jerk limit the velocity of joint '{}' may jump, and start_qd means nothing: \
+                 give limits=Limits(acceleration=...)",
+                limits.joint_name(j)
+            ),
+        });
+    }
+    match (0..limits.dof()).find(|j| velocity[*j].abs() > limits.velocity[*j]) {
+        None => Ok(()),
+        Some(j) => {
+            let what = format!("start_qd of joint '{}'", limits.joint_name(j));
+            Err(Error::out_of_range(what, &format!("at most its velocity limit {}", limits.velocity[j]), velocity[j]))
+        }
+    }
+}
+
+/// The configuration at the end of a motion.
+pub(super) fn end_of(motion: &Trajectory) -> Vec<f64> {
+    let n = motion.joints().len();
+    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; n]);
+    // The lengths are those of the motion.
+    let _ = motion.at(motion.duration(), &mut q, &mut qd, &mut qdd);
+    q
+}
+
+/// A plan from rest, preceded by the stop that leads to it.
+pub(super) fn followed_by(stop: Trajectory, rest: Plan, robot: &Robot, options: &PointToPointOptions) -> Result<Plan> {
+    let collides = can_collide(robot, &options.obstacles);
+    let lines = if collides { as_lines(robot)? } else { None };
+    let scene = collides.then(|| scene(robot, lines.as_ref(), &options.obstacles)).transpose()?;
+    let nearest = scene.and_then(|scene| Sweep::new(&scene).smallest(&TimedMotion(&stop), [0.0, stop.duration()]));
+    let clearance = match (rest.clearance, nearest) {
+        (Some(clearance), Some(near)) => Some(clearance.min(near.contact.distance)),
+        (clearance, _) => clearance,
+    };
+    let trajectory = stop.then(&rest.trajectory, 0.0)?;
+    let cost = rest.objective.of(robot, &trajectory);
+    let history = vec![Improvement { evaluations: rest.evaluations, cost }];
+    Ok(Plan { trajectory, cost, history, clearance, ..rest })
+}

@@ -1,0 +1,97 @@
+//! An approach from rest onto a moving path, within acceleration and jerk limits.
+
+use std::collections::VecDeque;
+
+use super::session::Session;
+use super::track_options::TrackOptions;
+use crate::error::{Error, Result};
+use crate::limits::{Field, Limits, Profile};
+use crate::motion::{ArmState, meet};
+use crate::objective::Point;
+use crate::path::Reference;
+use crate::robot::Robot;
+use crate::solver::{Monitor, Status};
+use crate::task::Target;
+use crate::trajectory::Trajectory;
+
+/// Configurations of the motion on the path around the tick at which it may be met: before, there and after.
+const AROUND: usize = 3;
+
+/// The approach, and the ticks that it takes.
+pub(super) struct ApproachMotion {
+    pub ticks: usize,
+    trajectory: Trajectory,
+}
+
+impl ApproachMotion {
+    /// The earliest approach of an arm at rest at `start`. The path is followed without acceleration and jerk limits for
+    /// as long as no motion within them meets it. `None` if none does before it ends.
+    ///
+    /// # Errors
+    /// [`Error::Contradiction`] without acceleration and jerk limits; errors of a [`Session`].
+    pub(super) fn find(
+        robot: &Robot,
+        reference: &Reference,
+        start: &[f64],
+        options: &TrackOptions,
+        target: impl Fn(usize) -> Target,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Option<Self>> {
+        let limits = options.limits_for(robot);
+        if ![Field::Acceleration, Field::Jerk].into_iter().any(|field| limits.is_finite(field)) {
+            let problem = "ease=True eases the start under acceleration or jerk limits, and there are none: give \
+                           limits=Limits(acceleration=...)";
+            return Err(Error::Contradiction { problem: problem.into() });
+        }
+        let mut session = Session::new(robot, start, reference.dt(), &without_rates(&limits, options)?)?;
+        session.begin(&target(0), reference.velocity(0))?;
+        let mut around: VecDeque<Option<Point>> = VecDeque::from([None]);
+        for i in 1..reference.len() {
+            let step = session.step_moving(&target(i), reference.velocity(i), monitor)?;
+            if step.interrupted {
+                return Ok(None);
+            }
+            around.push_back((step.status == Status::Solved).then(|| session.q().into()));
+            if around.len() > AROUND {
+                around.pop_front();
+            }
+            if let [Some(before), Some(there), Some(after)] = around.make_contiguous() {
+                let ticks = i - 1;
+                let met = moving(before, there, after, reference.dt());
+                let time = reference.time(ticks);
+                if let Some(trajectory) = meet(&ArmState::at_rest(start), &met, &limits.narrowest(0.0, time)?, time) {
+                    return Ok(Some(Self { ticks, trajectory }));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// The configuration at time `t` (s).
+    ///
+    /// # Errors
+    /// None in practice: the lengths are those of the arm.
+    pub(super) fn at(&self, t: f64) -> Result<Vec<f64>> {
+        let n = self.trajectory.joints().len();
+        let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; n]);
+        self.trajectory.at(t, &mut q, &mut qd, &mut qdd)?;
+        Ok(q)
+    }
+}
+
+/// The options of a motion that changes its velocity at once.
+fn without_rates(limits: &Limits, options: &TrackOptions) -> Result<TrackOptions> {
+    let none = || vec![Profile::Constant(f64::INFINITY)];
+    let limits = limits.clone().replace(Field::Acceleration, none())?.replace(Field::Jerk, none())?;
+    Ok(TrackOptions { limits: Some(limits), ..options.clone() })
+}
+
+/// The state of a motion at the middle one of three ticks.
+fn moving(before: &[f64], there: &[f64], after: &[f64], dt: f64) -> ArmState {
+    let joints = || before.iter().zip(after).zip(there);
+    ArmState {
+        q: there.to_vec(),
+        qd: joints().map(|((before, after), _)| (after - before) / (2.0 * dt)).collect(),
+        qdd: joints().map(|((before, after), there)| (after - 2.0 * there + before) / (dt * dt)).collect(),
+    }
+}

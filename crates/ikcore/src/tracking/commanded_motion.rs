@@ -1,0 +1,41 @@
+//! The motion between ticks of an arm whose velocity may not jump.
+//!
+//! A uniform cubic B-spline with the commanded positions as control points. Its velocity is a mean of the displacements
+//! per tick, its acceleration the interpolation of their changes, and its jerk the change of these: what was kept at the
+//! ticks holds in between. It passes each commanded position at a sixth of that tick's acceleration times dt^2, because
+//! no curve through alternating positions could keep the limit that their differences keep.
+
+use crate::trajectory::{Coefficients, polynomial};
+
+/// Fewest positions that determine the curve.
+pub(super) const FEWEST: usize = 3;
+
+/// The polynomials between the rows of `q` (at least [`FEWEST`], of `n` joints), in order of segments, then joints. The
+/// arm rests before the first row, and keeps its acceleration after the last.
+pub(super) fn spline(q: &[f64], n: usize, dt: f64) -> Vec<Coefficients> {
+    let rows = q.len() / n;
+    let at = |row: usize, j: usize| q[row * n + j];
+    let mut coefficients = Vec::with_capacity((rows - 1) * n);
+    for row in 0..rows - 1 {
+        for j in 0..n {
+            let [here, next] = [at(row, j), at(row + 1, j)];
+            let before = if row == 0 { here } else { at(row - 1, j) };
+            let after = if row + 2 < rows { at(row + 2, j) } else { 3.0 * (next - here) + before };
+            coefficients.push(segment([before, here, next, after], dt));
+        }
+    }
+    coefficients
+}
+
+/// The segment between the second and the third of four control points.
+fn segment([before, here, next, after]: [f64; 4], dt: f64) -> Coefficients {
+    // Differences first: they are small.
+    let [first, second, third] = [here - before, next - here, after - next];
+    let [bend, next_bend] = [second - first, third - second];
+    polynomial([
+        here + bend / 6.0,
+        0.5 * (first + second) / dt,
+        0.5 * bend / (dt * dt),
+        (next_bend - bend) / (6.0 * dt * dt * dt),
+    ])
+}

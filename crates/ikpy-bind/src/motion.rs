@@ -1,0 +1,67 @@
+//! `state_to_state`.
+
+use ikcore::motion::{self, ArmState};
+use pyo3::prelude::*;
+
+use crate::convert::vector;
+use crate::error::raise;
+use crate::limits::PyLimits;
+use crate::trajectory::{PyTrajectory, names};
+
+/// Computes the fastest motion of all joints from one state to another, in which they arrive together.
+///
+/// The limits hold at every instant. With jerk limits the acceleration is continuous; without them it jumps, and qdd0 and
+/// qdd1 have no effect. A joint with velocity limits alone moves at constant velocity, and qd0 and qd1 have no effect. A
+/// joint that begins outside its velocity or acceleration limits, or about to leave them, first returns inside them as
+/// quickly as its limits allow. The joint that needs longest moves as fast as it can; the others spread their motion over
+/// the same time (Berscheid and Kroeger 2021 treat the same problem).
+///
+/// Args:
+///     q0, q1: positions at the start and at the end (n,) (rad, m).
+///     limits: constant limits; each joint needs one of `velocity`, `acceleration` and `jerk`. Missing fields are unlimited.
+///     qd0, qd1: velocities (n,) (rad/s, m/s); None: zero.
+///     qdd0, qdd1: accelerations (n,) (rad/s^2, m/s^2); None: zero.
+///     joint_names: n names; None: "q1", "q2" and so on.
+///
+/// Returns:
+///     A `Trajectory` of cubic segments.
+///
+/// Raises:
+///     InvalidInputError: wrong shape, NaN, limits that are not positive, or two equal states.
+///     LimitError: a position outside its limits.
+///     InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
+///         limits.
+///     UnsupportedLimit: limits that vary in time.
+#[pyfunction]
+#[pyo3(signature = (q0, q1, limits, *, qd0=None, qdd0=None, qd1=None, qdd1=None, joint_names=None))]
+#[allow(clippy::too_many_arguments)]
+pub fn state_to_state(
+    py: Python<'_>,
+    q0: &Bound<'_, PyAny>,
+    q1: &Bound<'_, PyAny>,
+    limits: &PyLimits,
+    qd0: Option<&Bound<'_, PyAny>>,
+    qdd0: Option<&Bound<'_, PyAny>>,
+    qd1: Option<&Bound<'_, PyAny>>,
+    qdd1: Option<&Bound<'_, PyAny>>,
+    #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
+) -> PyResult<PyTrajectory> {
+    let from = read_state(("q0", q0), [("qd0", qd0), ("qdd0", qdd0)])?;
+    let to = read_state(("q1", q1), [("qd1", qd1), ("qdd1", qdd1)])?;
+    let limits = limits.for_joints(py, &names(joint_names, from.q.len())?)?;
+    motion::state_to_state(&from, &to, &limits).map(PyTrajectory::from).map_err(raise)
+}
+
+/// Reads a state; velocities and accelerations that are not given are zero.
+fn read_state(
+    (name, q): (&str, &Bound<'_, PyAny>),
+    rates: [(&str, Option<&Bound<'_, PyAny>>); 2],
+) -> PyResult<ArmState> {
+    let q = vector(name, q)?;
+    let read = |(name, value): (&str, Option<&Bound<'_, PyAny>>)| match value {
+        Some(value) => vector(name, value),
+        None => Ok(vec![0.0; q.len()]),
+    };
+    let [qd, qdd] = [read(rates[0])?, read(rates[1])?];
+    Ok(ArmState { q, qd, qdd })
+}
