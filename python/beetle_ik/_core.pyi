@@ -2089,11 +2089,49 @@ class TrackResult:
     def __len__(self) -> int: ...
 
 @final
+class LowPass:
+    """First-order low-pass for the targets of a `Tracker`, for positions and orientations.
+
+    A target that moves steadily is delayed by 1 / (2 pi cutoff): 32 ms at 5 Hz.
+
+    Args:
+        cutoff: cutoff (Hz).
+    """
+
+    def __new__(cls, cutoff: float) -> LowPass: ...
+    @property
+    def cutoff(self) -> float:
+        """Cutoff (Hz)."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class OneEuro:
+    """One-euro filter for the targets of a `Tracker`, for positions and orientations: a low-pass whose cutoff rises with the
+    speed of the target (Casiez, Roussel and Vogel 2012).
+
+    A target that moves steadily at speed v is delayed by 1 / (2 pi (min_cutoff + beta v)).
+
+    Args:
+        min_cutoff: cutoff at rest (Hz).
+        beta: increase of the cutoff with speed: Hz per m/s for positions, Hz per rad/s for orientations.
+    """
+
+    def __new__(cls, *, min_cutoff: float = 1.0, beta: float = 10.0) -> OneEuro: ...
+    @property
+    def min_cutoff(self) -> float:
+        """Cutoff at rest (Hz)."""
+    @property
+    def beta(self) -> float:
+        """Increase of the cutoff with speed (Hz per m/s, Hz per rad/s)."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class Tracker:
     """Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 
-    A target may jump farther than one tick can reach. The model-based rule then moves all joints in proportion, with one at
-    its velocity limit, and brakes in time under acceleration limits.
+    A target may jump farther than one tick can reach: the model-based rule moves all joints in proportion, with one at a
+    limit. Under acceleration or jerk limits every command leaves a full stop inside all limits, the arm brakes in time, and
+    noise of the targets is recognised and not followed; a smooth target without noise is followed without lag.
 
     Args:
         robot: the arm.
@@ -2108,6 +2146,8 @@ class Tracker:
         rotation_tolerance: largest rotation error (rad).
         seed: seed of the random draws.
         limit_at: as in `track`.
+        target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
+        timeout: time without a new target after which the arm stops (s); None: never.
     """
 
     def __new__(
@@ -2124,17 +2164,39 @@ class Tracker:
         rotation_tolerance: float = 1e-6,
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
+        target_filter: LowPass | OneEuro | None = None,
+        timeout: float | None = None,
     ) -> Tracker: ...
-    def step(self, target: _Pose, *, velocity: ArrayLike | None = None) -> Step:
+    def step(self, target: _Pose | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
         """Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
 
+        Targets may come more rarely than ticks: `step(None)` says that there is no new one. Under acceleration or jerk limits the
+        model-based rule then follows the motion of the last targets, for two of their intervals at most, and stops smoothly;
+        otherwise the arm goes on towards the last target. A target that is not finite raises an error, after which the tracker
+        is as before.
+
         Args:
-            target: target of the tip at the end of the tick.
+            target: target of the tip at the end of the tick; None: no new one.
             velocity: (3,) (m/s), velocity of the target at the end of the tick, which only `WeightedPseudoInverse` uses;
                 None: from the difference to the previous target.
+            stamp: when the target was measured, on the tracker's own clock, `time` (s); None: at the end of the tick. The
+                model-based rule follows the motion of the targets up to now, over 0.25 s at most, under acceleration or jerk
+                limits; without these a stamp is refused. A target older than the last one is ignored.
         """
-    def reset(self, q: ArrayLike) -> None:
-        """Resets to rest at q (n,) and t = 0."""
+    def stop(self) -> float:
+        """Brakes as fast as the limits allow: every following `step(None)` is a tick of the stop, until a target arrives.
+
+        Returns:
+            How long the stop takes (s); 0 without acceleration and jerk limits.
+        """
+    def reset(self, q: ArrayLike, qd: ArrayLike | None = None, qdd: ArrayLike | None = None) -> None:
+        """Resets to q (n,) and t = 0, at rest or in motion.
+
+        Args:
+            q: configuration (n,) (rad, m).
+            qd: velocities (n,) (rad/s, m/s): (q - q before) / dt; None: zero.
+            qdd: accelerations (n,) (rad/s^2, m/s^2): differences of these velocities / dt; None: zero.
+        """
     @property
     def q(self) -> _Array:
         """The last accepted configuration (n,) (rad, m)."""

@@ -110,6 +110,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Tracker": {"robot": ARM, **TICKS},
     "Tracker.reset": {".": bik.Tracker(ARM, **TICKS), "q": START},
     "Tracker.step": {".": bik.Tracker(ARM, **TICKS), "target": (0.3, 0.3, 1.0)},
+    "Tracker.stop": {".": bik.Tracker(ARM, **TICKS)},
     "Trajectory": {"time": [0, 1], "coefficients": np.zeros((1, 2, 2))},
     "Trajectory.": {".": MOTION},
     "Trajectory.at": {"t": 0.0},
@@ -121,6 +122,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Trajectory.to_csv": {"file": "written.csv"},
     "Trajectory.to_npz": {"file": "written.npz"},
     "ZNNBAS.session": {".": bik.ZNNBAS(), **TICKS},
+    "filters.LowPass": {"cutoff": 5.0},
     "goals.Posture": {"posture": START},
     "minimize": {"function": np.sum, "lower": [-1, -1], "upper": [1, 1], "solver": bik.BAS(), **QUICK},
     "obstacles.Box": {"center": (0, 0, 0), "size": (1, 1, 1)},
@@ -166,7 +168,7 @@ NEEDED: dict[str, dict[str, Any]] = {
 # A right call would change what the others are called on, or leave a film that nobody looks at.
 ONLY_WRONG = ("ControlSession.command", "ControlSession.observe", "plot.animation")
 MODULES = {"": bik, "tasks.": bik.tasks, "goals.": bik.goals, "paths.": bik.paths, "obstacles.": bik.obstacles}
-MODULES["plot."] = bik.plot
+MODULES |= {"plot.": bik.plot, "filters.": bik.filters}
 
 
 def public(prefix: str, module: ModuleType) -> Iterator[tuple[str, Callable[..., object]]]:

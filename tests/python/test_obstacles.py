@@ -102,7 +102,7 @@ def test_each_kind_of_obstacle_has_distance_place_and_normal(kind: str) -> None:
 def test_a_plan_keeps_clear_of_each_kind_of_obstacle(kind: str) -> None:
     obstacle = {
         "Cylinder": bik.obstacles.Cylinder([0.5, 0, 0.2], [0, 1, 0], 0.15, 0.6),
-        "HalfSpace": bik.obstacles.HalfSpace([0, 0, 1], 0.2),
+        "HalfSpace": bik.obstacles.HalfSpace([0, 0, 1], -0.1),
         "Mesh": bik.obstacles.Mesh(CRATE.triangles.reshape(-1, 3), np.arange(36).reshape(12, 3)),
         "PointCloud": bik.obstacles.PointCloud(
             np.random.default_rng(1).uniform(-1, 1, (300, 3)) * 0.1 + [0.5, 0, 0.2], 0.02

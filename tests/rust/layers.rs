@@ -62,13 +62,13 @@ const LAYERS: &[(&str, &[&str])] = &[
     (
         "tracking",
         &[
-            "motion",
             "kinematics",
             "robot",
             "path",
             "trajectory",
             "objective",
             "limits",
+            "motion",
             "manipulability",
             "task",
             "solver",

@@ -22,6 +22,7 @@ mod manipulability;
 mod messages;
 mod minimize;
 mod model_free;
+mod motion;
 mod obstacle;
 mod pairs;
 mod path;

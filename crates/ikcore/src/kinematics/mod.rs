@@ -8,7 +8,7 @@
 //! | `chain`, `stages` | constant frames, and the joint that drives each stage |
 //! | `forward_pass`, `wide_frame` | from the base to the tip, one frame per stage |
 //! | `tip`, `jacobian`, `torques`, `link_frames` | the kernels |
-//! | `four_forward_pass` | the pass for four configurations at once |
+//! | `four_forward_pass` | the pass of four configurations at once |
 //! | `kernels` | table of compiled kernels |
 //! | `link_tree` | all links, with those that branch off the chain |
 //! | `screws` | axis and velocity of every stage |

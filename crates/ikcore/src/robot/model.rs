@@ -38,10 +38,10 @@ pub struct Robot {
     kernels: Kernels,
     /// The reach of the stretched links, without prismatic motion.
     reach_of_links: Reach,
-    /// The smallest change of each joint that leaves the pose of every link unchanged.
-    turn_periods: Vec<Option<f64>>,
     /// Pairs of links tested against each other, found at first use; copies that differ in base and tool share it.
     pairs: Arc<OnceLock<Vec<[usize; 2]>>>,
+    /// The smallest change of each joint that leaves the pose of every link unchanged.
+    turn_periods: Vec<Option<f64>>,
     /// Built at first use; copies that differ in base and tool share it.
     start_index: Arc<OnceLock<StartIndex>>,
     /// Computed at first use.

@@ -1,6 +1,7 @@
 //! `obstacles.nearest`.
 
 use ikcore::obstacle::{NearestContact, Scene};
+use ikcore::stored::{from_bytes, to_bytes};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -75,20 +76,15 @@ impl PyNearest {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let Self { body, other, distance, point, normal, gradient } = self.clone();
-        pickling::restored_from::<Self>(py, (body, other, distance, point, normal, gradient))
+        let fields = (&self.body, &self.other, self.distance, self.point, self.normal, &self.gradient);
+        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("nearest bodies", &fields))?,))
     }
 
+    /// Restores a pickled value.
     #[staticmethod]
-    fn _restore(
-        body: String,
-        other: String,
-        distance: f64,
-        point: [f64; 3],
-        normal: [f64; 3],
-        gradient: Vec<f64>,
-    ) -> Self {
-        Self { body, other, distance, point, normal, gradient }
+    fn _restore(bytes: &[u8]) -> PyResult<Self> {
+        let (body, other, distance, point, normal, gradient) = from_bytes("nearest bodies", bytes).map_err(raise)?;
+        Ok(Self { body, other, distance, point, normal, gradient })
     }
 
     fn __repr__(&self) -> String {
