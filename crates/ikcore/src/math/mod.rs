@@ -1,7 +1,6 @@
 //! Mathematics without robots: plain arrays in hot code, nalgebra elsewhere.
 //!
-//! Kernels are compiled with and without FMA (`arithmetic`). Kernels for one number or four, one per lane of a register
-//! (`F64x4`), are written over `Real`.
+//! Kernels are compiled with and without FMA (`arithmetic`).
 //!
 //! | files | what |
 //! |---|---|
