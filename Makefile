@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench coverage docs papers
+.PHONY: help demo test zoo lint bench coverage docs papers
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "%-10s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -19,6 +19,9 @@ test: lint  ## all checks and tests, of Rust and of Python
 	cargo test --locked
 	$(BIN)/python -m mypy.stubtest beetle_ik._core
 	$(BIN)/python -m pytest
+
+zoo: $(VENV)/with-zoo  ## every robot of the package example-robot-data: loads, stands as in Pinocchio, reaches its targets
+	$(BIN)/python -m pytest tests/zoo
 
 lint: $(VENV)/with-test  ## formatting, clippy, ruff, types and the docstrings that editors show
 	cargo fmt --all --check

@@ -55,7 +55,7 @@ def main() -> None:
             print(f"{chain.name} ({chain.dof} joints)", flush=True)
             measure(chain, arguments, measured)
             write(measured, arguments.out)
-    print(f"wrote summary.csv, times.csv, complete.csv and all_solutions.md to {arguments.out}")
+    print(f"wrote solutions.csv, times.csv, completeness.csv and all_solutions.md to {arguments.out}")
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -117,8 +117,8 @@ def good_solutions(chain: Chain, targets: np.ndarray, calls: Calls) -> np.ndarra
 
 
 COMPLETE_COLUMNS = [
-    *("robot", "structure", "poses", "said_complete", "solutions", "wrong", "known_to_others", "found_by_others_too"),
-    *("missing", "missing_where_said_complete", "missing_beside_a_singularity"),
+    *("arm", "structure", "poses", "said to be complete", "solutions", "wrong", "known to others"),
+    *("found by others too", "missing", "missing where said complete", "missing beside a singularity"),
 ]
 
 
@@ -156,8 +156,8 @@ def write(measured: Measured, out: Path) -> None:
     """The tables and the report."""
     write_table(out / "times.csv", TIMES_COLUMNS, measured.times)
     summary = solutions_report.summary_lines([dict(zip(TIMES_COLUMNS, line, strict=True)) for line in measured.times])
-    write_table(out / "summary.csv", solutions_report.SUMMARY_COLUMNS, summary)
-    write_table(out / "complete.csv", COMPLETE_COLUMNS, measured.complete)
+    write_table(out / "solutions.csv", solutions_report.SUMMARY_COLUMNS, summary)
+    write_table(out / "completeness.csv", COMPLETE_COLUMNS, measured.complete)
     settings = [[library.name, library.settings] for library in LIBRARIES]
     sections = [
         "# All solutions\n\nPoses of configurations drawn uniformly inside the limits. Solutions count that reach the "

@@ -31,7 +31,7 @@ fn kuka() -> Robot {
 
 fn options(solver: impl Into<Algorithm>, start: &[f64], tolerance: f64) -> SolveOptions {
     SolveOptions {
-        solver: AnySolver::Single(solver.into()),
+        solver: Some(AnySolver::Single(solver.into())),
         start: Some(start.iter().map(|angle| angle.to_radians()).collect()),
         tolerance: Tolerance { position: tolerance, rotation: tolerance },
         stop: Stop { max_iterations: 1000, ..Stop::default() },

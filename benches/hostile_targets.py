@@ -38,9 +38,9 @@ def draw(name: str, random: np.random.Generator) -> Stream:
     start = lower + (upper - lower) * random.uniform(0.05, 0.95, robot.dof)
     limits = _limits(robot, start, random)
     targets = list(TARGETS[name](robot, start, int(random.integers(*LENGTHS)), random))
-    moving = random.uniform(-2.0, 2.0, robot.dof), random.uniform(-5.0, 5.0, robot.dof)
     dt = float(random.choice(TICKS))
-    return Stream(name, robot, start, dt, limits, targets, moving if random.random() < 0.5 else None)
+    moving = _moving(limits, robot.dof, random) if random.random() < 0.5 else None
+    return Stream(name, robot, start, dt, limits, targets, moving)
 
 
 def _limits(robot: bik.Robot, start: np.ndarray, random: np.random.Generator) -> dict[str, Any]:
@@ -60,6 +60,14 @@ def _limits(robot: bik.Robot, start: np.ndarray, random: np.random.Generator) ->
     if random.random() < 0.3:
         limits["lower"] = np.maximum(robot.lower, start - random.choice([0.0, 0.05, 0.5], robot.dof))
     return limits
+
+
+def _moving(limits: dict[str, Any], dof: int, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray] | None:
+    """Draws velocity and acceleration of a start, slow enough for most arms to stop in time."""
+    velocity = limits["velocity"]
+    if isinstance(velocity, bik.Sinusoid):
+        return None
+    return 0.5 * velocity * random.uniform(-1, 1, dof), 0.2 * limits["acceleration"] * random.uniform(-1, 1, dof)
 
 
 def _spread(random: np.random.Generator, low: float, high: float, size: int) -> np.ndarray:

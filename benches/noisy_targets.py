@@ -27,10 +27,12 @@ from peers.adapter import load
 from peers.chain import Chain
 from peers.live_report import (
     OVER_NOISE_COLUMNS,
+    STREAM_SUMMARY_COLUMNS,
     SUMMARY_COLUMNS,
     over_noise_lines,
     plot_over_noise,
     rows,
+    stream_summary_lines,
     summary_lines,
 )
 from peers.live_targets import (
@@ -240,8 +242,10 @@ def write(measured: Measured, out: Path) -> None:
     write_table(out / "stream.csv", STREAM_COLUMNS, measured.stream)
     (out / "noisy_targets.md").write_text(markdown(measured), encoding="utf-8")
     over_noise = over_noise_lines(rows(JUMP_COLUMNS, measured.jumps))
-    write_table(out / "over_noise.csv", OVER_NOISE_COLUMNS, over_noise)
-    write_table(out / "summary.csv", SUMMARY_COLUMNS, summarised(measured))
+    write_table(out / "live_targets_noise.csv", OVER_NOISE_COLUMNS, over_noise)
+    write_table(out / "live_targets.csv", SUMMARY_COLUMNS, summarised(measured))
+    streamed = stream_summary_lines(rows(STREAM_COLUMNS, measured.stream))
+    write_table(out / "live_targets_stream.csv", STREAM_SUMMARY_COLUMNS, streamed)
     plot_over_noise(over_noise, out / "noisy_targets.png")
 
 

@@ -2,9 +2,10 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::obstacle::{Obstacle, Scene};
+use ikcore::obstacle::Scene;
 use ikcore::planning::{Endpoint, PointToPointOptions, plan_point_to_point};
 use ikcore::robot::Robot;
+use ikcore::shape::Shape;
 use ikcore::solver::Unattended;
 use ikcore::task::Target;
 
@@ -30,8 +31,8 @@ fn plane(c: &mut Criterion) {
 
 fn panda(c: &mut Criterion) {
     let arm = Robot::named("panda").and_then(|arm| arm.with_capsules_along_links(0.06)).expect("an arm");
-    let crate_ = Obstacle::cuboid([0.5, 0.0, 0.2], [0.2, 0.6, 0.4], None).expect("a box");
-    let wall = Obstacle::cuboid([0.55, 0.0, 0.3], [0.5, 0.05, 0.6], None).expect("a wall");
+    let crate_ = Shape::cuboid([0.5, 0.0, 0.2], [0.2, 0.6, 0.4], None).expect("a box");
+    let wall = Shape::cuboid([0.55, 0.0, 0.3], [0.5, 0.05, 0.6], None).expect("a wall");
     let behind = arm.fk(&[0.124, 0.768, -0.323, -0.972, 0.047, 1.456, 2.818]).expect("a pose");
     let centre = arm.joints().iter().map(|joint| 0.5 * (joint.lower + joint.upper)).collect();
     let side = |turn: f64| Endpoint::Configuration(vec![turn, 0.8, 0.0, -1.6, 0.0, 2.4, 0.8]);

@@ -69,6 +69,22 @@ def _cell(value: float) -> str:
     return f"{value:.3g}" if np.isfinite(value) else "never"
 
 
+STREAM_SUMMARY_COLUMNS = [
+    *("library", "jerk limit, rad/s³", "lag, ms", "error, mm rms", "without its lag, mm rms"),
+    *("acceleration, rad/s² rms", "jerk, rad/s³ rms"),
+]
+
+
+def stream_summary_lines(stream: list[Row]) -> list[list[str]]:
+    """One line per library and jerk limit: means over the arms."""
+    columns = ["lag_ms", "error_rms_mm", "error_without_lag_rms_mm", "acceleration_rms", "jerk_rms"]
+    lines = []
+    for library, jerk in dict.fromkeys((row["library"], row["jerk_limit"]) for row in stream):
+        mine = [row for row in stream if (row["library"], row["jerk_limit"]) == (library, jerk)]
+        lines.append([library, jerk, *(f"{np.mean(_values(mine, column)):.3g}" for column in columns)])
+    return lines
+
+
 OVER_NOISE_COLUMNS = ["library", "jerk_limit", "noise_sd_m", "settling_s", "rest_acceleration_rms"]
 
 

@@ -40,9 +40,10 @@ def summary_lines(times: list[Row]) -> list[list[str]]:
 
 
 def _kind(row: Row) -> str:
-    if row["joints"] == "7":
-        return "of 7 joints"
-    return "of 6 joints, three axes parallel or meeting" if row["structure"].startswith(CLOSED) else "other of 6 joints"
+    joints = f"{row['joints']} joints"
+    return (
+        f"of {joints}, three axes parallel or meeting" if row["structure"].startswith(CLOSED) else f"other of {joints}"
+    )
 
 
 def _ratio(rows: list[Row]) -> str:

@@ -13,7 +13,7 @@ Every result has `success`, `status` and `message`: a sentence that says what ha
 
 import logging
 
-from . import goals, interop, obstacles, paths, plot, tasks, vision
+from . import filters, goals, interop, obstacles, paths, plot, tasks, vision
 from ._core import (
     APPS,
     BAS,
@@ -128,6 +128,7 @@ __all__ = [
     "Violation",
     "WeightedPseudoInverse",
     "__version__",
+    "filters",
     "goals",
     "interop",
     "minimize",

@@ -5,7 +5,7 @@
 # SI units and radians throughout; results are read-only.
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from typing import Any, Literal, Never, Protocol, TypeAlias, final, overload, type_check_only
 
@@ -71,30 +71,91 @@ class InfeasibleError(InvalidInputError):
 
 @final
 class Robot:
-    """A robot arm: the chain of joints from a base link to a tip link. Immutable; made by `from_urdf`, `from_dh`, `planar` or
-    `named`.
+    """A robot arm: the chain of joints from a base link to a tip link, and the links that branch off it. Immutable; made by
+    `from_urdf`, `from_dh`, `planar` or `named`.
 
-    Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow them. Poses are 4x4 matrices in
-    the frame of the robot's base.
+    Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow them, and joints beside the chain
+    are held. Poses are 4x4 matrices in the frame of the robot's base.
     """
 
     def __new__(cls, *_arguments: Never, **_options: Never) -> Robot: ...
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], *, base: str | None = None, tip: str | None = None) -> Robot:
-        """Makes a robot from a URDF file or a string of XML.
+    def from_urdf(
+        path_or_xml: str | os.PathLike[str],
+        *,
+        base: str | None = None,
+        tip: str | None = None,
+        hold: Mapping[str, float] | None = None,
+        srdf: str | os.PathLike[str] | None = None,
+        collision: Literal["primitives", "fit"] | None = "primitives",
+        package_dirs: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None = None,
+    ) -> Robot:
+        """Makes a robot from a URDF file or a string of XML. Links and joints beside the chain are kept: see `all_link_names` and
+        `held_joints`.
 
         Args:
-            path_or_xml: a file, or text that contains "<".
+            path_or_xml: a file, or text that contains "<". A file that ends in ".xacro" is expanded by the package xacro, of the
+                extra "robots".
             base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
             tip: link at the end of the chain; None: the only leaf.
+            hold: values (rad, m) of joints beside the chain, such as {"finger_joint": 0.04}; the others are held at zero, or at
+                the limit nearest to it.
+            srdf: an SRDF, file or text, whose disabled pairs of links are not tested against each other, see `with_srdf`.
+            collision: what becomes of collision shapes. "primitives": spheres, cylinders, capsules and boxes become `capsules` that
+                enclose them, and meshes are named but not read. "fit": meshes (STL, OBJ, DAE) too are covered by few capsules that
+                hold all of them; `mesh_fits` says how well. They are kept in the user's cache directory. None: none is read.
+            package_dirs: folders in which `package://` is looked for first; then come the variables ROS_PACKAGE_PATH and
+                AMENT_PREFIX_PATH, and the folders above the file.
 
-        Joints may be revolute, continuous, prismatic, fixed or mimic. Collision spheres, cylinders, capsules and boxes become
-        `capsules` that enclose them; visuals, meshes and unknown tags are ignored, and so is `safety_controller`. A missing
-        velocity limit means infinite; zero locks the joint.
+        Joints may be revolute, continuous, prismatic, fixed or mimic. Visuals and unknown tags are ignored, and so is
+        `safety_controller`. A missing velocity limit means infinite; zero locks the joint.
 
         Raises:
             UrdfError: not XML, no joint, a cycle, two roots, a zero axis, or several leaves and no `tip`.
             UnknownNameError: no link of that name; the message lists them.
+        """
+    @staticmethod
+    def from_mjcf(
+        model: Any, *, base: str | None = None, tip: str | None = None, hold: Mapping[str, float] | None = None
+    ) -> Robot:
+        """Makes a robot from a MuJoCo model, as compiled by MuJoCo. Joint positions equal MuJoCo's qpos. Needs the extra "sim".
+
+        Args:
+            model: an MJCF file, text that contains "<", or a `mujoco.MjModel`.
+            base: body whose frame is the reference frame; None: "world".
+            tip: body or site at the end of the chain; None: the only leaf body.
+            hold: as in `from_urdf`.
+
+        Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples linearly
+        follow their master. Geoms that collide become `capsules` if they are spheres, capsules, cylinders or boxes.
+
+        Raises:
+            BeetleIkError: MuJoCo is not installed.
+            UnknownNameError: no body or site of that name; the message lists them.
+            InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or one that is coupled in
+                another way.
+        """
+    @staticmethod
+    def from_description(
+        name: str,
+        *,
+        base: str | None = None,
+        tip: str | None = None,
+        hold: Mapping[str, float] | None = None,
+        srdf: str | os.PathLike[str] | None = None,
+        collision: Literal["primitives", "fit"] | None = None,
+    ) -> Robot:
+        """Makes a robot by its name in the package robot_descriptions, such as "panda_description" or "panda_mj_description", which
+        downloads it at first use. Needs the extra "robots".
+
+        Args:
+            name: a name of robot_descriptions.
+            base, tip, hold: as in `from_urdf`.
+            srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take neither.
+
+        Raises:
+            BeetleIkError: robot_descriptions is not installed.
+            UnknownNameError: no description of that name; the message names the nearest.
         """
     @staticmethod
     def from_dh(
@@ -163,6 +224,32 @@ class Robot:
     def link_names(self) -> list[str]:
         """Names of the links along the chain, base first, tip last."""
     @property
+    def all_link_names(self) -> list[str]:
+        """Names of all links: those of the chain as in `link_names`, then those that branch off it."""
+    @property
+    def held_joints(self) -> dict[str, float]:
+        """The joints beside the chain, with the values (rad, m) at which they are held."""
+    @property
+    def mesh_fits(self) -> list[tuple[str, str, float, float]]:
+        """Meshes that capsules were fitted to, each (link, file, volume ratio, largest distance): the volume of the capsules over that
+        of the mesh, NaN for one that is not closed; and the largest distance (m) of the capsules from it.
+        """
+    @property
+    def unread_collision_shapes(self) -> list[str]:
+        """Collision shapes that did not become `capsules`, such as "a mesh of link 'hand'": `from_urdf(..., collision="fit")` reads
+        meshes.
+        """
+    @property
+    def collision_pairs(self) -> list[tuple[str, str]]:
+        """Pairs of links that are tested against each other, each (link, link). Links that are fixed to each other never are. Without
+        an SRDF and without `with_collision_pairs` neither are neighbours, links that touch with all joints in the middle of their
+        ranges or in nearly all of 1,000 random configurations, and links that come no nearer than 20 mm in 10,000. Found at the
+        first call, always alike.
+        """
+    @property
+    def stances(self) -> dict[str, _Array]:
+        """Named configurations (n,) of an SRDF, such as "ready"."""
+    @property
     def lower(self) -> _Array:
         """Lower position limits (n,) (rad, m); -inf for none."""
     @property
@@ -210,6 +297,42 @@ class Robot:
         Raises:
             UnknownNameError: no link of that name; the message lists them.
         """
+    def with_held(self, hold: Mapping[str, float]) -> Robot:
+        """Returns a copy with joints beside the chain held elsewhere, such as `with_held({"finger_joint": 0.04})` (rad, m).
+
+        Raises:
+            UnknownNameError: no held joint of that name; the message lists them.
+            LimitError: a value outside the limits of the joint.
+        """
+    def with_attached(
+        self, link: str, shape: Obstacle, *, touch: Sequence[str] | None = None, name: str | None = None
+    ) -> Robot:
+        """Returns a copy that carries `shape`, in the frame of `link`, as a body of its own, such as a grasped part.
+
+        Args:
+            link: the link that carries it.
+            shape: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`; the body is the capsule that
+                encloses it.
+            touch: links that it may touch, besides those that move with `link`.
+            name: its name in messages and in `all_link_names`; None: "attached", "attached_2" and so on.
+
+        Raises:
+            UnknownNameError: no link of that name; the message lists them.
+        """
+    def with_collision_pairs(self, pairs: Sequence[tuple[str, str]]) -> Robot:
+        """Returns a copy with these pairs of links tested against each other, and no others: each (link, link). To leave some out:
+        `robot.with_collision_pairs([pair for pair in robot.collision_pairs if "camera" not in pair])`.
+
+        Raises:
+            UnknownNameError: no link of that name; the message lists them.
+        """
+    def with_srdf(self, path_or_xml: str | os.PathLike[str]) -> Robot:
+        """Returns a copy with what an SRDF says: `path_or_xml` is a file, or text that contains "<". Pairs of links that it disables
+        are not tested against each other, and its states that give all joints of the robot become `stances`.
+
+        Raises:
+            UrdfError: no SRDF, or that of another robot.
+        """
     def with_errors(self, *, length: float = 0.0, angle: float = 0.0, seed: int = 0) -> Robot:
         """Returns a copy with random manufacturing errors: each constant offset between two joints changes by up to `length`
         (m), and the zero of each revolute joint by up to `angle` (rad). Use it in a `KinematicPlant` to simulate an arm whose
@@ -228,15 +351,26 @@ class Robot:
         """For `beetle_ik.interop`: joints are (name, kind, lower, upper, velocity), elements ("fixed", pose (4, 4)), ("moving",
         joint, turns, axis (3,), scale, offset) or ("link", name).
         """
-    def fk(self, q: ArrayLike) -> _Array:
-        """Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics."""
+    def fk(self, q: ArrayLike, *, link: str | None = None) -> _Array:
+        """Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics. With `link`, that of any link
+        of the robot; `all_link_names` lists them.
+
+        Raises:
+            UnknownNameError: no link of that name; the message lists them.
+        """
     def clip(self, q: ArrayLike) -> _Array:
         """Clips q to the position limits: (n,) for q (n,), (m, n) for q (m, n)."""
     def link_poses(self, q: ArrayLike) -> _Array:
-        """Returns the poses of all links at q (n,), in the order of `link_names`: (links, 4, 4)."""
-    def jacobian(self, q: ArrayLike) -> _Array:
+        """Returns the poses of the links of the chain at q (n,), in the order of `link_names`: (links, 4, 4)."""
+    def all_link_poses(self, q: ArrayLike) -> _Array:
+        """Returns the poses of all links at q (n,), in the order of `all_link_names`: (links, 4, 4)."""
+    def jacobian(self, q: ArrayLike, *, link: str | None = None) -> _Array:
         """Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m),
-        then angular rows, along the axes of the base.
+        then angular rows, along the axes of the base. With `link`, that of the origin of any link of the robot;
+        `all_link_names` lists them.
+
+        Raises:
+            UnknownNameError: no link of that name; the message lists them.
         """
     def random_configurations(self, m: int, seed: int = 0) -> _Array:
         """Draws m configurations uniformly within the limits, (m, n). Joints without limits: one turn, or 2 m, around zero."""
@@ -1279,8 +1413,11 @@ def solve(
         robot: the arm.
         target: pose (4, 4), or position (3,) (m) with the orientation left free.
         task: which part of the target counts, one of `tasks`; None: all of it.
-        start: (n,), first start of the search; None: stored configurations of the robot with the tip near the target.
-        solver: the solver; None: Levenberg-Marquardt from many starts.
+        start: (n,), the configuration that the closed form of an arm with 6 joints or fewer chooses the nearest solution to, and
+            where a search, or the descent of a redundant arm, begins. None: the closed form takes the most central solution
+            inside the limits, and a search begins at stored configurations of the robot with the tip near the target.
+        solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
+            Levenberg-Marquardt from many starts for everything else.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
         goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
@@ -1360,7 +1497,7 @@ def solve_all(
 ) -> SolutionSet:
     """Returns all solutions of a pose where the arm has a closed form (`Robot.closed_form`), and searches for distinct ones elsewhere.
 
-    The closed form serves whole poses with the default solver and no weights or region. `SolutionSet.complete` says whether it is
+    The closed form serves whole poses without a `solver`, weights or region. `SolutionSet.complete` says whether it is
     proven that no solution is missing. The search ends when a hundred solutions in a row are known already, or the budget is spent.
 
     Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
@@ -1378,7 +1515,7 @@ def solve_all(
             limits allow. 0: its solutions are searched for.
         turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
         task: which part of the target counts, one of `tasks`; None: all of it.
-        solver: the solver; None: Levenberg-Marquardt from many starts.
+        solver: the solver of a search; None: the closed form where there is one, and Levenberg-Marquardt from many starts elsewhere.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
         limits: position limits; None: the robot's.
@@ -1465,13 +1602,14 @@ def solve_batch(
     Args:
         robot: the arm.
         targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free.
-        starts: first starts, (m, n), or (n,) for all; None: stored configurations of the robot with the tip near the target.
+        starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
         threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
         on_invalid: how to treat an invalid target or start: "raise" raises an error that names its row; "skip" solves the
             other rows and marks this one `Status.INVALID`, with q NaN.
         progress: True shows a progress bar; a callable is called with (done, total).
         task: as for `solve`.
-        solver: the solver; None: Levenberg-Marquardt from many starts.
+        solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
+            Levenberg-Marquardt from many starts for everything else.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
         goals, prefer: as for `solve`.
@@ -1951,11 +2089,49 @@ class TrackResult:
     def __len__(self) -> int: ...
 
 @final
+class LowPass:
+    """First-order low-pass for the targets of a `Tracker`, for positions and orientations.
+
+    A target that moves steadily is delayed by 1 / (2 pi cutoff): 32 ms at 5 Hz.
+
+    Args:
+        cutoff: cutoff (Hz).
+    """
+
+    def __new__(cls, cutoff: float) -> LowPass: ...
+    @property
+    def cutoff(self) -> float:
+        """Cutoff (Hz)."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class OneEuro:
+    """One-euro filter for the targets of a `Tracker`, for positions and orientations: a low-pass whose cutoff rises with the
+    speed of the target (Casiez, Roussel and Vogel 2012).
+
+    A target that moves steadily at speed v is delayed by 1 / (2 pi (min_cutoff + beta v)).
+
+    Args:
+        min_cutoff: cutoff at rest (Hz).
+        beta: increase of the cutoff with speed: Hz per m/s for positions, Hz per rad/s for orientations.
+    """
+
+    def __new__(cls, *, min_cutoff: float = 1.0, beta: float = 10.0) -> OneEuro: ...
+    @property
+    def min_cutoff(self) -> float:
+        """Cutoff at rest (Hz)."""
+    @property
+    def beta(self) -> float:
+        """Increase of the cutoff with speed (Hz per m/s, Hz per rad/s)."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
 class Tracker:
     """Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 
-    A target may jump farther than one tick can reach. The model-based rule then moves all joints in proportion, with one at
-    its velocity limit, and brakes in time under acceleration limits.
+    A target may jump farther than one tick can reach: the model-based rule moves all joints in proportion, with one at a
+    limit. Under acceleration or jerk limits every command leaves a full stop inside all limits, the arm brakes in time, and
+    noise of the targets is recognised and not followed; a smooth target without noise is followed without lag.
 
     Args:
         robot: the arm.
@@ -1970,6 +2146,8 @@ class Tracker:
         rotation_tolerance: largest rotation error (rad).
         seed: seed of the random draws.
         limit_at: as in `track`.
+        target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
+        timeout: time without a new target after which the arm stops (s); None: never.
     """
 
     def __new__(
@@ -1986,17 +2164,39 @@ class Tracker:
         rotation_tolerance: float = 1e-6,
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
+        target_filter: LowPass | OneEuro | None = None,
+        timeout: float | None = None,
     ) -> Tracker: ...
-    def step(self, target: _Pose, *, velocity: ArrayLike | None = None) -> Step:
+    def step(self, target: _Pose | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
         """Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
 
+        Targets may come more rarely than ticks: `step(None)` says that there is no new one. Under acceleration or jerk limits the
+        model-based rule then follows the motion of the last targets, for two of their intervals at most, and stops smoothly;
+        otherwise the arm goes on towards the last target. A target that is not finite raises an error, after which the tracker
+        is as before.
+
         Args:
-            target: target of the tip at the end of the tick.
+            target: target of the tip at the end of the tick; None: no new one.
             velocity: (3,) (m/s), velocity of the target at the end of the tick, which only `WeightedPseudoInverse` uses;
                 None: from the difference to the previous target.
+            stamp: when the target was measured, on the tracker's own clock, `time` (s); None: at the end of the tick. The
+                model-based rule follows the motion of the targets up to now, over 0.25 s at most, under acceleration or jerk
+                limits; without these a stamp is refused. A target older than the last one is ignored.
         """
-    def reset(self, q: ArrayLike) -> None:
-        """Resets to rest at q (n,) and t = 0."""
+    def stop(self) -> float:
+        """Brakes as fast as the limits allow: every following `step(None)` is a tick of the stop, until a target arrives.
+
+        Returns:
+            How long the stop takes (s); 0 without acceleration and jerk limits.
+        """
+    def reset(self, q: ArrayLike, qd: ArrayLike | None = None, qdd: ArrayLike | None = None) -> None:
+        """Resets to q (n,) and t = 0, at rest or in motion.
+
+        Args:
+            q: configuration (n,) (rad, m).
+            qd: velocities (n,) (rad/s, m/s): (q - q before) / dt; None: zero.
+            qdd: accelerations (n,) (rad/s^2, m/s^2): differences of these velocities / dt; None: zero.
+        """
     @property
     def q(self) -> _Array:
         """The last accepted configuration (n,) (rad, m)."""
@@ -2055,11 +2255,13 @@ class Step:
 
 @disjoint_base
 class Obstacle:
-    """The base class of obstacles: a convex body, fixed in the frame of the robot's base."""
+    """The base class of obstacles: a shape, fixed in the frame of the robot's base."""
 
     @property
     def triangles(self) -> _Array:
-        """Triangles of the surface (t, 3, 3) (m), for drawing. The corners of triangles lie on the surface."""
+        """Triangles of the surface (t, 3, 3) (m), for drawing. Their corners lie on the surface; a half-space is a square of 4 m,
+        a point cloud octahedra about at most 2,000 of its points.
+        """
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -2105,6 +2307,38 @@ class Capsule(Obstacle):
         """Radius (m)."""
 
 @final
+class Cylinder(Obstacle):
+    """A cylinder with flat ends: centre (3,), axis (3,) of any length, radius and length (m)."""
+
+    def __new__(cls, center: ArrayLike, axis: ArrayLike, radius: float, length: float) -> Cylinder: ...
+    @property
+    def center(self) -> _Array:
+        """Centre (3,) (m)."""
+    @property
+    def axis(self) -> _Array:
+        """Axis (3,), of unit length."""
+    @property
+    def radius(self) -> float:
+        """Radius (m)."""
+    @property
+    def length(self) -> float:
+        """Length along the axis (m)."""
+
+@final
+class HalfSpace(Obstacle):
+    """All points x with normal . x <= offset, for a normal (3,) of unit length: `HalfSpace([0, 0, 1], 0.0)` is a floor. A
+    normal of another length is scaled; `offset` (m) is not.
+    """
+
+    def __new__(cls, normal: ArrayLike, offset: float) -> HalfSpace: ...
+    @property
+    def normal(self) -> _Array:
+        """Outward normal (3,), of unit length."""
+    @property
+    def offset(self) -> float:
+        """Distance of the surface from the origin, along the normal (m)."""
+
+@final
 class Ellipsoid(Obstacle):
     """An ellipsoid: centre (3,), lengths of the semi-axes (3,) (m), and their rotation (3, 3)."""
 
@@ -2145,9 +2379,97 @@ class ConvexMesh(Obstacle):
     def points(self) -> _Array:
         """The points as given (k, 3) (m)."""
 
+@final
+class Mesh(Obstacle):
+    """A mesh of triangles: vertices (k, 3) (m) and faces (t, 3), indices of vertices. It need not be convex. If it is closed,
+    its inside counts too; else it is a surface without thickness.
+    """
+
+    def __new__(cls, vertices: ArrayLike, faces: ArrayLike) -> Mesh: ...
+    @property
+    def vertices(self) -> _Array:
+        """The vertices (k, 3) (m)."""
+    @property
+    def faces(self) -> NDArray[np.uint32]:
+        """The faces (t, 3): indices of vertices."""
+    @property
+    def closed(self) -> bool:
+        """Whether the mesh encloses a volume: every edge belongs to two triangles that run along it in opposite directions."""
+
+@final
+class PointCloud(Obstacle):
+    """Balls of one `radius` (m) about points (k, 3) (m), such as from a depth camera."""
+
+    def __new__(cls, points: ArrayLike, radius: float) -> PointCloud: ...
+    @property
+    def points(self) -> _Array:
+        """The points (k, 3) (m)."""
+    @property
+    def radius(self) -> float:
+        """Radius of the ball about each point (m)."""
+
+@final
+class Grid(Obstacle):
+    """The occupied voxels of a grid: cubes with edges of `voxel` (m), the first with its lowest corner at `origin` (3,) (m).
+    `occupied` is a boolean array (nx, ny, nz).
+    """
+
+    def __new__(cls, origin: ArrayLike, voxel: float, occupied: ArrayLike) -> Grid: ...
+    @property
+    def origin(self) -> _Array:
+        """Lowest corner of the first voxel (3,) (m)."""
+    @property
+    def voxel(self) -> float:
+        """Edge of a voxel (m)."""
+    @property
+    def occupied(self) -> NDArray[np.bool_]:
+        """Whether each voxel is occupied (nx, ny, nz)."""
+
+@final
+class Nearest:
+    """The nearest two bodies at a configuration, from `obstacles.nearest`."""
+
+    @property
+    def body(self) -> str:
+        """The link of the robot."""
+    @property
+    def other(self) -> str:
+        """What it is near to: "obstacle 0 (Box)" or "link 'panda_link0'"."""
+    @property
+    def distance(self) -> float:
+        """Distance between their surfaces (m); negative by how deep they reach into each other."""
+    @property
+    def point(self) -> _Array:
+        """The nearest point of the link (3,) (m), in the frame of the robot's base. That of the other body is
+        `point - distance * normal`.
+        """
+    @property
+    def normal(self) -> _Array:
+        """Unit vector (3,) from the other body to the link, along which the distance grows fastest."""
+    @property
+    def gradient(self) -> _Array:
+        """Derivative of the distance by each joint (n,) (m/rad, m/m)."""
+
+def nearest(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Nearest | None:
+    """Returns the two bodies that are nearest to each other: a link and an obstacle, or two links; the deepest overlap if
+    bodies overlap. None if nothing can touch. The pairs and the meaning of the distance are those of `clearance`.
+
+    Args:
+        robot: an arm with capsules.
+        q: joint positions (n,) (rad, m).
+        obstacles: obstacles in the frame of the robot's base.
+
+    Raises:
+        InvalidInputError: a robot without capsules, or an obstacle that is not of `bik.obstacles`.
+    """
+
 def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None = None) -> Any:
     """Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
     for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
+
+    Never more than the true distance, and at most 1e-9 m less. Where a capsule reaches into an obstacle, the depth is that of
+    the deepest point of its axis, plus its radius: to the surface of a closed mesh (to 1 % or 0.1 mm), in the nearest block of
+    voxels of a grid, in the nearest ball of a point cloud. An open mesh has no inside.
 
     Args:
         robot: an arm with capsules.

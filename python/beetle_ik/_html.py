@@ -31,7 +31,9 @@ def robot(robot: Robot) -> str:
     columns = (robot.joint_names, robot.joint_kinds, robot.lower, robot.upper, robot.velocity_limit)
     rows = [[_shown(value) for value in row] for row in zip(*columns, strict=True)]
     head = ("joint", "kind", "lower [rad, m]", "upper [rad, m]", "velocity limit [rad/s, m/s]")
-    return f"<b>{escape(robot.name)}</b>: {robot.dof} joints, {escape(ends)}{_table(rows, head)}"
+    held = "; ".join(f"{name} at {_shown(value)}" for name, value in robot.held_joints.items())
+    chain = f"{robot.dof} joints, {ends}" + (f"; held: {held}" if held else "")
+    return f"<b>{escape(robot.name)}</b>: {escape(chain)}{_table(rows, head)}"
 
 
 def result(result: Any) -> str:

@@ -23,9 +23,14 @@ _SHAPES: dict[str, type[Obstacle]] = {
     "sphere": obstacles.Sphere,
     "box": obstacles.Box,
     "capsule": obstacles.Capsule,
+    "cylinder": obstacles.Cylinder,
+    "half_space": obstacles.HalfSpace,
     "ellipsoid": obstacles.Ellipsoid,
     "ellipse": obstacles.Ellipse,
     "convex_mesh": obstacles.ConvexMesh,
+    "mesh": obstacles.Mesh,
+    "point_cloud": obstacles.PointCloud,
+    "grid": obstacles.Grid,
 }
 
 

@@ -44,7 +44,7 @@ def draw_in_space(axes: Any, points: NDArray[np.float64], obstacles: Sequence[Ob
         surface = [inside(triangle, middle - reach, middle + reach) for triangle in obstacle.triangles]
         seen = [polygon for polygon in surface if len(polygon)]
         if seen:
-            axes.add_collection3d(Poly3DCollection(seen, facecolor=ORANGE, alpha=0.35, linewidth=0))
+            axes.add_collection3d(Poly3DCollection(seen, facecolors=ORANGE, alpha=0.45, linewidth=0, shade=True))
 
 
 def _surroundings(points: NDArray[np.float64], obstacles: Sequence[Obstacle]) -> NDArray[np.float64]:

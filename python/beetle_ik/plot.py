@@ -35,9 +35,17 @@ _LEGEND_ROWS = 10
 _TRAJECTORY_SAMPLES = 2001
 
 
-def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = None) -> Figure:
-    """Draws the robot as a stick figure at configuration `q` (n,), with its tool, its capsules and `obstacles`."""
+def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = None, bodies: bool = True) -> Figure:
+    """Draws the robot as a stick figure at configuration `q` (n,), with its tool, its capsules and `obstacles`.
+
+    Args:
+        robot: the robot.
+        q: joint positions (n,) (rad, m).
+        obstacles: obstacles in the frame of the robot's base.
+        bodies: whether to draw the capsules of the links.
+    """
     require("robot", robot, _core.Robot)
+    require("bodies", bodies, bool)
     obstacles = () if obstacles is None else obstacles
     require("obstacles", obstacles, Iterable)
     obstacles = list(obstacles)
@@ -52,7 +60,8 @@ def robot(robot: Robot, q: ArrayLike, *, obstacles: Iterable[Obstacle] | None = 
         if len(corners) > flange + 1:
             axes.plot(*corners[flange:].T, color=ORANGE, linewidth=3, label="tool")
         axes.plot(*corners[-1:].T, color=VERMILION, marker="o", markersize=8, linestyle="none", label="tip")
-        draw_capsules(axes, robot, q)
+        if bodies:
+            draw_capsules(axes, robot, q)
         draw_in_space(axes, corners, obstacles)
         axes.set_title(f"{robot.name}, {counted(robot.dof, 'joint')}")
         axes.legend(loc="upper left")

@@ -36,7 +36,7 @@ class Oracle:
     def drive(self, joint: str) -> tuple[str, float, float]:
         """The independent joint behind `joint`, and factor and offset of its motion."""
         mimic = self.couplings[joint]
-        if mimic is None:
+        if mimic is None or mimic.attrib["joint"] not in self.couplings:
             return joint, 1.0, 0.0
         master, factor, offset = self.drive(mimic.attrib["joint"])
         multiplier = float(mimic.get("multiplier", 1.0))
@@ -56,10 +56,18 @@ class Oracle:
         jacobian = np.vstack((base.rotation.T @ linear, base.rotation.T @ angular))
         return base.actInv(tip).homogeneous, jacobian
 
+    def link_poses(self, links: list[str], values: Mapping[str, float]) -> Array:
+        """Poses of links in the base link's frame, with the independent joints at these values."""
+        self.pin.framesForwardKinematics(self.model, self.data, self._configuration(values))
+        frames = [self.data.oMf[self.model.getFrameId(link, self.pin.BODY)] for link in links]
+        return np.array([self.data.oMf[self.base].actInv(frame).homogeneous for frame in frames])
+
     def _configuration(self, values: Mapping[str, float]) -> Array:
         """Pinocchio's q: joints that are not on the chain stand at zero."""
         full = self.pin.neutral(self.model)
         for name, joint in zip(self.model.names[1:], list(self.model.joints)[1:], strict=True):
+            if joint.nv > 1:
+                continue  # a floating or planar joint
             master, factor, offset = self.drive(name)
             angle = factor * values.get(master, 0.0) + offset
             full[joint.idx_q : joint.idx_q + joint.nq] = [angle] if joint.nq == 1 else [np.cos(angle), np.sin(angle)]

@@ -219,7 +219,11 @@ def test_a_dataframe_has_a_column_per_joint_and_derivative() -> None:
             "a table needs pandas: pip install pandas",
         ),
         ("pinocchio", lambda: bik.interop.to_pinocchio(ROBOTS["ur5e"]), "a Pinocchio model needs pin: pip install pin"),
-        ("mujoco", lambda: bik.interop.from_mujoco("<mujoco/>"), "a MuJoCo model needs mujoco: pip install mujoco"),
+        (
+            "mujoco",
+            lambda: bik.interop.from_mujoco("<mujoco/>"),
+            "a MuJoCo model needs mujoco: pip install 'beetle-ik[sim]'",
+        ),
         (
             "roboticstoolbox",
             lambda: bik.interop.to_roboticstoolbox(ROBOTS["ur5e"]),
@@ -408,13 +412,13 @@ def test_mujoco_models_keep_their_kinematics(mujoco: object, tip: str | None, tm
     ("more", "equality", "options", "problem"),
     [
         ("<body name='b'><geom size='1'/></body>", "", {},
-         "the model of MuJoCo has 2 leaf bodies; give tip= one of: lower, b"),
+         "robot 'arm' ends in 2 links: say which one is the tip; leaves, by number of joints: lower (3), "
+         "b (0)"),
         ("<body name='b'><geom size='1'/><freejoint name='f'/></body>", "", {"tip": "b"},
-         "joint 'f' of the MuJoCo model must be a hinge or a slide"),
-        ("", "<equality><joint joint1='turn' joint2='elbow'/></equality>", {},
-         "joint 'turn' of the MuJoCo model is coupled to another joint by an equality constraint"),
-        ("", "", {"base": "lower", "tip": "upper"},
-         "body 'upper' of the MuJoCo model is not a descendant of body 'lower'"),
+         "MuJoCo model: joint 'f' is floating, and a chain takes only revolute, continuous, prismatic, fixed and mimic "
+         "joints: take base and tip on one side of it, such as base 'b'"),
+        ("", "<equality><joint joint1='turn' joint2='elbow' polycoef='0 1 2 0 0'/></equality>", {},
+         "joint 'turn' of the MuJoCo model is coupled by an equality constraint that is not linear"),
         ("", "", {"tip": "hand"},
          "no body or site 'hand' in the MuJoCo model; bodies: world, upper, lower; sites: tool"),
     ],

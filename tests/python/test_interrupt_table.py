@@ -79,6 +79,9 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "Trajectory.from_samples": lambda: lambda: wave(3_000_000),
         "minimize": lambda: lambda: bik.minimize(np.sum, [-1] * 9, [1] * 9, stop=ENDLESS),
         "obstacles.ConvexMesh": lambda: hull(30_000),
+        "obstacles.Grid": lambda: occupied(300),
+        "obstacles.Mesh": lambda: soup(1_000_000),
+        "obstacles.PointCloud": lambda: cloud(3_000_000),
         "obstacles.clearance": lambda: with_rows(lambda q: bik.obstacles.clearance(CAPSULES, q), 400_000),
         "paths.from_samples": lambda: posed(500_000),
         "plan_along_path": lambda: lambda: bik.plan_along_path(IIWA, CIRCLE, limits=FAST, stop=ENDLESS),
@@ -136,6 +139,22 @@ def hull(count: int) -> Callable[[], object]:
     return lambda: bik.obstacles.ConvexMesh(points)
 
 
+def occupied(count: int) -> Callable[[], object]:
+    voxels = np.random.default_rng(0).random((count, count, count)) < 0.3
+    return lambda: bik.obstacles.Grid([0, 0, 0], 0.01, voxels)
+
+
+def soup(count: int) -> Callable[[], object]:
+    corners = np.random.default_rng(0).random((3 * count, 3))
+    faces = np.arange(3 * count).reshape(count, 3)
+    return lambda: bik.obstacles.Mesh(corners, faces)
+
+
+def cloud(count: int) -> Callable[[], object]:
+    points = np.random.default_rng(0).random((count, 3))
+    return lambda: bik.obstacles.PointCloud(points, 0.01)
+
+
 def posed(count: int) -> Callable[[], object]:
     time, poses = np.arange(count) * 1e-3, np.tile(np.eye(4), (count, 1, 1))
     poses[:, 0, 3] = time
@@ -163,7 +182,7 @@ SHORT: dict[str, str] = {
             "tasks.Pointing", "tasks.Pose", "tasks.Position", "goals.Centring", "goals.LinkManipulability",
             "goals.Manipulability", "goals.Posture", "paths.circle", "paths.from_function", "paths.hypotrochoid",
             "paths.letter_m", "paths.pentagram", "paths.rose", "obstacles.Box", "obstacles.Capsule",
-            "obstacles.Ellipse", "obstacles.Ellipsoid", "obstacles.Sphere",
+            "obstacles.Cylinder", "obstacles.Ellipse", "obstacles.Ellipsoid", "obstacles.HalfSpace", "obstacles.Sphere",
         ],
         CONSTANT,
     ),
@@ -173,7 +192,8 @@ SHORT: dict[str, str] = {
             "Robot.planar", "Robot.named", "Robot.names", "Robot.link_poses", "Robot.with_tool", "Robot.with_base",
             "Robot.with_limits", "Robot.with_capsules", "Robot.with_errors", "Robot.manipulability_gradient",
             "Robot.link_manipulability", "Robot.velocity_ellipsoid", "Tracker", "Tracker.reset", "pose",
-            "state_to_state",
+            "state_to_state", "obstacles.nearest", "Robot.all_link_poses", "Robot.with_held", "Robot.with_attached",
+            "Robot.with_collision_pairs", "Robot.with_srdf",
         ],
         ONE,
     ),
@@ -184,6 +204,7 @@ SHORT: dict[str, str] = {
     ),
     **dict.fromkeys(
         [
+            "Robot.from_mjcf", "Robot.from_description",
             "ModelFreeResult.plot", "Plan.plot", "TrackResult.plot", "Trajectory.plot", "Trajectory.to_csv",
             "Trajectory.from_csv", "plot.animation", "plot.model_free", "plot.plan", "plot.robot", "plot.saturation",
             "plot.track", "plot.trajectory",

@@ -139,13 +139,6 @@ def test_a_single_configuration_has_no_motion_to_limit(field: str) -> None:
     assert str(caught.value) == message
 
 
-def test_limits_that_a_tracker_cannot_keep_are_refused() -> None:
-    with pytest.raises(bik.UnsupportedLimit) as caught:
-        track(bik.Limits(jerk=1.0))
-    kept = "this tracker keeps position, velocity and acceleration limits; leave it out"
-    assert str(caught.value) == f"track cannot honour jerk limits: {kept}"
-
-
 @pytest.mark.parametrize("field", ["acceleration", "jerk"])
 def test_switching_off_what_is_not_kept_is_fine(field: str) -> None:
     assert track(bik.Limits(**{field: np.inf})).success

@@ -64,6 +64,71 @@ def test_capsules_are_seen_from_their_links() -> None:
     assert bik.obstacles.clearance(arm, [0, 0], [ball]) == pytest.approx(0.2, abs=1e-8)
 
 
+def ball_at(x: float, y: float, z: float) -> bik.Robot:
+    """Returns an arm that carries one ball of 0.1 m at that place, when its joints are at zero."""
+    arm = bik.Robot.planar([1.0])
+    x, y, z = np.array([x, y, z]) - arm.link_poses([0.0])[-1, :3, 3]
+    return arm.with_capsules([(arm.link_names[-1], [x, y, z], [x, y, z], 0.1)])
+
+
+BOX = bik.obstacles.Box([0, 0, 0], [1, 1, 1])
+OCCUPIED = np.zeros((3, 3, 3), dtype=bool)
+OCCUPIED[0, 0, 0] = OCCUPIED[2, 2, 2] = True
+KINDS = {
+    "Cylinder": (bik.obstacles.Cylinder([0, 0, 0], [2, 0, 0], 0.5, 1.0), (2, 0.5, 0), 1.4, (1, 0, 0)),
+    "HalfSpace": (bik.obstacles.HalfSpace([0, 2, 0], 0.5), (3, 1.0, -4), 0.4, (0, 1, 0)),
+    "Mesh": (bik.obstacles.Mesh(BOX.triangles.reshape(-1, 3), np.arange(36).reshape(12, 3)), (0, 0, 2), 1.4, (0, 0, 1)),
+    "PointCloud": (bik.obstacles.PointCloud([[0, 0, 0], [5, 0, 0]], 0.05), (6, 0, 0), 0.85, (1, 0, 0)),
+    "Grid": (bik.obstacles.Grid([0, 0, 0], 0.1, OCCUPIED), (0.25, 0.25, 0.6), 0.2, (0, 0, 1)),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_kind_of_obstacle_has_distance_place_and_normal(kind: str) -> None:
+    obstacle, place, distance, normal = KINDS[kind]
+    arm = ball_at(*place)
+    found = bik.obstacles.nearest(arm, [0.0], [obstacle])
+    assert found is not None
+    assert (found.body, found.other) == (arm.link_names[-1], f"obstacle 0 ({kind})")
+    assert found.distance == bik.obstacles.clearance(arm, [0.0], [obstacle])
+    assert distance - 1e-9 <= found.distance <= distance
+    assert found.normal == pytest.approx(normal, abs=1e-9)
+    assert found.point == pytest.approx(np.array(place) - 0.1 * found.normal, abs=1e-9)
+    # The joint turns about z at the origin.
+    assert found.gradient == pytest.approx([np.cross([0, 0, 1], found.point) @ found.normal], abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_plan_keeps_clear_of_each_kind_of_obstacle(kind: str) -> None:
+    obstacle = {
+        "Cylinder": bik.obstacles.Cylinder([0.5, 0, 0.2], [0, 1, 0], 0.15, 0.6),
+        "HalfSpace": bik.obstacles.HalfSpace([0, 0, 1], -0.1),
+        "Mesh": bik.obstacles.Mesh(CRATE.triangles.reshape(-1, 3), np.arange(36).reshape(12, 3)),
+        "PointCloud": bik.obstacles.PointCloud(
+            np.random.default_rng(1).uniform(-1, 1, (300, 3)) * 0.1 + [0.5, 0, 0.2], 0.02
+        ),
+        "Grid": bik.obstacles.Grid([0.4, -0.3, 0.0], 0.1, np.ones((2, 6, 4), dtype=bool)),
+    }[kind]
+    plan = bik.plan_point_to_point(PANDA, start_q=CENTRE, end=BEHIND, obstacles=[obstacle], limits=LIMITS)
+    assert plan.success, plan.message
+    _, q, *_ = plan.trajectory.sample(0.005)
+    assert 0.001 <= plan.clearance <= bik.obstacles.clearance(PANDA, q, [obstacle]).min() + 1e-9
+
+
+def test_nothing_is_nearest_where_nothing_can_touch() -> None:
+    arm = bik.Robot.planar([1.0, 1.0]).with_capsules(radius=0.1)
+    assert bik.obstacles.nearest(arm, [0, 0]) is None
+
+
+def test_a_closed_mesh_has_an_inside_and_an_open_one_has_none() -> None:
+    corners, faces = BOX.triangles.reshape(-1, 3), np.arange(36).reshape(12, 3)
+    closed, open_ = bik.obstacles.Mesh(corners, faces), bik.obstacles.Mesh(corners, faces[:-1])
+    assert (closed.closed, open_.closed) == (True, False)
+    arm = ball_at(0.3, 0.0, 0.0)
+    assert bik.obstacles.clearance(arm, [0.0], [closed]) == pytest.approx(-0.3, abs=1e-9)
+    assert bik.obstacles.clearance(arm, [0.0], [open_]) == pytest.approx(0.1, abs=1e-9)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
@@ -79,6 +144,36 @@ def test_capsules_are_seen_from_their_links() -> None:
         (
             lambda: bik.obstacles.ConvexMesh([[0, 0, 0], [1, 0, 0]]),
             "a convex mesh needs at least 4 points that do not lie in a plane, got 2",
+        ),
+        (
+            lambda: bik.obstacles.Cylinder([0, 0, 0], [0, 0, 0], 0.1, 1),
+            "length of the axis of the cylinder must be positive and finite, got 0",
+        ),
+        (
+            lambda: bik.obstacles.HalfSpace([0, 0, 1], np.inf),
+            "offset of the half-space must be finite, but it is inf",
+        ),
+        (lambda: bik.obstacles.Mesh([[0, 0, 0]], []), "faces: expected shape (t, 3), got (0,)"),
+        (
+            lambda: bik.obstacles.Mesh([[0, 0, 0]], np.empty((0, 3))),
+            "a mesh needs at least one triangle, got none",
+        ),
+        (
+            lambda: bik.obstacles.Mesh([[0, 0, 0]], [[0, 1, 0]]),
+            "face 0 of the mesh names vertex 1, but it has 1 (from 0)",
+        ),
+        (
+            lambda: bik.obstacles.Mesh([[0, 0, 0]], [[0, -1, 0]]),
+            "face 0: expected indices of vertices, from 0, got -1",
+        ),
+        (lambda: bik.obstacles.PointCloud(np.empty((0, 3)), 0.1), "a point cloud needs at least one point, got none"),
+        (
+            lambda: bik.obstacles.Grid([0, 0, 0], 0.1, [[1, 0]]),
+            "occupied must be a boolean array (nx, ny, nz), got an array of int64",
+        ),
+        (
+            lambda: bik.obstacles.Grid([0, 0, 0], 0.1, np.zeros((2, 2, 2), dtype=bool)),
+            "a grid needs at least one occupied voxel, got none",
         ),
         (
             lambda: bik.plan_point_to_point(PANDA, start_q=CENTRE, end_q=CENTRE, obstacles=[3]),

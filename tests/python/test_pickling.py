@@ -56,6 +56,11 @@ OBSTACLES = [
     bik.obstacles.Capsule([0.1, 0.2, 0.3], [1, 2, 3], 0.25),
     bik.obstacles.Ellipsoid([0.1, 0.2, 0.3], [1, 2, 3], rotation=TURN),
     bik.obstacles.Ellipse([0.1, 0.2], [1, 2], angle=0.7),
+    bik.obstacles.Cylinder([0.1, 0.2, 0.3], [1, 2, 3], 0.25, 0.5),
+    bik.obstacles.HalfSpace([1, 2, 3], 0.25),
+    bik.obstacles.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]),
+    bik.obstacles.PointCloud([[0, 0, 0], [1, 0, 0]], 0.1),
+    bik.obstacles.Grid([0.1, 0.2, 0.3], 0.5, np.array([[[True, False]]])),
     bik.obstacles.ConvexMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
 ]
 METHODS = [
@@ -332,6 +337,7 @@ def results() -> dict[str, object]:
         "no minimum": bik.minimize(lambda _: np.nan, [-1.0], [2.0], solver=bik.BAS(), stop=bik.Stop(max_evaluations=9)),
         "posture": bik.planar_posture(planar, (1.5, 1.0, 0.0), swarm=bik.CircleSwarm()),
         "no posture": bik.planar_posture(planar, (4.0, 0.0, 0.0)),
+        "nearest": bik.obstacles.nearest(planar.with_capsules(radius=0.1), [0.1] * planar.dof, [obstacle]),
     }  # fmt: skip
 
 

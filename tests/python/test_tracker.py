@@ -81,5 +81,3 @@ def test_wrong_input_is_named() -> None:
         bik.UnsupportedLimit, match="Tracker cannot honour callable velocity limits: it has no end time"
     ):
         bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, limits=bik.Limits(velocity=lambda t: 1.0 + t))
-    with pytest.raises(bik.UnsupportedLimit, match="track cannot honour jerk limits"):
-        bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, limits=bik.Limits(jerk=1.0))

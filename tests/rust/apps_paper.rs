@@ -62,7 +62,7 @@ fn radians(degrees: &[f64]) -> Vec<f64> {
 
 fn paper_options(solver: impl Into<Algorithm>, start: Vec<f64>) -> SolveOptions {
     SolveOptions {
-        solver: AnySolver::Single(solver.into()),
+        solver: Some(AnySolver::Single(solver.into())),
         start: Some(start),
         tolerance: TOLERANCE,
         stop: Stop { max_iterations: 1000, ..Stop::default() },
@@ -209,7 +209,7 @@ fn a_solution_outside_the_limits_is_not_returned() {
     let target = Target::Position(narrow.tip_position(&[0.1, 1.0]));
     let solver = Apps::default();
     let options = SolveOptions {
-        solver: AnySolver::Single(solver.into()),
+        solver: Some(AnySolver::Single(solver.into())),
         start: Some(vec![0.2, 0.4]),
         ..SolveOptions::default()
     };
@@ -234,7 +234,7 @@ fn joints_that_slide_stay_inside() {
     let solved = goals.chunks_exact(robot.dof()).filter(|goal| {
         let target = Target::Position(robot.tip_position(goal));
         let options = SolveOptions {
-            solver: AnySolver::Single(Apps::default().into()),
+            solver: Some(AnySolver::Single(Apps::default().into())),
             start: Some(robot.joints().iter().map(|joint| 0.5 * (joint.lower + joint.upper)).collect()),
             ..SolveOptions::default()
         };

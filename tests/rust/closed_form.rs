@@ -20,13 +20,13 @@ fn arm(name: &str, rows: [[f64; 3]; 6]) -> Robot {
     Robot::from_dh(name, &DhTable::new(Dh::Standard, column(0), column(1), column(2))).unwrap()
 }
 
-fn puma560() -> Robot {
+pub fn puma560() -> Robot {
     let link = [[0.0, Q, 0.0], [0.4318, 0.0, 0.0], [0.0203, -Q, 0.15005]];
     let wrist = [[0.0, Q, 0.4318], [0.0, -Q, 0.0], [0.0, 0.0, 0.1]];
     arm("Puma 560", [link[0], link[1], link[2], wrist[0], wrist[1], wrist[2]])
 }
 
-fn jaco2() -> Robot {
+pub fn jaco2() -> Robot {
     let arm_rows = [[0.0, Q, 0.2755], [0.41, PI, 0.0], [0.0, Q, -0.0098]];
     let wrist = [[0.0, FRAC_PI_3, -0.2501], [0.0, FRAC_PI_3, -0.0856], [0.0, PI, -0.2028]];
     arm("JACO 2", [arm_rows[0], arm_rows[1], arm_rows[2], wrist[0], wrist[1], wrist[2]])
@@ -293,7 +293,7 @@ fn base_and_tool_far_away_change_nothing() {
 }
 
 /// A UR10 whose joint 3 is geared by `scale` and starts at `offset`; with `twice`, it drives another axis too.
-fn geared(scale: f64, offset: f64, twice: bool) -> Robot {
+pub fn geared(scale: f64, offset: f64, twice: bool) -> Robot {
     let links = [[0.0, Q, 0.1273], [-0.612, 0.0, 0.0], [-0.5723, 0.0, 0.0], [0.0, Q, 0.1639], [0.0, -Q, 0.1157]];
     let mut chain = ChainBuilder::new("geared", "base");
     for (k, [a, alpha, d]) in links.into_iter().chain([[0.0, 0.0, 0.0922]]).enumerate() {

@@ -175,7 +175,7 @@ fn a_pose_out_of_reach_is_approached_too() {
 #[test]
 fn one_start_alone_stalls_with_advice() {
     let solver = AnySolver::Single(Algorithm::LevenbergMarquardt(LevenbergMarquardt::default()));
-    let options = SolveOptions { solver, start: Some(vec![0.1; 5]), ..SolveOptions::default() };
+    let options = SolveOptions { solver: Some(solver), start: Some(vec![0.1; 5]), ..SolveOptions::default() };
     let solution = solved(&robot("planar5"), &Target::Position([0.0, 7.0, 0.0]), &options);
     assert_eq!((solution.status, solution.restarts), (Status::Stalled, 0));
     let advice = "try another start or seed, or MultiStart; the target may be out of reach";
@@ -214,7 +214,10 @@ fn the_same_seed_gives_the_same_bits() {
         [(AnySolver::default(), false), (AnySolver::Single(Algorithm::from(Bas::of(BasVariant::Star))), true)]
     {
         let q = |seed| {
-            bits(&solved(&ur, &target, &SolveOptions { solver: solver.clone(), seed, ..SolveOptions::default() }).q)
+            bits(
+                &solved(&ur, &target, &SolveOptions { solver: Some(solver.clone()), seed, ..SolveOptions::default() })
+                    .q,
+            )
         };
         assert_eq!(q(5), q(5), "{solver:?}");
         assert_eq!(q(5) != q(6), draws, "{solver:?}");
@@ -229,7 +232,7 @@ fn beetles_solve_positions() {
         let solver = AnySolver::MultiStart(Algorithm::from(Bas::of(variant)).into_multi_start());
         let mut reached = 0;
         for (i, q) in configurations(&iiwa, 50).iter().enumerate() {
-            let options = SolveOptions { solver: solver.clone(), seed: i as u64, ..SolveOptions::default() };
+            let options = SolveOptions { solver: Some(solver.clone()), seed: i as u64, ..SolveOptions::default() };
             let solution = solved(&iiwa, &position_at(&iiwa, q), &options);
             assert_honest(&iiwa, &position_at(&iiwa, q), &solution);
             assert!(solution.error.position < 0.01, "{variant} target {i}: {}", solution.message());

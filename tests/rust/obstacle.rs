@@ -1,9 +1,10 @@
 //! Distances, capsules and sweeps against brute force.
 
 use ikcore::nalgebra::{Point3, Rotation3, Vector3};
-use ikcore::obstacle::{Body, Edge, Obstacle, Scene, Shape, Sweep};
+use ikcore::obstacle::{Edge, Neighbor, Scene, Sweep};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::{LinkCapsule, Robot};
+use ikcore::shape::{Geometry, Shape};
 
 /// A robot whose only capsule is a segment that stands still relative to its last link.
 fn rod(a: [f64; 3], b: [f64; 3], radius: f64) -> Robot {
@@ -14,7 +15,7 @@ fn rod(a: [f64; 3], b: [f64; 3], radius: f64) -> Robot {
     arm.with_capsules(vec![LinkCapsule { link, a: local(a), b: local(b), radius }]).unwrap()
 }
 
-fn distance(a: [f64; 3], b: [f64; 3], radius: f64, obstacle: &Obstacle) -> f64 {
+fn distance(a: [f64; 3], b: [f64; 3], radius: f64, obstacle: &Shape) -> f64 {
     let robot = rod(a, b, radius);
     let obstacles = [obstacle.clone()];
     let scene = Scene::new(&robot, &obstacles).unwrap();
@@ -30,39 +31,39 @@ fn rotation(rng: &mut LazyRng) -> Rotation3<f64> {
 }
 
 /// A shape of each kind that touches everything.
-fn random_obstacle(rng: &mut LazyRng, kind: usize) -> Obstacle {
+fn random_obstacle(rng: &mut LazyRng, kind: usize) -> Shape {
     let (center, turn) = (point(rng, 0.5), *rotation(rng).matrix());
     let sizes: [f64; 3] = std::array::from_fn(|_| rng.uniform_in(0.05, 0.6));
     match kind {
-        0 => Obstacle::sphere(center, sizes[0]),
-        1 => Obstacle::cuboid(center, sizes, Some(turn)),
-        2 => Obstacle::capsule(center, point(rng, 0.5), 0.3 * sizes[0]),
-        3 => Obstacle::ellipsoid(center, sizes, Some(turn)),
-        _ => Obstacle::convex_mesh(&std::array::from_fn::<_, 9, _>(|_| point(rng, 0.4))),
+        0 => Shape::sphere(center, sizes[0]),
+        1 => Shape::cuboid(center, sizes, Some(turn)),
+        2 => Shape::capsule(center, point(rng, 0.5), 0.3 * sizes[0]),
+        3 => Shape::ellipsoid(center, sizes, Some(turn)),
+        _ => Shape::convex_mesh(&std::array::from_fn::<_, 9, _>(|_| point(rng, 0.4))),
     }
     .unwrap()
 }
 
 /// Points on the surface and inside, densely.
-fn points_of(obstacle: &Obstacle, rng: &mut LazyRng, count: usize) -> Vec<Vector3<f64>> {
+fn points_of(obstacle: &Shape, rng: &mut LazyRng, count: usize) -> Vec<Vector3<f64>> {
     let mut unit = [0.0; 3];
     (0..count)
         .map(|_| {
             rng.direction(&mut unit);
             let u = Vector3::from(unit);
-            match obstacle.shape() {
-                Shape::Sphere { center, radius } => Vector3::from(*center) + *radius * u,
-                Shape::Box { pose, size } => {
+            match obstacle.geometry() {
+                Geometry::Sphere { center, radius } => Vector3::from(*center) + *radius * u,
+                Geometry::Box { pose, size } => {
                     (pose * nalgebra_point(u.component_mul(&(0.5 * Vector3::from(*size))) / u.amax())).coords
                 }
-                Shape::Capsule { a, b, radius } => {
+                Geometry::Capsule { a, b, radius } => {
                     let share = rng.uniform();
                     Vector3::from(*a) * (1.0 - share) + Vector3::from(*b) * share + *radius * u
                 }
-                Shape::Ellipsoid { pose, semi_axes } => {
+                Geometry::Ellipsoid { pose, semi_axes } => {
                     (pose * nalgebra_point(u.component_mul(&Vector3::from(*semi_axes)))).coords
                 }
-                Shape::ConvexMesh(hull) => {
+                Geometry::ConvexMesh(hull) => {
                     let triangles = hull.triangles();
                     let triangle = triangles[(rng.uniform() * triangles.len() as f64) as usize];
                     let (mut s, mut t) = (rng.uniform(), rng.uniform());
@@ -110,11 +111,11 @@ fn distances_are_those_of_dense_points() {
 
 #[test]
 fn distances_of_known_places() {
-    let box_ = Obstacle::cuboid([0.0; 3], [2.0, 2.0, 2.0], None).unwrap();
-    let ball = Obstacle::sphere([0.0; 3], 1.0).unwrap();
-    let egg = Obstacle::ellipsoid([0.0; 3], [3.0, 1.0, 1.0], None).unwrap();
+    let box_ = Shape::cuboid([0.0; 3], [2.0, 2.0, 2.0], None).unwrap();
+    let ball = Shape::sphere([0.0; 3], 1.0).unwrap();
+    let egg = Shape::ellipsoid([0.0; 3], [3.0, 1.0, 1.0], None).unwrap();
     let cube: Vec<[f64; 3]> = (0..8).map(|i| [0, 1, 2].map(|k| f64::from(((i >> k) & 1) * 2 - 1))).collect();
-    let mesh = Obstacle::convex_mesh(&cube).unwrap();
+    let mesh = Shape::convex_mesh(&cube).unwrap();
     let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-8, "{found} {expected}");
     for cube in [&box_, &mesh] {
         close(distance([3.0, -5.0, 0.0], [3.0, 5.0, 0.0], 0.5, cube), 1.5); // beside a face
@@ -127,7 +128,7 @@ fn distances_of_known_places() {
     close(distance([4.0, 0.0, 0.0], [9.0, 0.0, 0.0], 0.0, &egg), 1.0);
     close(distance([-4.0, 2.0, 0.5], [4.0, 2.0, 0.5], 0.0, &egg), 4.25_f64.sqrt() - 1.0);
     close(distance([0.0, 0.0, 0.0], [0.0, 0.0, 0.0], 0.0, &egg), -1.0);
-    let capsule = Obstacle::capsule([0.0, 0.0, -1.0], [0.0, 0.0, 1.0], 0.5).unwrap();
+    let capsule = Shape::capsule([0.0, 0.0, -1.0], [0.0, 0.0, 1.0], 0.5).unwrap();
     close(distance([-4.0, 2.0, 0.0], [4.0, 2.0, 0.0], 0.25, &capsule), 1.25);
 }
 
@@ -138,7 +139,7 @@ fn an_ellipse_is_as_far_as_its_own_boundary_in_the_plane() {
     for _ in 0..50 {
         let center = [rng.uniform_in(-2.0, 2.0), rng.uniform_in(-2.0, 2.0)];
         let (semi_axes, angle) = ([rng.uniform_in(0.05, 0.5), rng.uniform_in(0.05, 0.5)], rng.uniform_in(-3.0, 3.0));
-        let obstacles = [Obstacle::ellipse(center, semi_axes, angle).unwrap()];
+        let obstacles = [Shape::ellipse(center, semi_axes, angle).unwrap()];
         let scene = Scene::new(&robot, &obstacles).unwrap();
         let q = [rng.uniform_in(-3.0, 3.0), rng.uniform_in(-3.0, 3.0)];
         let found = scene.nearest(&q).unwrap().unwrap().distance;
@@ -167,7 +168,7 @@ fn what_a_sweep_calls_free_is_free_at_every_sample() {
     let mut rng = rng::stream(7, 0);
     let (mut free, mut hits) = (0, 0);
     for case in 0..60 {
-        let obstacles: Vec<Obstacle> = (0..2).map(|k| random_obstacle(&mut rng, (case + k) % 5)).collect();
+        let obstacles: Vec<Shape> = (0..2).map(|k| random_obstacle(&mut rng, (case + k) % 5)).collect();
         let scene = Scene::new(&robot, &obstacles).unwrap();
         let ends = robot.random_configurations(2, &mut rng).unwrap();
         let edge = Edge { from: &ends[..7], to: &ends[7..] };
@@ -206,11 +207,11 @@ fn pairs_that_belong_to_the_model_are_left_out() {
     // Folded back the hand meets the base.
     let folded = [0.0, -1.7, 0.0, -3.0, 0.0, 0.5, 0.0];
     let contact = scene.nearest(&folded).unwrap().unwrap();
-    assert!(matches!(contact.other, Body::Link(_)), "{contact:?}");
+    assert!(matches!(contact.other, Neighbor::Link(_)), "{contact:?}");
 }
 
 /// Volume of a convex body of this surface (m^3): pyramids from a point inside.
-fn volume(obstacle: &Obstacle) -> f64 {
+fn volume(obstacle: &Shape) -> f64 {
     let triangles: Vec<_> = obstacle.triangles().into_iter().map(|corners| corners.map(Vector3::from)).collect();
     let inside = triangles.iter().flatten().sum::<Vector3<f64>>() / (3 * triangles.len()) as f64;
     let pyramid = |[a, b, c]: &[Vector3<f64>; 3]| (a - inside).dot(&(b - inside).cross(&(c - inside))).abs() / 6.0;
@@ -221,23 +222,132 @@ fn volume(obstacle: &Obstacle) -> f64 {
 fn drawn_surfaces_close_around_the_shape() {
     let (center, turn) = ([0.3, -0.2, 0.5], *Rotation3::new(Vector3::new(0.4, -0.7, 0.2)).matrix());
     let ball = 4.0 / 3.0 * std::f64::consts::PI;
-    let cuboid = Obstacle::cuboid(center, [0.2, 0.3, 0.4], Some(turn)).unwrap();
+    let cuboid = Shape::cuboid(center, [0.2, 0.3, 0.4], Some(turn)).unwrap();
     assert!((volume(&cuboid) - 0.024).abs() < 1e-12);
     let rod = std::f64::consts::PI * 0.01 * 0.5; // between the two halves of a capsule's ball
     let round = [
-        (Obstacle::sphere(center, 0.1), ball * 0.001),
-        (Obstacle::ellipsoid(center, [0.1, 0.2, 0.3], Some(turn)), ball * 0.006),
-        (Obstacle::capsule([0.0, 0.0, 0.1], [0.3, 0.4, 0.1], 0.1), ball * 0.001 + rod),
+        (Shape::sphere(center, 0.1), ball * 0.001),
+        (Shape::ellipsoid(center, [0.1, 0.2, 0.3], Some(turn)), ball * 0.006),
+        (Shape::capsule([0.0, 0.0, 0.1], [0.3, 0.4, 0.1], 0.1), ball * 0.001 + rod),
     ];
     for (obstacle, exact) in round {
         let share = volume(&obstacle.unwrap()) / exact;
         assert!((0.9..1.0).contains(&share), "{share}"); // corners on the surface, so a little is left out
     }
-    let ellipse = Obstacle::ellipse([0.3, 0.1], [0.2, 0.1], 0.4).unwrap();
+    let ellipse = Shape::ellipse([0.3, 0.1], [0.2, 0.1], 0.4).unwrap();
     let area = |[a, b, c]: [[f64; 3]; 3]| {
         let (ab, ac) = (Vector3::from(b) - Vector3::from(a), Vector3::from(c) - Vector3::from(a));
         ab.cross(&ac).norm() / 2.0
     };
     let share = ellipse.triangles().into_iter().map(area).sum::<f64>() / (std::f64::consts::PI * 0.02);
     assert!((0.95..1.0).contains(&share), "{share}");
+}
+
+#[test]
+fn a_configuration_is_clear_when_its_nearest_pair_is() {
+    let mut rng = rng::stream(9, 0);
+    for robot in [
+        Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap(),
+        with_random_bodies("iiwa14", &mut rng),
+    ] {
+        for count in [0, 3, 60] {
+            let mut obstacles: Vec<Shape> = (0..count).map(|k| distant_obstacle(&mut rng, k)).collect();
+            if count > 0 {
+                obstacles.push(Shape::half_space([0.0, 0.0, 1.0], -0.3).unwrap());
+            }
+            let scene = Scene::new(&robot, &obstacles).unwrap();
+            let (mut clear, mut near) = (0, 0);
+            let qs = robot.random_configurations(203, &mut rng).unwrap();
+            let margin = rng.uniform_in(0.0, 0.03);
+            let four_at_a_time = scene.which_are_clear(&qs, margin).unwrap();
+            for (q, as_four) in qs.chunks(robot.dof()).zip(four_at_a_time) {
+                let distance = scene.clearance(q).unwrap();
+                let found = scene.is_clear(q, margin);
+                // Within rounding of the decision both answers are right.
+                assert!((distance - margin).abs() < 3e-9 || found == (distance >= margin), "{distance} {margin}");
+                assert_eq!(found, as_four);
+                *(if found { &mut clear } else { &mut near }) += 1;
+            }
+            assert!(clear > 20 && (near > 20 || count == 0), "{count}: {clear} {near}");
+        }
+    }
+}
+
+/// A small shape at least 0.5 m from the origin.
+fn distant_obstacle(rng: &mut LazyRng, kind: usize) -> Shape {
+    let mut away = [0.0; 3];
+    rng.direction(&mut away);
+    let far = rng.uniform_in(0.5, 1.2);
+    let center = away.map(|x| far * x);
+    let (end, turn) = (std::array::from_fn(|k| center[k] + 0.1 * away[(k + 1) % 3]), *rotation(rng).matrix());
+    let sizes: [f64; 3] = std::array::from_fn(|_| rng.uniform_in(0.02, 0.15));
+    match kind % 5 {
+        0 => Shape::sphere(center, sizes[0]),
+        1 => Shape::cuboid(center, sizes, Some(turn)),
+        2 => Shape::capsule(center, end, sizes[0]),
+        3 => Shape::cylinder(center, away, sizes[0], sizes[1]),
+        _ => Shape::ellipsoid(center, sizes, Some(turn)),
+    }
+    .unwrap()
+}
+
+/// A robot with spheres and capsules on each link.
+fn with_random_bodies(name: &str, rng: &mut LazyRng) -> Robot {
+    let robot = Robot::named(name).unwrap();
+    let names: Vec<String> = robot.link_names().map(str::to_owned).collect();
+    let bodies = names.iter().flat_map(|link| {
+        let mut body = |length: f64| {
+            let a = point(rng, 0.05);
+            let b = std::array::from_fn(|k| a[k] + rng.uniform_in(-length, length));
+            LinkCapsule { link: link.clone(), a, b, radius: rng.uniform_in(0.0, 0.04) }
+        };
+        [body(0.0), body(0.1), body(0.0)]
+    });
+    robot.with_capsules(bodies.collect()).unwrap()
+}
+
+#[test]
+fn a_contact_lies_on_both_surfaces_and_its_gradient_is_the_slope() {
+    let mut rng = rng::stream(11, 0);
+    let robot = with_random_bodies("panda", &mut rng);
+    let (mut with_links, mut inside) = (0, 0);
+    for case in 0..120 {
+        let obstacles = if case % 3 == 0 { vec![] } else { vec![random_obstacle(&mut rng, case % 5)] };
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        let q = robot.random_configurations(1, &mut rng).unwrap();
+        let found = scene.nearest_contact(&q).unwrap().unwrap();
+        assert_eq!(Some(&found.contact), scene.nearest(&q).unwrap().as_ref());
+        let normal = Vector3::from(found.normal);
+        assert!((normal.norm() - 1.0).abs() < 1e-9);
+        match found.contact.other {
+            Neighbor::Link(_) => with_links += 1,
+            Neighbor::Obstacle(..) if found.contact.distance > 0.0 => {
+                // A ball of no size at the point of the link is as far from the obstacle as the link.
+                let point = found.point;
+                let gap = distance(point, point, 0.0, &obstacles[0]);
+                assert!((gap - found.contact.distance).abs() < 1e-6, "{gap} {found:?}");
+            }
+            Neighbor::Obstacle(..) => {
+                // Where two faces are equally deep, the distance has a corner.
+                inside += 1;
+                continue;
+            }
+        }
+        let step = 1e-6;
+        for j in 0..7 {
+            let at = |sign: f64| {
+                let mut moved = q.clone();
+                moved[j] += sign * step;
+                scene.nearest(&moved).unwrap().unwrap()
+            };
+            let [low, high] = [at(-1.0), at(1.0)];
+            // Where another pair or another face becomes the nearest, the distance has a corner.
+            let slope = (high.distance - low.distance) / (2.0 * step);
+            let one_sided = (high.distance - found.contact.distance) / step;
+            if low.other == high.other && low.link == high.link && (slope - one_sided).abs() < 1e-4 {
+                assert!((slope - found.gradient[j]).abs() < 5e-3, "case {case}, joint {j}: {slope} {found:?}");
+            }
+        }
+    }
+    assert!(with_links > 20 && inside > 5, "{with_links} {inside}");
 }

@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::math::Frame;
-use ikcore::obstacle::Obstacle;
 use ikcore::path::{Path, Plane, Polyline, Waypoints};
 use ikcore::planning::{
     AlongPathOptions, Cost, Elbow, Endpoint, Plan, PlanarArm, PointToPointMethod, PointToPointOptions, TipPath, Tpbso,
@@ -12,6 +11,7 @@ use ikcore::planning::{
 };
 use ikcore::rng;
 use ikcore::robot::Robot;
+use ikcore::shape::Shape;
 use ikcore::solver::TrialUpdate;
 use ikcore::solver::{AnySolver, DerivativeFree, DifferentialEvolution, Schedule, Status, Stop, Unattended};
 use ikcore::task::Target;
@@ -136,7 +136,7 @@ fn obstacle_is_passed_at_its_margin() {
     let (robot, _) = arm(4, 2.0 * PI);
     let shape = PlanarArm::of(&robot).unwrap();
     let plan = |seed| {
-        let obstacles = vec![Obstacle::ellipse([0.8, 0.8], [0.3, 0.2], 0.0).unwrap()];
+        let obstacles = vec![Shape::ellipse([0.8, 0.8], [0.3, 0.2], 0.0).unwrap()];
         let objective = Cost::TipTravel;
         let margin = Some(0.005);
         let method = by_evolution();

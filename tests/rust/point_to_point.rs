@@ -4,10 +4,11 @@ use std::f64::consts::TAU;
 
 use ikcore::ik::{AllOptions, solve_all};
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::obstacle::{Obstacle, Scene};
+use ikcore::obstacle::Scene;
 use ikcore::planning::{Cost, Endpoint, Plan, PointToPointMethod, PointToPointOptions, Tpbso, plan_point_to_point};
 use ikcore::rng;
 use ikcore::robot::Robot;
+use ikcore::shape::Shape;
 use ikcore::solver::{Status, Stop, Unattended};
 use ikcore::task::{Target, Tolerance};
 
@@ -81,7 +82,7 @@ fn the_nearest_of_all_branches_and_turns_are_taken() {
 }
 
 /// A pose behind the box that the arm reaches without touching anything.
-fn poses_behind(robot: &Robot, obstacles: &[Obstacle], count: usize) -> Vec<Endpoint> {
+fn poses_behind(robot: &Robot, obstacles: &[Shape], count: usize) -> Vec<Endpoint> {
     let scene = Scene::new(robot, obstacles).unwrap();
     let mut rng = rng::stream(11, 0);
     let mut found = vec![];
@@ -98,7 +99,7 @@ fn poses_behind(robot: &Robot, obstacles: &[Obstacle], count: usize) -> Vec<Endp
 
 #[test]
 fn arms_find_their_way_around_a_box() {
-    let obstacles = vec![Obstacle::cuboid([0.5, 0.0, 0.2], [0.2, 0.6, 0.4], None).unwrap()];
+    let obstacles = vec![Shape::cuboid([0.5, 0.0, 0.2], [0.2, 0.6, 0.4], None).unwrap()];
     for name in ["panda", "iiwa14"] {
         let robot = Robot::named(name).unwrap().with_capsules_along_links(0.06).unwrap();
         let scene = Scene::new(&robot, &obstacles).unwrap();
@@ -137,7 +138,7 @@ fn arms_find_their_way_around_a_box() {
 #[test]
 fn a_way_around_a_wall_is_found_and_smooth() {
     // Between the two ends stands a wall that no straight motion passes.
-    let obstacles = vec![Obstacle::cuboid([0.55, 0.0, 0.3], [0.5, 0.05, 0.6], None).unwrap()];
+    let obstacles = vec![Shape::cuboid([0.55, 0.0, 0.3], [0.5, 0.05, 0.6], None).unwrap()];
     let robot = Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap();
     let side = |turn: f64| Endpoint::Configuration(vec![turn, 0.8, 0.0, -1.6, 0.0, 2.4, 0.8]);
     for seed in 0..5 {
@@ -179,17 +180,17 @@ fn plans_reported_free_are_free_at_every_sample() {
     for case in 0..200 {
         let robot = &robots[case % 2];
         let flat = case % 2 == 1;
-        let obstacles: Vec<Obstacle> = (0..1 + case % 3)
+        let obstacles: Vec<Shape> = (0..1 + case % 3)
             .map(|k| {
                 let [x, y, z] = std::array::from_fn(|_| rng.uniform_in(-0.8, 0.8));
                 let sizes: [f64; 3] = std::array::from_fn(|_| rng.uniform_in(0.03, 0.2));
                 match (flat, (case + k) % 5) {
-                    (true, _) => Obstacle::ellipse([x, y], [sizes[0], sizes[1]], z),
-                    (_, 0) => Obstacle::sphere([x, y, z], sizes[0]),
-                    (_, 1) => Obstacle::cuboid([x, y, z], sizes, None),
-                    (_, 2) => Obstacle::capsule([x, y, z], [x + sizes[0], y, z], sizes[1]),
-                    (_, 3) => Obstacle::ellipsoid([x, y, z], sizes, None),
-                    _ => Obstacle::convex_mesh(&std::array::from_fn::<_, 6, _>(|_| {
+                    (true, _) => Shape::ellipse([x, y], [sizes[0], sizes[1]], z),
+                    (_, 0) => Shape::sphere([x, y, z], sizes[0]),
+                    (_, 1) => Shape::cuboid([x, y, z], sizes, None),
+                    (_, 2) => Shape::capsule([x, y, z], [x + sizes[0], y, z], sizes[1]),
+                    (_, 3) => Shape::ellipsoid([x, y, z], sizes, None),
+                    _ => Shape::convex_mesh(&std::array::from_fn::<_, 6, _>(|_| {
                         std::array::from_fn(|axis| [x, y, z][axis] + rng.uniform_in(-0.2, 0.2))
                     })),
                 }
@@ -242,7 +243,7 @@ fn an_arm_of_unknown_shape_plans_only_without_obstacles() {
         let (start, end) = (position(1.0, 1.0), position(-0.5, 1.2));
         let plan = plan_point_to_point(&arm, &start, &end, &options(vec![]), &mut Unattended).unwrap();
         assert_eq!(plan.status, Status::Solved, "{method:?}: {}", plan.message());
-        let ball = Obstacle::sphere([5.0, 0.0, 0.0], 0.1).unwrap();
+        let ball = Shape::sphere([5.0, 0.0, 0.0], 0.1).unwrap();
         let says = refused(&arm, &start, &end, options(vec![ball]));
         assert!(says.starts_with("robot 'arm' has collision shapes that cannot be read (a mesh of link"), "{says}");
     }
@@ -257,14 +258,14 @@ fn mistakes_are_named() {
     let arm = Robot::planar(&[1.0, 1.0]).unwrap();
     let thin = arm.with_capsules_along_links(0.01).unwrap();
     let (here, there) = (Endpoint::Configuration(vec![0.0, 0.0]), Endpoint::Configuration(vec![1.0, 0.0]));
-    let with = |obstacles: Vec<Obstacle>, arm: &Robot| PointToPointOptions {
+    let with = |obstacles: Vec<Shape>, arm: &Robot| PointToPointOptions {
         obstacles,
         limits: Some(limits(arm, Some(1.0), 1.0)),
         ..Default::default()
     };
-    let ball = Obstacle::sphere([1.0, 0.0, 0.0], 0.25).unwrap();
-    let advice = "give it capsules with with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), \
-                  ...]), or load a URDF whose links have <collision> shapes of spheres, cylinders, capsules and boxes";
+    let ball = Shape::sphere([1.0, 0.0, 0.0], 0.25).unwrap();
+    let advice = "load its URDF with collision=\"fit\", or give it capsules with with_capsules(radius=...) along its links or \
+                  with_capsules([(link, a, b, radius), ...])";
     let bare = Robot::named("panda").unwrap();
     let rest = Endpoint::Configuration(vec![0.0, 0.0, 0.0, -1.5, 0.0, 1.5, 0.0]);
     assert_eq!(
@@ -289,24 +290,24 @@ fn mistakes_are_named() {
          limits=Limits(velocity=...)"
     );
     assert_eq!(
-        Obstacle::sphere([0.0; 3], 0.0).unwrap_err().to_string(),
+        Shape::sphere([0.0; 3], 0.0).unwrap_err().to_string(),
         "radius of the sphere must be positive and finite, got 0"
     );
     assert_eq!(
-        Obstacle::cuboid([0.0; 3], [1.0, 0.0, 1.0], None).unwrap_err().to_string(),
+        Shape::cuboid([0.0; 3], [1.0, 0.0, 1.0], None).unwrap_err().to_string(),
         "size of the box along y must be positive and finite, got 0"
     );
     assert_eq!(
-        Obstacle::sphere([0.0, f64::NAN, 0.0], 1.0).unwrap_err().to_string(),
+        Shape::sphere([0.0, f64::NAN, 0.0], 1.0).unwrap_err().to_string(),
         "center must be finite, but coordinate y is NaN"
     );
     let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
     assert_eq!(
-        Obstacle::convex_mesh(&square).unwrap_err().to_string(),
+        Shape::convex_mesh(&square).unwrap_err().to_string(),
         "the points of a convex mesh lie in a plane: it needs at least 4 that do not"
     );
     let panda = Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap();
-    let oval = Obstacle::ellipse([0.5, 0.0], [0.1, 0.2], 0.0).unwrap();
+    let oval = Shape::ellipse([0.5, 0.0], [0.1, 0.2], 0.0).unwrap();
     assert_eq!(
         refused(&panda, &rest, &rest, with(vec![oval], &panda)),
         "obstacle 0 is an Ellipse, which lies in the plane z = 0, and robot 'panda' leaves that plane: use an Ellipsoid"
@@ -318,7 +319,7 @@ fn around_a_pillar(objective: Cost, stop: Option<Stop>) -> Plan {
     let robot = Robot::planar(&[0.5, 0.4, 0.3]).unwrap().with_capsules_along_links(0.01).unwrap();
     let options = PointToPointOptions {
         limits: Some(limits(&robot, Some(1.0), 5.0)),
-        obstacles: vec![Obstacle::ellipse([0.75, 0.0], [0.12, 0.12], 0.0).unwrap()],
+        obstacles: vec![Shape::ellipse([0.75, 0.0], [0.12, 0.12], 0.0).unwrap()],
         objective,
         stop,
         ..Default::default()

@@ -55,7 +55,7 @@ fn every_solver_ends_inside_and_says_what_held_it_back() {
     let tolerance = Tolerance { position: 1e-3, rotation: 1e-3 };
     for solver in solvers() {
         let task = Some(kept(TaskKind::Position, region));
-        let options = SolveOptions { task, solver: solver.clone(), tolerance, stop, ..SolveOptions::default() };
+        let options = SolveOptions { task, solver: Some(solver.clone()), tolerance, stop, ..SolveOptions::default() };
         let (mut reached, mut held) = (0, 0);
         for height in [0.7, 0.9, 0.89999, 1.0, 0.4] {
             let solution = solve(&iiwa, &Target::Position([0.4, 0.3, height]), &options, &mut Unattended).unwrap();

@@ -1,13 +1,14 @@
 //! Jerk limits of plans, other limits for finished plans, and motions that begin at a velocity.
 
 use ikcore::limits::{Field, Limits, Profile};
-use ikcore::obstacle::{Obstacle, Scene};
+use ikcore::obstacle::Scene;
 use ikcore::path::{Circle, Path, Plane, Polyline};
 use ikcore::planning::{
     AlongPathOptions, Endpoint, Plan, PointToPointOptions, TipPath, Tpbso, plan_along_path, plan_point_to_point,
 };
 use ikcore::rng;
 use ikcore::robot::Robot;
+use ikcore::shape::Shape;
 use ikcore::solver::{Status, Unattended};
 use ikcore::trajectory::Trajectory;
 
@@ -22,12 +23,12 @@ fn with_limits(robot: &Robot, fields: &[(Field, f64)]) -> Limits {
     fields.iter().fold(start, |limits, (field, value)| limits.replace(*field, vec![Profile::Constant(*value)]).unwrap())
 }
 
-fn a_box() -> Vec<Obstacle> {
-    vec![Obstacle::cuboid([0.5, 0.0, 0.2], [0.2, 0.6, 0.4], None).unwrap()]
+fn a_box() -> Vec<Shape> {
+    vec![Shape::cuboid([0.5, 0.0, 0.2], [0.2, 0.6, 0.4], None).unwrap()]
 }
 
 /// Configurations in front of the box and behind it.
-fn pairs_around(robot: &Robot, obstacles: &[Obstacle], count: usize) -> Vec<[Vec<f64>; 2]> {
+fn pairs_around(robot: &Robot, obstacles: &[Shape], count: usize) -> Vec<[Vec<f64>; 2]> {
     let scene = Scene::new(robot, obstacles).unwrap();
     let mut rng = rng::stream(5, 0);
     let mut side = |behind: bool| loop {
@@ -41,7 +42,7 @@ fn pairs_around(robot: &Robot, obstacles: &[Obstacle], count: usize) -> Vec<[Vec
     (0..count).map(|_| [side(false), side(true)]).collect()
 }
 
-fn around(robot: &Robot, obstacles: &[Obstacle], [start, end]: &[Vec<f64>; 2], limits: Limits) -> Plan {
+fn around(robot: &Robot, obstacles: &[Shape], [start, end]: &[Vec<f64>; 2], limits: Limits) -> Plan {
     let options =
         PointToPointOptions { limits: Some(limits), obstacles: obstacles.to_vec(), ..PointToPointOptions::default() };
     let [start, end] = [start, end].map(|q| Endpoint::Configuration(q.clone()));

@@ -177,8 +177,11 @@ fn errors_name_the_joint_and_the_bound() {
     );
 }
 
-/// A joint's limits (V, A, J), and states inside them and able to stay there: as fractions of the limits.
-fn joint() -> impl Strategy<Value = ([f64; 3], [f64; 3], [f64; 3])> {
+/// Limits of a joint (velocity, acceleration, jerk), and two states (position, velocity, acceleration).
+type OneJoint = ([f64; 3], [f64; 3], [f64; 3]);
+
+/// A joint's limits, and states inside them and able to stay there.
+fn joint() -> impl Strategy<Value = OneJoint> {
     let part = -1.0..1.0_f64;
     let logarithms = (-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64);
     let size = prop_oneof![Just(0.0), Just(1.0), (-15.0..0.0_f64).prop_map(|e| 10.0_f64.powf(e))];
@@ -201,7 +204,7 @@ proptest! {
 
     #[test]
     fn limits_hold_throughout_and_the_ends_are_met(joints in prop::collection::vec(joint(), 1..5)) {
-        let column = |pick: fn(&([f64; 3], [f64; 3], [f64; 3])) -> f64| joints.iter().map(pick).collect::<Vec<f64>>();
+        let column = |pick: fn(&OneJoint) -> f64| joints.iter().map(pick).collect::<Vec<f64>>();
         let rates = [column(|j| j.0[0]), column(|j| j.0[1]), column(|j| j.0[2])];
         let from = ArmState { q: column(|j| j.1[0]), qd: column(|j| j.1[1]), qdd: column(|j| j.1[2]) };
         let to = ArmState { q: column(|j| j.2[0]), qd: column(|j| j.2[1]), qdd: column(|j| j.2[2]) };

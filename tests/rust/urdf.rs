@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::PathBuf;
 
+use ikcore::load::{CollisionShapes, UrdfOptions};
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 use ikcore::robot::{JointKind, Robot};
@@ -426,7 +427,7 @@ fn collision_shapes_become_capsules_that_hold_them() {
         message.starts_with("robot 'arm' has collision shapes that cannot be read (a mesh of link 'hand', a sphere")
     );
     assert!(message.ends_with(
-        ": robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
+        ": load its URDF with collision=\"fit\", which covers meshes too; robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
          robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
     ));
     let given = robot.with_capsules(vec![cylinder.clone()]).unwrap();
@@ -550,4 +551,108 @@ proptest! {
         xml += "</robot>";
         assert_same(&load(&xml).fk(&q).unwrap(), &tip_by_urdf_rs(&xml, &q), 1e-12);
     }
+}
+
+/// A cube of 0.2 m about the origin, as STL text.
+fn cube() -> String {
+    let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|bit| if bit == 1 { 0.1 } else { -0.1 });
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let mut text = String::from("solid cube\n");
+    for [a, b, c, d] in quads {
+        for triangle in [[a, b, c], [a, c, d]] {
+            text += "facet normal 0 0 0\nouter loop\n";
+            for [x, y, z] in triangle.map(corner) {
+                text += &format!("vertex {x} {y} {z}\n");
+            }
+            text += "endloop\nendfacet\n";
+        }
+    }
+    text + "endsolid cube\n"
+}
+
+/// A folder of its own, removed afterwards.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("beetle-ik-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn write(&self, name: &str, text: &str) -> String {
+        let file = self.0.join(name);
+        std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+        std::fs::write(&file, text).unwrap();
+        file.to_str().unwrap().to_owned()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn with_mesh(file: &str) -> String {
+    ARM.replace(
+        "<link name=\"hand\"/>",
+        &format!(
+            "<link name='hand'><collision><origin xyz='0 0 1'/><geometry><mesh filename='{file}' scale='2 1 1'/></geometry>\
+             </collision></link>"
+        ),
+    )
+}
+
+fn fitted(path: &str, package_dirs: Vec<String>) -> ikcore::Result<Robot> {
+    let options = UrdfOptions { collision: CollisionShapes::Fit, package_dirs, ..UrdfOptions::default() };
+    Robot::from_urdf_with(path, &options)
+}
+
+#[test]
+fn meshes_are_covered_from_outside_by_few_capsules() {
+    let folder = Folder::new("fit");
+    folder.write("arms/meshes/cube.stl", &cube());
+    let file = folder.write("arms/urdf/arm.urdf", &with_mesh("package://arms/meshes/cube.stl"));
+    let robot = fitted(&file, vec![]).unwrap(); // the package is found above the file
+    assert!(robot.unread_collision_shapes().is_empty() && !robot.capsules().is_empty());
+    assert!(robot.capsules().iter().all(|capsule| capsule.link == "hand"));
+    let [fit] = robot.mesh_fits() else { panic!("{:?}", robot.mesh_fits()) };
+    assert_eq!((fit.link.as_str(), fit.file.as_str()), ("hand", "package://arms/meshes/cube.stl"));
+    assert!(fit.volume_ratio > 1.0 && fit.volume_ratio < 3.0 && fit.largest_distance > 0.0, "{fit:?}");
+    // Every corner of the box of 0.4 x 0.2 x 0.2 m, 1 m along z of the hand, is held.
+    for corner in 0..8 {
+        let sign = |bit: usize| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let point = Vector3::new(0.2 * sign(0), 0.1 * sign(1), 1.0 + 0.1 * sign(2));
+        let held = robot.capsules().iter().any(|capsule| {
+            let (a, b) = (Vector3::from(capsule.a), Vector3::from(capsule.b));
+            let along = if a == b { 0.0 } else { ((point - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0) };
+            (a + along * (b - a) - point).norm() <= capsule.radius + 1e-9
+        });
+        assert!(held, "{point}");
+    }
+    let restored = Robot::from_bytes(&robot.to_bytes().unwrap()).unwrap();
+    assert_eq!(restored.mesh_fits(), robot.mesh_fits());
+}
+
+#[test]
+fn packages_are_found_in_given_folders() {
+    let (packages, elsewhere) = (Folder::new("packages"), Folder::new("elsewhere"));
+    packages.write("arms/meshes/cube.stl", &cube());
+    let file = elsewhere.write("arm.urdf", &with_mesh("package://arms/meshes/cube.stl"));
+    let root = packages.0.to_str().unwrap().to_owned();
+    assert!(fitted(&file, vec![root.clone()]).is_ok());
+    assert!(fitted(&file, vec![format!("{root}/arms")]).is_ok(), "the folder may be the package");
+    elsewhere.write("cube.stl", &cube());
+    let beside = elsewhere.write("beside.urdf", &with_mesh("cube.stl"));
+    assert!(fitted(&beside, vec![]).is_ok());
+    let message = fitted(&file, vec![]).unwrap_err().to_string();
+    let says = "URDF: the mesh 'package://arms/meshes/cube.stl' of link 'hand' is not found: give package_dirs, or \
+                collision=\"primitives\" to do without; looked for ";
+    assert!(message.starts_with(says), "{message}");
+    // Nobody needs it otherwise.
+    let robot = Robot::from_urdf(&file, None, None).unwrap();
+    assert_eq!(robot.unread_collision_shapes(), ["a mesh of link 'hand'"]);
+    let options = UrdfOptions { collision: CollisionShapes::Ignored, ..UrdfOptions::default() };
+    assert!(Robot::from_urdf_with(&file, &options).unwrap().unread_collision_shapes().is_empty());
 }

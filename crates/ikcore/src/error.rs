@@ -78,6 +78,18 @@ pub enum Error {
         /// All links, separated by commas.
         known: String,
     },
+    /// No joint that the robot holds has this name.
+    #[error("robot '{robot}' holds no joint '{name}'{problem}; joints that it holds: {}", if .held.is_empty() { "none" } else { .held })]
+    NotHeld {
+        /// The robot's name.
+        robot: String,
+        /// The requested joint.
+        name: String,
+        /// ` (did you mean 'x'?)`, why it is not held, or empty.
+        problem: String,
+        /// All held joints, separated by commas.
+        held: String,
+    },
     /// No tip was given, but the tree of links has several leaves.
     #[error("robot '{robot}' ends in {count} links: say which one is the tip; leaves, by number of joints: {leaves}")]
     AmbiguousTip {
@@ -99,6 +111,14 @@ pub enum Error {
     /// A URDF that cannot be read.
     #[error("URDF{}: {problem}", .line.map(|l| format!(" line {l}")).unwrap_or_default())]
     Urdf {
+        /// Line of the text, from 1, where known.
+        line: Option<u32>,
+        /// The problem, and what would be right.
+        problem: String,
+    },
+    /// An SRDF that cannot be read, or one of another robot.
+    #[error("SRDF{}: {problem}", .line.map(|l| format!(" line {l}")).unwrap_or_default())]
+    Srdf {
         /// Line of the text, from 1, where known.
         line: Option<u32>,
         /// The problem, and what would be right.

@@ -47,7 +47,7 @@
 //! | layer | modules |
 //! |---|---|
 //! | 0 | [`error`], [`interrupt`], [`rng`], [`math`], [`stored`], `wording` |
-//! | 1 | [`kinematics`], [`path`], [`trajectory`], [`objective`] |
+//! | 1 | [`kinematics`], [`shape`], [`path`], [`trajectory`], [`objective`] |
 //! | 2 | [`starts`], `closed_form` |
 //! | 3 | [`robot`] |
 //! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
@@ -76,6 +76,7 @@ pub mod posture;
 pub mod problem;
 pub mod rng;
 pub mod robot;
+pub mod shape;
 pub mod solver;
 pub mod starts;
 pub mod stored;

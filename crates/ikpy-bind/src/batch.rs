@@ -157,13 +157,14 @@ fn column<T: Element>(py: Python<'_>, items: &[BatchItem], of: impl Fn(&BatchIte
 /// Args:
 ///     robot: the arm.
 ///     targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free.
-///     starts: first starts, (m, n), or (n,) for all; None: stored configurations of the robot with the tip near the target.
+///     starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
 ///     threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
 ///     on_invalid: how to treat an invalid target or start: "raise" raises an error that names its row; "skip" solves the
 ///         other rows and marks this one `Status.INVALID`, with q NaN.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
 ///     task: as for `solve`.
-///     solver: the solver; None: Levenberg-Marquardt from many starts.
+///     solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
+///         Levenberg-Marquardt from many starts for everything else.
 ///     position_tolerance: largest position error (m).
 ///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
 ///     goals, prefer: as for `solve`.

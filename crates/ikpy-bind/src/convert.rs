@@ -1,6 +1,7 @@
 //! Conversion of Python values to Rust and back. The only file that depends on numpy's memory layout.
 
 use std::ops::Deref;
+use std::path::PathBuf;
 
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix3, Matrix4};
@@ -144,6 +145,17 @@ pub fn text<'a>(value: &'a Bound<'_, PyAny>) -> PyResult<&'a str> {
 /// Reads an optional word.
 pub fn optional_text<'a>(value: &'a Bound<'_, PyAny>) -> PyResult<Option<&'a str>> {
     if value.is_none() { Ok(None) } else { text(value).map(Some) }
+}
+
+/// Reads a file, or text; `what` names it.
+pub fn path_or_text(what: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
+    if let Ok(text) = value.extract::<String>() {
+        return Ok(text);
+    }
+    match value.extract::<PathBuf>() {
+        Ok(path) => Ok(path.to_string_lossy().into_owned()),
+        Err(_) => Err(invalid(format!("{what} must be a path, or XML as text, got {}", summary(value)))),
+    }
 }
 
 /// Reads an optional list of words.

@@ -21,8 +21,8 @@ impl Classes {
     fn of(&self, error: &Error) -> &Py<PyType> {
         match error {
             Error::InRow { error, .. } => self.of(error),
-            Error::UnknownRobot { .. } | Error::UnknownLink { .. } => &self.unknown_name,
-            Error::Urdf { .. } | Error::AmbiguousTip { .. } => &self.urdf,
+            Error::UnknownRobot { .. } | Error::UnknownLink { .. } | Error::NotHeld { .. } => &self.unknown_name,
+            Error::Urdf { .. } | Error::Srdf { .. } | Error::AmbiguousTip { .. } => &self.urdf,
             Error::EmptyRange { .. }
             | Error::OutsideLimits { .. }
             | Error::OutsideRegion { .. }

@@ -98,8 +98,11 @@ impl PySolution {
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m) with the orientation left free.
 ///     task: which part of the target counts, one of `tasks`; None: all of it.
-///     start: (n,), first start of the search; None: stored configurations of the robot with the tip near the target.
-///     solver: the solver; None: Levenberg-Marquardt from many starts.
+///     start: (n,), the configuration that the closed form of an arm with 6 joints or fewer chooses the nearest solution to, and
+///         where a search, or the descent of a redundant arm, begins. None: the closed form takes the most central solution
+///         inside the limits, and a search begins at stored configurations of the robot with the tip near the target.
+///     solver: the solver of a search; None: the closed form of the arm for poses, where it has one (`Robot.closed_form`), and
+///         Levenberg-Marquardt from many starts for everything else.
 ///     position_tolerance: largest position error (m).
 ///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
 ///     goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.

@@ -1,4 +1,4 @@
-//! The only calls into the Python package: plots, files and the progress bar.
+//! The only calls into the Python package: plots, files, models of other libraries and the progress bar.
 
 use pyo3::prelude::*;
 
@@ -29,6 +29,20 @@ pub fn write<'py>(py: Python<'py>, function: &str, arguments: impl pyo3::call::P
 /// Calls `beetle_ik.export.<function>(file)`.
 pub fn read<'py>(function: &str, file: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     call(file.py(), "beetle_ik.export", function, (file,))
+}
+
+/// Calls `beetle_ik.<module>.robot(...)`, which makes a robot by means of another library.
+pub fn robot<'py>(
+    py: Python<'py>,
+    module: &str,
+    arguments: impl pyo3::call::PyCallArgs<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    call(py, &format!("beetle_ik.{module}"), "robot", arguments)
+}
+
+/// Calls `beetle_ik._xacro.expand(path)`.
+pub fn expand_xacro(py: Python<'_>, path: &str) -> PyResult<String> {
+    call(py, "beetle_ik._xacro", "expand", (path,))?.extract()
 }
 
 /// Logs at level INFO under "beetle_ik", for calls that take long.

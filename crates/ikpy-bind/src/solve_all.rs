@@ -158,7 +158,7 @@ impl Unreached {
 
 /// Returns all solutions of a pose where the arm has a closed form (`Robot.closed_form`), and searches for distinct ones elsewhere.
 ///
-/// The closed form serves whole poses with the default solver and no weights or region. `SolutionSet.complete` says whether it is
+/// The closed form serves whole poses without a `solver`, weights or region. `SolutionSet.complete` says whether it is
 /// proven that no solution is missing. The search ends when a hundred solutions in a row are known already, or the budget is spent.
 ///
 /// Each solution is returned with the whole turns that bring it nearest to the start, or to the middle of the limits if no
@@ -176,7 +176,7 @@ impl Unreached {
 ///         limits allow. 0: its solutions are searched for.
 ///     turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
 ///     task: which part of the target counts, one of `tasks`; None: all of it.
-///     solver: the solver; None: Levenberg-Marquardt from many starts.
+///     solver: the solver of a search; None: the closed form where there is one, and Levenberg-Marquardt from many starts elsewhere.
 ///     position_tolerance: largest position error (m).
 ///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
 ///     limits: position limits; None: the robot's.

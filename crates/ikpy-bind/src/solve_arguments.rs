@@ -2,7 +2,7 @@
 
 use ikcore::ik::SolveOptions;
 use ikcore::limits::Limits;
-use ikcore::solver::{AnySolver, Stop};
+use ikcore::solver::Stop;
 use ikcore::task::Tolerance;
 use pyo3::prelude::*;
 
@@ -28,7 +28,7 @@ impl SolveArguments<'_, '_> {
     /// Converts the arguments to options of the core, with the `start` and the `limits` of the call.
     pub fn read(&self, start: Option<Vec<f64>>, limits: Option<Limits>) -> PyResult<SolveOptions> {
         Ok(SolveOptions {
-            solver: self.solver.map_or(Ok(AnySolver::default()), any_solver)?,
+            solver: self.solver.map(any_solver).transpose()?,
             task: read_task(self.task)?,
             goals: read_goals(self.goals)?,
             prefer: self.prefer.parse().map_err(raise)?,

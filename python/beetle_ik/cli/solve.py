@@ -28,7 +28,9 @@ def solve(
     position: Annotated[str, typer.Option(help="Target position of the tip: x,y,z in m.")],
     rpy: Annotated[str | None, typer.Option(help="Target orientation: roll,pitch,yaw in rad; default: free.")] = None,
     start: Start = None,
-    solver: Annotated[SolverName | None, typer.Option(help="Default: Levenberg-Marquardt from many starts.")] = None,
+    solver: Annotated[
+        SolverName | None, typer.Option(help="Default: the closed form, else Levenberg-Marquardt from many starts.")
+    ] = None,
     position_tolerance: Annotated[float, typer.Option(help="Allowed position error in m.")] = 1e-6,
     rotation_tolerance: Annotated[float, typer.Option(help="Allowed rotation error in rad.")] = 1e-6,
     max_evaluations: Annotated[int | None, typer.Option(help="Budget: evaluations of the forward kinematics.")] = None,

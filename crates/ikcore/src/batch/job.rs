@@ -1,10 +1,8 @@
 //! The work of a batch: rows, and the threads that solve groups of rows.
 //!
 //! Items share no mutable state: item i draws from stream i of the seed and writes to row i. So the bits of an item
-//! depend neither on the number of threads nor on the other items. If the solver allows it, a thread solves four
-//! targets side by side in the lanes of its registers.
+//! depend neither on the number of threads nor on the other items.
 
-use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
@@ -13,11 +11,11 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::batch_options::BatchOptions;
-use super::monitors::{SharedMonitor, StopFlag};
+use super::monitors::StopFlag;
 use super::results::{Batch, BatchItem};
 use super::targets::Targets;
 use crate::error::{Error, Result};
-use crate::ik::{Query, Solution, SolveContext, solve_queries};
+use crate::ik::{Query, SolveContext, solve_query};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
@@ -34,12 +32,8 @@ pub(super) struct Job<'a> {
 /// Rows checked between two polls of the monitor: about 100 microseconds.
 const CHECKED_AT_ONCE: usize = 1024;
 
-/// Smallest and largest number of targets in a group that a thread solves four side by side. With fewer, lanes idle at
-/// the end of a group; with more, threads idle at the end of the batch.
-const GROUP: (usize, usize) = (8, 256);
-
-/// Groups per thread, if there are enough targets, so that threads end at about the same time.
-const GROUPS_A_THREAD: usize = 4;
+/// Targets that a thread takes at once: enough that sharing them out costs nothing.
+const GROUP: usize = 16;
 
 /// Time between two polls of the monitor while threads work.
 const INTERVAL: Duration = Duration::from_millis(20);
@@ -79,57 +73,40 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Number of targets in a group.
-    fn group(&self, threads: usize) -> usize {
-        let (fewest, most) = GROUP;
-        let together = self.context.side_by_side_descent().is_some();
-        if together { (self.targets.len() / (GROUPS_A_THREAD * threads)).clamp(fewest, most) } else { 1 }
-    }
-
     /// Solves the targets from index `first` on, one per entry of `items`, and calls `done` after each.
-    fn solve_rows<M: Monitor + Clone>(
+    fn solve_rows(
         &self,
         first: usize,
         qs: &mut [f64],
         items: &mut [BatchItem],
-        monitor: &M,
-        mut done: impl FnMut(),
+        monitor: &mut dyn Monitor,
+        mut done: impl FnMut(&mut dyn Monitor),
     ) {
-        if !monitor.clone().keep_going() {
+        // Solves may be too short to ask.
+        if !monitor.keep_going() {
             return;
         }
-        let mut rows = Vec::with_capacity(items.len());
-        let mut queries = Vec::with_capacity(items.len());
-        for (row, item) in items.iter_mut().enumerate() {
-            match self.read(first + row) {
+        for ((row, item), q) in items.iter_mut().enumerate().zip(qs.chunks_mut(self.dof)) {
+            *item = match self.read(first + row) {
+                Err(_) => BatchItem::untouched(Status::Invalid),
                 Ok((target, start)) => {
-                    rows.push(row);
-                    queries.push(Query { target, start, stream: (first + row) as u64 });
+                    let query = Query { target, start, stream: (first + row) as u64 };
+                    let solution = solve_query(&self.context, &query, monitor);
+                    q.copy_from_slice(&solution.q);
+                    BatchItem::from(solution)
                 }
-                Err(_) => {
-                    *item = BatchItem::untouched(Status::Invalid);
-                    done();
-                }
-            }
+            };
+            done(monitor);
         }
-        solve_queries(&self.context, &queries, monitor, |query, solution| {
-            let Solution { q, status, error, obstruction, iterations, restarts, evaluations, elapsed } = solution;
-            let row = rows[query];
-            qs[row * self.dof..(row + 1) * self.dof].copy_from_slice(&q);
-            items[row] = BatchItem { status, error, obstruction, iterations, restarts, evaluations, elapsed };
-            done();
-        });
     }
 
     pub fn run_here(&self, batch: &mut Batch, monitor: &mut dyn Monitor) {
         let (mut done, total) = (0, batch.items.len());
-        let monitor = SharedMonitor(&RefCell::new(monitor));
-        let group = self.group(1);
-        let groups = batch.q.chunks_mut(group * self.dof).zip(batch.items.chunks_mut(group)).enumerate();
+        let groups = batch.q.chunks_mut(GROUP * self.dof).zip(batch.items.chunks_mut(GROUP)).enumerate();
         for (i, (qs, items)) in groups {
-            self.solve_rows(i * group, qs, items, &monitor, || {
+            self.solve_rows(i * GROUP, qs, items, monitor, |monitor| {
                 done += 1;
-                monitor.clone().progress(done, total);
+                monitor.progress(done, total);
             });
         }
     }
@@ -137,11 +114,10 @@ impl<'a> Job<'a> {
     pub fn run_on(&self, pool: &ThreadPool, batch: &mut Batch, monitor: &mut dyn Monitor) {
         let (done, total) = (AtomicUsize::new(0), batch.items.len());
         let stopped = AtomicBool::new(false);
-        let group = self.group(pool.current_num_threads());
-        let groups = batch.q.par_chunks_mut(group * self.dof).zip(batch.items.par_chunks_mut(group)).enumerate();
+        let groups = batch.q.par_chunks_mut(GROUP * self.dof).zip(batch.items.par_chunks_mut(GROUP)).enumerate();
         let work = || {
             groups.for_each(|(i, (qs, items))| {
-                self.solve_rows(i * group, qs, items, &StopFlag(&stopped), || {
+                self.solve_rows(i * GROUP, qs, items, &mut StopFlag(&stopped), |_| {
                     done.fetch_add(1, Ordering::Relaxed);
                 });
             });

@@ -24,8 +24,15 @@ pub struct BatchItem {
     pub restarts: usize,
     /// Evaluations of the forward kinematics.
     pub evaluations: usize,
-    /// Time taken by this target; time shared with targets side by side is divided equally.
+    /// Time taken by this target.
     pub elapsed: Duration,
+}
+
+impl From<Solution> for BatchItem {
+    fn from(solution: Solution) -> Self {
+        let Solution { q: _, status, error, obstruction, iterations, restarts, evaluations, elapsed } = solution;
+        Self { status, error, obstruction, iterations, restarts, evaluations, elapsed }
+    }
 }
 
 impl BatchItem {

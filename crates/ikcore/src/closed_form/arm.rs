@@ -119,6 +119,17 @@ impl ClosedFormArm {
         }
     }
 
+    /// Whether it takes no longer than a search: all but the general method for six joints.
+    pub fn is_at_once(&self) -> bool {
+        let general = match &self.method {
+            Method::Planar(_) | Method::Scara(_) => false,
+            Method::Five(method) => method.structure() == Structure::General,
+            Method::Six(method) => method.structure() == Structure::General,
+            Method::Seven(method) => method.structure() == Some(Structure::General),
+        };
+        !general
+    }
+
     /// Whether an arm has more joints than a pose needs.
     pub fn is_redundant(&self) -> bool {
         matches!(self.method, Method::Seven(_))

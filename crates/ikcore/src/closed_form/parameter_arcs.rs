@@ -129,6 +129,31 @@ impl ParameterArcs {
         })
     }
 
+    /// `count` values, each far from those before: the middles of the arcs, then van der Corput's sequence along them.
+    pub fn scattered(&self, count: usize) -> impl Iterator<Item = f64> {
+        let length = self.length();
+        let middles = self.iter().map(|[start, end]| 0.5 * (start + end));
+        let along = move |number: usize| {
+            let reversed = (number as u64).reverse_bits() as f64 / 2.0_f64.powi(64);
+            self.at(reversed * length)
+        };
+        let further = if length > 0.0 { 2..count } else { 2..2 };
+        middles.chain(further.map(along))
+    }
+
+    /// The value at a distance along the arcs.
+    fn at(&self, mut distance: f64) -> f64 {
+        let mut value = 0.0;
+        for [start, end] in self.iter() {
+            value = (start + distance).min(*end);
+            if start + distance <= *end {
+                break;
+            }
+            distance -= end - start;
+        }
+        value
+    }
+
     /// Their lengths added up.
     pub fn length(&self) -> f64 {
         self.iter().map(|[start, end]| end - start).sum()

@@ -12,7 +12,7 @@ use crate::closed_form::structure::{EXACT, NEARLY, three_meet, three_parallel};
 use crate::closed_form::three_parallel::ThreeParallel;
 use crate::closed_form::verify::{Verifier, verified};
 use crate::math::Frame;
-use crate::math::arithmetic::Baseline;
+use crate::math::arithmetic::{Baseline, by_instructions};
 
 /// The structure of a chain of six revolute joints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -151,8 +151,8 @@ impl ClosedForm {
         let mut candidates = Candidates::new();
         let goal = target.then::<Baseline>(&self.back);
         match &self.method {
-            Method::Spherical(method) => method.solve(&goal, &mut candidates),
-            Method::Parallel(method) => method.solve(&goal, &mut candidates),
+            Method::Spherical(method) => spherical_candidates(method, &goal, &mut candidates),
+            Method::Parallel(method) => parallel_candidates(method, &goal, &mut candidates),
             Method::Opened { at, tolerance } => self.solve_opened(&goal, *at, *tolerance, &mut candidates),
             Method::General(ways) => return self.solve_general(ways, &goal, target),
             Method::None => return Branches::none(),
@@ -210,6 +210,18 @@ impl ClosedForm {
             candidates.cos[(k + at) % 6] = turned.cos[k];
             candidates.sin[(k + at) % 6] = turned.sin[k];
         }
+    }
+}
+
+by_instructions! {
+    fn spherical_candidates(method: &SphericalWrist, goal: &Frame, candidates: &mut Candidates<6>) {
+        method.solve(goal, candidates);
+    }
+}
+
+by_instructions! {
+    fn parallel_candidates(method: &ThreeParallel, goal: &Frame, candidates: &mut Candidates<6>) {
+        method.solve(goal, candidates);
     }
 }
 

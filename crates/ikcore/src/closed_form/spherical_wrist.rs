@@ -88,7 +88,9 @@ impl SphericalWrist {
             let left = Pointing { end: self.undone(arm, &pointing.end), mark: self.undone(arm, &pointing.mark) };
             let wrists = self.wrist.turns(&left);
             found.singular |= wrists.aligned;
-            wrists.sets[..wrists.count].iter().for_each(|wrist| found.push(&order(arm, wrist)));
+            for wrist in &wrists.sets[..wrists.count] {
+                found.push(&order(arm, wrist));
+            }
         }
     }
 

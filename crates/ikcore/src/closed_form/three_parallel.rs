@@ -73,7 +73,9 @@ impl ThreeParallel {
                 found.singular |= q1.free;
                 for q1 in q1.iter() {
                     let (q5, _) = self.bend.angles(&q1.back().about(h1, &n));
-                    q5.iter().for_each(|q5| self.wrist(goal, *q1, *q5, found));
+                    for q5 in q5.iter() {
+                        self.wrist(goal, *q1, *q5, found);
+                    }
                 }
             }
             Last::Parallel => {
@@ -110,7 +112,9 @@ impl ThreeParallel {
             return;
         };
         found.unsettled |= q1.free;
-        q1.iter().zip(&q5).for_each(|(q1, q5)| self.wrist(goal, *q1, *q5, found));
+        for (q1, q5) in q1.iter().zip(&q5) {
+            self.wrist(goal, *q1, *q5, found);
+        }
     }
 
     /// q6, the sum of the three parallel joints, and their planar arm.

@@ -1,6 +1,6 @@
 //! All solutions of a pose by the closed form of the arm.
 
-use super::attempt::Attempt;
+use super::attempt::{APPROACHES, Attempt};
 use super::solutions::Solutions;
 use super::whole_turns::NearestTurns;
 use crate::closed_form::{ArmBranches, BranchError, MOST_JOINTS, PoseFamily, VERIFIED};
@@ -45,7 +45,7 @@ pub(super) struct AllBranches {
 pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], redundancy: usize) -> Option<AllBranches> {
     let target = attempt.problem.target();
     let Target::Pose(pose) = target else { return None };
-    let MultiStart { solver: descent, .. } = attempt.context.options().solver.restarted_descent()?;
+    let MultiStart { solver: descent, .. } = attempt.context.solver().restarted_descent()?;
     if !attempt.context.asks_for_pose_alone(target) {
         return None;
     }
@@ -191,7 +191,7 @@ impl Taker<'_, '_, '_> {
     /// edge of the reach, or beside what an arm with few joints can reach.
     #[cold]
     fn take_beside(&mut self) {
-        let q = self.attempt.approach(&self.descent, self.turns.reference());
+        let q = self.attempt.approach(&self.descent, self.turns.reference(), APPROACHES);
         if !self.attempt.problem.assess(&q).score.solved {
             return;
         }

@@ -7,11 +7,11 @@ use super::solution::Solution;
 use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
-use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, Status, run};
-use crate::task::{Criterion, Goals, Tolerance};
+use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, run};
+use crate::task::{Assessment, Criterion, Goals, SquaredError, Tolerance};
 
 /// Number of starts for approaching a target out of reach.
-const APPROACHES: usize = 8;
+pub(super) const APPROACHES: usize = 8;
 
 /// The state of solving one target.
 pub(super) struct Attempt<'m, 'p> {
@@ -47,12 +47,12 @@ impl<'m, 'p> Attempt<'m, 'p> {
     /// only approached.
     pub fn solve_from(&mut self, x0: &[f64]) -> Solution {
         let bounds = self.context.bounds();
-        let Some(MultiStart { solver: descent, .. }) = self.context.options().solver.restarted_descent() else {
+        let Some(MultiStart { solver: descent, .. }) = self.context.solver().restarted_descent() else {
             let (status, q) = self.search(bounds, x0, 0);
             return self.explained(status, q);
         };
         if self.problem.beyond_reach(bounds).is_some() {
-            let q = self.approach(&descent, x0);
+            let q = self.approach(&descent, x0, APPROACHES);
             return self.explained(Status::OutOfReach, q);
         }
         let (status, q) = self.search(bounds, x0, self.budget.reserve());
@@ -63,7 +63,21 @@ impl<'m, 'p> Attempt<'m, 'p> {
     pub fn search(&mut self, bounds: &Bounds, x0: &[f64], reserve: usize) -> (Status, Point) {
         let objective: &mut dyn Differentiable = self.problem;
         let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(reserve), self.rng, self.monitor);
-        let status = self.context.options().solver.run(&mut evaluator, x0);
+        let status = self.context.solver().run(&mut evaluator, x0);
+        self.budget.add(&evaluator);
+        (status, Point::from_slice(&evaluator.best().x))
+    }
+
+    /// Runs one attempt of the default solver from `x0`: it stalls as soon as it makes too little progress.
+    pub fn search_once(&mut self, x0: &[f64]) -> (Status, Point) {
+        let Some(MultiStart { solver, rule }) = self.context.solver().restarted_descent() else {
+            return (Status::Stalled, Point::from_slice(x0));
+        };
+        let once = MultiStart { solver, rule: RestartRule { max_starts: 1, ..rule } };
+        let objective: &mut dyn Differentiable = self.problem;
+        let (bounds, stop) = (self.context.bounds(), self.budget.rest(0));
+        let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);
+        let status = run(&once, &mut evaluator, x0);
         self.budget.add(&evaluator);
         (status, Point::from_slice(&evaluator.best().x))
     }
@@ -104,11 +118,11 @@ impl<'m, 'p> Attempt<'m, 'p> {
         Point::from_slice(&evaluator.best().x)
     }
 
-    /// The best of a few descents towards a target that cannot be reached.
-    pub fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64]) -> Point {
+    /// The best of `approaches` descents towards a target that cannot be reached.
+    pub fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64], approaches: usize) -> Point {
         let mut best: Option<(f64, Point)> = None;
         let mut x = Point::from_slice(x0);
-        for approach in 0..APPROACHES {
+        for approach in 0..approaches {
             if approach > 0 {
                 self.next_start(&mut x);
                 self.budget.restarts += 1;
@@ -123,10 +137,9 @@ impl<'m, 'p> Attempt<'m, 'p> {
     }
 
     /// The result of approaching a target that cannot be reached.
-    pub fn approached(&mut self, x0: &[f64]) -> Solution {
-        let descent =
-            self.context.options().solver.restarted_descent().map_or_else(Default::default, |multi| multi.solver);
-        let q = self.approach(&descent, x0);
+    pub fn approached(&mut self, x0: &[f64], approaches: usize) -> Solution {
+        let descent = self.context.solver().restarted_descent().map_or_else(Default::default, |multi| multi.solver);
+        let q = self.approach(&descent, x0, approaches);
         self.explained(Status::OutOfReach, q)
     }
 
@@ -147,7 +160,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
     }
 
     /// The result at `q`, with the reason for a miss.
-    fn explained(&self, status: Status, q: Point) -> Solution {
+    pub fn explained(&self, status: Status, q: Point) -> Solution {
         let mut solution = self.solution(status, q);
         if status != Status::Solved {
             solution.obstruction = self.problem.obstruction(self.context.bounds(), &solution.q);
@@ -155,11 +168,23 @@ impl<'m, 'p> Attempt<'m, 'p> {
         solution
     }
 
+    /// The result at `q` if that solves the target.
+    pub fn solved_at(&mut self, q: Point) -> Option<Solution> {
+        self.budget.evaluations += 1;
+        let Assessment { score, error } = self.problem.assess(&q);
+        score.solved.then(|| self.result(Status::Solved, q, error))
+    }
+
     /// The result at `q`.
     pub fn solution(&self, status: Status, q: Point) -> Solution {
+        let error = self.problem.assess(&q).error;
+        self.result(status, q, error)
+    }
+
+    fn result(&self, status: Status, q: Point, error: SquaredError) -> Solution {
         Solution {
             status,
-            error: self.problem.assess(&q).error.into(),
+            error: error.into(),
             obstruction: String::new(),
             iterations: self.budget.iterations,
             restarts: self.budget.restarts,

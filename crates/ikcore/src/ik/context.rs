@@ -1,5 +1,7 @@
 //! The validated arguments that all targets of a call share.
 
+use std::sync::LazyLock;
+
 use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
@@ -8,7 +10,7 @@ use crate::objective::{Bounds, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
-use crate::solver::{AnySolver, LevenbergMarquardt, MultiStart};
+use crate::solver::AnySolver;
 use crate::task::{Criterion, Goals, Target, Task};
 
 /// A validated target and start.
@@ -40,7 +42,7 @@ impl<'a> SolveContext<'a> {
     /// # Errors
     /// Any [`Error`] for wrong options.
     pub(crate) fn new(robot: &'a Robot, options: &'a SolveOptions) -> Result<Self> {
-        options.solver.validate()?;
+        options.solver.as_ref().map_or(Ok(()), |solver| solver.validate())?;
         options.stop.validate()?;
         options.task.as_ref().map_or(Ok(()), Task::validate)?;
         let criterion = options.task.map_or(options.tolerance.into(), |task| task.criterion(options.tolerance));
@@ -76,18 +78,29 @@ impl<'a> SolveContext<'a> {
         self.options
     }
 
-    /// Whether only pose and limits define a solution, and the choice of solver is ours.
-    pub(super) fn asks_for_pose_alone(&self, target: &Target) -> bool {
-        let plain = self.criterion.components.is_none() && self.criterion.region.is_none() && self.goals.is_empty();
-        matches!(target, Target::Pose(_)) && plain && self.options.solver == AnySolver::default()
+    /// The solver of searches.
+    pub(super) fn solver(&self) -> &AnySolver {
+        static DEFAULT: LazyLock<AnySolver> = LazyLock::new(AnySolver::default);
+        self.options.solver.as_ref().unwrap_or(&DEFAULT)
     }
 
-    /// The descent of the default solver if it can run side by side: without goals or preferences after it, and without
-    /// a time limit.
-    pub(crate) fn side_by_side_descent(&self) -> Option<MultiStart<LevenbergMarquardt>> {
-        let alone = self.options.prefer == Prefer::Any && self.goals.is_empty();
-        let descent = self.options.solver.restarted_descent();
-        descent.filter(|_| alone && self.options.stop.max_time.is_none())
+    /// Whether only pose and limits define a solution, goals aside, and the choice of solver is ours.
+    pub(super) fn asks_for_pose(&self, target: &Target) -> bool {
+        let plain = self.criterion.components.is_none() && self.criterion.region.is_none();
+        matches!(target, Target::Pose(_)) && plain && self.options.solver.is_none()
+    }
+
+    /// The same without goals.
+    pub(super) fn asks_for_pose_alone(&self, target: &Target) -> bool {
+        self.goals.is_empty() && self.asks_for_pose(target)
+    }
+
+    /// The finite ranges inside the limits that configurations are drawn from: their lower ends, and their upper ones.
+    pub(super) fn sampling_ranges(&self) -> [Point; 2] {
+        let (bounds, joints) = (&self.bounds, self.robot().joints());
+        let ranges = bounds.lower().iter().zip(bounds.upper()).zip(joints);
+        let (lower, upper) = ranges.map(|((lower, upper), joint)| joint.sampling_range_within(*lower, *upper)).unzip();
+        [lower, upper]
     }
 
     /// The problem of reaching `target`.

@@ -1,20 +1,20 @@
 //! Inverse kinematics: one solution of a target, or all of them.
 //!
 //! Read `solve` first. A `SolveContext` is validated once for all targets of a call; an `Attempt` holds the state of
-//! one target: problem, random numbers, monitor, `budget`. `nearest` and `best` choose among several solutions,
+//! one target: problem, random numbers, monitor, `budget`. `first_branch` answers poses by the closed form, with the
+//! `preference` for one of its branches. `nearest` and `best` choose among several solutions,
 //! `goal_descent` moves a solution along its self-motion, `solve_all` collects solutions (`all_branches` by the closed
-//! form), `side_by_side` solves four targets at once for batches. [`problem`](crate::problem) explains why a target was
-//! missed.
+//! form). [`problem`](crate::problem) explains why a target was missed.
 
 mod all_branches;
 mod attempt;
 mod best;
 mod budget;
 mod context;
+mod first_branch;
 mod goal_descent;
 mod nearest;
-mod shared_time;
-mod side_by_side;
+mod preference;
 mod solution;
 mod solutions;
 mod solve;
@@ -23,7 +23,6 @@ mod solve_options;
 mod whole_turns;
 
 pub(crate) use context::{Query, SolveContext};
-pub(crate) use side_by_side::solve_queries;
 pub use solution::Solution;
 pub use solutions::{SolutionView, Solutions};
 pub use solve::solve;

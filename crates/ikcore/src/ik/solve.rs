@@ -3,6 +3,7 @@
 use super::attempt::Attempt;
 use super::best::best_solution;
 use super::context::{Query, SolveContext};
+use super::first_branch::by_closed_form;
 use super::nearest::nearest_solution;
 use super::solution::Solution;
 use super::solve_options::{Prefer, SolveOptions};
@@ -15,12 +16,15 @@ use crate::task::Target;
 
 /// Finds a configuration that brings the tip of `robot` to `target`.
 ///
+/// A pose of an arm with a closed form ([`Robot::closed_form`]) is solved by it, unless a solver is named or the task has weights or a
+/// region: the branch nearest to the start is returned or, without a start, the most central one inside the limits. A redundant arm
+/// descends from a given start first. A pose that has no solution is proven to be out of reach. Everything else is searched for.
+///
 /// With goals, the solution is moved along its self-motion to the nearest optimum of the goals.
 ///
 /// With [`Prefer::Nearest`], the solve is repeated from starts at increasing distances from the given one. Each
 /// solution is moved along its self-motion and by whole turns towards the start, until 24 consecutive solutions are no
 /// nearer or the budget is spent. The distance is |q - start|, with joints in rad and m.
-/// |q - start|, joints counted in rad and m.
 ///
 /// With [`Prefer::Best`], the solve is repeated from starts all over the joint space. Each solution is moved along its
 /// self-motion, until 40 consecutive solutions are no better for the goals. For an arm with one joint more than its
@@ -54,8 +58,7 @@ pub(crate) fn solve_query(context: &SolveContext<'_>, query: &Query<'_>, monitor
 /// Returns the first solution found; with goals it is moved along its self-motion.
 fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
     let context = attempt.context;
-    let x0 = attempt.first_start(start);
-    let mut solution = attempt.solve_from(&x0);
+    let mut solution = by_closed_form(attempt, start).unwrap_or_else(|| searched_solution(attempt, start));
     if solution.status != Status::Solved || context.goals().is_empty() {
         return solution;
     }
@@ -64,4 +67,13 @@ fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solut
     }
     attempt.descend_goals(&mut context.goals().clone(), &mut solution.q);
     attempt.solution(Status::Solved, solution.q)
+}
+
+/// The first solution that a search finds.
+fn searched_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
+    let x0 = attempt.first_start(start);
+    if attempt.budget.left() == 0 {
+        return attempt.explained(Status::BudgetSpent, x0);
+    }
+    attempt.solve_from(&x0)
 }

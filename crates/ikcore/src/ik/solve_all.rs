@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::all_branches::{AllBranches, all_branches};
-use super::attempt::Attempt;
+use super::attempt::{APPROACHES, Attempt};
 use super::context::SolveContext;
 use super::solution::Solution;
 use super::solutions::{SolutionView, Solutions};
@@ -197,7 +197,7 @@ pub fn nearest_miss(
     let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
     let start = options.each.start.as_deref();
     let reference = start.map_or_else(|| middle(context.robot(), context.bounds()), Point::from_slice);
-    Ok(attempt.approached(&reference))
+    Ok(attempt.approached(&reference, APPROACHES))
 }
 
 /// The solutions of the closed form, thinned out where a separation is asked for.

@@ -19,18 +19,19 @@ pub enum Prefer {
 
 words!("prefer": Prefer { Any => "any", Nearest => "nearest", Best => "best" });
 
-/// Options of [`solve`](super::solve()). The default is Levenberg-Marquardt from many starts, within the robot's limits.
+/// Options of [`solve`](super::solve()). The default solves within the robot's limits.
 #[derive(Debug, Clone, Default)]
 pub struct SolveOptions {
-    /// The algorithm.
-    pub solver: AnySolver,
+    /// The algorithm. `None` means the closed form of the arm where it has one, and Levenberg-Marquardt from many starts.
+    pub solver: Option<AnySolver>,
     /// The part of the target that matters. `None` means all of it.
     pub task: Option<Task>,
     /// Goals in the null space of the task.
     pub goals: Vec<Goal>,
     /// Which solution to return if there are several.
     pub prefer: Prefer,
-    /// The start (n,). `None` means the indexed configuration nearest to the target.
+    /// The start (n,). `None` means the middle of the limits for a closed form, and the indexed configuration nearest to the
+    /// target for a search.
     pub start: Option<Vec<f64>>,
     /// Tolerances within which the target counts as reached.
     pub tolerance: Tolerance,

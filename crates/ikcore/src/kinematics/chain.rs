@@ -5,6 +5,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::stages::Stages;
+use crate::math::so3::cross;
 use crate::math::{Frame, Pose, pose};
 
 /// Motion of a stage: turn = turn_scale * q\[joint\] + turn_offset (rad), and likewise the slide (m). One of the scales
@@ -29,6 +30,19 @@ impl StageMotion {
     /// A slide by `scale * q[joint] + offset` (m).
     pub fn slide(joint: usize, scale: f64, offset: f64) -> Self {
         Self { joint, slide_scale: scale, slide_offset: offset, ..Self::NONE }
+    }
+
+    /// Velocity of `point`, carried by the frame `moved` of this element, per unit speed of the joint.
+    pub fn velocity(&self, moved: &Frame, point: &[f64; 3]) -> [f64; 3] {
+        let Frame { axes: [_, _, axis], origin } = moved;
+        let moment = cross(axis, &std::array::from_fn(|k| point[k] - origin[k]));
+        std::array::from_fn(|k| self.turn_scale * moment[k] + self.slide_scale * axis[k])
+    }
+
+    /// Largest rotation (rad) and translation (m) when each joint changes by up to `reach`.
+    #[inline]
+    pub fn travel(&self, reach: &[f64]) -> [f64; 2] {
+        [self.turn_scale, self.slide_scale].map(|scale| scale.abs() * reach[self.joint])
     }
 }
 
@@ -119,7 +133,7 @@ impl ChainFolder {
 }
 
 /// A rotation whose z axis is `axis`; exact if the axis is a coordinate axis.
-fn basis_with_z_along(axis: &Vector3<f64>) -> Matrix3<f64> {
+pub(super) fn basis_with_z_along(axis: &Vector3<f64>) -> Matrix3<f64> {
     let helper = if axis.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
     let x = (helper - axis * axis.dot(&helper)).normalize();
     Matrix3::from_columns(&[x, axis.cross(&x), *axis])

@@ -1,7 +1,6 @@
 //! The table of compiled kernels: one entry per padded number of stages, for machines with and without AVX2 and FMA.
 
 use super::chain::Chain;
-use super::four_jacobians::{self, FourColumns};
 use super::jacobian::{self, Columns};
 use super::link_frames::{self, StageFrames};
 use super::tip;
@@ -23,12 +22,12 @@ pub(crate) struct Kernels {
     tip_four: fn(&Chain, &[f64]) -> [[f64; 4]; 3],
     /// Writes the geometric Jacobian and returns the tip's frame.
     pub jacobian: fn(&Chain, &[f64], &mut Columns) -> Frame,
-    /// The Jacobian for four configurations, bit-identical; one entry of `columns` per joint.
-    pub jacobian_four: fn(&Chain, &[F64x4], &mut FourColumns) -> Frame<F64x4>,
     /// Writes the joint torques J'w of a wrench w(tip) and returns the tip's frame.
     pub torques: Torques,
     /// Writes the frames of all stages.
     pub stage_frames: fn(&Chain, &[f64], &mut StageFrames),
+    /// The frames of all stages for four configurations, bit-identical.
+    pub stage_frames_four: fn(&Chain, &[F64x4], &mut StageFrames<F64x4>),
 }
 
 type Torques = fn(&Chain, &[f64], &dyn Fn(&Frame) -> Wrench, &mut [f64]) -> Frame;
@@ -89,9 +88,9 @@ macro_rules! table {
             tip_pair: |chain, qs| tip::tip_positions::<$a, $n, $l, 2>(chain, qs),
             tip_four: |chain, qs| tip::tip_positions::<$a, $n, $n, 4>(chain, qs),
             jacobian: |chain, q, columns| jacobian::jacobian::<$a, $n, $l>(chain, q, columns),
-            jacobian_four: |chain, qs, columns| four_jacobians::four_jacobians::<$a, $n>(chain, qs, columns),
             torques: |chain, q, wrench, torques| torques::torques::<$a, $n, $l>(chain, q, wrench, torques),
             stage_frames: |chain, q, reached| link_frames::stage_frames::<$a, $n, $l>(chain, q, reached),
+            stage_frames_four: |chain, qs, reached| link_frames::four_stage_frames::<$a, $n>(chain, qs, reached),
         }
     };
 }
@@ -134,16 +133,13 @@ mod tests {
             for kernels in [for_stages(joints), baseline(joints)] {
                 let angle = |joint: usize, lane: usize| (1.7 * joint as f64 + 0.9 * lane as f64).sin();
                 let qs: Vec<F64x4> = (0..joints).map(|i| F64x4(std::array::from_fn(|lane| angle(i, lane)))).collect();
-                let mut four = vec![[F64x4::ZERO; 6]; joints];
-                let tips = (kernels.jacobian_four)(&chain, &qs, &mut four);
+                let mut frames = [Frame::of([&Frame::IDENTITY; 4]); MAX_DOF + 1];
+                (kernels.stage_frames_four)(&chain, &qs, &mut frames);
                 for lane in 0..4 {
                     let q: Vec<f64> = qs.iter().map(|lanes| lanes.0[lane]).collect();
-                    let mut columns = [[0.0; 6]; MAX_DOF];
-                    let tip = (kernels.jacobian)(&chain, &q, &mut columns);
-                    assert_eq!(tips.axes.map(|axis| axis.map(|k| k.0[lane])), tip.axes, "{joints} joints");
-                    assert_eq!(tips.origin.map(|k| k.0[lane]), tip.origin, "{joints} joints");
-                    let column = |j: usize| four[j].map(|row| row.0[lane]);
-                    assert!((0..joints).all(|j| column(j) == columns[j]), "{joints} joints");
+                    let mut reached = [Frame::IDENTITY; MAX_DOF + 1];
+                    (kernels.stage_frames)(&chain, &q, &mut reached);
+                    assert!((0..=joints).all(|i| frames[i].lane(lane) == reached[i]), "{joints} joints");
                 }
             }
         }

@@ -8,8 +8,9 @@
 //! | `chain`, `stages` | constant frames, and the joint that drives each stage |
 //! | `forward_pass`, `wide_frame` | from the base to the tip, one frame per stage |
 //! | `tip`, `jacobian`, `torques`, `link_frames` | the kernels |
-//! | `four_jacobians` | Jacobians of four configurations at once |
+//! | `four_forward_pass` | the pass of four configurations at once |
 //! | `kernels` | table of compiled kernels |
+//! | `link_tree` | all links, with those that branch off the chain |
 //! | `screws` | axis and velocity of every stage |
 //! | `reach`, `fixed_direction` | bounds on the positions of the tip |
 //! | `task_rank` | rank of the Jacobian by task |
@@ -17,10 +18,11 @@
 pub(crate) mod chain;
 mod fixed_direction;
 mod forward_pass;
-mod four_jacobians;
+mod four_forward_pass;
 mod jacobian;
 pub(crate) mod kernels;
 pub(crate) mod link_frames;
+pub(crate) mod link_tree;
 mod reach;
 mod screws;
 mod stages;
@@ -30,7 +32,6 @@ mod torques;
 mod wide_frame;
 
 pub use fixed_direction::FixedDirection;
-pub(crate) use four_jacobians::FourColumns;
 pub use jacobian::Columns;
 pub use reach::{Beyond, Reach};
 pub use screws::{Screw, Screws};

@@ -15,7 +15,7 @@ pub struct Limits {
     pub(super) upper: Vec<Profile>,
     pub(super) velocity: Vec<Profile>,
     pub(super) acceleration: Option<Vec<Profile>>,
-    jerk: Option<Vec<Profile>>,
+    pub(super) jerk: Option<Vec<Profile>>,
 }
 
 impl Limits {
@@ -177,7 +177,7 @@ impl Limits {
         self.field(field).unwrap_or_default().iter().map(constant).collect()
     }
 
-    /// Whether any joint has a limit in this field.
+    /// Whether any joint has a finite limit of this kind.
     pub(crate) fn is_finite(&self, field: Field) -> bool {
         self.field(field).unwrap_or_default().iter().any(|profile| *profile != Profile::Constant(f64::INFINITY))
     }
@@ -195,6 +195,21 @@ impl Limits {
     /// Names of the joints.
     pub(crate) fn joint_names(&self) -> &[String] {
         &self.joints
+    }
+
+    /// Number of joints.
+    pub(crate) fn dof(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// The velocity limit of joint `j`.
+    pub(crate) fn velocity_of(&self, j: usize) -> &Profile {
+        &self.velocity[j]
+    }
+
+    /// The smallest limit of joint `j` over the tick from `from` to `to` (s); infinite without one.
+    pub(crate) fn smallest_over(&self, field: Field, j: usize, [from, to]: [f64; 2]) -> f64 {
+        self.field(field).map_or(f64::INFINITY, |profiles| profiles[j].smallest(from, to).1)
     }
 
     /// Name of a joint.

@@ -8,7 +8,6 @@
 //! | `tick_box` | `TickBox`: position and velocity limits as the box of one tick |
 //! | `braking` | acceleration limits narrow that box, so that joints can stop in time |
 
-mod braking;
 mod field;
 mod joint_limits;
 mod profile;

@@ -78,6 +78,23 @@ impl Profile {
         }
     }
 
+    /// The smallest value from each time on, as a profile that never falls; between samples it may be a little lower.
+    pub(crate) fn from_now_on(&self) -> Self {
+        match self {
+            Self::Constant(value) => Self::Constant(*value),
+            Self::Sinusoid(sinusoid) => Self::Constant(sinusoid.mean - sinusoid.amplitude.abs()),
+            Self::Sampled { step, values } => {
+                let mut values = values.clone();
+                let mut smallest = f64::INFINITY;
+                for value in values.iter_mut().rev() {
+                    smallest = smallest.min(*value);
+                    *value = smallest;
+                }
+                Self::Sampled { step: *step, values }
+            }
+        }
+    }
+
     /// (time, value) of the smallest value over \[`from`, `to`\] (s).
     #[inline]
     pub fn smallest(&self, from: f64, to: f64) -> (f64, f64) {

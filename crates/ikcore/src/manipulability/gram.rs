@@ -5,7 +5,6 @@ use crate::kinematics::Columns;
 use crate::math::arithmetic::NoFma;
 use crate::math::gram::gram;
 use crate::math::ldl::{Ldl, trace};
-use crate::math::real::{One, Real};
 
 use super::motion::Motion;
 
@@ -33,30 +32,30 @@ pub(super) fn index_and_sensitivity(columns: &[[f64; 6]], motion: Motion, out: &
 /// J J' = L D L' of `R` rows from `first` on.
 struct GramFactor<const R: usize> {
     first: usize,
-    ldl: Ldl<One<NoFma>, R>,
+    ldl: Ldl<R>,
 }
 
 impl<const R: usize> GramFactor<R> {
     /// None near a singularity.
     fn of(columns: &[[f64; 6]], first: usize) -> Option<Self> {
         let matrix = gram::<NoFma, R>(columns.iter().map(|column| leading(column, first)), 0.0);
-        let smallest = NEAR * trace(&matrix).stored();
-        let ldl = Ldl::of(matrix);
+        let smallest = NEAR * trace(&matrix);
+        let ldl = Ldl::of::<NoFma>(matrix);
         // Formulated so that NaN counts as near, too.
-        (0..R).all(|j| ldl.pivot(j).stored() > smallest).then_some(Self { first, ldl })
+        (0..R).all(|j| ldl.pivot(j) > smallest).then_some(Self { first, ldl })
     }
 
     fn index(&self) -> f64 {
-        (0..R).map(|j| self.ldl.pivot(j).stored()).product::<f64>().sqrt()
+        (0..R).map(|j| self.ldl.pivot(j)).product::<f64>().sqrt()
     }
 
     /// Writes dw/dJ = w (J J')^-1 J, zero in the other rows; returns w.
     fn write_sensitivity(&self, columns: &[[f64; 6]], out: &mut Columns) -> f64 {
         let index = self.index();
         for (out, column) in out.iter_mut().zip(columns) {
-            let z = self.ldl.solve(std::array::from_fn(|i| One::of(column[self.first + i])));
+            let z = self.ldl.solve::<NoFma>(std::array::from_fn(|i| column[self.first + i]));
             *out = [0.0; 6];
-            z.into_iter().enumerate().for_each(|(i, entry)| out[self.first + i] = index * entry.stored());
+            z.into_iter().enumerate().for_each(|(i, entry)| out[self.first + i] = index * entry);
         }
         index
     }

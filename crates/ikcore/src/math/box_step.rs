@@ -5,7 +5,6 @@ use super::arithmetic::{Arithmetic, by_instructions};
 use super::comparison::{larger, smaller};
 use super::gram::gram;
 use super::ldl;
-use super::real::{One, Real};
 use super::vector::squared_size;
 
 /// Number of task rows of every least-squares problem; unused rows are zero.
@@ -85,13 +84,13 @@ impl BoxStep<'_> {
         // Bit j: joint j is held at a bound.
         let mut fixed = 0_u64;
         for _ in 0..ROUNDS {
-            let mut right = [One::of(0.0); R];
-            right.iter_mut().zip(remaining).for_each(|(entry, rest)| *entry = One::of(rest));
+            let mut right = [0.0; R];
+            right.copy_from_slice(&remaining[..R]);
             let free = (0..n).filter(|j| fixed & (1 << j) == 0).map(|j| columns[j]);
-            let z = ldl::solve(gram::<A, R>(free, lambda), right);
+            let z = ldl::solve::<A, R>(gram::<A, R>(free, lambda), right);
             let fixed_before = fixed;
             for j in (0..n).filter(|j| fixed_before & (1 << j) == 0) {
-                let wanted = x[j] - dot(&columns[j], &z).stored();
+                let wanted = x[j] - dot::<A, R>(&columns[j], &z);
                 let bounded = smaller(larger(wanted, lower[j]), upper[j]);
                 out[j] = bounded;
                 if bounded != wanted {
@@ -116,10 +115,9 @@ by_instructions! {
 
 /// a'b, in pairs.
 #[inline(always)]
-pub(super) fn dot<R: Real, const N: usize>(a: &[R::Stored; ROWS], b: &[R; N]) -> R {
+fn dot<A: Arithmetic, const N: usize>(a: &[f64; ROWS], b: &[f64; N]) -> f64 {
     let pair = |k: usize| {
-        let first = R::of(a[k]);
-        if k + 1 < N { first.mul_add(b[k], R::of(a[k + 1]) * b[k + 1]) } else { first * b[k] }
+        if k + 1 < N { A::mul_add(a[k], b[k], a[k + 1] * b[k + 1]) } else { a[k] * b[k] }
     };
     (2..N).step_by(2).fold(pair(0), |sum, k| sum + pair(k))
 }

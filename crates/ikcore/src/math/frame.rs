@@ -21,15 +21,23 @@ impl Frame<F64x4> {
     #[inline(always)]
     pub(crate) fn of(frames: [&Frame; 4]) -> Self {
         let mut all = Self { axes: [[F64x4::ZERO; 3]; 3], origin: [F64x4::ZERO; 3] };
-        for (lane, frame) in frames.into_iter().enumerate() {
-            for k in 0..3 {
-                all.origin[k].0[lane] = frame.origin[k];
-                for axis in 0..3 {
-                    all.axes[axis][k].0[lane] = frame.axes[axis][k];
-                }
+        frames.into_iter().enumerate().for_each(|(lane, frame)| all.set_lane(lane, frame));
+        all
+    }
+
+    /// The frame in lane `lane`.
+    pub(crate) fn lane(&self, lane: usize) -> Frame {
+        Frame { axes: self.axes.map(|axis| axis.map(|k| k.0[lane])), origin: self.origin.map(|k| k.0[lane]) }
+    }
+
+    /// Puts `frame` into lane `lane`.
+    pub(crate) fn set_lane(&mut self, lane: usize, frame: &Frame) {
+        for k in 0..3 {
+            self.origin[k].0[lane] = frame.origin[k];
+            for axis in 0..3 {
+                self.axes[axis][k].0[lane] = frame.axes[axis][k];
             }
         }
-        all
     }
 }
 
@@ -71,6 +79,17 @@ impl Frame {
         let axes: [[f64; 3]; 3] = std::array::from_fn(|row| std::array::from_fn(|column| self.axes[column][row]));
         let origin = self.axes.map(|axis| -(0..3).map(|k| axis[k] * self.origin[k]).sum::<f64>());
         Self { axes, origin }
+    }
+
+    /// The homogeneous matrix, row-major.
+    pub(crate) fn rows(&self) -> [f64; 16] {
+        let ([x, y, z], p) = (self.axes, self.origin);
+        [
+            x[0], y[0], z[0], p[0], //
+            x[1], y[1], z[1], p[1], //
+            x[2], y[2], z[2], p[2], //
+            0.0, 0.0, 0.0, 1.0,
+        ]
     }
 
     /// This frame rotated about its own z axis, given sine and cosine of the angle.

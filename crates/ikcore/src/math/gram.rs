@@ -2,11 +2,10 @@
 
 use super::arithmetic::Arithmetic;
 use super::f64x4::F64x4;
-use super::real::{One, Real};
 
 /// Returns J J' + lambda I on the first `R` rows of a Jacobian with these columns.
 #[inline(always)]
-pub fn gram<A: Arithmetic, const R: usize>(columns: impl Iterator<Item = [f64; 6]>, lambda: f64) -> [[One<A>; R]; R] {
+pub fn gram<A: Arithmetic, const R: usize>(columns: impl Iterator<Item = [f64; 6]>, lambda: f64) -> [[f64; R]; R] {
     // Four entries of a row, then the rest; with three rows the rest is unused and not computed.
     let mut sum = [[F64x4::ZERO; 2]; R];
     for column in columns {
@@ -19,10 +18,10 @@ pub fn gram<A: Arithmetic, const R: usize>(columns: impl Iterator<Item = [f64; 6
         }
     }
     // Loops instead of closures, which might be compiled without the instructions of the calling kernel.
-    let mut entries = [[One::of(0.0); R]; R];
+    let mut entries = [[0.0; R]; R];
     for (i, row) in entries.iter_mut().enumerate() {
         for (k, entry) in row.iter_mut().enumerate() {
-            *entry = One::of(sum[i][k / 4].0[k % 4] + if i == k { lambda } else { 0.0 });
+            *entry = sum[i][k / 4].0[k % 4] + if i == k { lambda } else { 0.0 };
         }
     }
     entries

@@ -1,41 +1,43 @@
 //! Small symmetric systems by LDL'.
 
-use super::real::Real;
+use super::arithmetic::Arithmetic;
 
 /// Pivots below this fraction of the matrix's trace count as zero: no step in that direction.
 const SINGULAR: f64 = 1e-15;
 
 /// A = L D L' of a symmetric positive semi-definite matrix.
 #[derive(Debug, Clone, Copy)]
-pub struct Ldl<R, const N: usize> {
+pub struct Ldl<const N: usize> {
     /// L D in the lower triangle; the pivots D on the diagonal.
-    scaled: [[R; N]; N],
+    scaled: [[f64; N]; N],
     /// 1 / D; zero for pivots that count as zero.
-    inverse_pivots: [R; N],
+    inverse_pivots: [f64; N],
 }
 
-impl<R: Real, const N: usize> Ldl<R, N> {
+impl<const N: usize> Ldl<N> {
     /// Factors the matrix with this lower triangle.
     #[inline(always)]
-    pub fn of(matrix: [[R; N]; N]) -> Self {
-        Self::eliminated(matrix, []).0
+    pub fn of<A: Arithmetic>(matrix: [[f64; N]; N]) -> Self {
+        Self::eliminated::<A, 0>(matrix, []).0
     }
 
     /// Factors the matrix and applies the same elimination to the right-hand sides.
     #[inline(always)]
-    fn eliminated<const M: usize>(mut scaled: [[R; N]; N], mut right: [[R; N]; M]) -> (Self, [[R; N]; M]) {
-        let zero = R::splat(0.0);
-        let smallest = R::splat(SINGULAR) * trace(&scaled);
-        let mut inverse_pivots = [zero; N];
+    fn eliminated<A: Arithmetic, const M: usize>(
+        mut scaled: [[f64; N]; N],
+        mut right: [[f64; N]; M],
+    ) -> (Self, [[f64; N]; M]) {
+        let smallest = SINGULAR * trace(&scaled);
+        let mut inverse_pivots = [0.0; N];
         for j in 0..N {
-            inverse_pivots[j] = smallest.choose_below(scaled[j][j], R::splat(1.0) / scaled[j][j], zero);
+            inverse_pivots[j] = if smallest < scaled[j][j] { 1.0 / scaled[j][j] } else { 0.0 };
             for i in j + 1..N {
                 let factor = scaled[i][j] * inverse_pivots[j];
                 for k in j + 1..=i {
-                    scaled[i][k] = (-factor).mul_add(scaled[k][j], scaled[i][k]);
+                    scaled[i][k] = A::mul_add(-factor, scaled[k][j], scaled[i][k]);
                 }
                 for b in &mut right {
-                    b[i] = (-factor).mul_add(b[j], b[i]);
+                    b[i] = A::mul_add(-factor, b[j], b[i]);
                 }
             }
         }
@@ -44,43 +46,43 @@ impl<R: Real, const N: usize> Ldl<R, N> {
 
     /// Solves A z = b, without components of z along directions whose pivots count as zero.
     #[inline(always)]
-    pub fn solve(&self, mut b: [R; N]) -> [R; N] {
+    pub fn solve<A: Arithmetic>(&self, mut b: [f64; N]) -> [f64; N] {
         for j in 0..N {
             for i in j + 1..N {
                 let factor = self.scaled[i][j] * self.inverse_pivots[j];
-                b[i] = (-factor).mul_add(b[j], b[i]);
+                b[i] = A::mul_add(-factor, b[j], b[i]);
             }
         }
-        self.substituted_back(b)
+        self.substituted_back::<A>(b)
     }
 
     #[inline(always)]
-    fn substituted_back(&self, mut z: [R; N]) -> [R; N] {
+    fn substituted_back<A: Arithmetic>(&self, mut z: [f64; N]) -> [f64; N] {
         for i in (0..N).rev() {
             for k in i + 1..N {
-                z[i] = (-self.scaled[k][i]).mul_add(z[k], z[i]);
+                z[i] = A::mul_add(-self.scaled[k][i], z[k], z[i]);
             }
-            z[i] = z[i] * self.inverse_pivots[i];
+            z[i] *= self.inverse_pivots[i];
         }
         z
     }
 
     /// Pivot `j`.
     #[inline(always)]
-    pub fn pivot(&self, j: usize) -> R {
+    pub fn pivot(&self, j: usize) -> f64 {
         self.scaled[j][j]
     }
 }
 
 /// Solves A z = b for one right-hand side. With [`Ldl::of`] first, a bounded step would take 3 % longer.
 #[inline(always)]
-pub fn solve<R: Real, const N: usize>(matrix: [[R; N]; N], b: [R; N]) -> [R; N] {
-    let (ldl, [b]) = Ldl::eliminated(matrix, [b]);
-    ldl.substituted_back(b)
+pub fn solve<A: Arithmetic, const N: usize>(matrix: [[f64; N]; N], b: [f64; N]) -> [f64; N] {
+    let (ldl, [b]) = Ldl::eliminated::<A, 1>(matrix, [b]);
+    ldl.substituted_back::<A>(b)
 }
 
 /// The sum of the diagonal.
 #[inline(always)]
-pub fn trace<R: Real, const N: usize>(matrix: &[[R; N]; N]) -> R {
+pub fn trace<const N: usize>(matrix: &[[f64; N]; N]) -> f64 {
     (1..N).fold(matrix[0][0], |sum, i| sum + matrix[i][i])
 }

@@ -1,7 +1,6 @@
 //! Mathematics without robots: plain arrays in hot code, nalgebra elsewhere.
 //!
-//! Kernels are compiled with and without FMA (`arithmetic`). Kernels for one number or four, one per lane of a register
-//! (`F64x4`), are written over `Real`.
+//! Kernels are compiled with and without FMA (`arithmetic`).
 //!
 //! | files | what |
 //! |---|---|
@@ -9,7 +8,7 @@
 //! | `so3`, `vec3`, `vector` | rotation vectors, and vectors of three or n entries |
 //! | `arithmetic`, `f64x4`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
-//! | `gram`, `ldl`, `box_step`, `four_box_steps`, `secant`, `singular_values` | small linear systems, and the bounded step |
+//! | `gram`, `ldl`, `box_step`, `secant`, `singular_values` | small linear systems, and the bounded step |
 //! | `one_joint` | time-optimal motions of one joint between two states |
 //! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `sampling_range` | functions of one variable |
 
@@ -19,7 +18,6 @@ pub mod box_step;
 pub(crate) mod comparison;
 pub(crate) mod cubic_spline;
 pub(crate) mod f64x4;
-pub(crate) mod four_box_steps;
 mod frame;
 pub(crate) mod gram;
 pub(crate) mod hermite;

@@ -5,6 +5,11 @@ use smallvec::SmallVec;
 /// Coefficients or roots of a polynomial up to degree 6, on the stack.
 pub type Short = SmallVec<[f64; 7]>;
 
+/// The value at `x`.
+pub fn value(coefficients: &[f64], x: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |value, c| value * x + c)
+}
+
 /// Value, first and second derivative at `x`, in one Horner pass.
 pub fn evaluate(coefficients: &[f64], x: f64) -> [f64; 3] {
     let (mut value, mut slope, mut half_bend) = (0.0, 0.0, 0.0);

@@ -24,8 +24,11 @@ impl ArmState {
     pub(super) fn check(&self, end: usize, joints: &[String]) -> Result<()> {
         for (what, values) in [("q", &self.q), ("qd", &self.qd), ("qdd", &self.qdd)] {
             if values.len() != joints.len() || joints.is_empty() {
-                let expected =
-                    if joints.is_empty() { "at least 1 joint".into() } else { format!("{} joints", joints.len()) };
+                let expected = match joints.len() {
+                    0 => "at least 1 joint".into(),
+                    1 => "1 joint".into(),
+                    n => format!("{n} joints"),
+                };
                 return Err(Error::WrongLength { what: format!("{what}{end}"), expected, got: values.len() });
             }
             require_finite(&format!("{what}{end}"), values, |j| format!("joint '{}'", joints[j]))?;

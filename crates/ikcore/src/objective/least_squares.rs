@@ -1,10 +1,9 @@
-//! Objectives that are sums of squares: residuals and Jacobians, one at a time or four side by side.
+//! Objectives that are sums of squares: residuals and Jacobians.
 
 use super::evaluation::{Objective, Score};
 use super::gradient::Gradient;
 use crate::math::MAX_DOF;
 use crate::math::box_step::ROWS;
-use crate::math::f64x4::F64x4;
 
 /// Residual r and Jacobian dr/dx at a point.
 #[derive(Debug, Clone)]
@@ -31,28 +30,6 @@ pub trait Residual: Objective {
 pub trait LeastSquares: Residual {
     /// Residual and Jacobian at `x` in one pass, and the score.
     fn linearize(&mut self, x: &[f64], out: &mut Linearization) -> Score;
-}
-
-/// Four linearizations side by side, one in each lane.
-#[derive(Debug, Clone)]
-pub(crate) struct FourLinearizations {
-    /// As [`Linearization::residual`].
-    pub residual: [F64x4; ROWS],
-    /// As [`Linearization::columns`].
-    pub columns: [[F64x4; ROWS]; MAX_DOF],
-}
-
-impl Default for FourLinearizations {
-    fn default() -> Self {
-        Self { residual: [F64x4::ZERO; ROWS], columns: [[F64x4::ZERO; ROWS]; MAX_DOF] }
-    }
-}
-
-/// Objectives that are linearized faster four at a time than one by one. The four are problems of one system: for a
-/// robot, four targets of one kind.
-pub(crate) trait SideBySide: LeastSquares + Sized {
-    /// [`linearize`](LeastSquares::linearize) of each objective at its lane of `xs`, bit-identical.
-    fn linearize_four(objectives: [&Self; 4], xs: &[F64x4], out: &mut FourLinearizations) -> [Score; 4];
 }
 
 impl Linearization {

@@ -14,5 +14,4 @@ pub use bounds::Bounds;
 pub use evaluation::{CallPattern, Objective, Score};
 pub use gradient::{Gradient, SmoothScore};
 pub use least_squares::{Differentiable, LeastSquares, Linearization, Residual};
-pub(crate) use least_squares::{FourLinearizations, SideBySide};
 pub use point::Point;

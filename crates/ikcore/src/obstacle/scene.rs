@@ -1,26 +1,17 @@
 //! A robot among obstacles: pairs of bodies that can touch, and their distances.
 
-use std::fmt;
-
 use nalgebra::Vector3;
 
-use super::link_displacement::{Frames, displacement};
-use super::segment_distance::{LineSegment, distance_between, distance_to_obstacle};
-use super::shape::Obstacle;
+use super::body_groups::BodyGroups;
+use super::carried::{Carried, Placement, carried};
+use super::contact::{Contact, NearestContact, Neighbor};
+use super::link_displacement::displacement;
 use crate::error::{Error, Result};
-use crate::math::arithmetic::NoFma;
-use crate::math::{Frame, MAX_DOF};
+use crate::math::MAX_DOF;
+use crate::math::f64x4::F64x4;
 use crate::robot::{Joint, Robot};
+use crate::shape::{Shape, capsules_nearest, distance_between};
 use crate::wording::listed;
-
-/// A capsule of the robot, seen from the moving element that carries it.
-#[derive(Debug, Clone)]
-struct Carried {
-    link: String,
-    stages: usize,
-    ends: [[f64; 3]; 2],
-    radius: f64,
-}
 
 /// Two things that could touch.
 #[derive(Debug, Clone, Copy)]
@@ -31,64 +22,31 @@ pub(super) enum BodyPair {
     Capsules { near: usize, far: usize },
 }
 
-/// The body that a link is near.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Body {
-    /// The obstacle of this index, and its kind.
-    Obstacle(usize, &'static str),
-    /// Another link.
-    Link(String),
-}
-
-/// A link, the body it is near, and their distance.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Contact {
-    /// The link.
-    pub link: String,
-    /// The body that it is near to.
-    pub other: Body,
-    /// Distance between their surfaces (m); negative by how deep they reach into each other.
-    pub distance: f64,
-}
-
-impl fmt::Display for Body {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Obstacle(index, name) => write!(f, "obstacle {index} ({name})"),
-            Self::Link(name) => write!(f, "link '{name}'"),
-        }
-    }
-}
-
 /// The capsules of a robot, the obstacles, and the pairs of bodies that must not touch.
 ///
-/// Capsules that no joint moves are not tested against obstacles: no plan could move them away. Capsules of one link,
-/// or of two links with no capsule between them, are not tested against each other; nor are pairs that touch with all
-/// joints in the middle of their ranges, since such overlaps come from the model and not from the motion.
+/// Capsules that no joint moves are not tested against obstacles: no plan could move them away. Links are tested against
+/// each other in pairs ([`Robot::collision_pairs`]).
 #[derive(Debug, Clone)]
 pub struct Scene<'a> {
     robot: &'a Robot,
     carried: Vec<Carried>,
-    obstacles: &'a [Obstacle],
+    groups: BodyGroups,
+    obstacles: &'a [Shape],
     pub(super) pairs: Vec<BodyPair>,
 }
 
-/// Where everything is at one configuration.
-#[derive(Debug, Clone)]
-pub(super) struct Placement {
-    pub frames: Frames,
-    pub segments: Vec<LineSegment>,
-}
+/// Distances that differ by less (m) are equal but for rounding.
+const EQUALLY_NEAR: f64 = 1e-9;
 
 impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::NoCapsules`] if the robot has none, or if some of its collision shapes could not be read;
     /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane.
-    pub fn new(robot: &'a Robot, obstacles: &'a [Obstacle]) -> Result<Self> {
+    pub fn new(robot: &'a Robot, obstacles: &'a [Shape]) -> Result<Self> {
         if robot.capsules().is_empty() || !robot.unread_collision_shapes().is_empty() {
             return Err(no_capsules(robot));
         }
-        if let Some(i) = obstacles.iter().position(Obstacle::is_flat)
+        if let Some(i) = obstacles.iter().position(Shape::is_flat)
             && !moves_in_plane(robot)
         {
             let problem = format!(
@@ -98,14 +56,14 @@ impl<'a> Scene<'a> {
             );
             return Err(Error::InvalidObstacle { problem });
         }
-        let carried = robot.capsules().iter().filter_map(|capsule| {
-            let (stages, offset) = robot.place_of_link(&capsule.link)?;
-            let ends = [capsule.a, capsule.b].map(|end| offset.place::<NoFma>(&end));
-            Some(Carried { link: capsule.link.clone(), stages, ends, radius: capsule.radius })
-        });
-        let carried = carried.collect();
-        let mut scene = Self { robot, carried, obstacles, pairs: vec![] };
+        let carried = carried(robot);
+        let groups = BodyGroups::new(&carried, obstacles);
+        let mut scene = Self { robot, carried, groups, obstacles, pairs: vec![] };
         scene.pairs = scene.self_pairs();
+        scene.groups.forbid_contacts(scene.pairs.iter().filter_map(|pair| match pair {
+            BodyPair::Capsules { near, far } => Some([*near, *far]),
+            BodyPair::Obstacle { .. } => None,
+        }));
         let moving = (0..scene.carried.len()).filter(|i| scene.carried[*i].stages > 0);
         let with_obstacles = moving
             .flat_map(|capsule| (0..obstacles.len()).map(move |obstacle| BodyPair::Obstacle { capsule, obstacle }));
@@ -116,6 +74,7 @@ impl<'a> Scene<'a> {
     /// The same scene, but links may cross each other, as in a planar arm.
     pub fn without_self_collision(mut self) -> Self {
         self.pairs.retain(|pair| matches!(pair, BodyPair::Obstacle { .. }));
+        self.groups.allow_contacts();
         self
     }
 
@@ -130,10 +89,19 @@ impl<'a> Scene<'a> {
     /// [`Error::WrongLength`] or [`Error::NotFinite`].
     pub fn nearest(&self, q: &[f64]) -> Result<Option<Contact>> {
         self.robot.check("joint angles", q)?;
-        let placement = self.place(q);
-        let distances = self.pairs.iter().map(|pair| (self.distance(*pair, &placement, f64::INFINITY), *pair));
-        let nearest = distances.min_by(|one, other| one.0.total_cmp(&other.0));
-        Ok(nearest.map(|(distance, pair)| self.contact(pair, distance)))
+        Ok(self.nearest_pair(&self.place(q)).map(|(distance, pair)| self.contact(pair, distance)))
+    }
+
+    fn nearest_pair(&self, placement: &Placement) -> Option<(f64, BodyPair)> {
+        let mut nearest: Option<(f64, BodyPair)> = None;
+        for pair in &self.pairs {
+            let (least, first) = nearest.unwrap_or((f64::INFINITY, *pair));
+            let distance = self.distance(*pair, placement, least);
+            // Of pairs that are equally near, the first counts.
+            let nearer = if distance < least - EQUALLY_NEAR { *pair } else { first };
+            nearest = Some((distance.min(least), nearer));
+        }
+        nearest
     }
 
     /// The smallest distance (m) at `q` (n,); infinite if nothing can touch.
@@ -152,10 +120,72 @@ impl<'a> Scene<'a> {
         qs.chunks(self.robot.dof()).map(|q| self.clearance(q)).collect()
     }
 
-    /// Whether everything is at least `margin` (m) apart at `q`.
-    pub fn is_clear(&self, q: &[f64], margin: f64) -> bool {
+    /// The nearest pair at `q` (n,) with its place, and the derivative of its distance by the joints; `None` if nothing can
+    /// touch.
+    ///
+    /// # Errors
+    /// As [`nearest`](Self::nearest).
+    pub fn nearest_contact(&self, q: &[f64]) -> Result<Option<NearestContact>> {
+        self.robot.check("joint angles", q)?;
         let placement = self.place(q);
-        self.pairs.iter().all(|pair| self.distance(*pair, &placement, margin) >= margin)
+        let Some((distance, pair)) = self.nearest_pair(&placement) else { return Ok(None) };
+        let (point, normal) = match pair {
+            BodyPair::Obstacle { capsule, obstacle } => {
+                let radius = self.carried[capsule].radius;
+                self.obstacles[obstacle].nearest_to_capsule(&placement.segments[capsule], radius)
+            }
+            BodyPair::Capsules { near, far } => {
+                let [own, other] = [far, near].map(|i| (&placement.segments[i], self.carried[i].radius));
+                capsules_nearest(own, other)
+            }
+        };
+        let mut gradient = vec![0.0; self.robot.dof()];
+        let (below, own, other) = self.carriers_of(pair);
+        let sides = [(own, 1.0), (other, -1.0)];
+        for (frame, sign) in sides {
+            for (moved, motion) in self.robot.carriers(frame, below) {
+                let velocity = motion.velocity(&placement.frames[moved], &point.into());
+                gradient[motion.joint] += sign * normal.dot(&Vector3::from(velocity));
+            }
+        }
+        let contact = self.contact(pair, distance);
+        Ok(Some(NearestContact { contact, point: point.into(), normal: normal.into(), gradient }))
+    }
+
+    /// Whether everything is at least `margin` >= 0 (m) apart at `q`, which has one finite entry per joint. Never true for
+    /// bodies that are nearer.
+    pub fn is_clear(&self, q: &[f64], margin: f64) -> bool {
+        let mut frames = self.robot.frame_buffer();
+        self.robot.write_frames(q, &mut frames);
+        self.groups.are_clear(&frames, self.obstacles, margin)
+    }
+
+    /// [`is_clear`](Self::is_clear) at each of the configurations stored one after another, four at a time.
+    ///
+    /// # Errors
+    /// As [`nearest`](Self::nearest), or [`Error::OutOfRange`] for a negative margin.
+    pub fn which_are_clear(&self, qs: &[f64], margin: f64) -> Result<Vec<bool>> {
+        if !(margin >= 0.0 && margin.is_finite()) {
+            return Err(Error::out_of_range("margin", "zero or more and finite", margin));
+        }
+        let n = self.robot.dof();
+        qs.chunks(n).try_for_each(|q| self.robot.check("joint angles", q))?;
+        if self.groups.has_index() {
+            return Ok(qs.chunks(n).map(|q| self.is_clear(q, margin)).collect());
+        }
+        let mut clear = Vec::with_capacity(qs.len() / n);
+        let (mut lanes, mut frames) = (vec![F64x4::ZERO; n], self.robot.frame_buffer_four());
+        for four in qs.chunks(4 * n) {
+            let count = four.len() / n;
+            for (joint, values) in lanes.iter_mut().enumerate() {
+                // Lanes without a configuration repeat the last one.
+                *values = F64x4(std::array::from_fn(|lane| four[lane.min(count - 1) * n + joint]));
+            }
+            self.robot.write_frames_four(&lanes, &mut frames);
+            let lanes = self.groups.four_are_clear(&frames, self.obstacles, margin).0;
+            clear.extend(lanes[..count].iter().map(|lane| *lane == 1.0));
+        }
+        Ok(clear)
     }
 
     /// The contact of a pair that is `distance` apart (m).
@@ -163,28 +193,23 @@ impl<'a> Scene<'a> {
         let link = |capsule: usize| self.carried[capsule].link.clone();
         match pair {
             BodyPair::Obstacle { capsule, obstacle } => {
-                let other = Body::Obstacle(obstacle, self.obstacles[obstacle].name());
+                let other = Neighbor::Obstacle(obstacle, self.obstacles[obstacle].name());
                 Contact { link: link(capsule), other, distance }
             }
-            BodyPair::Capsules { near, far } => Contact { link: link(far), other: Body::Link(link(near)), distance },
+            BodyPair::Capsules { near, far } => {
+                Contact { link: link(far), other: Neighbor::Link(link(near)), distance }
+            }
         }
     }
 
     pub(super) fn place(&self, q: &[f64]) -> Placement {
-        let mut placement = Placement {
-            frames: [Frame::IDENTITY; MAX_DOF + 1],
-            segments: vec![[Vector3::zeros(); 2]; self.carried.len()],
-        };
+        let mut placement = Placement::of(self.robot, self.carried.len());
         self.place_into(q, &mut placement);
         placement
     }
 
     pub(super) fn place_into(&self, q: &[f64], placement: &mut Placement) {
-        self.robot.write_stage_frames(q, &mut placement.frames);
-        for (segment, carried) in placement.segments.iter_mut().zip(&self.carried) {
-            let frame = &placement.frames[carried.stages];
-            *segment = carried.ends.map(|end| frame.place::<NoFma>(&end).into());
-        }
+        placement.update(self.robot, &self.carried, q);
     }
 
     /// A lower bound of the distance between the surfaces of a pair (m), exact to 1e-9 where it is below `enough`.
@@ -192,7 +217,7 @@ impl<'a> Scene<'a> {
         match pair {
             BodyPair::Obstacle { capsule, obstacle } => {
                 let radius = self.carried[capsule].radius;
-                distance_to_obstacle(&placement.segments[capsule], &self.obstacles[obstacle], enough + radius) - radius
+                self.obstacles[obstacle].distance_to_segment(&placement.segments[capsule], enough + radius) - radius
             }
             BodyPair::Capsules { near, far } => {
                 let radii = self.carried[near].radius + self.carried[far].radius;
@@ -203,26 +228,33 @@ impl<'a> Scene<'a> {
 
     /// A bound on the change (m) of a pair's distance while each joint moves by up to `reach` (rad, m).
     pub(super) fn change(&self, pair: BodyPair, placement: &Placement, reach: &[f64]) -> f64 {
-        let (first, capsule) = match pair {
-            BodyPair::Obstacle { capsule, .. } => (0, capsule),
-            BodyPair::Capsules { near, far } => (self.carried[near].stages, far),
+        let (below, own, other) = self.carriers_of(pair);
+        let moved = |capsule: usize, frame: usize| {
+            displacement(self.robot, &placement.frames, &placement.segments[capsule], [below, frame], reach)
         };
-        let stages = first..self.carried[capsule].stages;
-        displacement(self.robot, &placement.frames, &placement.segments[capsule], stages, reach)
+        match pair {
+            BodyPair::Obstacle { capsule, .. } => moved(capsule, own),
+            BodyPair::Capsules { near, far } => moved(far, own) + moved(near, other),
+        }
+    }
+
+    /// Numbers of the frame that carries both bodies of a pair, of the first body's own, and of the other's.
+    fn carriers_of(&self, pair: BodyPair) -> (usize, usize, usize) {
+        match pair {
+            BodyPair::Obstacle { capsule, .. } => (0, self.carried[capsule].stages, 0),
+            BodyPair::Capsules { near, far } => {
+                let [near, far] = [near, far].map(|capsule| self.carried[capsule].stages);
+                (self.robot.meeting_frame(near, far), far, near)
+            }
+        }
     }
 
     fn self_pairs(&self) -> Vec<BodyPair> {
-        let mut bodies: Vec<usize> = self.carried.iter().map(|carried| carried.stages).collect();
-        bodies.sort_unstable();
-        bodies.dedup();
-        let order = |capsule: usize| bodies.partition_point(|stages| *stages < self.carried[capsule].stages);
-        let rest: Vec<f64> = self.robot.joints().iter().map(middle_of_range).collect();
-        let at_rest = self.place(&rest);
-        let count = self.carried.len();
-        let pairs = (0..count).flat_map(|near| (0..count).map(move |far| (near, far)));
-        let apart = pairs.filter(|(near, far)| order(*near) + 1 < order(*far));
-        let pairs = apart.map(|(near, far)| BodyPair::Capsules { near, far });
-        pairs.filter(|pair| self.distance(*pair, &at_rest, 0.0) > 0.0).collect()
+        let ordered = |[one, other]: [usize; 2]| match self.carried[one].stages <= self.carried[other].stages {
+            true => BodyPair::Capsules { near: one, far: other },
+            false => BodyPair::Capsules { near: other, far: one },
+        };
+        self.robot.tested_capsules().into_iter().map(ordered).collect()
     }
 }
 
@@ -250,10 +282,9 @@ fn no_capsules(robot: &Robot) -> Error {
     let given = "with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])";
     let remedy = match robot.capsules() {
         [] => format!(
-            "give it capsules with {given}, or load a URDF whose links have <collision> shapes of spheres, cylinders, \
-             capsules and boxes"
+            "load its URDF with collision=\"fit\", or give it capsules with {given}"
         ),
-        _ => "robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
+        _ => "load its URDF with collision=\"fit\", which covers meshes too; robot.with_capsules(robot.capsules) keeps the shapes that were read and leaves these out; \
               robot.with_capsules(robot.capsules + [(link, a, b, radius), ...]) covers them too"
             .into(),
     };

@@ -5,7 +5,9 @@
 //! approach within the interval, it is clear in the whole interval; the other pairs are examined again in both halves.
 //! No step width has to be chosen, and no collision can be missed between two samples.
 
-use super::scene::{BodyPair, Contact, Placement, Scene};
+use super::carried::Placement;
+use super::contact::Contact;
+use super::scene::{BodyPair, Scene};
 use crate::math::MAX_DOF;
 use crate::objective::Point;
 

@@ -4,8 +4,9 @@ use super::planar_arm::PlanarArm;
 use super::violation::Violation;
 use crate::error::{Error, Result};
 use crate::math::polynomial::evaluate;
-use crate::obstacle::{Contact, JointMotion, Obstacle, Scene};
+use crate::obstacle::{Contact, JointMotion, Scene};
 use crate::robot::Robot;
+use crate::shape::Shape;
 use crate::trajectory::{Coefficients, POWERS, Trajectory};
 use crate::wording::number;
 
@@ -14,7 +15,7 @@ use crate::wording::number;
 pub(super) const RESERVE: f64 = 5e-5;
 
 /// Whether `robot` can collide: with an obstacle, or with itself if its shape is known.
-pub(super) fn can_collide(robot: &Robot, obstacles: &[Obstacle]) -> bool {
+pub(super) fn can_collide(robot: &Robot, obstacles: &[Shape]) -> bool {
     let shape_known = !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
     !obstacles.is_empty() || shape_known
 }
@@ -35,7 +36,7 @@ pub(super) fn as_lines(robot: &Robot) -> Result<Option<Robot>> {
 ///
 /// # Errors
 /// As [`Scene::new`].
-pub(super) fn scene<'a>(robot: &'a Robot, lines: Option<&'a Robot>, obstacles: &'a [Obstacle]) -> Result<Scene<'a>> {
+pub(super) fn scene<'a>(robot: &'a Robot, lines: Option<&'a Robot>, obstacles: &'a [Shape]) -> Result<Scene<'a>> {
     match lines {
         Some(lines) => Ok(Scene::new(lines, obstacles)?.without_self_collision()),
         None => Scene::new(robot, obstacles),
@@ -137,7 +138,7 @@ mod tests {
     #[test]
     fn an_arm_without_obstacles_collides_only_with_a_known_shape() {
         let bare = Robot::planar(&[1.0, 1.0]).unwrap();
-        let ball = [Obstacle::sphere([3.0, 0.0, 0.0], 0.1).unwrap()];
+        let ball = [Shape::sphere([3.0, 0.0, 0.0], 0.1).unwrap()];
         assert!(!can_collide(&bare, &[]) && can_collide(&bare, &ball));
         assert!(can_collide(&bare.with_capsules_along_links(0.1).unwrap(), &[]));
         assert!(as_lines(&bare).unwrap().is_some());

@@ -7,8 +7,8 @@ use super::motion_limits::MotionLimits;
 use super::tpbso::Tpbso;
 use crate::error::{Error, Result};
 use crate::limits::Limits;
-use crate::obstacle::Obstacle;
 use crate::robot::Robot;
+use crate::shape::Shape;
 use crate::solver::{AnySolver, DerivativeFree, Stop};
 
 /// Methods of point-to-point planning.
@@ -79,7 +79,7 @@ pub struct PointToPointOptions {
     /// Quantity to minimise.
     pub objective: Cost,
     /// Obstacles to avoid. A robot with capsules also avoids self-collision.
-    pub obstacles: Vec<Obstacle>,
+    pub obstacles: Vec<Shape>,
     /// Distance to keep from obstacles and between links (m). `None` means 1 mm.
     pub margin: Option<f64>,
     /// Limits to keep. `None` means the robot's.

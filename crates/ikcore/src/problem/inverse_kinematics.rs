@@ -1,11 +1,7 @@
 //! A robot and a target as an objective.
 
 use crate::math::box_step::ROWS;
-use crate::math::f64x4::F64x4;
-use crate::objective::{
-    Bounds, FourLinearizations, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SideBySide,
-    SmoothScore,
-};
+use crate::objective::{Bounds, Gradient, LeastSquares, Linearization, Objective, Residual, Score, SmoothScore};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::starts::Starts;
@@ -139,16 +135,5 @@ impl LeastSquares for Problem<'_> {
     #[inline]
     fn linearize(&mut self, q: &[f64], out: &mut Linearization) -> Score {
         self.target.linearize(self.robot, q, &self.criterion, out).score
-    }
-}
-
-impl SideBySide for Problem<'_> {
-    /// The problems share robot and criterion; their targets are of one kind that
-    /// [goes side by side](Target::goes_side_by_side).
-    #[inline]
-    fn linearize_four(problems: [&Self; 4], qs: &[F64x4], out: &mut FourLinearizations) -> [Score; 4] {
-        let Problem { robot, criterion, .. } = &problems[0];
-        debug_assert!(problems.iter().all(|problem| std::ptr::eq(problem.robot, *robot)), "one robot for all four");
-        Target::linearize_four(problems.map(|problem| problem.target), robot, qs, criterion, out)
     }
 }

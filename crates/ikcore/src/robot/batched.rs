@@ -14,14 +14,7 @@ impl Robot {
         let rows = self.rows(qs)?;
         let mut poses = Vec::with_capacity(16 * rows.len());
         for q in rows {
-            let frame = self.tip(q);
-            let ([x, y, z], p) = (frame.axes, frame.origin);
-            poses.extend_from_slice(&[
-                x[0], y[0], z[0], p[0], //
-                x[1], y[1], z[1], p[1], //
-                x[2], y[2], z[2], p[2], //
-                0.0, 0.0, 0.0, 1.0,
-            ]);
+            poses.extend(self.tip(q).rows());
         }
         Ok(poses)
     }

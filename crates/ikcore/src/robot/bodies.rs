@@ -1,13 +1,11 @@
 //! Bodies of a robot: the capsules on its links, given explicitly or generated along the links.
 
-use super::link_capsule::{Bodies, LinkCapsule};
+use super::link_capsule::{Bodies, LinkCapsule, MeshFit};
 use super::model::Robot;
-use crate::error::{Error, Result, require_finite, shortened, suggestion};
-use crate::kinematics::chain::{LinkFrame, StageMotion};
-use crate::math::Frame;
+use crate::error::{Error, Result, require_finite};
+use crate::kinematics::chain::LinkFrame;
 use crate::math::arithmetic::NoFma;
 use crate::math::vector::distance;
-use crate::wording::listed;
 
 /// Shorter segments count as points (m).
 const SHORTEST: f64 = 1e-9;
@@ -24,27 +22,25 @@ impl Robot {
         &self.bodies().unread
     }
 
+    /// The meshes of a URDF that capsules were fitted to, with how well they follow them.
+    pub fn mesh_fits(&self) -> &[MeshFit] {
+        &self.bodies().fits
+    }
+
     /// The same robot with these capsules and no others.
     ///
     /// # Errors
     /// [`Error::UnknownLink`], [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius.
     pub fn with_capsules(&self, capsules: Vec<LinkCapsule>) -> Result<Self> {
         for (i, capsule) in capsules.iter().enumerate() {
-            if !self.link_names().any(|name| name == capsule.link) {
-                return Err(Error::UnknownLink {
-                    robot: self.name().into(),
-                    name: shortened(&capsule.link),
-                    suggestion: suggestion(&capsule.link, self.link_names()),
-                    known: listed(self.link_names()),
-                });
-            }
+            self.link_number(&capsule.link)?;
             let ends = [capsule.a, capsule.b];
             require_finite(&format!("capsule {i} of link '{}'", capsule.link), ends.as_flattened(), |k| {
                 format!("coordinate {} of end {}", ["x", "y", "z"][k % 3], ["a", "b"][k / 3])
             })?;
             checked_radius(&format!("radius of capsule {i} of link '{}'", capsule.link), capsule.radius)?;
         }
-        Ok(self.with_bodies(Bodies { capsules, unread: vec![] }))
+        Ok(self.with_bodies(Bodies { capsules, ..Bodies::default() }))
     }
 
     /// The same robot with a capsule of this `radius` (m) along every link: from the preceding joint, through the
@@ -73,7 +69,7 @@ impl Robot {
                 capsules.push(LinkCapsule { link: (*name).into(), a, b, radius });
             }
         }
-        Ok(self.with_bodies(Bodies { capsules, unread: vec![] }))
+        Ok(self.with_bodies(Bodies { capsules, ..Bodies::default() }))
     }
 
     fn nameless(&self, body: usize) -> Error {
@@ -83,19 +79,6 @@ impl Robot {
             body + 1
         );
         Error::InvalidRobot { robot: self.name().into(), problem }
-    }
-
-    /// Number of moving elements before a link, and the frame of the link relative to the last of them.
-    pub(crate) fn place_of_link(&self, link: &str) -> Option<(usize, Frame)> {
-        let (found, _) = self.chain().links.iter().zip(self.link_names()).find(|(_, name)| *name == link)?;
-        Some((found.stages, found.offset))
-    }
-
-    /// Largest rotation (rad) and translation (m) of moving element `stage` when each joint changes by up to `reach`.
-    #[inline]
-    pub(crate) fn stage_travel(&self, stage: usize, reach: &[f64]) -> [f64; 2] {
-        let StageMotion { joint, turn_scale, slide_scale, .. } = self.chain().motions[stage];
-        [turn_scale.abs() * reach[joint], slide_scale.abs() * reach[joint]]
     }
 }
 

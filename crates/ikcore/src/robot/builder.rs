@@ -54,24 +54,22 @@ impl ChainBuilder {
 
     /// Appends a constant transform.
     pub fn fixed(&mut self, transform: Pose) {
-        self.description.elements.push(Element::Fixed(transform));
+        self.push(Element::Fixed(transform));
     }
 
     /// Appends a motion about or along `axis` (any length but zero), driven by independent joint `joint`.
     pub fn moving(&mut self, joint: usize, kind: JointKind, axis: Vector3<f64>, drive: Drive) {
-        let Drive { scale, offset } = drive;
-        self.description.elements.push(Element::Moving {
-            axis: axis.normalize(),
-            turns: kind.turns(),
-            joint,
-            scale,
-            offset,
-        });
+        self.push(Element::moving(joint, kind, axis, drive));
+    }
+
+    /// Appends an element.
+    pub(crate) fn push(&mut self, element: Element) {
+        self.description.elements.push(element);
     }
 
     /// Names the frame reached so far. The last frame named is the tip.
     pub fn link(&mut self, name: impl Into<String>) {
-        self.description.elements.push(Element::Link(name.into()));
+        self.push(Element::Link(name.into()));
     }
 
     /// Checks the description and builds the robot.

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::joint::Joint;
+use super::joint::{Joint, JointKind};
 use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::{Chain, ChainFolder, StageMotion};
 use crate::math::{MAX_DOF, Pose, pose};
@@ -105,20 +105,34 @@ impl Description {
         }
         let mut links = HashSet::new();
         self.elements.iter().try_for_each(|element| match element {
-            Element::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
             Element::Link(name) if !links.insert(name) => Err(invalid(format!("two links are named '{name}'"))),
-            Element::Link(_) => Ok(()),
-            Element::Moving { axis, joint, scale, offset, .. } => {
-                let Some(driver) = self.joints.get(*joint) else {
+            _ => element.validate(&self.name, |joint| self.joints.get(joint).map(|driver| driver.name.as_str())),
+        })
+    }
+}
+
+impl Element {
+    /// A motion about or along `axis` (any length but zero), driven by joint `joint`.
+    pub(crate) fn moving(joint: usize, kind: JointKind, axis: Vector3<f64>, drive: Drive) -> Self {
+        let Drive { scale, offset } = drive;
+        Self::Moving { axis: axis.normalize(), turns: kind.turns(), joint, scale, offset }
+    }
+
+    /// Checks the assumptions of the kernels; `driver` names the joint of an index.
+    pub(super) fn validate<'a>(&self, robot: &str, driver: impl Fn(usize) -> Option<&'a str>) -> Result<()> {
+        let invalid = |problem: String| Error::InvalidRobot { robot: robot.into(), problem };
+        match self {
+            Self::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
+            Self::Link(_) => Ok(()),
+            Self::Moving { axis, joint, scale, offset, .. } => {
+                let Some(driver) = driver(*joint) else {
                     return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
                 };
                 if !((axis.norm() - 1.0).abs() < 1e-9) {
-                    return Err(invalid(format!("joint '{}' has a zero or non-finite axis", driver.name)));
+                    return Err(invalid(format!("joint '{driver}' has a zero or non-finite axis")));
                 }
-                require_finite("scale and offset of a joint", &[*scale, *offset], |_| {
-                    format!("joint '{}'", driver.name)
-                })
+                require_finite("scale and offset of a joint", &[*scale, *offset], |_| format!("joint '{driver}'"))
             }
-        })
+        }
     }
 }

@@ -5,8 +5,7 @@ use nalgebra::Matrix6xX;
 use super::model::Robot;
 use crate::error::Result;
 use crate::kinematics::link_frames::link_frames;
-use crate::kinematics::{Columns, FourColumns, Reach, Screws, Wrench};
-use crate::math::f64x4::F64x4;
+use crate::kinematics::{Columns, Reach, Screws, Wrench};
 use crate::math::{Frame, MAX_DOF, Pose};
 
 impl Robot {
@@ -65,13 +64,6 @@ impl Robot {
     #[inline]
     pub fn tip_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
         (self.kernels().jacobian)(self.chain(), q, columns)
-    }
-
-    /// [`tip_and_jacobian`](Self::tip_and_jacobian) of four configurations at once, bit-identical; `qs` and `columns`
-    /// have one entry per joint.
-    #[inline]
-    pub(crate) fn tips_and_jacobians(&self, qs: &[F64x4], columns: &mut FourColumns) -> Frame<F64x4> {
-        (self.kernels().jacobian_four)(self.chain(), qs, columns)
     }
 
     /// Writes the joint torques J'w (N m, or N for prismatic joints) of w = wrench(tip) and returns the tip, in one

@@ -21,4 +21,19 @@ pub(crate) struct Bodies {
     pub capsules: Vec<LinkCapsule>,
     /// Collision shapes without a capsule, for example "a mesh of link 'hand'".
     pub unread: Vec<String>,
+    /// The meshes that capsules were fitted to.
+    pub fits: Vec<MeshFit>,
+}
+
+/// How well the capsules fitted to a mesh follow it. They hold all of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MeshFit {
+    /// The link that carries it.
+    pub link: String,
+    /// The mesh, as the URDF names it.
+    pub file: String,
+    /// Volume of the capsules over that of the mesh; NaN for a mesh that is not closed.
+    pub volume_ratio: f64,
+    /// No point of the capsules is farther than this from the mesh (m).
+    pub largest_distance: f64,
 }

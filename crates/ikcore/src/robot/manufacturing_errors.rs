@@ -18,8 +18,8 @@ impl Robot {
                 return Err(Error::out_of_range(name, "zero or more and finite", size));
             }
         }
-        let mut description = self.description().clone();
-        for element in &mut description.elements {
+        let mut parts = self.parts().clone();
+        for element in &mut parts.description.elements {
             match element {
                 Element::Fixed(transform) => {
                     let offset = &mut transform.translation.vector;
@@ -32,6 +32,6 @@ impl Robot {
                 Element::Moving { .. } | Element::Link(_) => {}
             }
         }
-        Self::assembled(description, *self.base(), *self.tool(), self.bodies().clone())
+        Self::assembled(parts)
     }
 }

@@ -5,12 +5,18 @@
 //! | file | what |
 //! |---|---|
 //! | `joint`, `description`, `builder` | from joints and elements to a robot |
-//! | `model` | [`Robot`] |
+//! | `off_chain` | links that branch off the chain, and held joints |
+//! | `model`, `parts` | [`Robot`], and what determines one |
 //! | `kinematics`, `batched` | kinematics of one configuration, and of many |
+//! | `links` | kinematics of any link |
 //! | `link_capsule`, `bodies` | capsules on the links |
+//! | `attached` | things that a link carries |
+//! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
+//! | `stance` | named configurations |
 //! | `serialization` | robots as bytes |
 
+mod attached;
 mod batched;
 mod bodies;
 mod builder;
@@ -18,14 +24,26 @@ mod description;
 mod joint;
 mod kinematics;
 mod link_capsule;
+mod links;
 mod manufacturing_errors;
 mod model;
+mod off_chain;
+mod pair_rule;
+mod pair_sampling;
+mod pairs;
+mod parts;
 mod serialization;
+mod stance;
 
 pub use builder::ChainBuilder;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
 pub(crate) use link_capsule::Bodies;
-pub use link_capsule::LinkCapsule;
+pub use link_capsule::{LinkCapsule, MeshFit};
+pub(crate) use links::FrameBuffer;
 pub use model::Robot;
+pub use stance::Stance;
+
+pub use off_chain::HeldJoint;
+pub(crate) use off_chain::{OffChain, OffChainLink};

@@ -6,11 +6,16 @@ use std::sync::{Arc, OnceLock};
 use super::description::{Description, Element};
 use super::joint::Joint;
 use super::link_capsule::Bodies;
+use super::off_chain::OffChain;
+use super::pair_rule::PairRule;
+use super::parts::Parts;
+use super::stance::Stance;
 use crate::closed_form::{ArmBranches, ClosedFormArm, NoClosedForm, PoseFamily};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
 use crate::kinematics::chain::Chain;
 use crate::kinematics::kernels::Kernels;
+use crate::kinematics::link_tree::LinkTree;
 use crate::kinematics::{Reach, TaskRank};
 use crate::math::arithmetic::Baseline;
 use crate::math::{Frame, Pose, pose};
@@ -18,22 +23,25 @@ use crate::rng::LazyRng;
 use crate::starts::Starts;
 use crate::starts::index::StartIndex;
 
-/// A robot arm: a serial chain from base to tip.
+/// A robot arm: a serial chain from base to tip, and the links that branch off it.
 ///
-/// Joint vectors hold the independent joints in chain order (rad, m); mimic joints follow theirs. Poses are in the
-/// frame of the robot's base.
+/// Joint vectors hold the independent joints in chain order (rad, m); mimic joints follow theirs, and joints beside the
+/// chain are held. Poses are in the frame of the robot's base.
 #[derive(Debug, Clone)]
 pub struct Robot {
-    description: Description,
-    base: Pose,
-    tool: Pose,
-    bodies: Bodies,
+    parts: Parts,
     /// The chain, folded from description, base and tool.
     chain: Arc<Chain>,
+    /// All links, folded at first use.
+    tree: OnceLock<Arc<LinkTree>>,
     /// The kernels compiled for the chain's size and this machine.
     kernels: Kernels,
     /// The reach of the stretched links, without prismatic motion.
     reach_of_links: Reach,
+    /// Pairs of links tested against each other, found at first use; copies that differ in base and tool share it.
+    pairs: Arc<OnceLock<Vec<[usize; 2]>>>,
+    /// The smallest change of each joint that leaves the pose of every link unchanged.
+    turn_periods: Vec<Option<f64>>,
     /// Built at first use; copies that differ in base and tool share it.
     start_index: Arc<OnceLock<StartIndex>>,
     /// Computed at first use.
@@ -45,27 +53,26 @@ pub struct Robot {
 impl PartialEq for Robot {
     /// Compares the fields that determine all others.
     fn eq(&self, other: &Self) -> bool {
-        (&self.description, &self.base, &self.tool, &self.bodies)
-            == (&other.description, &other.base, &other.tool, &other.bodies)
+        self.parts == other.parts
     }
 }
 
 impl Robot {
     pub(super) fn new(description: Description) -> Result<Self> {
-        Self::assembled(description, Pose::identity(), Pose::identity(), Bodies::default())
+        Self::assembled(Parts::of(description))
     }
 
-    pub(super) fn assembled(description: Description, base: Pose, tool: Pose, bodies: Bodies) -> Result<Self> {
-        description.validate()?;
-        let chain = description.folded(&base, &tool);
+    pub(super) fn assembled(parts: Parts) -> Result<Self> {
+        parts.validate()?;
+        let chain = parts.description.folded(&parts.base, &parts.tool);
         Ok(Self {
-            description,
-            base,
-            tool,
-            bodies,
+            turn_periods: turn_periods(&chain, &parts.description.joints),
+            parts,
             kernels: Kernels::for_chain(&chain),
             reach_of_links: Reach::of_links(&chain),
             chain: Arc::new(chain),
+            tree: OnceLock::new(),
+            pairs: Arc::default(),
             start_index: Arc::default(),
             task_rank: OnceLock::new(),
             closed_form: Arc::default(),
@@ -74,37 +81,37 @@ impl Robot {
 
     /// The robot's name.
     pub fn name(&self) -> &str {
-        &self.description.name
+        &self.parts.description.name
     }
 
     /// Degrees of freedom: the number of independent joints.
     pub fn dof(&self) -> usize {
-        self.description.joints.len()
+        self.parts.description.joints.len()
     }
 
     /// The independent joints, in the order of q.
     pub fn joints(&self) -> &[Joint] {
-        &self.description.joints
+        &self.parts.description.joints
     }
 
     /// Names of the links from base to tip.
     pub fn link_names(&self) -> impl Iterator<Item = &str> {
-        self.description.link_names()
+        self.parts.description.link_names()
     }
 
     /// Elements of the chain from its first link to its last, without base and tool.
     pub fn elements(&self) -> &[Element] {
-        &self.description.elements
+        &self.parts.description.elements
     }
 
     /// Pose of the first link of the chain in the frame of the robot's base.
     pub fn base(&self) -> &Pose {
-        &self.base
+        &self.parts.base
     }
 
     /// Pose of the tool in the frame of the tip link.
     pub fn tool(&self) -> &Pose {
-        &self.tool
+        &self.parts.tool
     }
 
     /// The same robot with its base at `base`.
@@ -113,8 +120,8 @@ impl Robot {
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
     pub fn with_base(&self, base: Pose) -> Result<Self> {
         let base = pose::checked("base", base)?;
-        let robot = Self::assembled(self.description.clone(), base, self.tool, self.bodies.clone())?;
-        Ok(Self { start_index: self.start_index.clone(), closed_form: self.closed_form.clone(), ..robot })
+        let robot = Self::assembled(Parts { base, ..self.parts.clone() })?;
+        Ok(Self { pairs: self.pairs.clone(), ..self.lend_to(robot) })
     }
 
     /// The same robot with its tip at `tool`, relative to the tip link.
@@ -123,8 +130,8 @@ impl Robot {
     /// [`Error::NotFinite`] for NaN or infinity in the pose.
     pub fn with_tool(&self, tool: Pose) -> Result<Self> {
         let tool = pose::checked("tool", tool)?;
-        let robot = Self::assembled(self.description.clone(), self.base, tool, self.bodies.clone())?;
-        Ok(Self { start_index: self.start_index.clone(), closed_form: self.closed_form.clone(), ..robot })
+        let robot = Self::assembled(Parts { tool, ..self.parts.clone() })?;
+        Ok(Self { pairs: self.pairs.clone(), ..self.lend_to(robot) })
     }
 
     /// The same robot with other joint limits; `change` gets each joint with its index.
@@ -132,27 +139,21 @@ impl Robot {
     /// # Errors
     /// [`Error::EmptyRange`] or [`Error::NegativeLimit`] for impossible limits.
     pub fn with_limits(&self, mut change: impl FnMut(usize, &mut Joint)) -> Result<Self> {
-        let mut description = self.description.clone();
-        for (index, joint) in description.joints.iter_mut().enumerate() {
+        let mut parts = self.parts.clone();
+        for (index, joint) in parts.description.joints.iter_mut().enumerate() {
             change(index, joint);
         }
-        Self::assembled(description, self.base, self.tool, self.bodies.clone())
+        Self::assembled(parts)
     }
 
     /// Whether a full turn of joint `joint` leaves the pose of every link unchanged.
     pub(crate) fn repeats_every_turn(&self, joint: usize) -> bool {
-        let driven = self.chain.motions.iter().filter(|motion| motion.joint == joint);
-        let scales = driven.map(|motion| (motion.turn_scale, motion.slide_scale));
-        self.joints()[joint].kind.turns() && scales.into_iter().all(|(turn, slide)| turn.fract() == 0.0 && slide == 0.0)
+        repeats_every_turn(&self.chain, &self.joints()[joint], joint)
     }
 
     /// The smallest change of joint `joint` that leaves the pose of every link unchanged; None where there is none.
     pub(crate) fn turn_period(&self, joint: usize) -> Option<f64> {
-        let mut driven = self.chain.motions[..self.chain.moving].iter().filter(|motion| motion.joint == joint);
-        match (driven.next(), driven.next()) {
-            (Some(only), None) if only.turn_scale != 0.0 => Some(TAU / only.turn_scale.abs()),
-            _ => self.repeats_every_turn(joint).then_some(TAU),
-        }
+        self.turn_periods[joint]
     }
 
     /// Err unless `q` has one finite entry per joint; `what` names it in the message.
@@ -241,22 +242,27 @@ impl Robot {
         if form.is_redundant() { form.family(self.at_flange(pose)) } else { None }
     }
 
+    /// Whether the closed form takes no longer than a search; None without one.
+    pub(crate) fn solves_at_once(&self) -> Option<bool> {
+        self.closed_form_or_reason().as_ref().ok().map(ClosedFormArm::is_at_once)
+    }
+
     /// The pose of the flange, seen from the first link, that brings the tip to `pose`.
     fn at_flange(&self, pose: &Frame) -> Frame {
-        let (base, tool) = (Frame::from(&self.base), Frame::from(&self.tool));
+        let (base, tool) = (Frame::from(self.base()), Frame::from(self.tool()));
         base.inverse().then::<Baseline>(pose).then::<Baseline>(&tool.inverse())
     }
 
     fn closed_form_or_reason(&self) -> &std::result::Result<ClosedFormArm, NoClosedForm> {
         self.closed_form.get_or_init(|| {
-            let chain = self.description.folded(&Pose::identity(), &Pose::identity());
+            let chain = self.parts.description.folded(&Pose::identity(), &Pose::identity());
             ClosedFormArm::new(&chain, self.dof(), self.task_rank().pose)
         })
     }
 
     fn start_index(&self) -> &StartIndex {
         self.start_index.get_or_init(|| {
-            let chain = self.description.folded(&Pose::identity(), &Pose::identity());
+            let chain = self.parts.description.folded(&Pose::identity(), &Pose::identity());
             StartIndex::new(&chain, &self.kernels, &self.sampling_ranges())
         })
     }
@@ -267,15 +273,56 @@ impl Robot {
 
     /// The same robot with other bodies.
     pub(crate) fn with_bodies(&self, bodies: Bodies) -> Self {
-        Self { bodies, ..self.clone() }
+        let mut robot = self.clone();
+        robot.parts.bodies = bodies;
+        robot.pairs = Arc::default();
+        robot
+    }
+
+    /// The same robot with another rule for the pairs of links that are tested against each other.
+    pub(super) fn with_pair_rule(&self, pairs: PairRule) -> Self {
+        let mut robot = self.clone();
+        robot.parts.pairs = pairs;
+        robot.pairs = Arc::default();
+        robot
+    }
+
+    /// Gives `robot`, which has the same chain, what was found of this one.
+    fn lend_to(&self, robot: Self) -> Self {
+        Self { start_index: self.start_index.clone(), closed_form: self.closed_form.clone(), ..robot }
+    }
+
+    /// The same robot with these named configurations in place of others.
+    pub(crate) fn with_stances(&self, stances: Vec<Stance>) -> Self {
+        let mut robot = self.clone();
+        robot.parts.stances = stances;
+        robot
+    }
+
+    pub(super) fn found_pairs(&self) -> &OnceLock<Vec<[usize; 2]>> {
+        &self.pairs
+    }
+
+    /// The same robot with other branches.
+    pub(crate) fn with_off_chain(&self, off_chain: OffChain) -> Result<Self> {
+        self.with_parts_beside_chain(Parts { off_chain: Arc::new(off_chain), ..self.parts.clone() })
+    }
+
+    /// The robot of these parts, whose chain is that of this one.
+    pub(super) fn with_parts_beside_chain(&self, parts: Parts) -> Result<Self> {
+        Self::assembled(parts).map(|robot| self.lend_to(robot))
     }
 
     pub(super) fn bodies(&self) -> &Bodies {
-        &self.bodies
+        &self.parts.bodies
     }
 
-    pub(super) fn description(&self) -> &Description {
-        &self.description
+    pub(super) fn parts(&self) -> &Parts {
+        &self.parts
+    }
+
+    pub(super) fn tree(&self) -> &LinkTree {
+        self.tree.get_or_init(|| Arc::new(self.parts.off_chain.folded(&self.parts.description, &self.chain)))
     }
 
     pub(super) fn reach_of_links(&self) -> &Reach {
@@ -291,4 +338,20 @@ impl Robot {
     pub(super) fn kernels(&self) -> &Kernels {
         &self.kernels
     }
+}
+
+fn repeats_every_turn(chain: &Chain, joint: &Joint, number: usize) -> bool {
+    let mut driven = chain.motions.iter().filter(|motion| motion.joint == number);
+    joint.kind.turns() && driven.all(|motion| motion.turn_scale.fract() == 0.0 && motion.slide_scale == 0.0)
+}
+
+fn turn_periods(chain: &Chain, joints: &[Joint]) -> Vec<Option<f64>> {
+    let period = |(number, joint): (usize, &Joint)| {
+        let mut driven = chain.motions[..chain.moving].iter().filter(|motion| motion.joint == number);
+        match (driven.next(), driven.next()) {
+            (Some(only), None) if only.turn_scale != 0.0 => Some(TAU / only.turn_scale.abs()),
+            _ => repeats_every_turn(chain, joint, number).then_some(TAU),
+        }
+    };
+    joints.iter().enumerate().map(period).collect()
 }

@@ -64,14 +64,14 @@ pub struct State {
 
 /// Value and damping of a descent.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Descent {
+struct Descent {
     value: f64,
     damping: f64,
 }
 
 /// The decision about a trial step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum TrialVerdict {
+enum TrialVerdict {
     /// Accepted; the descent continues from there.
     Kept,
     /// Accepted; the descent ends there, because the gain is negligible.
@@ -84,13 +84,13 @@ pub(super) enum TrialVerdict {
 
 impl TrialVerdict {
     /// Whether the trial is accepted.
-    pub fn keeps(self) -> bool {
+    fn keeps(self) -> bool {
         matches!(self, Self::Kept | Self::KeptAtLast)
     }
 
     /// # Errors
     /// [`Status::Stalled`] at the end of the descent.
-    pub fn goes_on(self) -> Result<(), Status> {
+    fn goes_on(self) -> Result<(), Status> {
         match self {
             Self::Kept | Self::Refused => Ok(()),
             Self::KeptAtLast | Self::RefusedAtLast => Err(Status::Stalled),
@@ -101,13 +101,13 @@ impl TrialVerdict {
 impl LevenbergMarquardt {
     /// A descent that starts at a point with this value.
     #[inline]
-    pub(super) fn descent_from(&self, value: f64) -> Descent {
+    fn descent_from(&self, value: f64) -> Descent {
         Descent { value, damping: self.initial_damping }
     }
 
     /// Decides about a trial with `value`.
     #[inline]
-    pub(super) fn judge(&self, descent: &mut Descent, value: f64) -> TrialVerdict {
+    fn judge(&self, descent: &mut Descent, value: f64) -> TrialVerdict {
         let Descent { value: before, damping } = descent;
         if !(value < *before) {
             *damping *= self.increase;
@@ -126,7 +126,7 @@ impl Descent {
     /// # Errors
     /// [`Status::Stalled`] if the value is not finite.
     #[inline]
-    pub fn lambda(&self) -> Result<f64, Status> {
+    fn lambda(&self) -> Result<f64, Status> {
         if self.value.is_finite() { Ok(self.damping * self.value) } else { Err(Status::Stalled) }
     }
 }

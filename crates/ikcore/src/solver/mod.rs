@@ -5,8 +5,7 @@
 //! point. So for every algorithm budgets are exact, results are in the box and the best point is never lost.
 //!
 //! Read `stop` and `status` (how a run ends), `driver` (the loop), `evaluator`, then any algorithm. `algorithm` lists
-//! all of them; `any_solver` is the caller's choice: an algorithm, with or without restarts. `side_by_side` runs four
-//! descents at once for batches.
+//! all of them; `any_solver` is the caller's choice: an algorithm, with or without restarts.
 //!
 //! | file | algorithm | needs |
 //! |---|---|---|
@@ -35,7 +34,6 @@ mod levenberg_marquardt;
 mod monitor;
 mod multi_start;
 mod newton_raphson;
-mod side_by_side;
 mod status;
 mod stop;
 mod stopwatch;
@@ -55,7 +53,6 @@ pub(crate) use monitor::EvaluationMonitor;
 pub use monitor::{Monitor, Unattended};
 pub use multi_start::{MultiStart, RestartRule};
 pub use newton_raphson::NewtonRaphson;
-pub(crate) use side_by_side::run_side_by_side;
 pub use status::Status;
 pub use stop::Stop;
 pub use stopwatch::Stopwatch;

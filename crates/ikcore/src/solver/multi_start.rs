@@ -62,7 +62,7 @@ pub struct State<T> {
 
 /// The progress of an attempt.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct AttemptProgress {
+struct AttemptProgress {
     steps: usize,
     /// The best value when `steps` was last a multiple of the patience.
     milestone: f64,
@@ -70,7 +70,7 @@ pub(super) struct AttemptProgress {
 
 impl AttemptProgress {
     /// The progress of an attempt that starts at a point with this value.
-    pub fn begun_at(value: f64) -> Self {
+    fn begun_at(value: f64) -> Self {
         Self { steps: 0, milestone: value }
     }
 }
@@ -93,7 +93,7 @@ impl RestartRule {
     /// # Errors
     /// The status of a step that ended the run.
     #[inline]
-    pub(super) fn begins_again(
+    fn begins_again(
         &self,
         step: Result<(), Status>,
         attempt: &mut AttemptProgress,
@@ -110,7 +110,7 @@ impl RestartRule {
     ///
     /// # Errors
     /// [`Status::Solved`] after an attempt that solved it, [`Status::Stalled`] after the last one.
-    pub(super) fn next_start<O>(&self, evaluator: &mut Evaluator<'_, O>) -> Result<Point, Status>
+    fn next_start<O>(&self, evaluator: &mut Evaluator<'_, O>) -> Result<Point, Status>
     where
         O: Objective + ?Sized,
     {

@@ -8,7 +8,6 @@
 mod assessment;
 mod components;
 mod criterion;
-mod four_targets;
 mod goal;
 mod region;
 mod region_assessment;

@@ -59,7 +59,7 @@ impl Target {
     }
 
     /// The same target with its position, if it has one, replaced.
-    pub(super) fn with_position(&self, replaced: impl Fn(&[f64; 3]) -> [f64; 3]) -> Self {
+    pub(crate) fn with_position(&self, replaced: impl Fn(&[f64; 3]) -> [f64; 3]) -> Self {
         let moved = |frame: &Frame| Frame { origin: replaced(&frame.origin), ..*frame };
         match self {
             Self::Position(position) => Self::Position(replaced(position)),

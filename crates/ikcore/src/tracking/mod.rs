@@ -15,6 +15,8 @@
 //! | `approach_motion` | the approach from rest onto a moving path, `TrackOptions::ease` |
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: accepted configuration, clock, box and rule; one [`Step`] per tick |
+//! | `limited_motion` | the motion of an arm under acceleration or jerk limits |
+//! | `target_stream`, `target_filter` | targets as they arrive: stamps, timeout, filters |
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
 //! | `record` | [`Record`]: one row per tick, violations, status and message |
 //! | `model_free`, `plant` | tracking without a model: the call, and the arms that it commands |
@@ -25,12 +27,15 @@ mod approach_motion;
 mod commanded_motion;
 mod controller;
 mod late_sensor;
+mod limited_motion;
 mod model_free;
 mod plant;
 mod record;
 mod rule;
 mod session;
 mod step;
+mod target_filter;
+mod target_stream;
 mod tip_pose;
 mod track;
 mod track_options;
@@ -42,6 +47,8 @@ pub use record::Record;
 pub use rule::{Integrator, TickRule, WeightedPseudoInverse};
 pub use session::Session;
 pub use step::Step;
+pub use target_filter::{LowPass, OneEuro, TargetFilter};
+pub use target_stream::Arrival;
 pub use tip_pose::TipPose;
 pub use track::track;
 pub use track_options::TrackOptions;

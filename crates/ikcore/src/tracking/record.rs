@@ -160,8 +160,8 @@ impl Record {
         }
         // Computed from displacements, which keep the limit to the last bit; velocities add a rounding error.
         self.limit_margin = self.limit_margin.min(0.0 - fastest / self.dt);
-        let limited_acceleration = self.limits.field(Field::Acceleration).is_some();
-        if limited_acceleration || larger(fastest, farthest) > self.max_violation {
+        let limited = self.limits.field(Field::Acceleration).is_some() || self.limits.field(Field::Jerk).is_some();
+        if limited || larger(fastest, farthest) > self.max_violation {
             self.find_violations(accepted, self.ends(rows));
         }
     }
@@ -191,12 +191,18 @@ impl Record {
         }
     }
 
-    /// Returns by how much the displacement `step` of joint `j` differs from that of the tick before, beyond the
-    /// acceleration limit.
-    fn too_sudden(&self, j: usize, step: f64, [from, to]: [f64; 2]) -> f64 {
+    /// Returns by how much the displacement `step` of joint `j` exceeds the acceleration or jerk limit, by its difference to
+    /// those of the ticks before. The arm starts at rest.
+    fn too_sudden(&self, j: usize, step: f64, tick: [f64; 2]) -> f64 {
         let rows = self.rows();
-        let before = if rows > 1 { self.q[(rows - 1) * self.dof + j] - self.q[(rows - 2) * self.dof + j] } else { 0.0 };
-        (step - before).abs() - self.limits.acceleration_over(j, from, to) * self.dt * self.dt
+        let q = |ago: usize| self.q[rows.saturating_sub(ago).max(1) * self.dof - self.dof + j];
+        let (last, before) = (q(0) - q(1), q(1) - q(2));
+        let change = step - last;
+        let [acceleration, jerk] =
+            [Field::Acceleration, Field::Jerk].map(|field| self.limits.smallest_over(field, j, tick));
+        let too_hard = change.abs() - acceleration * self.dt.powi(2);
+        let too_abrupt = (change - (last - before)).abs() - jerk * self.dt.powi(3);
+        larger(too_hard, too_abrupt)
     }
 
     /// Sets the status of the whole track. It is solved if it stayed in the band once it had reached it, and every

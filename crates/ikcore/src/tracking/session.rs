@@ -2,11 +2,13 @@
 
 use std::borrow::Cow;
 
+use super::limited_motion::LimitedMotion;
 use super::record::Accepted;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
 use super::step::Step;
+use super::target_stream::{Arrival, TargetStream};
 use super::track_options::TrackOptions;
-use crate::error::{Result, require_finite, require_positive};
+use crate::error::{Error, Result, require_positive};
 use crate::kinematics::Beyond;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
 use crate::objective::{Bounds, Point, Score};
@@ -37,9 +39,12 @@ pub struct Session {
     before: Point,
     /// The value accepted in the previous tick, which a random search must beat.
     last_value: Option<f64>,
-    /// Target at the end of the previous tick, and its velocity (m/s) if known.
-    last_target: Option<(Target, Option<[f64; 3]>)>,
+    targets: TargetStream,
     tick_box: TickBox,
+    /// Under acceleration or jerk limits.
+    limited: Option<LimitedMotion>,
+    /// The arm brakes until a target arrives.
+    stopping: bool,
     seed: u64,
     rng: LazyRng,
 }
@@ -59,8 +64,7 @@ impl Session {
         options.check_goals(robot)?;
         limits.require_for(robot)?;
         limits.validate(dt, 0)?;
-        let remedy = "this tracker keeps position, velocity and acceleration limits; leave it out";
-        limits.require_none(&[Field::Jerk], "track", remedy)?;
+        let targets = TargetStream::new(options.target_filter, options.timeout)?;
         if criterion.region.is_some() {
             require_room_to_stop(&limits)?;
         }
@@ -70,13 +74,15 @@ impl Session {
         // If limits vary over time, goals use the joint ranges at the start.
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &robot, &ranges);
+        let limited = LimitedMotion::new(&limits, dt);
         Ok(Self {
             robot,
             tick_box: TickBox::around(start, &limits),
+            running: options.rule.start(limited.is_some()),
+            limited,
             limits,
             limit_at: options.limit_at,
             rule: options.rule.clone(),
-            running: options.rule.start(),
             task: options.task,
             criterion,
             goals,
@@ -85,7 +91,8 @@ impl Session {
             q: Point::from_slice(start),
             before: Point::from_slice(start),
             last_value: None,
-            last_target: None,
+            targets,
+            stopping: false,
             seed: options.seed,
             rng: rng::stream(options.seed, 0),
         })
@@ -157,7 +164,7 @@ impl Session {
     /// As [`step`](Self::step).
     pub fn begin(&mut self, target: &Target, velocity: Option<[f64; 3]>) -> Result<Step> {
         let target = self.read(target)?;
-        self.last_target = Some((*target, velocity));
+        self.targets.place(*target, velocity);
         let Assessment { score, error } = target.assess(&self.robot, &self.q, &self.criterion);
         self.last_value = Some(score.value);
         let status = match score.solved {
@@ -173,7 +180,8 @@ impl Session {
     ///
     /// # Errors
     /// [`Error::NotFinite`](crate::Error::NotFinite) for a target that is not finite,
-    /// [`Error::WrongTarget`](crate::Error::WrongTarget) if the target lacks a component that the task needs.
+    /// [`Error::WrongTarget`](crate::Error::WrongTarget) if the target lacks a component that the task needs. The session
+    /// has not moved then.
     pub fn step(&mut self, target: &Target, monitor: &mut dyn Monitor) -> Result<Step> {
         self.step_moving(target, None, monitor)
     }
@@ -189,48 +197,132 @@ impl Session {
         velocity: Option<[f64; 3]>,
         monitor: &mut dyn Monitor,
     ) -> Result<Step> {
-        let target = self.read(target)?;
-        if let Some(velocity) = &velocity {
-            require_finite("velocity of the target", velocity, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
-        }
+        self.advance(Some(Arrival { target: *target, velocity, stamp: None }), monitor)
+    }
+
+    /// Moves by one tick, with the target that has arrived since the last tick, if any. Without a new target the arm
+    /// follows the extrapolated motion of the last ones for a short time, under acceleration or jerk limits and with the
+    /// model-based rule; otherwise it goes on towards the last target. After the timeout it brakes.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step), and [`Error::OutOfRange`](crate::Error::OutOfRange) for a stamp after the end of the tick,
+    /// [`Error::Contradiction`](crate::Error::Contradiction) for a stamp that the rule cannot use.
+    pub fn advance(&mut self, arrival: Option<Arrival>, monitor: &mut dyn Monitor) -> Result<Step> {
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
+        let arrival = arrival.map(|arrival| self.read_arrival(&arrival)).transpose()?;
+        let sampled_ago = self.targets.take(arrival, to)?.map(|ago| ago / self.dt);
+        self.update_stopping(sampled_ago.is_some(), to);
         let within = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
-        let slow_enough = self.limits.field(Field::Acceleration).is_none()
-            || self.limits.brake(&self.q, &self.qd(), [from, to], self.dt, &mut self.tick_box);
+        let (q, tick_box) = (&self.q, &mut self.tick_box);
+        let can_stop = self.limited.as_mut().is_none_or(|limited| limited.narrow(q, from, &self.limits, tick_box));
+        let mut found = if self.stopping || self.targets.last().is_none() {
+            self.brake()
+        } else {
+            self.run_rule(sampled_ago, monitor)
+        };
+        let target = self.targets.last().copied();
+        if let Some(target) = &target {
+            self.keep_in_region(target, &mut found);
+        }
+        let status = self.status(target.as_ref(), &found);
+        if !found.interrupted {
+            self.accept(&found.q, found.assessment.score.value);
+        }
+        let TickResult { position, evaluations, iterations, interrupted, .. } = found;
+        let (error, inside_limits) = (found.assessment.error.into(), within && can_stop);
+        Ok(Step { status, error, position, evaluations, iterations, inside_limits, interrupted })
+    }
+
+    /// Reduces an arrival to the part that the task uses, validated.
+    fn read_arrival(&self, arrival: &Arrival) -> Result<Arrival> {
+        if arrival.stamp.is_some() && !self.running.extrapolates() {
+            let problem = "a stamp is used by the library's own rule under acceleration or jerk limits; give such limits, or \
+                           leave stamp out";
+            return Err(Error::Contradiction { problem: problem.into() });
+        }
+        Ok(Arrival { target: *self.read(&arrival.target)?, ..*arrival })
+    }
+
+    /// The arm brakes after the timeout, and moves on when a target arrives.
+    fn update_stopping(&mut self, arrived: bool, time: f64) {
+        if arrived {
+            self.stopping = false;
+        } else if self.targets.timed_out(time) && !self.stopping {
+            self.begin_stopping();
+        }
+    }
+
+    fn begin_stopping(&mut self) {
+        self.stopping = true;
+        self.running.forget();
+    }
+
+    fn run_rule(&mut self, sampled_ago: Option<f64>, monitor: &mut dyn Monitor) -> TickResult {
+        let Some(target) = self.targets.last() else { return TickResult::at(&self.q) };
         let tick = Tick {
             robot: &self.robot,
-            target: &target,
+            target,
             criterion: &self.criterion,
             goals: &mut self.goals,
-            velocity,
-            before: self.last_target.as_ref(),
-            time: from,
+            velocity: self.targets.velocity(),
+            before: self.targets.before(),
+            time: self.ticks as f64 * self.dt,
             dt: self.dt,
             limits: &self.limits,
             velocity_limit: &self.tick_box.velocity,
+            limited: self.limited.as_ref(),
+            sampled_ago,
             tick_box: &self.tick_box.bounds,
             last_value: self.last_value,
             rng: &mut self.rng,
             monitor,
         };
-        let mut found = self.running.advance(&self.q, tick);
-        self.keep_in_region(&target, &mut found);
-        let Assessment { score: Score { value, solved }, error } = found.assessment;
-        let status = match self.last_value {
-            _ if solved && self.criterion.blocked_by_region(&target).is_some() => Status::HeldInRegion,
+        self.running.advance(&self.q, tick)
+    }
+
+    /// Moves by one tick of the fastest stop.
+    fn brake(&self) -> TickResult {
+        let mut found = TickResult::at(&self.q);
+        if let Some(limited) = &self.limited {
+            found.q = limited.stopping(&self.q);
+        }
+        self.tick_box.bounds.clip(&mut found.q);
+        let tip = self.robot.tip(&found.q);
+        found.evaluations = 1;
+        match self.targets.last() {
+            Some(target) => found.set_tip(&tip, target, &self.criterion),
+            None => found.position = tip.origin,
+        }
+        found
+    }
+
+    fn status(&self, target: Option<&Target>, found: &TickResult) -> Status {
+        let Score { value, solved } = found.assessment.score;
+        match self.last_value {
+            _ if solved && target.is_some_and(|target| self.criterion.blocked_by_region(target).is_some()) => {
+                Status::HeldInRegion
+            }
             _ if solved => Status::Solved,
             Some(last) if value >= last => Status::Capped,
             _ => Status::Improved,
-        };
-        if !found.interrupted {
-            self.before.copy_from_slice(&self.q);
-            self.q.copy_from_slice(&found.q);
-            (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
-            self.last_target = Some((*target, velocity));
         }
-        let TickResult { position, evaluations, iterations, interrupted, .. } = found;
-        let inside_limits = within && slow_enough;
-        Ok(Step { status, error: error.into(), position, evaluations, iterations, inside_limits, interrupted })
+    }
+
+    fn accept(&mut self, q: &[f64], value: f64) {
+        if let Some(limited) = &mut self.limited {
+            limited.advance(&self.q, q);
+        }
+        self.before.copy_from_slice(&self.q);
+        self.q.copy_from_slice(q);
+        (self.last_value, self.ticks) = (Some(value), self.ticks + 1);
+        self.targets.accept();
+    }
+
+    /// Brakes as fast as the limits allow, from the next tick on until a target arrives. Returns how long the stop takes
+    /// (s): 0 for an arm that may stop at once.
+    pub fn stop(&mut self) -> f64 {
+        self.begin_stopping();
+        self.limited.as_ref().map_or(0.0, LimitedMotion::time_to_stop)
     }
 
     /// Moves by one tick to `q`, which the caller has found inside the limits, instead of asking the rule. The rule starts
@@ -242,16 +334,15 @@ impl Session {
         let target = self.read(target)?;
         let (from, to) = (self.time(), (self.ticks + 1) as f64 * self.dt);
         let inside_limits = self.limits.narrow(&self.q, [from, to], self.dt, self.limit_at, &mut self.tick_box);
-        self.before.copy_from_slice(&self.q);
-        self.q.copy_from_slice(q);
         let Assessment { score, error } = target.assess(&self.robot, q, &self.criterion);
         let status = match self.last_value {
             _ if score.solved => Status::Solved,
             Some(last) if score.value >= last => Status::Capped,
             _ => Status::Improved,
         };
-        self.last_target = Some((*target, velocity));
-        (self.last_value, self.ticks, self.running) = (Some(score.value), self.ticks + 1, self.rule.start());
+        self.targets.place(*target, velocity);
+        self.accept(q, score.value);
+        self.running = self.rule.start(self.limited.is_some());
         let (position, error) = (self.robot.tip_position(q), error.into());
         Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits, interrupted: false })
     }
@@ -275,16 +366,35 @@ impl Session {
         self.running.forget();
     }
 
-    /// Resets the session to rest at `q` (n,), at t = 0.
+    /// Resets the session to `q` (n,) at t = 0, at rest.
     ///
     /// # Errors
     /// As [`new`](Self::new) for a start.
     pub fn reset(&mut self, q: &[f64]) -> Result<()> {
+        self.reset_moving(q, None, None)
+    }
+
+    /// Resets the session to `q` (n,) at t = 0, with velocities `qd` (n,) (rad/s, m/s) and accelerations `qdd` (n,) (rad/s^2,
+    /// m/s^2); `None` means zero. Both are those of the last tick: differences of its commands.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new) for a start; [`Error::Contradiction`](crate::Error::Contradiction) for an arm that could not
+    /// stop inside its limits.
+    pub fn reset_moving(&mut self, q: &[f64], qd: Option<&[f64]>, qdd: Option<&[f64]>) -> Result<()> {
         self.robot.check("q", q)?;
         require_inside(&self.robot, &self.limits, &self.criterion, "q", q)?;
+        let zero = Point::from_elem(0.0, q.len());
+        let (qd, qdd) = (qd.unwrap_or(&zero), qdd.unwrap_or(&zero));
+        self.robot.check("qd", qd)?;
+        self.robot.check("qdd", qdd)?;
+        if let Some(limited) = &mut self.limited {
+            limited.set(q, [qd, qdd], &self.limits)?;
+        }
         self.q.copy_from_slice(q);
-        self.before.copy_from_slice(q);
-        (self.ticks, self.last_value, self.last_target, self.running) = (0, None, None, self.rule.start());
+        self.before = q.iter().zip(qd).map(|(q, qd)| q - self.dt * qd).collect();
+        (self.ticks, self.last_value, self.stopping) = (0, None, false);
+        self.running = self.rule.start(self.limited.is_some());
+        self.targets.clear();
         self.rng = rng::stream(self.seed, 0);
         Ok(())
     }
@@ -307,7 +417,7 @@ fn require_inside(robot: &Robot, limits: &Limits, criterion: &Criterion, what: &
 fn require_room_to_stop(limits: &Limits) -> Result<()> {
     let method = "a task with a region";
     let remedy = "an arm that may not stop at once can be carried out of it; leave one of the two out";
-    limits.require_none(&[Field::Acceleration], method, remedy)?;
+    limits.require_none(&[Field::Acceleration, Field::Jerk], method, remedy)?;
     let remedy = "limits that move can push the arm out of it; give numbers, or leave region out";
     [Field::Lower, Field::Upper].into_iter().try_for_each(|field| limits.constants(field, method, remedy).map(|_| ()))
 }

@@ -1,6 +1,7 @@
 //! Options of `track` and of a session.
 
 use super::rule::TickRule;
+use super::target_filter::TargetFilter;
 use crate::error::{Error, Result};
 use crate::limits::{LimitAt, Limits};
 use crate::robot::Robot;
@@ -21,6 +22,10 @@ pub struct TrackOptions {
     pub limits: Option<Limits>,
     /// The time within a tick at which its velocity limit is evaluated.
     pub limit_at: LimitAt,
+    /// Filter of the targets. `None` means none.
+    pub target_filter: Option<TargetFilter>,
+    /// Time without a new target after which the arm stops (s). `None` means never.
+    pub timeout: Option<f64>,
     /// Whether [`track`](super::track()) begins with an approach that meets the moving path within acceleration and jerk
     /// limits. Sessions ignore it.
     pub ease: bool,

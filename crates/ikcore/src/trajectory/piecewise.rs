@@ -7,7 +7,7 @@ use super::hermite_segment;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::interrupt::checkpoint_at;
 use crate::math::Knots;
-use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range};
+use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range, value};
 use crate::math::ticks::ticks;
 
 /// Largest jump of a joint at a knot (rad or m, relative beyond 1); stored or computed coefficients meet only up to
@@ -229,7 +229,7 @@ impl Trajectory {
             let span = self.knots.span(next - 1);
             let polynomials = self.segment(next - 1).iter().zip(self.segment(next));
             for (name, (before, after)) in self.joints.iter().zip(polynomials) {
-                let (left, right) = (evaluate(before, span)[0], after[0]);
+                let (left, right) = (value(before, span), after[0]);
                 let meets = (left - right).abs() <= CONTINUITY_TOLERANCE * right.abs().max(1.0);
                 if !meets {
                     let time = self.knots.times()[next];

@@ -1,6 +1,6 @@
 //! Reading of obstacle arguments.
 
-use ikcore::obstacle::Obstacle;
+use ikcore::shape::Shape;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -11,7 +11,7 @@ use crate::error::invalid;
 /// The obstacles of a call.
 pub struct Obstacles {
     /// For the core.
-    pub core: Vec<Obstacle>,
+    pub core: Vec<Shape>,
     /// For results, which store them.
     pub tuple: Py<PyTuple>,
 }

@@ -2,7 +2,7 @@
 
 use ikcore::math::Pose;
 use ikcore::nalgebra::Matrix3;
-use ikcore::obstacle::{Obstacle, Shape};
+use ikcore::shape::{Geometry, Grid, Shape};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
@@ -10,16 +10,19 @@ use crate::convert::{Array, table};
 use crate::hash::content_hash;
 use crate::options::NewArguments;
 
-/// The base class of obstacles: a convex body, fixed in the frame of the robot's base.
+use super::large::{faces, occupied, points};
+
+/// The base class of obstacles: a shape, fixed in the frame of the robot's base.
 #[pyclass(name = "Obstacle", module = "beetle_ik.obstacles", frozen, eq, subclass)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyObstacle {
-    pub(super) core: Obstacle,
+    pub core: Shape,
 }
 
 #[pymethods]
 impl PyObstacle {
-    /// Triangles of the surface (t, 3, 3) (m), for drawing. The corners of triangles lie on the surface.
+    /// Triangles of the surface (t, 3, 3) (m), for drawing. Their corners lie on the surface; a half-space is a square of 4 m,
+    /// a point cloud octahedra about at most 2,000 of its points.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         let triangles = self.core.triangles();
@@ -28,17 +31,30 @@ impl PyObstacle {
     }
 
     fn __repr__(&self) -> String {
-        let arguments = match self.core.shape() {
-            Shape::Sphere { center, radius } => format!("{center:?}, {radius:?}"),
-            Shape::Box { pose, size } => {
+        let arguments = match self.core.geometry() {
+            Geometry::Sphere { center, radius } => format!("{center:?}, {radius:?}"),
+            Geometry::Box { pose, size } => {
                 format!("{:?}, {size:?}{}", point_of(pose), rotation_text(pose))
             }
-            Shape::Capsule { a, b, radius } => format!("{a:?}, {b:?}, {radius:?}"),
-            Shape::Ellipsoid { pose, semi_axes } => {
+            Geometry::Capsule { a, b, radius } => format!("{a:?}, {b:?}, {radius:?}"),
+            Geometry::Ellipsoid { pose, semi_axes } => {
                 format!("{:?}, {semi_axes:?}{}", point_of(pose), rotation_text(pose))
             }
-            Shape::Ellipse { center, semi_axes, angle } => format!("{center:?}, {semi_axes:?}, angle={angle:?}"),
-            Shape::ConvexMesh(hull) => format!("{:?}", hull.points()),
+            Geometry::Ellipse { center, semi_axes, angle } => format!("{center:?}, {semi_axes:?}, angle={angle:?}"),
+            Geometry::Cylinder { center, axis, radius, length } => {
+                format!("{center:?}, {axis:?}, {radius:?}, {length:?}")
+            }
+            Geometry::HalfSpace { normal, offset } => format!("{normal:?}, {offset:?}"),
+            Geometry::ConvexMesh(hull) => format!("{:?}", hull.points()),
+            Geometry::Mesh(mesh) => {
+                format!("{}, {}", list_text(mesh.vertices(), "points"), list_text(mesh.faces(), "triangles"))
+            }
+            Geometry::PointCloud(cloud) => {
+                format!("{}, radius={:?}", list_text(cloud.points(), "points"), cloud.radius())
+            }
+            Geometry::Grid(grid) => {
+                format!("{:?}, {:?}, {}", grid.origin(), grid.voxel(), voxels_text(grid))
+            }
         };
         format!("obstacles.{}({arguments})", self.core.name())
     }
@@ -50,19 +66,46 @@ impl PyObstacle {
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let none = PyDict::new(py);
         let turned = |pose: &Pose| rotation_rows(pose).map(|rows| [("rotation", rows)].into_py_dict(py)).transpose();
-        Ok(match self.core.shape() {
-            Shape::Sphere { center, radius } => ((*center, *radius).into_pyobject(py)?, none),
-            Shape::Box { pose, size } => ((point_of(pose), *size).into_pyobject(py)?, turned(pose)?.unwrap_or(none)),
-            Shape::Capsule { a, b, radius } => ((*a, *b, *radius).into_pyobject(py)?, none),
-            Shape::Ellipsoid { pose, semi_axes } => {
+        Ok(match self.core.geometry() {
+            Geometry::Sphere { center, radius } => ((*center, *radius).into_pyobject(py)?, none),
+            Geometry::Box { pose, size } => ((point_of(pose), *size).into_pyobject(py)?, turned(pose)?.unwrap_or(none)),
+            Geometry::Capsule { a, b, radius } => ((*a, *b, *radius).into_pyobject(py)?, none),
+            Geometry::Ellipsoid { pose, semi_axes } => {
                 ((point_of(pose), *semi_axes).into_pyobject(py)?, turned(pose)?.unwrap_or(none))
             }
-            Shape::Ellipse { center, semi_axes, angle } => {
+            Geometry::Ellipse { center, semi_axes, angle } => {
                 ((*center, *semi_axes).into_pyobject(py)?, [("angle", *angle)].into_py_dict(py)?)
             }
-            Shape::ConvexMesh(hull) => ((hull.points().to_vec(),).into_pyobject(py)?, none),
+            Geometry::Cylinder { center, axis, radius, length } => {
+                ((*center, *axis, *radius, *length).into_pyobject(py)?, none)
+            }
+            Geometry::HalfSpace { normal, offset } => ((*normal, *offset).into_pyobject(py)?, none),
+            Geometry::ConvexMesh(hull) => ((hull.points().to_vec(),).into_pyobject(py)?, none),
+            Geometry::Mesh(mesh) => ((points(py, mesh.vertices())?, faces(py, mesh.faces())?).into_pyobject(py)?, none),
+            Geometry::PointCloud(cloud) => ((points(py, cloud.points())?, cloud.radius()).into_pyobject(py)?, none),
+            Geometry::Grid(grid) => ((grid.origin(), grid.voxel(), occupied(py, grid)?).into_pyobject(py)?, none),
         })
     }
+}
+
+/// Longer lists are not written out.
+const MOST_ENTRIES: usize = 100;
+
+/// Formats a list in Python syntax if it is short, else as its length.
+fn list_text<T: std::fmt::Debug>(list: &[T], entries: &str) -> String {
+    if list.len() > MOST_ENTRIES { format!("<{} {entries}>", list.len()) } else { format!("{list:?}") }
+}
+
+/// Formats occupied voxels as nested lists in Python syntax if they are few, else as their number.
+fn voxels_text(grid: &Grid) -> String {
+    let [x, y, z] = grid.counts();
+    if grid.occupied().len() > MOST_ENTRIES {
+        return format!("<{x} x {y} x {z} voxels>");
+    }
+    let word = |occupied: &bool| if *occupied { "True" } else { "False" };
+    let row = |voxels: &[bool]| format!("[{}]", voxels.iter().map(word).collect::<Vec<_>>().join(", "));
+    let slab = |voxels: &[bool]| format!("[{}]", voxels.chunks(z).map(row).collect::<Vec<_>>().join(", "));
+    format!("[{}]", grid.occupied().chunks(y * z).map(slab).collect::<Vec<_>>().join(", "))
 }
 
 fn point_of(pose: &Pose) -> [f64; 3] {

@@ -15,6 +15,10 @@ const ROWS: usize = 128;
 /// Returns the smallest distance (m) between the robot's capsules and obstacles, or between two of its capsules: a number
 /// for q (n,), (m,) for q (m, n). A negative value is the depth of the deepest overlap; inf means nothing can touch.
 ///
+/// Never more than the true distance, and at most 1e-9 m less. Where a capsule reaches into an obstacle, the depth is that of
+/// the deepest point of its axis, plus its radius: to the surface of a closed mesh (to 1 % or 0.1 mm), in the nearest block of
+/// voxels of a grid, in the nearest ball of a point cloud. An open mesh has no inside.
+///
 /// Args:
 ///     robot: an arm with capsules.
 ///     q: joint positions (n,) or (m, n) (rad, m).

@@ -3,21 +3,32 @@
 mod argument;
 mod body;
 mod clearance;
+mod large;
+mod nearest;
 mod shapes;
 
 use pyo3::prelude::*;
 
 pub use argument::Obstacles;
-use body::PyObstacle;
-use shapes::{PyBox, PyCapsule, PyConvexMesh, PyEllipse, PyEllipsoid, PySphere};
+pub use body::PyObstacle;
+use large::{PyGrid, PyMesh, PyPointCloud};
+use nearest::PyNearest;
+use shapes::{PyBox, PyCapsule, PyConvexMesh, PyCylinder, PyEllipse, PyEllipsoid, PyHalfSpace, PySphere};
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyObstacle>()?;
     module.add_class::<PySphere>()?;
     module.add_class::<PyBox>()?;
     module.add_class::<PyCapsule>()?;
+    module.add_class::<PyCylinder>()?;
+    module.add_class::<PyHalfSpace>()?;
     module.add_class::<PyEllipsoid>()?;
     module.add_class::<PyEllipse>()?;
     module.add_class::<PyConvexMesh>()?;
+    module.add_class::<PyMesh>()?;
+    module.add_class::<PyPointCloud>()?;
+    module.add_class::<PyGrid>()?;
+    module.add_class::<PyNearest>()?;
+    module.add_function(wrap_pyfunction!(nearest::nearest, module)?)?;
     module.add_function(wrap_pyfunction!(clearance::clearance, module)?)
 }

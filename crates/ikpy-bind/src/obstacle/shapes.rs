@@ -3,19 +3,20 @@
 use std::convert::Infallible;
 
 use ikcore::nalgebra::Matrix3;
-use ikcore::obstacle::Obstacle;
-use numpy::{PyArray1, PyArrayDyn, PyUntypedArrayMethods};
+use ikcore::shape::{Geometry, Shape};
+use numpy::{PyArray1, PyArrayDyn};
 use pyo3::PyClass;
 use pyo3::prelude::*;
 
 use super::body::PyObstacle;
-use crate::convert::{Array, array, copied, entries, matrix3, point, shape_text, table};
-use crate::error::{invalid, raise};
+use super::large::read_points;
+use crate::convert::{Array, copied, entries, matrix3, point, table};
+use crate::error::raise;
 use crate::monitor::on_a_thread;
 
 /// A vector stored by a class; Python gets a read-only array.
 #[derive(Clone, Copy)]
-struct Coordinates<const N: usize>([f64; N]);
+pub(super) struct Coordinates<const N: usize>(pub [f64; N]);
 
 impl<'py, const N: usize> IntoPyObject<'py> for Coordinates<N> {
     type Target = PyArray1<f64>;
@@ -53,7 +54,7 @@ fn read_rotation(rotation: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Matrix3
 }
 
 /// Makes an instance of an obstacle's class, with its own fields.
-fn made<C>(core: ikcore::Result<Obstacle>, own: C) -> PyResult<PyClassInitializer<C>>
+pub(super) fn made<C>(core: ikcore::Result<Shape>, own: C) -> PyResult<PyClassInitializer<C>>
 where
     C: PyClass<BaseType = PyObstacle>,
 {
@@ -76,7 +77,7 @@ impl PySphere {
     #[new]
     fn new(center: &Bound<'_, PyAny>, radius: f64) -> PyResult<PyClassInitializer<Self>> {
         let center = point("center", center)?;
-        made(Obstacle::sphere(center, radius), Self { center: Coordinates(center), radius })
+        made(Shape::sphere(center, radius), Self { center: Coordinates(center), radius })
     }
 }
 
@@ -106,7 +107,7 @@ impl PyBox {
         let (center, size) = (point("center", center)?, point("size", size)?);
         let rotation = read_rotation(rotation)?;
         let own = Self { center: Coordinates(center), size: Coordinates(size), rotation: Rotation::or_none(rotation) };
-        made(Obstacle::cuboid(center, size, rotation), own)
+        made(Shape::cuboid(center, size, rotation), own)
     }
 }
 
@@ -129,7 +130,72 @@ impl PyCapsule {
     #[new]
     fn new(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>, radius: f64) -> PyResult<PyClassInitializer<Self>> {
         let (a, b) = (point("a", a)?, point("b", b)?);
-        made(Obstacle::capsule(a, b, radius), Self { a: Coordinates(a), b: Coordinates(b), radius })
+        made(Shape::capsule(a, b, radius), Self { a: Coordinates(a), b: Coordinates(b), radius })
+    }
+}
+
+/// A cylinder with flat ends: centre (3,), axis (3,) of any length, radius and length (m).
+#[pyclass(name = "Cylinder", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
+pub struct PyCylinder {
+    /// Centre (3,) (m).
+    #[pyo3(get)]
+    center: Coordinates<3>,
+    /// Radius (m).
+    #[pyo3(get)]
+    radius: f64,
+    /// Length along the axis (m).
+    #[pyo3(get)]
+    length: f64,
+}
+
+#[pymethods]
+impl PyCylinder {
+    #[new]
+    fn new(
+        center: &Bound<'_, PyAny>,
+        axis: &Bound<'_, PyAny>,
+        radius: f64,
+        length: f64,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let (center, axis) = (point("center", center)?, point("axis", axis)?);
+        let own = Self { center: Coordinates(center), radius, length };
+        made(Shape::cylinder(center, axis, radius, length), own)
+    }
+
+    /// Axis (3,), of unit length.
+    #[getter]
+    fn axis<'py>(this: PyRef<'py, Self>, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        match this.as_super().core.geometry() {
+            Geometry::Cylinder { axis, .. } => copied(py, axis),
+            _ => copied(py, &[]),
+        }
+    }
+}
+
+/// All points x with normal . x <= offset, for a normal (3,) of unit length: `HalfSpace([0, 0, 1], 0.0)` is a floor. A
+/// normal of another length is scaled; `offset` (m) is not.
+#[pyclass(name = "HalfSpace", module = "beetle_ik.obstacles", frozen, extends = PyObstacle)]
+pub struct PyHalfSpace {
+    /// Distance of the surface from the origin, along the normal (m).
+    #[pyo3(get)]
+    offset: f64,
+}
+
+#[pymethods]
+impl PyHalfSpace {
+    #[new]
+    fn new(normal: &Bound<'_, PyAny>, offset: f64) -> PyResult<PyClassInitializer<Self>> {
+        let normal = point("normal", normal)?;
+        made(Shape::half_space(normal, offset), Self { offset })
+    }
+
+    /// Outward normal (3,), of unit length.
+    #[getter]
+    fn normal<'py>(this: PyRef<'py, Self>, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        match this.as_super().core.geometry() {
+            Geometry::HalfSpace { normal, .. } => copied(py, normal),
+            _ => copied(py, &[]),
+        }
     }
 }
 
@@ -163,7 +229,7 @@ impl PyEllipsoid {
             semi_axes: Coordinates(semi_axes),
             rotation: Rotation::or_none(rotation),
         };
-        made(Obstacle::ellipsoid(center, semi_axes, rotation), own)
+        made(Shape::ellipsoid(center, semi_axes, rotation), own)
     }
 }
 
@@ -189,7 +255,7 @@ impl PyEllipse {
     fn new(center: &Bound<'_, PyAny>, semi_axes: &Bound<'_, PyAny>, angle: f64) -> PyResult<PyClassInitializer<Self>> {
         let (center, semi_axes) = (entries("center", center)?, entries("semi_axes", semi_axes)?);
         let own = Self { center: Coordinates(center), semi_axes: Coordinates(semi_axes), angle };
-        made(Obstacle::ellipse(center, semi_axes, angle), own)
+        made(Shape::ellipse(center, semi_axes, angle), own)
     }
 }
 
@@ -202,17 +268,11 @@ pub struct PyConvexMesh {
 #[pymethods]
 impl PyConvexMesh {
     #[new]
-    fn new(points: &Bound<'_, PyAny>) -> PyResult<PyClassInitializer<Self>> {
-        let numbers = array("points", points)?;
-        match numbers.shape() {
-            [_, 3] => {
-                let given: Vec<[f64; 3]> = numbers.as_slice()?.as_chunks().0.to_vec();
-                let points = given.clone();
-                let hull = on_a_thread(numbers.py(), move || Obstacle::convex_mesh(&given))?;
-                made(Ok(hull), Self { points })
-            }
-            shape => Err(invalid(format!("points: expected shape (k, 3), got {}", shape_text(shape)))),
-        }
+    fn new(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<PyClassInitializer<Self>> {
+        let points = read_points("points", points)?;
+        let given = points.clone();
+        let hull = on_a_thread(py, move || Shape::convex_mesh(&given));
+        made(Ok(hull?), Self { points })
     }
 
     /// The points as given (k, 3) (m).

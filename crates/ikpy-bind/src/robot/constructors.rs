@@ -1,53 +1,128 @@
 //! Constructors of `Robot`: URDF, Denavit-Hartenberg tables, planar arms, built-in robots.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use ikcore::load::{Dh, DhTable};
+use ikcore::load::{CollisionShapes, Dh, DhTable, UrdfOptions};
 use ikcore::robot::{JointKind, Robot};
 use pyo3::prelude::*;
+use pyo3::types::IntoPyDict;
 
 use super::PyRobot;
-use super::modified_copies::per_joint;
-use crate::convert::{rigid, summary, vector};
+use super::modified_copies::{per_joint, read_hold};
+use crate::convert::{path_or_text, rigid, summary, vector};
 use crate::error::{invalid, raise};
 use crate::monitor::on_a_thread;
+use crate::python_calls;
 
 #[pymethods]
 impl PyRobot {
-    /// Makes a robot from a URDF file or a string of XML.
+    /// Makes a robot from a URDF file or a string of XML. Links and joints beside the chain are kept: see `all_link_names` and
+    /// `held_joints`.
     ///
     /// Args:
-    ///     path_or_xml: a file, or text that contains "<".
+    ///     path_or_xml: a file, or text that contains "<". A file that ends in ".xacro" is expanded by the package xacro, of the
+    ///         extra "robots".
     ///     base: link whose frame is the reference frame; None: the root. It need not be an ancestor of `tip`.
     ///     tip: link at the end of the chain; None: the only leaf.
+    ///     hold: values (rad, m) of joints beside the chain, such as {"finger_joint": 0.04}; the others are held at zero, or at
+    ///         the limit nearest to it.
+    ///     srdf: an SRDF, file or text, whose disabled pairs of links are not tested against each other, see `with_srdf`.
+    ///     collision: what becomes of collision shapes. "primitives": spheres, cylinders, capsules and boxes become `capsules` that
+    ///         enclose them, and meshes are named but not read. "fit": meshes (STL, OBJ, DAE) too are covered by few capsules that
+    ///         hold all of them; `mesh_fits` says how well. They are kept in the user's cache directory. None: none is read.
+    ///     package_dirs: folders in which `package://` is looked for first; then come the variables ROS_PACKAGE_PATH and
+    ///         AMENT_PREFIX_PATH, and the folders above the file.
     ///
-    /// Joints may be revolute, continuous, prismatic, fixed or mimic. Collision spheres, cylinders, capsules and boxes become
-    /// `capsules` that enclose them; visuals, meshes and unknown tags are ignored, and so is `safety_controller`. A missing
-    /// velocity limit means infinite; zero locks the joint.
+    /// Joints may be revolute, continuous, prismatic, fixed or mimic. Visuals and unknown tags are ignored, and so is
+    /// `safety_controller`. A missing velocity limit means infinite; zero locks the joint.
     ///
     /// Raises:
     ///     UrdfError: not XML, no joint, a cycle, two roots, a zero axis, or several leaves and no `tip`.
     ///     UnknownNameError: no link of that name; the message lists them.
     #[staticmethod]
-    #[pyo3(signature = (path_or_xml, *, base=None, tip=None))]
+    #[pyo3(signature = (path_or_xml, *, base=None, tip=None, hold=None, srdf=None, collision=Some("primitives"),
+                        package_dirs=None),
+           text_signature = "(path_or_xml, *, base=None, tip=None, hold=None, srdf=None, collision='primitives', package_dirs=None)")]
+    #[allow(clippy::too_many_arguments)]
     fn from_urdf(
         path_or_xml: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = crate::convert::optional_text)] base: Option<&str>,
         #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
+        hold: Option<&Bound<'_, PyAny>>,
+        srdf: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] collision: Option<&str>,
+        package_dirs: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let source = match path_or_xml.extract::<String>() {
-            Ok(text) => text,
-            Err(_) => match path_or_xml.extract::<PathBuf>() {
-                Ok(path) => path.to_string_lossy().into_owned(),
-                Err(_) => {
-                    let got = summary(path_or_xml);
-                    return Err(invalid(format!("path_or_xml must be a path, or XML as text, got {got}")));
-                }
-            },
+        let py = path_or_xml.py();
+        let mut source = path_or_text("path_or_xml", path_or_xml)?;
+        let mut directory = None;
+        if source.ends_with(".xacro") && Path::new(&source).is_file() {
+            directory = Path::new(&source).parent().map(Path::to_path_buf);
+            source = python_calls::expand_xacro(py, &source)?;
+        }
+        let options = UrdfOptions {
+            base: base.map(str::to_owned),
+            tip: tip.map(str::to_owned),
+            hold: hold.map_or(Ok(vec![]), read_hold)?,
+            srdf: srdf.map(|srdf| path_or_text("srdf", srdf)).transpose()?,
+            collision: read_collision(collision)?,
+            package_dirs: package_dirs.map_or(Ok(vec![]), read_folders)?,
+            directory,
         };
-        let [base, tip] = [base, tip].map(|link| link.map(str::to_owned));
-        let robot = on_a_thread(path_or_xml.py(), move || Robot::from_urdf(&source, base.as_deref(), tip.as_deref()))?;
-        Ok(Self::from(robot))
+        on_a_thread(py, move || Robot::from_urdf_with(&source, &options)).map(Self::from)
+    }
+
+    /// Makes a robot from a MuJoCo model, as compiled by MuJoCo. Joint positions equal MuJoCo's qpos. Needs the extra "sim".
+    ///
+    /// Args:
+    ///     model: an MJCF file, text that contains "<", or a `mujoco.MjModel`.
+    ///     base: body whose frame is the reference frame; None: "world".
+    ///     tip: body or site at the end of the chain; None: the only leaf body.
+    ///     hold: as in `from_urdf`.
+    ///
+    /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples linearly
+    /// follow their master. Geoms that collide become `capsules` if they are spheres, capsules, cylinders or boxes.
+    ///
+    /// Raises:
+    ///     BeetleIkError: MuJoCo is not installed.
+    ///     UnknownNameError: no body or site of that name; the message lists them.
+    ///     InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or one that is coupled in
+    ///         another way.
+    #[staticmethod]
+    #[pyo3(signature = (model, *, base=None, tip=None, hold=None))]
+    fn from_mjcf<'py>(
+        model: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] base: Option<&str>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
+        hold: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        python_calls::robot(model.py(), "_mjcf", (model, base, tip, hold))
+    }
+
+    /// Makes a robot by its name in the package robot_descriptions, such as "panda_description" or "panda_mj_description", which
+    /// downloads it at first use. Needs the extra "robots".
+    ///
+    /// Args:
+    ///     name: a name of robot_descriptions.
+    ///     base, tip, hold: as in `from_urdf`.
+    ///     srdf, collision: as in `from_urdf`; None: its default. MuJoCo models take neither.
+    ///
+    /// Raises:
+    ///     BeetleIkError: robot_descriptions is not installed.
+    ///     UnknownNameError: no description of that name; the message names the nearest.
+    #[staticmethod]
+    #[pyo3(signature = (name, *, base=None, tip=None, hold=None, srdf=None, collision=None))]
+    fn from_description<'py>(
+        name: &Bound<'py, PyAny>,
+        base: Option<&Bound<'py, PyAny>>,
+        tip: Option<&Bound<'py, PyAny>>,
+        hold: Option<&Bound<'py, PyAny>>,
+        srdf: Option<&Bound<'py, PyAny>>,
+        collision: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let given = [("base", base), ("tip", tip), ("hold", hold), ("srdf", srdf), ("collision", collision)];
+        let given = given.into_iter().filter_map(|(option, value)| Some((option, value?)));
+        python_calls::robot(name.py(), "_descriptions", (name, given.into_py_dict(name.py())?))
     }
 
     /// Makes a robot from Denavit-Hartenberg parameters, one row per joint.
@@ -143,4 +218,24 @@ impl PyRobot {
     fn names() -> Vec<&'static str> {
         Robot::names().collect()
     }
+}
+
+fn read_collision(name: Option<&str>) -> PyResult<CollisionShapes> {
+    match name {
+        None => Ok(CollisionShapes::Ignored),
+        Some("primitives") => Ok(CollisionShapes::Primitives),
+        Some("fit") => Ok(CollisionShapes::Fit),
+        Some(other) => Err(invalid(format!("collision must be one of 'primitives', 'fit' or None, got '{other:.60}'"))),
+    }
+}
+
+/// Reads a list of folders, or one.
+fn read_folders(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    let folders = match value.extract::<PathBuf>() {
+        Ok(folder) => vec![folder],
+        Err(_) => value
+            .extract::<Vec<PathBuf>>()
+            .map_err(|_| invalid(format!("package_dirs must be a list of folders, got {}", summary(value))))?,
+    };
+    Ok(folders.into_iter().map(|folder| folder.to_string_lossy().into_owned()).collect())
 }

@@ -12,13 +12,30 @@ use crate::monitor::{QUICK_ROWS, in_pieces, long_call};
 
 #[pymethods]
 impl PyRobot {
-    /// Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics.
-    fn fk<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        match rows("joint angles", self.core.name(), self.core.dof(), q)? {
-            Rows::One(q) => Ok(pose_array(py, &self.core.fk(q.as_slice()?).map_err(raise)?)?.into_any()),
+    /// Returns the pose of the tip, (4, 4) for q (n,), (m, 4, 4) for q (m, n): forward kinematics. With `link`, that of any link
+    /// of the robot; `all_link_names` lists them.
+    ///
+    /// Raises:
+    ///     UnknownNameError: no link of that name; the message lists them.
+    #[pyo3(signature = (q, *, link=None))]
+    fn fk<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] link: Option<&str>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let robot = &*self.core;
+        match rows("joint angles", robot.name(), robot.dof(), q)? {
+            Rows::One(q) => {
+                let q = q.as_slice()?;
+                let pose = link.map_or_else(|| robot.fk(q), |link| robot.link_fk(link, q)).map_err(raise)?;
+                Ok(pose_array(py, &pose)?.into_any())
+            }
             Rows::Many(q, m) => {
-                let (robot, q) = (&*self.core, q.as_slice()?);
-                let poses = in_pieces(py, q, robot.dof(), QUICK_ROWS, |q| robot.fk_all(q))?;
+                let poses = in_pieces(py, q.as_slice()?, robot.dof(), QUICK_ROWS, |q| match link {
+                    None => robot.fk_all(q),
+                    Some(link) => robot.link_fk_all(link, q),
+                })?;
                 Ok(table(py, poses, &[m, 4, 4])?.into_any())
             }
         }
@@ -39,26 +56,44 @@ impl PyRobot {
         }
     }
 
-    /// Returns the poses of all links at q (n,), in the order of `link_names`: (links, 4, 4).
+    /// Returns the poses of the links of the chain at q (n,), in the order of `link_names`: (links, 4, 4).
     fn link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let poses = self.core.link_poses(&vector("joint angles", q)?).map_err(raise)?;
         let count = poses.len();
         table(py, poses.iter().flat_map(pose::rows).collect(), &[count, 4, 4])
     }
 
+    /// Returns the poses of all links at q (n,), in the order of `all_link_names`: (links, 4, 4).
+    fn all_link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let poses = self.core.all_link_poses(&vector("joint angles", q)?).map_err(raise)?;
+        let count = poses.len();
+        table(py, poses.iter().flat_map(pose::rows).collect(), &[count, 4, 4])
+    }
+
     /// Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or m),
-    /// then angular rows, along the axes of the base.
-    fn jacobian<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let n = self.core.dof();
-        match rows("joint angles", self.core.name(), n, q)? {
+    /// then angular rows, along the axes of the base. With `link`, that of the origin of any link of the robot;
+    /// `all_link_names` lists them.
+    ///
+    /// Raises:
+    ///     UnknownNameError: no link of that name; the message lists them.
+    #[pyo3(signature = (q, *, link=None))]
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] link: Option<&str>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (robot, n) = (&*self.core, self.core.dof());
+        let jacobians = |q: &[f64]| match link {
+            None => robot.jacobian_all(q),
+            Some(link) => robot.link_jacobian_all(link, q),
+        };
+        match rows("joint angles", robot.name(), n, q)? {
             Rows::One(q) => {
-                self.core.check("joint angles", q.as_slice()?).map_err(raise)?;
-                table(py, self.core.jacobian_all(q.as_slice()?).map_err(raise)?, &[6, n])
+                robot.check("joint angles", q.as_slice()?).map_err(raise)?;
+                table(py, jacobians(q.as_slice()?).map_err(raise)?, &[6, n])
             }
-            Rows::Many(q, m) => {
-                let (robot, q) = (&*self.core, q.as_slice()?);
-                table(py, in_pieces(py, q, n, QUICK_ROWS, |q| robot.jacobian_all(q))?, &[m, 6, n])
-            }
+            Rows::Many(q, m) => table(py, in_pieces(py, q.as_slice()?, n, QUICK_ROWS, jacobians)?, &[m, 6, n]),
         }
     }
 

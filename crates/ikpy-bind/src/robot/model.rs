@@ -7,7 +7,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
 use crate::convert::{copied, counted, row};
 use crate::error::raise;
@@ -19,11 +19,11 @@ use crate::python_calls;
 /// (link, a (3,), b (3,), radius (m)).
 type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);
 
-/// A robot arm: the chain of joints from a base link to a tip link. Immutable; made by `from_urdf`, `from_dh`, `planar` or
-/// `named`.
+/// A robot arm: the chain of joints from a base link to a tip link, and the links that branch off it. Immutable; made by
+/// `from_urdf`, `from_dh`, `planar` or `named`.
 ///
-/// Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow them. Poses are 4x4 matrices in
-/// the frame of the robot's base.
+/// Joint vectors hold the n independent joints in chain order (rad, m); mimic joints follow them, and joints beside the chain
+/// are held. Poses are 4x4 matrices in the frame of the robot's base.
 #[pyclass(name = "Robot", module = "beetle_ik", frozen, eq)]
 pub struct PyRobot {
     pub core: Arc<Robot>,
@@ -82,6 +82,18 @@ impl PyRobot {
         self.core.link_names().collect()
     }
 
+    /// Names of all links: those of the chain as in `link_names`, then those that branch off it.
+    #[getter]
+    fn all_link_names(&self) -> Vec<&str> {
+        self.core.all_link_names().collect()
+    }
+
+    /// The joints beside the chain, with the values (rad, m) at which they are held.
+    #[getter]
+    fn held_joints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.core.held_joints().iter().map(|held| (held.joint.name.as_str(), held.value)).into_py_dict(py)
+    }
+
     /// Lower position limits (n,) (rad, m); -inf for none.
     #[getter]
     fn lower<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
@@ -131,6 +143,37 @@ impl PyRobot {
         capsules.map(|c| (c.link.clone(), copied(py, &c.a), copied(py, &c.b), c.radius)).collect()
     }
 
+    /// Meshes that capsules were fitted to, each (link, file, volume ratio, largest distance): the volume of the capsules over that
+    /// of the mesh, NaN for one that is not closed; and the largest distance (m) of the capsules from it.
+    #[getter]
+    fn mesh_fits(&self) -> Vec<(String, String, f64, f64)> {
+        let fits = self.core.mesh_fits().iter();
+        fits.map(|fit| (fit.link.clone(), fit.file.clone(), fit.volume_ratio, fit.largest_distance)).collect()
+    }
+
+    /// Collision shapes that did not become `capsules`, such as "a mesh of link 'hand'": `from_urdf(..., collision="fit")` reads
+    /// meshes.
+    #[getter]
+    fn unread_collision_shapes(&self) -> Vec<String> {
+        self.core.unread_collision_shapes().to_vec()
+    }
+
+    /// Pairs of links that are tested against each other, each (link, link). Links that are fixed to each other never are. Without
+    /// an SRDF and without `with_collision_pairs` neither are neighbours, links that touch with all joints in the middle of their
+    /// ranges or in nearly all of 1,000 random configurations, and links that come no nearer than 20 mm in 10,000. Found at the
+    /// first call, always alike.
+    #[getter]
+    fn collision_pairs(&self, py: Python<'_>) -> Vec<(String, String)> {
+        let pairs = py.detach(|| self.core.collision_pairs());
+        pairs.into_iter().map(|[one, other]| (one.to_owned(), other.to_owned())).collect()
+    }
+
+    /// Named configurations (n,) of an SRDF, such as "ready".
+    #[getter]
+    fn stances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.core.stances().iter().map(|stance| (stance.name.as_str(), row(py, stance.q.clone()))).into_py_dict(py)
+    }
+
     /// Hashes the name, the joints with their limits, and the links.
     fn __hash__(&self) -> u64 {
         content_hash(&(self.core.name(), self.core.joints(), self.core.link_names().collect::<Vec<_>>()))
@@ -144,7 +187,11 @@ impl PyRobot {
         let (name, joints) = (self.core.name(), counted(self.core.dof(), "joint"));
         let mut links = self.core.link_names();
         let base = links.next().unwrap_or_default();
-        format!("<Robot '{name}': {joints}, {base} to {}>", links.last().unwrap_or(base))
+        let held = match self.core.held_joints() {
+            [] => String::new(),
+            held => format!(", {} held", counted(held.len(), "joint")),
+        };
+        format!("<Robot '{name}': {joints}, {base} to {}{held}>", links.last().unwrap_or(base))
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

@@ -1,12 +1,15 @@
 //! Modified copies of a robot: other tool, base, limits, capsules, or random errors.
 
+use std::collections::BTreeMap;
+
 use ikcore::rng;
 use ikcore::robot::{Joint, LinkCapsule};
 use pyo3::prelude::*;
 
 use super::PyRobot;
-use crate::convert::{count, point, rigid, scalar_or_vector, summary};
+use crate::convert::{count, path_or_text, point, rigid, scalar_or_vector, summary};
 use crate::error::{invalid, raise};
+use crate::obstacle::PyObstacle;
 
 #[pymethods]
 impl PyRobot {
@@ -37,6 +40,66 @@ impl PyRobot {
             joint.velocity = velocity.as_ref().map_or(joint.velocity, |values| values[i]);
         };
         self.core.with_limits(change).map(Self::from).map_err(raise)
+    }
+
+    /// Returns a copy with joints beside the chain held elsewhere, such as `with_held({"finger_joint": 0.04})` (rad, m).
+    ///
+    /// Raises:
+    ///     UnknownNameError: no held joint of that name; the message lists them.
+    ///     LimitError: a value outside the limits of the joint.
+    fn with_held(&self, hold: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let held = read_hold(hold)?;
+        let held = held.iter().map(|(name, value)| (name.as_str(), *value));
+        self.core.with_held(held).map(Self::from).map_err(raise)
+    }
+
+    /// Returns a copy that carries `shape`, in the frame of `link`, as a body of its own, such as a grasped part.
+    ///
+    /// Args:
+    ///     link: the link that carries it.
+    ///     shape: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh of `bik.obstacles`; the body is the capsule that
+    ///         encloses it.
+    ///     touch: links that it may touch, besides those that move with `link`.
+    ///     name: its name in messages and in `all_link_names`; None: "attached", "attached_2" and so on.
+    ///
+    /// Raises:
+    ///     UnknownNameError: no link of that name; the message lists them.
+    #[pyo3(signature = (link, shape, *, touch=None, name=None))]
+    fn with_attached(
+        &self,
+        #[pyo3(from_py_with = crate::convert::text)] link: &str,
+        shape: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = crate::convert::optional_texts)] touch: Option<Vec<String>>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
+    ) -> PyResult<Self> {
+        let shape = shape.cast::<PyObstacle>().map_err(|_| {
+            invalid(format!("shape must be made by bik.obstacles, such as Sphere or Box, got {}", summary(shape)))
+        })?;
+        let touch = touch.unwrap_or_default();
+        let touch: Vec<&str> = touch.iter().map(String::as_str).collect();
+        self.core.with_attached(link, &shape.get().core, &touch, name).map(Self::from).map_err(raise)
+    }
+
+    /// Returns a copy with these pairs of links tested against each other, and no others: each (link, link). To leave some out:
+    /// `robot.with_collision_pairs([pair for pair in robot.collision_pairs if "camera" not in pair])`.
+    ///
+    /// Raises:
+    ///     UnknownNameError: no link of that name; the message lists them.
+    fn with_collision_pairs(&self, pairs: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let pairs = pairs
+            .extract::<Vec<(String, String)>>()
+            .map_err(|_| invalid(format!("pairs must be a list of (link, link), got {}", summary(pairs))))?;
+        let pairs = pairs.into_iter().map(|(one, other)| [one, other]).collect();
+        self.core.with_collision_pairs(pairs).map(Self::from).map_err(raise)
+    }
+
+    /// Returns a copy with what an SRDF says: `path_or_xml` is a file, or text that contains "<". Pairs of links that it disables
+    /// are not tested against each other, and its states that give all joints of the robot become `stances`.
+    ///
+    /// Raises:
+    ///     UrdfError: no SRDF, or that of another robot.
+    fn with_srdf(&self, path_or_xml: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.core.with_srdf(&path_or_text("path_or_xml", path_or_xml)?).map(Self::from).map_err(raise)
     }
 
     /// Returns a copy with collision capsules: either one of `radius` (m) along each link, or the given ones, each (link, a,
@@ -76,6 +139,13 @@ pub fn per_joint(what: &str, value: &Bound<'_, PyAny>, n: usize) -> PyResult<Vec
         got if got == n => Ok(values),
         got => Err(invalid(format!("{what}: expected a number or {n} values (one per joint), got {got}"))),
     }
+}
+
+/// Reads values of joints by name.
+pub fn read_hold(value: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f64)>> {
+    let wrong = || invalid(format!("hold must be a dict of joint names and values (rad, m), got {}", summary(value)));
+    let held = value.extract::<BTreeMap<String, f64>>().map_err(|_| wrong())?;
+    Ok(held.into_iter().collect())
 }
 
 /// (link, a, b, radius).

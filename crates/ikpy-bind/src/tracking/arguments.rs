@@ -35,6 +35,7 @@ impl TrackArguments<'_, '_> {
             ease: false,
             limit_at: self.limit_at.parse::<LimitAt>().map_err(raise)?,
             seed: count("seed", self.seed)?,
+            ..TrackOptions::default()
         })
     }
 }

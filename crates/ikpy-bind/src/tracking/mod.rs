@@ -2,6 +2,7 @@
 
 mod arguments;
 mod control;
+mod filters;
 mod model_free;
 mod plant;
 mod record;
@@ -18,6 +19,8 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<weighted_pseudo_inverse::PyWeightedPseudoInverse>()?;
     module.add_class::<track::PyTrackResult>()?;
     module.add_function(wrap_pyfunction!(track::track, module)?)?;
+    module.add_class::<filters::PyLowPass>()?;
+    module.add_class::<filters::PyOneEuro>()?;
     module.add_class::<step::PyStep>()?;
     module.add_class::<tracker::PyTracker>()?;
     module.add_class::<znnbas::PyZnnbas>()?;

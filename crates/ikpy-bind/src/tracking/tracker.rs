@@ -4,14 +4,15 @@ use std::sync::Mutex;
 
 use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
-use ikcore::tracking::{Session, TickRule};
+use ikcore::tracking::{Arrival, Session, TickRule, TrackOptions};
 use pyo3::prelude::*;
 
 use super::arguments::{TrackArguments, tick_rule};
+use super::filters::read_filter;
 use super::session::in_progress;
 use super::step::PyStep;
 use crate::convert::{point, vector};
-use crate::error::raise;
+use crate::error::{invalid, raise};
 use crate::ik::read_target;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
@@ -20,8 +21,9 @@ use crate::traversal::traversed;
 
 /// Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 ///
-/// A target may jump farther than one tick can reach. The model-based rule then moves all joints in proportion, with one at
-/// its velocity limit, and brakes in time under acceleration limits.
+/// A target may jump farther than one tick can reach: the model-based rule moves all joints in proportion, with one at a
+/// limit. Under acceleration or jerk limits every command leaves a full stop inside all limits, the arm brakes in time, and
+/// noise of the targets is recognised and not followed; a smooth target without noise is followed without lag.
 ///
 /// Args:
 ///     robot: the arm.
@@ -36,6 +38,8 @@ use crate::traversal::traversed;
 ///     rotation_tolerance: largest rotation error (rad).
 ///     seed: seed of the random draws.
 ///     limit_at: as in `track`.
+///     target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
+///     timeout: time without a new target after which the arm stops (s); None: never.
 #[pyclass(name = "Tracker", module = "beetle_ik", frozen)]
 pub struct PyTracker {
     session: Mutex<Session>,
@@ -57,7 +61,7 @@ in_progress!(PyTracker, Session);
 impl PyTracker {
     #[new]
     #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
-                        position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval"))]
+                        position_tolerance=1e-6, rotation_tolerance=1e-6, seed=0, limit_at="interval", target_filter=None, timeout=None))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -71,6 +75,8 @@ impl PyTracker {
         rotation_tolerance: f64,
         seed: i128,
         #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
+        target_filter: Option<&Bound<'_, PyAny>>,
+        timeout: Option<f64>,
     ) -> PyResult<Self> {
         let (py, arm) = (robot.py(), &robot.get().core);
         limits.map_or(Ok(()), |limits| limits.require_no_functions("Tracker", "track"))?;
@@ -78,36 +84,74 @@ impl PyTracker {
         let rule = tick_rule(solver)?;
         let runs_solver = matches!(rule, TickRule::Solver(_));
         let asked = TrackArguments { rule, task, goals, position_tolerance, rotation_tolerance, seed, limit_at };
-        let options = asked.read(resolved)?;
+        let target_filter = read_filter(target_filter)?;
+        let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
         let session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
         Ok(Self { session: Mutex::new(session), runs_solver, robot: robot.clone().unbind(), limits: in_force })
     }
 
     /// Moves by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits.
     ///
+    /// Targets may come more rarely than ticks: `step(None)` says that there is no new one. Under acceleration or jerk limits the
+    /// model-based rule then follows the motion of the last targets, for two of their intervals at most, and stops smoothly;
+    /// otherwise the arm goes on towards the last target. A target that is not finite raises an error, after which the tracker
+    /// is as before.
+    ///
     /// Args:
-    ///     target: target of the tip at the end of the tick.
+    ///     target: target of the tip at the end of the tick; None: no new one.
     ///     velocity: (3,) (m/s), velocity of the target at the end of the tick, which only `WeightedPseudoInverse` uses;
     ///         None: from the difference to the previous target.
-    #[pyo3(signature = (target, *, velocity=None))]
-    fn step(&self, py: Python<'_>, target: &Bound<'_, PyAny>, velocity: Option<&Bound<'_, PyAny>>) -> PyResult<PyStep> {
-        let target = read_target("target", target)?;
+    ///     stamp: when the target was measured, on the tracker's own clock, `time` (s); None: at the end of the tick. The
+    ///         model-based rule follows the motion of the targets up to now, over 0.25 s at most, under acceleration or jerk
+    ///         limits; without these a stamp is refused. A target older than the last one is ignored.
+    #[pyo3(signature = (target, *, velocity=None, stamp=None))]
+    fn step(
+        &self,
+        py: Python<'_>,
+        target: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+        stamp: Option<f64>,
+    ) -> PyResult<PyStep> {
+        let target = target.map(|target| read_target("target", target)).transpose()?;
         let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
+        if target.is_none() && (velocity.is_some() || stamp.is_some()) {
+            return Err(invalid("velocity and stamp belong to a target; leave them out in step(None)".into()));
+        }
+        let arrival = target.map(|target| Arrival { target, velocity, stamp });
         let (watch, mut session) = (Stopwatch::start(), self.session());
         let core = if self.runs_solver {
-            watched_with_interpreter(py, None, |watcher| {
-                session.step_moving(&target, velocity, watcher).map_err(raise)
-            })?
+            watched_with_interpreter(py, None, |watcher| session.advance(arrival, watcher).map_err(raise))?
         } else {
-            session.step_moving(&target, velocity, &mut Unattended).map_err(raise)?
+            session.advance(arrival, &mut Unattended).map_err(raise)?
         };
         let motion = [session.q().to_vec(), session.qd().to_vec()];
         Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()))
     }
 
-    /// Resets to rest at q (n,) and t = 0.
-    fn reset(&self, q: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.session().reset(&vector("q", q)?).map_err(raise)
+    /// Brakes as fast as the limits allow: every following `step(None)` is a tick of the stop, until a target arrives.
+    ///
+    /// Returns:
+    ///     How long the stop takes (s); 0 without acceleration and jerk limits.
+    fn stop(&self) -> f64 {
+        self.session().stop()
+    }
+
+    /// Resets to q (n,) and t = 0, at rest or in motion.
+    ///
+    /// Args:
+    ///     q: configuration (n,) (rad, m).
+    ///     qd: velocities (n,) (rad/s, m/s): (q - q before) / dt; None: zero.
+    ///     qdd: accelerations (n,) (rad/s^2, m/s^2): differences of these velocities / dt; None: zero.
+    #[pyo3(signature = (q, qd=None, qdd=None))]
+    fn reset(
+        &self,
+        q: &Bound<'_, PyAny>,
+        qd: Option<&Bound<'_, PyAny>>,
+        qdd: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let read = |name: &str, value: Option<&Bound<'_, PyAny>>| value.map(|value| vector(name, value)).transpose();
+        let (q, qd, qdd) = (vector("q", q)?, read("qd", qd)?, read("qdd", qdd)?);
+        self.session().reset_moving(&q, qd.as_deref(), qdd.as_deref()).map_err(raise)
     }
 
     fn __repr__(&self) -> String {

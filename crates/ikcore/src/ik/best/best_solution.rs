@@ -119,7 +119,7 @@ impl BestSearch<'_, '_, '_> {
                     }
                     self.improve(q);
                 }
-                if self.attempt.context.options().solver.restarted_descent().is_some() {
+                if self.attempt.context.solver().restarted_descent().is_some() {
                     let (lower, upper) = self.bounds.parts_mut();
                     lower.fill(f64::NEG_INFINITY);
                     upper.fill(f64::INFINITY);

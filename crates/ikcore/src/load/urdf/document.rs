@@ -13,6 +13,8 @@ pub(super) struct Document {
     pub(super) name: String,
     pub(super) links: Vec<String>,
     pub(super) joints: Vec<UrdfJoint>,
+    /// Index of each joint, by name.
+    joint_numbers: HashMap<String, usize>,
     /// Line of each joint.
     joint_lines: Vec<u32>,
     /// Collision shapes of each link, by name.
@@ -66,6 +68,11 @@ impl UrdfKind {
         ("planar", Self::Planar),
         ("spherical", Self::Spherical),
     ];
+
+    /// Whether a joint of this kind turns about one axis or slides along it.
+    pub(super) fn moves_one_way(self) -> bool {
+        matches!(self, Self::Revolute | Self::Continuous | Self::Prismatic)
+    }
 }
 
 impl Document {
@@ -95,7 +102,13 @@ impl Document {
             joints.push(read_joint(joint, name)?);
         }
         let joint_lines = xml::lines(&text, xml::children(root, "joint"));
-        Ok(Self { name, links, joints, joint_lines, capsules })
+        let joint_numbers = joints.iter().enumerate().map(|(number, joint)| (joint.name.clone(), number)).collect();
+        Ok(Self { name, links, joints, joint_numbers, joint_lines, capsules })
+    }
+
+    /// Index of the joint of this name.
+    pub(super) fn joint_number(&self, name: &str) -> Option<usize> {
+        self.joint_numbers.get(name).copied()
     }
 
     /// An error at a joint.

@@ -11,8 +11,27 @@ use crate::robot::LinkCapsule;
 #[derive(Debug, Clone, Default)]
 pub(super) struct LinkCapsules {
     pub(super) capsules: Vec<LinkCapsule>,
-    /// Shapes without a capsule, in words.
-    pub(super) unread: Vec<String>,
+    /// Shapes without a capsule.
+    pub(super) unread: Vec<UnreadShape>,
+}
+
+/// A collision shape that did not become a capsule.
+#[derive(Debug, Clone)]
+pub(super) struct UnreadShape {
+    /// In words, such as "a mesh of link 'hand'".
+    pub(super) name: String,
+    pub(super) mesh: Option<CollisionMesh>,
+}
+
+/// A mesh of a link, in a file.
+#[derive(Debug, Clone)]
+pub(super) struct CollisionMesh {
+    pub(super) link: String,
+    /// As it is written in the URDF.
+    pub(super) file: String,
+    pub(super) scale: [f64; 3],
+    /// Pose of the mesh in its link.
+    pub(super) origin: Pose,
 }
 
 /// Reads the shapes of a link. An unreadable shape is not an error: most callers never need it.
@@ -27,10 +46,20 @@ pub(super) fn read(name: &str, link: Node) -> LinkCapsules {
                 let end = |sign: f64| (origin * Point3::from(sign * half)).coords.into();
                 read.capsules.push(LinkCapsule { link: name.into(), a: end(-1.0), b: end(1.0), radius });
             }
-            None => read.unread.push(format!("a {tag} of link '{name}'")),
+            None => {
+                let mesh = mesh(name, collision, shape);
+                read.unread.push(UnreadShape { name: format!("a {tag} of link '{name}'"), mesh });
+            }
         }
     }
     read
+}
+
+/// A mesh with its place; `None` for other shapes, and for a mesh whose attributes cannot be read.
+fn mesh(link: &str, collision: Node, shape: Node) -> Option<CollisionMesh> {
+    let file = shape.attribute("filename").filter(|_| shape.tag_name().name() == "mesh")?;
+    let scale = xml::vector(shape, "scale", "scale").ok()?.unwrap_or([1.0; 3]);
+    Some(CollisionMesh { link: link.into(), file: file.into(), scale, origin: origin(collision)? })
 }
 
 /// Half of the axis, and the radius, of the capsule that encloses a shape at the origin; `None` for unknown shapes.

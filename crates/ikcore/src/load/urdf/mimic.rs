@@ -1,39 +1,94 @@
 //! Mimic joints: the independent joint that drives each, narrowed by the limits of its followers.
 
+use std::collections::HashSet;
+
 use super::document::{Document, UrdfKind};
 use crate::error::{Error, Result, suggestion};
 use crate::robot::{Drive, Joint, JointKind};
 use crate::wording::listed;
 
 /// The independent joint that drives a joint (usually the joint itself), and its drive.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Coupling {
     pub(super) master: usize,
     pub(super) drive: Drive,
 }
 
-/// Follows `<mimic>` from joint to joint: value = multiplier * value of the mimicked joint + offset.
-pub(super) fn coupling(document: &Document, joint: usize) -> Result<Coupling> {
-    let joints = &document.joints;
-    let mut coupling = Coupling { master: joint, drive: Drive::DIRECT };
-    let mut passed = vec![joint];
-    while let Some(mimic) = &joints[coupling.master].mimic {
-        let follower = coupling.master;
-        let master = joints.iter().position(|other| other.name == mimic.joint);
-        let master = master.ok_or_else(|| unknown_target(document, follower, &mimic.joint))?;
-        if passed.contains(&master) {
-            let names: Vec<_> = passed.iter().chain([&master]).map(|index| joints[*index].name.as_str()).collect();
-            return Err(document.error_at(follower, format!("mimic joints follow in a circle: {}", names.join(" -> "))));
+/// The couplings of a document, each found once.
+pub(super) struct Couplings<'a> {
+    document: &'a Document,
+    found: Vec<Option<Coupling>>,
+}
+
+impl<'a> Couplings<'a> {
+    pub(super) fn new(document: &'a Document) -> Self {
+        Self { document, found: vec![None; document.joints.len()] }
+    }
+
+    /// Follows `<mimic>` from joint to joint: value = multiplier * value of the mimicked joint + offset.
+    pub(super) fn of(&mut self, joint: usize) -> Result<Coupling> {
+        let mut followers = vec![];
+        let coupling = self.master_above(joint, &mut followers)?;
+        let joints = &self.document.joints;
+        if joints[coupling.master].kind == UrdfKind::Fixed && coupling.master != joint {
+            let (follower, master) = (&joints[joint].name, &joints[coupling.master].name);
+            return Err(self.document.error_at(joint, format!("joint '{follower}' mimics '{master}', which is fixed")));
         }
-        passed.push(master);
-        let (multiplier, offset) = (mimic.multiplier, mimic.offset);
-        let Drive { scale, offset: constant } = coupling.drive;
-        coupling = Coupling { master, drive: Drive { scale: scale * multiplier, offset: scale * offset + constant } };
+        Ok(self.recorded(coupling, &followers))
     }
-    if joints[coupling.master].kind == UrdfKind::Fixed {
-        let (follower, master) = (&joints[joint].name, &joints[coupling.master].name);
-        return Err(document.error_at(joint, format!("joint '{follower}' mimics '{master}', which is fixed")));
+
+    /// The same for a joint whose errors nobody needs to know: where the joints that it follows end in none that moves, the last
+    /// of them counts as independent.
+    pub(super) fn of_bystander(&mut self, joint: usize) -> Coupling {
+        let mut followers = vec![];
+        let movable = |joint: usize| self.document.joints[joint].kind.moves_one_way();
+        match self.master_above(joint, &mut followers) {
+            Ok(coupling) if movable(coupling.master) => self.recorded(coupling, &followers),
+            _ => {
+                let last = followers.iter().rposition(|follower| movable(*follower)).unwrap_or(0);
+                let alone = Coupling { master: followers.get(last).copied().unwrap_or(joint), drive: Drive::DIRECT };
+                self.found[alone.master] = Some(alone);
+                self.recorded(alone, &followers[..last])
+            }
+        }
     }
-    Ok(coupling)
+
+    /// The coupling of the last joint above `joint` that is independent or already found; `followers` gets those in between.
+    fn master_above(&self, joint: usize, followers: &mut Vec<usize>) -> Result<Coupling> {
+        let (document, mut at) = (self.document, joint);
+        let mut passed = HashSet::new();
+        loop {
+            if let Some(coupling) = self.found[at] {
+                return Ok(coupling);
+            }
+            passed.insert(at);
+            let Some(mimic) = &document.joints[at].mimic else {
+                return Ok(Coupling { master: at, drive: Drive::DIRECT });
+            };
+            followers.push(at);
+            let next = document.joint_number(&mimic.joint);
+            let next = next.ok_or_else(|| unknown_target(document, at, &mimic.joint))?;
+            if passed.contains(&next) {
+                let circle = followers.iter().chain([&next]).map(|index| document.joints[*index].name.as_str());
+                let circle = circle.collect::<Vec<_>>().join(" -> ");
+                return Err(document.error_at(at, format!("mimic joints follow in a circle: {circle}")));
+            }
+            at = next;
+        }
+    }
+
+    /// Records the couplings of `followers`, the last of which follows `coupling`, and returns that of the first.
+    fn recorded(&mut self, mut coupling: Coupling, followers: &[usize]) -> Coupling {
+        for &follower in followers.iter().rev() {
+            if let Some(mimic) = &self.document.joints[follower].mimic {
+                let Drive { scale, offset } = coupling.drive;
+                let drive = Drive { scale: mimic.multiplier * scale, offset: mimic.multiplier * offset + mimic.offset };
+                coupling.drive = drive;
+            }
+            self.found[follower] = Some(coupling);
+        }
+        coupling
+    }
 }
 
 fn unknown_target(document: &Document, follower: usize, target: &str) -> Error {

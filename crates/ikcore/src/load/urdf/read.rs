@@ -1,12 +1,36 @@
 //! `Robot::from_urdf`: from a file or its text to a robot.
 
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
 
+use super::bodies::{self, CollisionShapes};
 use super::chain;
 use super::document::Document;
+use super::package::Packages;
 use super::tree::Tree;
 use crate::error::{Error, Result, shortened};
 use crate::robot::Robot;
+
+/// How a URDF becomes a robot.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct UrdfOptions {
+    /// Link at the start of the chain; `None`: the root.
+    pub base: Option<String>,
+    /// Link at the end of the chain; `None`: the only leaf below the base.
+    pub tip: Option<String>,
+    /// Values of joints beside the chain (rad, m); the others are held at zero or at the limit nearest to it.
+    pub hold: Vec<(String, f64)>,
+    /// What becomes of the collision shapes.
+    pub collision: CollisionShapes,
+    /// Folders with packages, in which `package://` is looked for first; then in `ROS_PACKAGE_PATH`, `AMENT_PREFIX_PATH` and the
+    /// folders above the file.
+    pub package_dirs: Vec<String>,
+    /// The folder that relative names of meshes start from; `None`: that of the file.
+    pub directory: Option<PathBuf>,
+    /// An SRDF, as a file or text, for [`with_srdf`](Robot::with_srdf).
+    pub srdf: Option<String>,
+}
 
 impl Robot {
     /// Reads a robot from a URDF file, or from the XML itself (a string that contains `<`).
@@ -19,41 +43,70 @@ impl Robot {
     /// joint. Only joints on the chain, and masters, are checked: an unsupported gripper does not prevent loading an
     /// arm.
     ///
+    /// The links beside the chain are kept ([`all_link_names`](Robot::all_link_names)), and their joints
+    /// [held](Robot::held_joints) at zero or at the limit nearest to it; mimic joints beside the chain follow their masters.
+    /// Floating, planar and spherical joints beside the chain stay in their origin.
+    ///
     /// Limits: a revolute or prismatic joint with neither `lower` nor `upper` is unlimited (URDF's default of zero for
     /// both would lock it); if one is given, the other is zero, as URDF specifies. Without `velocity` the speed is
     /// unlimited; an explicit zero locks the joint. Soft limits (`<safety_controller>`) are ignored.
     ///
-    /// Collision shapes of the links on the chain become [capsules](Robot::capsules) that enclose them: exact for
-    /// spheres, with protruding caps for cylinders and boxes. Meshes are not read; [`Robot::unread_collision_shapes`]
-    /// names them.
+    /// Collision shapes of all links become [capsules](Robot::capsules) that enclose them: exact for spheres, with
+    /// protruding caps for cylinders and boxes. Meshes are not read unless [`CollisionShapes::Fit`] says so;
+    /// [`Robot::unread_collision_shapes`] names them.
     ///
     /// # Errors
     /// [`Error::Unreadable`] for a file; [`Error::Urdf`], with the line where there is one, for text that is no URDF;
     /// [`Error::UnknownLink`] and [`Error::AmbiguousTip`] for base and tip; those of
     /// [`ChainBuilder::build`](crate::robot::ChainBuilder::build) for impossible limits.
     pub fn from_urdf(path_or_xml: &str, base: Option<&str>, tip: Option<&str>) -> Result<Self> {
-        let document = if path_or_xml.contains('<') {
-            Document::parse(path_or_xml)?
-        } else {
-            Document::parse(&read(path_or_xml)?)?
-        };
+        let owned = |name: Option<&str>| name.map(str::to_owned);
+        Self::from_urdf_with(path_or_xml, &UrdfOptions { base: owned(base), tip: owned(tip), ..UrdfOptions::default() })
+    }
+
+    /// [`from_urdf`](Self::from_urdf) with further options.
+    ///
+    /// # Errors
+    /// Those of [`from_urdf`](Self::from_urdf), [`with_held`](Self::with_held) and [`with_srdf`](Self::with_srdf).
+    pub fn from_urdf_with(path_or_xml: &str, options: &UrdfOptions) -> Result<Self> {
+        let document = Document::parse(&text_of(path_or_xml, read_urdf)?)?;
         let tree = Tree::new(&document)?;
-        let base = match base {
+        let base = match &options.base {
             Some(name) => tree.link(name)?,
             None => tree.root(),
         };
-        let tip = match tip {
+        let tip = match &options.tip {
             Some(name) => tree.link(name)?,
             None => tree.only_leaf_below(base)?,
         };
-        chain::build(&document, base, &tree.path(base, tip)?)
+        let robot = chain::build(&document, &tree, base, tip)?;
+        let folder = Path::new(path_or_xml).parent().filter(|_| !path_or_xml.contains('<'));
+        let packages = Packages::new(&options.package_dirs, options.directory.as_deref().or(folder));
+        let robot = robot.with_bodies(bodies::of(&document, &robot, options.collision, &packages)?);
+        let robot = match &options.hold[..] {
+            [] => robot,
+            hold => robot.with_held(hold.iter().map(|(joint, value)| (joint.as_str(), *value)))?,
+        };
+        match &options.srdf {
+            None => Ok(robot),
+            Some(srdf) => robot.with_srdf(srdf),
+        }
     }
 }
 
-fn read(path: &str) -> Result<String> {
+/// The text itself if it contains `<`, otherwise that of the file.
+pub(super) fn text_of(path_or_xml: &str, read: impl Fn(&str) -> Result<String>) -> Result<Cow<'_, str>> {
+    if path_or_xml.contains('<') { Ok(Cow::Borrowed(path_or_xml)) } else { read(path_or_xml).map(Cow::Owned) }
+}
+
+pub(super) fn read(path: &str) -> Result<String> {
     let bytes =
         std::fs::read(path).map_err(|error| Error::Unreadable { path: shortened(path), problem: error.to_string() })?;
-    let text = String::from_utf8(bytes).map_err(|error| not_utf8(&error))?;
+    String::from_utf8(bytes).map_err(|error| not_utf8(&error))
+}
+
+fn read_urdf(path: &str) -> Result<String> {
+    let text = read(path)?;
     if let Some(stem) = path.strip_suffix(".xacro") {
         let stem = stem.strip_suffix(".urdf").unwrap_or(stem);
         let problem = format!("'{path}' is a xacro file: run `xacro {path} > {stem}.urdf` and load the result");

@@ -86,10 +86,7 @@ impl<'a> Tree<'a> {
     /// independent joints that move it.
     fn leaves_below(&self, base: &'a str) -> Vec<(&'a str, usize)> {
         let joints = &self.document.joints;
-        let mut below: HashMap<&str, Vec<usize>> = HashMap::new();
-        for (index, joint) in joints.iter().enumerate() {
-            below.entry(&joint.parent).or_default().push(index);
-        }
+        let below = self.joints_below();
         let (mut leaves, mut open) = (HashMap::new(), vec![(base, 0)]);
         while let Some((link, moved_by)) = open.pop() {
             match below.get(link) {
@@ -102,6 +99,37 @@ impl<'a> Tree<'a> {
             }
         }
         self.links().filter_map(|link| Some((link, *leaves.get(link)?))).collect()
+    }
+
+    /// The joints below each link.
+    fn joints_below(&self) -> HashMap<&'a str, Vec<usize>> {
+        let mut below: HashMap<&str, Vec<usize>> = HashMap::new();
+        for (index, joint) in self.document.joints.iter().enumerate() {
+            below.entry(&joint.parent).or_default().push(index);
+        }
+        below
+    }
+
+    /// The links that are not on a chain with these links, in the order in which they branch off it: parents first. Each has the
+    /// number of the link before it, counting those of the chain first, and the joint in between.
+    pub(super) fn off_chain(&self, chain: &[&str]) -> Vec<(usize, TreeStep)> {
+        let (joints, below) = (&self.document.joints, self.joints_below());
+        let mut found: HashSet<&str> = chain.iter().copied().collect();
+        let mut links = chain.to_vec();
+        let mut beside = vec![];
+        let mut number = 0;
+        while let Some(&link) = links.get(number) {
+            let up = self.joint_above.get(link).map(|joint| (*joint, true, joints[*joint].parent.as_str()));
+            let down = below.get(link).into_iter().flatten().map(|j| (*j, false, joints[*j].child.as_str()));
+            for (joint, reversed, next) in up.into_iter().chain(down) {
+                if found.insert(next) {
+                    beside.push((number, TreeStep { joint, reversed }));
+                    links.push(next);
+                }
+            }
+            number += 1;
+        }
+        beside
     }
 
     /// The joints from `base` to `tip`: up to the common ancestor, then down.

@@ -27,7 +27,7 @@ pub(crate) fn point_to_point(
     let mut search = PairSearch::new(robot, &limits, [start, end], options.seed, deadline)?;
     if let Some(velocity) = &options.start_velocity {
         return match moving_start::begin(&mut search, velocity, options, monitor)? {
-            Beginning::Whole(plan) => Ok(plan),
+            Beginning::Whole(plan) => Ok(*plan),
             Beginning::Stop(stop) => {
                 let at_rest = Endpoint::Configuration(moving_start::end_of(&stop));
                 let options = PointToPointOptions { start_velocity: None, ..options.clone() };

@@ -15,7 +15,7 @@ use crate::trajectory::Trajectory;
 /// How a motion with an initial velocity goes on.
 pub(super) enum Beginning {
     /// Directly to the end.
-    Whole(Plan),
+    Whole(Box<Plan>),
     /// To a stop, because no direct motion was found to be free.
     Stop(Trajectory),
 }
@@ -58,7 +58,7 @@ pub(super) fn begin(
         let cost = options.objective.of(search.robot, &trajectory);
         let nearest =
             sweep.and_then(|mut sweep| sweep.smallest(&TimedMotion(&trajectory), [0.0, trajectory.duration()]));
-        return Ok(Beginning::Whole(Plan {
+        return Ok(Beginning::Whole(Box::new(Plan {
             objective: options.objective,
             cost,
             history: vec![Improvement { evaluations, cost }],
@@ -73,7 +73,7 @@ pub(super) fn begin(
             evaluations,
             elapsed: search.deadline.elapsed(),
             trajectory,
-        }));
+        })));
     }
     let braking = stop(&from, &limits)?;
     if is_free(&braking) {

@@ -230,9 +230,9 @@ impl Tree {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::obstacle::Obstacle;
     use crate::rng;
     use crate::robot::Robot;
+    use crate::shape::Shape;
     use crate::solver::Unattended;
 
     const MARGIN: f64 = 0.01;
@@ -242,7 +242,7 @@ mod tests {
     }
 
     /// Searches with `budget` from `start` to `end`; returns what was found, and how many configurations it examined.
-    fn connect(obstacle: Obstacle, budget: usize, monitor: &mut dyn Monitor) -> (Connection, usize) {
+    fn connect(obstacle: Shape, budget: usize, monitor: &mut dyn Monitor) -> (Connection, usize) {
         let (robot, obstacles) = (arm(), [obstacle]);
         let limits = MotionLimits::new(&robot, None, "this test").unwrap();
         let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
@@ -274,13 +274,13 @@ mod tests {
 
     #[test]
     fn a_path_round_an_obstacle_is_clear_and_shortened() {
-        let (found, _) = connect(Obstacle::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Unattended);
+        let (found, _) = connect(Shape::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Unattended);
         assert!(matches!(found, Connection::Found(_)), "{found:?}");
     }
 
     #[test]
     fn the_budget_ends_a_search_without_a_way() {
-        let wall = Obstacle::cuboid([1.05, 0.0, 0.0], [1.9, 0.02, 1.0], None).unwrap();
+        let wall = Shape::cuboid([1.05, 0.0, 0.0], [1.9, 0.02, 1.0], None).unwrap();
         let (found, examined) = connect(wall, 2000, &mut Unattended);
         assert_eq!(found, Connection::NotFound);
         assert!(examined < 2200, "{examined}"); // an edge that was begun is examined to its end
@@ -288,7 +288,7 @@ mod tests {
 
     #[test]
     fn a_search_without_a_single_clear_step_ends_too() {
-        let everywhere = Obstacle::sphere([0.0, 0.0, 0.0], 0.5).unwrap();
+        let everywhere = Shape::sphere([0.0, 0.0, 0.0], 0.5).unwrap();
         assert_eq!(connect(everywhere, 2000, &mut Unattended), (Connection::NotFound, 0));
     }
 
@@ -300,7 +300,7 @@ mod tests {
                 false
             }
         }
-        let (found, _) = connect(Obstacle::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Impatient);
+        let (found, _) = connect(Shape::sphere([1.6, 0.0, 0.0], 0.2).unwrap(), 50_000, &mut Impatient);
         assert_eq!(found, Connection::Interrupted);
     }
 }

@@ -1,12 +1,13 @@
 //! Collisions of a motion: tested at samples during the search, certified for the plan.
 
 use crate::error::Result;
-use crate::obstacle::{Obstacle, Scene, Shape, Sweep};
+use crate::obstacle::{Scene, Sweep};
 use crate::planning::collision_checks::{self, TimedMotion, refuse_collision, too_near};
 use crate::planning::planar_arm::PlanarArm;
 use crate::planning::planner_options::PointToPointOptions;
 use crate::planning::violation::Violation;
 use crate::robot::Robot;
+use crate::shape::{Geometry, Shape};
 use crate::trajectory::Trajectory;
 
 /// Obstacles and links that a motion must stay clear of.
@@ -84,9 +85,9 @@ impl<'a> CollisionTest<'a> {
 
 impl UnitDisc {
     /// The ellipse of `obstacle` grown by `kept` (m); None for any other shape.
-    fn of(obstacle: &Obstacle, kept: f64) -> Option<Self> {
-        match *obstacle.shape() {
-            Shape::Ellipse { center, semi_axes, angle } => {
+    fn of(obstacle: &Shape, kept: f64) -> Option<Self> {
+        match *obstacle.geometry() {
+            Geometry::Ellipse { center, semi_axes, angle } => {
                 let semi_axes = semi_axes.map(|semi_axis| semi_axis + kept);
                 Some(Self { center, direction: [angle.cos(), angle.sin()], semi_axes })
             }

@@ -92,16 +92,6 @@ impl<'a, O: Objective + ?Sized> Evaluator<'a, O> {
         }
     }
 
-    /// The objective.
-    pub(in crate::solver) fn objective(&self) -> &O {
-        self.objective
-    }
-
-    /// Returns the objective, the generator and the monitor.
-    pub(crate) fn into_parts(self) -> (&'a mut O, &'a mut LazyRng, &'a mut dyn Monitor) {
-        (self.objective, self.rng, self.monitor)
-    }
-
     /// Number of entries of a point.
     pub fn dimension(&self) -> usize {
         self.dimension

@@ -3,9 +3,8 @@
 //!
 //! The step that lowers the error most within the box of a tick drives every joint to its limit, and back in the next
 //! tick if that lowers the error more. So the displacement to the target is computed within the position limits only,
-//! without the box, and a tick covers the largest fraction of it that the limits of all joints allow. With acceleration
-//! limits, every joint can also still stop before its displacement ends. A moving target is followed by its own motion
-//! plus a fraction of the remaining displacement.
+//! without the box, and a tick covers the largest fraction of it that the limits of all joints allow. A moving target is
+//! followed by its own motion plus a fraction of the remaining displacement.
 
 use super::tick::Tick;
 use crate::kinematics::Columns;
@@ -32,8 +31,6 @@ pub(super) struct Approach {
     far_below: f64,
     /// The largest fraction of `catch_up` that the box of the tick allows.
     within_reach: f64,
-    /// The largest fraction after which every joint can still stop in time.
-    within_braking: f64,
 }
 
 impl Approach {
@@ -56,12 +53,12 @@ impl Approach {
             catch_up = whole;
             keep_up.fill(0.0);
         }
-        let mut approach = Self { catch_up, keep_up, far_below, within_reach: 1.0, within_braking: 1.0 };
-        approach.find_shares(q, tick);
+        let mut approach = Self { catch_up, keep_up, far_below, within_reach: 1.0 };
+        approach.find_share(q, tick);
         approach
     }
 
-    fn find_shares(&mut self, q: &[f64], tick: &Tick<'_>) {
+    fn find_share(&mut self, q: &[f64], tick: &Tick<'_>) {
         let (lower, upper) = (tick.tick_box.lower(), tick.tick_box.upper());
         for (j, (catch_up, keep_up)) in self.catch_up.iter().zip(&self.keep_up).enumerate() {
             let end = if *catch_up > 0.0 { upper[j] } else { lower[j] };
@@ -69,11 +66,6 @@ impl Approach {
             // A joint that still moves the other way reverses as fast as it may, and does not hold up the others.
             if reach > 0.0 {
                 self.within_reach = self.within_reach.min(reach);
-            }
-            let distance = catch_up.abs();
-            let step = tick.limits.longest_step_before(j, distance, [tick.time, tick.time + tick.dt]);
-            if step < distance {
-                self.within_braking = self.within_braking.min(step / distance);
             }
         }
     }
@@ -83,16 +75,10 @@ impl Approach {
         self.within_reach < self.far_below
     }
 
-    /// Whether an arm that moved straight to the target could not stop there.
-    pub(super) fn needs_braking(&self) -> bool {
-        self.within_braking < 1.0
-    }
-
     /// Moves `q` by one tick.
     pub(super) fn advance(&self, q: &mut [f64], tick: &Tick<'_>) {
-        let share = self.within_reach.min(self.within_braking);
         for (q, (catch_up, keep_up)) in q.iter_mut().zip(self.catch_up.iter().zip(&self.keep_up)) {
-            *q += keep_up + share * catch_up;
+            *q += keep_up + self.within_reach * catch_up;
         }
         tick.tick_box.clip(q);
     }

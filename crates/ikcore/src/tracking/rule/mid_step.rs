@@ -9,7 +9,6 @@
 use super::approach::Approach;
 use super::tick::{Tick, TickResult};
 use crate::kinematics::Columns;
-use crate::limits::Field;
 use crate::math::{
     Frame, MAX_DOF,
     box_step::{BoxStep, least_damping},
@@ -86,12 +85,10 @@ pub(super) fn advance(memory: &mut MidStepState, q: &[f64], mut tick: Tick<'_>) 
     }
     found.set_tip(&memory.begin.tip, tick.target, tick.criterion);
     let value_at_rest = found.value();
-    let braking = memory.approach_with_braking(q, &found.q, &tick);
-    let mut moved =
-        braking.is_none() && (memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick));
+    let mut moved = memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick);
     if !found.is_solved() {
         moved = true;
-        if !memory.follow_approach(braking, q, value_at_rest, &mut found, &tick) {
+        if !memory.follow_approach(q, value_at_rest, &mut found, &tick) {
             memory.levenberg_marquardt(&mut found, tick);
         }
     }
@@ -197,50 +194,25 @@ impl MidStepState {
         found.iterations += 1;
     }
 
-    /// The approach to a target that the arm lags behind, if it must brake in time to stop there.
-    fn approach_with_braking(&self, q: &[f64], near: &[f64], tick: &Tick<'_>) -> Option<Approach> {
-        let limited = tick.limits.field(Field::Acceleration).is_some();
-        if !limited || tick.motion().begin.assess_tip(&self.begin.tip, tick.criterion).score.solved {
-            return None;
-        }
-        Some(self.approach(q, near, tick)).filter(Approach::needs_braking)
-    }
-
-    fn approach(&self, q: &[f64], near: &[f64], tick: &Tick<'_>) -> Approach {
-        Approach::new(q, near, &self.begin.tip, &self.begin.columns, tick)
-    }
-
-    /// Approaches a target that is far, or before which the arm must brake. Returns false if the target is neither, or
-    /// if the tick would not bring the arm nearer.
-    fn follow_approach(
-        &mut self,
-        braking: Option<Approach>,
-        q: &[f64],
-        value_at_rest: f64,
-        found: &mut TickResult,
-        tick: &Tick<'_>,
-    ) -> bool {
-        let must_brake = braking.is_some();
-        let approach = braking.unwrap_or_else(|| {
-            let mut near = Point::from_slice(q);
-            tick.tick_box.clip(&mut near);
-            self.approach(q, &near, tick)
-        });
-        if !must_brake && !approach.is_far() {
+    /// Approaches a target that is far. Returns false if it is not, or if the tick would not bring the arm nearer.
+    fn follow_approach(&mut self, q: &[f64], value_at_rest: f64, found: &mut TickResult, tick: &Tick<'_>) -> bool {
+        let mut near = Point::from_slice(q);
+        tick.tick_box.clip(&mut near);
+        let approach = Approach::new(q, &near, &self.begin.tip, &self.begin.columns, tick);
+        if !approach.is_far() {
             return false;
         }
         self.trial.place(q);
         approach.advance(&mut self.trial.q, tick);
         self.trial.update(tick.robot);
         let assessment = tick.target.assess_tip(&self.trial.tip, tick.criterion);
-        // An arm that must brake may move away from its target.
-        let accepted = must_brake || assessment.score.value < value_at_rest;
-        if accepted {
+        let nearer = assessment.score.value < value_at_rest;
+        if nearer {
             self.accept_trial(found, assessment);
             found.evaluations += 1;
             found.iterations += 1;
         }
-        accepted
+        nearer
     }
 
     /// Lowers the error as far as possible when model steps cannot.

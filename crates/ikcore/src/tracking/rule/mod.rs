@@ -5,12 +5,14 @@
 //! | `tick_rule` | [`TickRule`]: the choice of rule, and the rule in use |
 //! | `tick` | input and result of a rule |
 //! | `mid_step` | the model-based rule, the default |
+//! | `goal_pursuit` | the model-based rule under acceleration and jerk limits |
 //! | `approach` | how that rule approaches a target that one tick cannot reach |
 //! | `weighted_pseudo_inverse` | resolved-rate control |
 //! | `any_solver` | any solver, started at the accepted configuration |
 
 mod any_solver;
 mod approach;
+mod goal_pursuit;
 mod mid_step;
 mod tick;
 mod tick_rule;

@@ -7,6 +7,7 @@ use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::task::{Assessment, Criterion, Goals, SquaredError, Target, TargetMotion, Twist};
+use crate::tracking::limited_motion::LimitedMotion;
 
 /// The input of a rule for one tick.
 pub(in crate::tracking) struct Tick<'a> {
@@ -27,6 +28,10 @@ pub(in crate::tracking) struct Tick<'a> {
     pub limits: &'a Limits,
     /// The velocity limits of the tick (n,) (rad/s, m/s).
     pub velocity_limit: &'a [f64],
+    /// Steps, changes and limits of an arm under acceleration or jerk limits.
+    pub limited: Option<&'a LimitedMotion>,
+    /// Age of the target at the end of the tick, in ticks; `None` if it is the one of an earlier tick.
+    pub sampled_ago: Option<f64>,
     /// The box of joint positions at the end of the tick.
     pub tick_box: &'a Bounds,
     /// The value accepted in the previous tick, if any.
@@ -69,7 +74,7 @@ pub(in crate::tracking) struct TickResult {
 
 impl TickResult {
     /// A result at `q`, not assessed yet.
-    pub(super) fn at(q: &[f64]) -> Self {
+    pub(crate) fn at(q: &[f64]) -> Self {
         let score = Score { value: f64::INFINITY, solved: false };
         let assessment = Assessment { score, error: SquaredError { position: None, rotation: None } };
         let (q, position) = (Point::from_slice(q), [f64::NAN; 3]);

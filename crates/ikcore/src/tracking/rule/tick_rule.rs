@@ -1,6 +1,7 @@
 //! The choice of rule, and the rule in use.
 
 use super::any_solver;
+use super::goal_pursuit::GoalPursuit;
 use super::mid_step::{self, MidStepState};
 use super::tick::{Tick, TickResult};
 use super::weighted_pseudo_inverse::{self, WeightedPseudoInverse};
@@ -24,6 +25,8 @@ pub enum TickRule {
 #[derive(Debug)]
 pub(in crate::tracking) enum RunningRule {
     MidStep(MidStepState),
+    /// Takes the place of `MidStep` under acceleration or jerk limits.
+    GoalPursuit(Box<GoalPursuit>),
     Solver(AnySolver),
     WeightedPseudoInverse(WeightedPseudoInverse, weighted_pseudo_inverse::Scratch),
 }
@@ -59,8 +62,10 @@ impl TickRule {
         matches!(self, Self::WeightedPseudoInverse(_))
     }
 
-    pub(in crate::tracking) fn start(&self) -> RunningRule {
+    /// Starts the rule, for an arm `under_acceleration` or jerk limits or without.
+    pub(in crate::tracking) fn start(&self, under_acceleration: bool) -> RunningRule {
         match self {
+            Self::MidStep if under_acceleration => RunningRule::GoalPursuit(Box::default()),
             Self::MidStep => RunningRule::MidStep(MidStepState::default()),
             Self::Solver(solver) => RunningRule::Solver(solver.clone()),
             Self::WeightedPseudoInverse(rule) => {
@@ -73,15 +78,23 @@ impl TickRule {
 impl RunningRule {
     /// Drops the state of the last tick, because the arm is not where the rule left it.
     pub(crate) fn forget(&mut self) {
-        if let Self::MidStep(memory) = self {
-            memory.forget();
+        match self {
+            Self::MidStep(memory) => memory.forget(),
+            Self::GoalPursuit(pursuit) => pursuit.forget(),
+            Self::Solver(_) | Self::WeightedPseudoInverse(..) => {}
         }
+    }
+
+    /// Whether the rule extrapolates targets, and so can use their stamps.
+    pub(crate) fn extrapolates(&self) -> bool {
+        matches!(self, Self::GoalPursuit(_))
     }
 
     /// Runs one tick from `q`.
     pub(crate) fn advance(&mut self, q: &[f64], tick: Tick<'_>) -> TickResult {
         match self {
             Self::MidStep(memory) => mid_step::advance(memory, q, tick),
+            Self::GoalPursuit(pursuit) => pursuit.advance(q, tick),
             Self::Solver(solver) => any_solver::advance(solver, q, tick),
             Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, q, tick),
         }

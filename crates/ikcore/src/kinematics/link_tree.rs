@@ -1,0 +1,176 @@
+//! All links of a robot: those of the chain, and those that branch off it. Held joints are folded into constant frames, so that
+//! most branches add links to the stages of the chain; a mimic joint on a branch adds a stage of its own.
+//!
+//! Frames are numbered: 0 is the base, i the frame that stage i - 1 of the chain moves, and the stages of the branches follow.
+
+use nalgebra::Vector3;
+
+use super::chain::{Chain, LinkFrame, StageMotion, basis_with_z_along};
+use super::jacobian::Columns;
+use crate::math::arithmetic::NoFma;
+use crate::math::f64x4::F64x4;
+use crate::math::{Frame, MAX_DOF, Pose, pose};
+
+/// A moving element of a branch.
+#[derive(Debug, Clone)]
+struct BranchStage {
+    /// Number of the frame that it starts from.
+    parent: usize,
+    /// Its constant frame there, z along its axis.
+    frame: Frame,
+    motion: StageMotion,
+}
+
+impl BranchStage {
+    /// Its frame with its joint at `value`, from the frame that it starts from.
+    fn moved(&self, value: f64, parent: &Frame) -> Frame {
+        let Self { frame, motion, .. } = self;
+        let (sine, cosine) = (motion.turn_scale * value + motion.turn_offset).sin_cos();
+        let origin = frame.place::<NoFma>(&[0.0, 0.0, motion.slide_scale * value + motion.slide_offset]);
+        parent.then::<NoFma>(&Frame { origin, ..frame.turned::<NoFma>(sine, cosine) })
+    }
+}
+
+/// The links of a robot, and the stages of its branches.
+#[derive(Debug, Clone)]
+pub(crate) struct LinkTree {
+    /// Stages of the chain.
+    moving: usize,
+    branches: Vec<BranchStage>,
+    /// The links of the chain, then those of the branches; `stages` is the number of a frame.
+    pub links: Vec<LinkFrame>,
+}
+
+impl LinkTree {
+    /// Length of a buffer of frames: that of the kernels at least.
+    pub fn frames(&self) -> usize {
+        (self.moving + 1 + self.branches.len()).max(MAX_DOF + 1)
+    }
+
+    /// Adds the frames of the branches to those of the chain at `q`.
+    pub fn extend_frames(&self, q: &[f64], frames: &mut [Frame]) {
+        for (i, stage) in self.branches.iter().enumerate() {
+            frames[self.moving + 1 + i] = stage.moved(q[stage.motion.joint], &frames[stage.parent]);
+        }
+    }
+
+    /// [`extend_frames`](Self::extend_frames) for four configurations, lane by lane.
+    pub fn extend_frames_four(&self, qs: &[F64x4], frames: &mut [Frame<F64x4>]) {
+        for (i, stage) in self.branches.iter().enumerate() {
+            for lane in 0..4 {
+                let moved = stage.moved(qs[stage.motion.joint].0[lane], &frames[stage.parent].lane(lane));
+                frames[self.moving + 1 + i].set_lane(lane, &moved);
+            }
+        }
+    }
+
+    /// The frame of a link, with the stages at `frames`.
+    pub fn link_frame(&self, link: usize, frames: &[Frame]) -> Frame {
+        let LinkFrame { stages, offset } = &self.links[link];
+        frames[*stages].then::<NoFma>(offset)
+    }
+
+    /// The moving elements between frame number `frame` and frame number `below` that carries it, the outermost first: the number
+    /// of the frame that each moves, and its motion.
+    #[inline]
+    pub fn carriers<'a>(
+        &'a self,
+        chain: &'a Chain,
+        frame: usize,
+        below: usize,
+    ) -> impl Iterator<Item = (usize, &'a StageMotion)> + use<'a> {
+        let mut at = frame;
+        std::iter::from_fn(move || {
+            let moved = (at > below).then_some(at)?;
+            at = self.parent(moved);
+            let motion = match moved.checked_sub(self.moving + 1) {
+                None => &chain.motions[moved - 1],
+                Some(branch) => &self.branches[branch].motion,
+            };
+            Some((moved, motion))
+        })
+    }
+
+    /// Number of the frame that frame number `frame` > 0 moves on.
+    fn parent(&self, frame: usize) -> usize {
+        match frame.checked_sub(self.moving + 1) {
+            None => frame - 1,
+            Some(branch) => self.branches[branch].parent,
+        }
+    }
+
+    /// Number of the last frame that carries both of these.
+    #[inline]
+    pub fn meeting(&self, one: usize, other: usize) -> usize {
+        if one.max(other) <= self.moving {
+            return one.min(other);
+        }
+        let (mut one, mut other) = (one, other);
+        while one != other {
+            // A frame comes after the one that it moves on.
+            (one, other) = (one.min(other), self.parent(one.max(other)));
+        }
+        one
+    }
+
+    /// Writes the geometric Jacobian of a link into `columns`, as [`jacobian`](super::jacobian) does for the tip, and returns the
+    /// frame of the link.
+    pub fn link_jacobian(&self, chain: &Chain, link: usize, frames: &[Frame], columns: &mut Columns) -> Frame {
+        let frame = self.link_frame(link, frames);
+        columns.fill([0.0; 6]);
+        for (moved, motion) in self.carriers(chain, self.links[link].stages, 0) {
+            let velocity = motion.velocity(&frames[moved], &frame.origin);
+            let (axis, column) = (&frames[moved].axes[2], &mut columns[motion.joint]);
+            for k in 0..3 {
+                column[k] += velocity[k];
+                column[3 + k] += motion.turn_scale * axis[k];
+            }
+        }
+        frame
+    }
+}
+
+/// Folds branches into a tree, link by link.
+pub(crate) struct LinkTreeFolder {
+    tree: LinkTree,
+    /// Number of the frame reached, and the constant transform since then.
+    at: (usize, Pose),
+}
+
+impl LinkTreeFolder {
+    /// A tree that holds the links of `chain`.
+    pub fn new(chain: &Chain) -> Self {
+        let tree = LinkTree { moving: chain.moving, branches: vec![], links: chain.links.clone() };
+        Self { tree, at: (0, Pose::identity()) }
+    }
+
+    /// Starts at a link.
+    pub fn start_at(&mut self, link: usize) {
+        let LinkFrame { stages, offset } = &self.tree.links[link];
+        self.at = (*stages, Pose::from(*offset));
+    }
+
+    /// Appends a constant transform.
+    pub fn fixed(&mut self, transform: &Pose) {
+        self.at.1 *= transform;
+    }
+
+    /// Appends a motion about or along `axis`, of unit length.
+    pub fn moving(&mut self, axis: &Vector3<f64>, motion: StageMotion) {
+        let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
+        let (parent, constant) = self.at;
+        self.tree.branches.push(BranchStage { parent, frame: Frame::from(&(constant * aligned)), motion });
+        self.at = (self.tree.moving + self.tree.branches.len(), aligned.inverse());
+    }
+
+    /// Adds a link here.
+    pub fn link(&mut self) {
+        let (stages, constant) = self.at;
+        self.tree.links.push(LinkFrame { stages, offset: Frame::from(&constant) });
+    }
+
+    /// Returns the tree.
+    pub fn finish(self) -> LinkTree {
+        self.tree
+    }
+}

@@ -1,0 +1,58 @@
+//! The links beside the chain: those that joints of the chain move through mimics, and those whose joints are held.
+
+use std::collections::HashMap;
+
+use super::document::Document;
+use super::mimic::Couplings;
+use super::step::{self, Moved};
+use super::tree::{Tree, TreeStep};
+use crate::error::Result;
+use crate::robot::{HeldJoint, Joint, OffChain, OffChainLink, Robot};
+
+/// The links that branch off the chain of `robot`, whose joints are `index_in_q`. Joints beside the chain are held at zero, or at
+/// the limit nearest to it; those that cannot move about or along one axis stay in their origin.
+pub(super) fn of(
+    document: &Document,
+    tree: &Tree,
+    robot: &Robot,
+    mut couplings: Couplings,
+    index_in_q: &HashMap<usize, usize>,
+) -> Result<OffChain> {
+    let chain: Vec<&str> = robot.link_names().collect();
+    let mut off_chain = OffChain::default();
+    let mut drivers = index_in_q.clone();
+    for (parent, at) in tree.off_chain(&chain) {
+        let moved = match moves(document, at) {
+            false => None,
+            true => {
+                let coupling = couplings.of_bystander(at.joint);
+                let joint = match drivers.get(&coupling.master) {
+                    Some(known) => *known,
+                    None => {
+                        let number = robot.dof() + off_chain.held.len();
+                        drivers.insert(coupling.master, number);
+                        off_chain.held.push(held(step::described(document, coupling.master)?));
+                        number
+                    }
+                };
+                Some(Moved { joint, kind: step::kind(document, at.joint)?, drive: coupling.drive })
+            }
+        };
+        let elements = step::elements(document, at, moved)?;
+        off_chain.links.push(OffChainLink { name: step::far_link(document, at).into(), parent, elements });
+    }
+    Ok(off_chain)
+}
+
+/// Whether a joint has one axis to move about or along.
+fn moves(document: &Document, at: TreeStep) -> bool {
+    let joint = &document.joints[at.joint];
+    joint.kind.moves_one_way() && joint.axis != [0.0; 3]
+}
+
+/// A joint at zero, or at the limit nearest to it.
+fn held(joint: Joint) -> HeldJoint {
+    // The limits of a joint that nobody moves may contradict each other.
+    let value = if joint.lower <= joint.upper { 0.0_f64.clamp(joint.lower, joint.upper) } else { 0.0 };
+    HeldJoint { value, joint }
+}

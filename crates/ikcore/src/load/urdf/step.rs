@@ -1,0 +1,87 @@
+//! One joint of a URDF as elements of a robot, passed from parent to child or from child to parent.
+
+use nalgebra::Vector3;
+
+use super::document::{Document, UrdfKind};
+use super::tree::TreeStep;
+use crate::error::Result;
+use crate::math::{Pose, pose};
+use crate::robot::{Drive, Element, Joint, JointKind};
+
+/// How a joint moves: by which joint of the robot, and how.
+pub(super) struct Moved {
+    pub(super) joint: usize,
+    pub(super) kind: JointKind,
+    pub(super) drive: Drive,
+}
+
+/// The elements of one joint; `moved` is `None` for one that does not move. A reversed joint is the inverse: the motion by -q
+/// first, then the inverse of its origin.
+pub(super) fn elements(document: &Document, step: TreeStep, moved: Option<Moved>) -> Result<Vec<Element>> {
+    let origin = origin(document, step.joint);
+    let sign = if step.reversed { -1.0 } else { 1.0 };
+    let motion = match moved {
+        None => None,
+        Some(Moved { joint, kind, drive: Drive { scale, offset } }) => {
+            let axis = axis(document, step.joint)?;
+            Some(Element::moving(joint, kind, axis, Drive { scale: sign * scale, offset: sign * offset }))
+        }
+    };
+    Ok(match step.reversed {
+        false => [Element::Fixed(origin)].into_iter().chain(motion).collect(),
+        true => motion.into_iter().chain([Element::Fixed(origin.inverse())]).collect(),
+    })
+}
+
+/// A moving joint with its own limits.
+pub(super) fn described(document: &Document, index: usize) -> Result<Joint> {
+    let joint = &document.joints[index];
+    let kind = kind(document, index)?;
+    let described = Joint::new(&joint.name, kind).with_velocity(joint.velocity);
+    match kind {
+        JointKind::Continuous => Ok(described),
+        _ => Ok(described.with_range(joint.range.0, joint.range.1)),
+    }
+}
+
+pub(super) fn kind(document: &Document, index: usize) -> Result<JointKind> {
+    let joint = &document.joints[index];
+    match joint.kind {
+        UrdfKind::Revolute => Ok(JointKind::Revolute),
+        UrdfKind::Continuous => Ok(JointKind::Continuous),
+        UrdfKind::Prismatic => Ok(JointKind::Prismatic),
+        _ => {
+            let (name, kind) = (&joint.name, format!("{:?}", joint.kind).to_lowercase());
+            let problem = format!(
+                "joint '{name}' is {kind}, and a chain takes only revolute, continuous, prismatic, fixed and mimic \
+                 joints: take base and tip on one side of it, such as base '{}'",
+                joint.child
+            );
+            Err(document.error_at(index, problem))
+        }
+    }
+}
+
+fn origin(document: &Document, joint: usize) -> Pose {
+    let joint = &document.joints[joint];
+    pose::from_rpy(joint.rpy, joint.xyz)
+}
+
+fn axis(document: &Document, index: usize) -> Result<Vector3<f64>> {
+    let joint = &document.joints[index];
+    let axis = Vector3::from(joint.axis);
+    let largest = axis.amax();
+    if largest == 0.0 {
+        return Err(
+            document.error_at(index, format!("axis of joint '{}' is zero: it must have a direction", joint.name))
+        );
+    }
+    // The axis may have any length; squares of tiny or huge numbers must not vanish or overflow.
+    Ok(axis / largest)
+}
+
+/// The link that a step leads to.
+pub(super) fn far_link(document: &Document, step: TreeStep) -> &str {
+    let joint = &document.joints[step.joint];
+    if step.reversed { &joint.parent } else { &joint.child }
+}

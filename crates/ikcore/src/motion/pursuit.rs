@@ -1,0 +1,128 @@
+//! The change of each joint towards a moving goal, inside its reachable set.
+//!
+//! Relative to the goal, a joint follows a linear law with a double pole at 1 - 1/m for a memory of m ticks, which adds no
+//! more noise than the filter of the goal lets through. The law is slow, so it applies only as long as the fastest stop
+//! after it would end within the noise around the goal. Otherwise the change is the one after which the stop ends at the
+//! edge of the noise: that is the time-optimal way. Without noise the edge is the goal, and the joint arrives exactly.
+//!
+//! A goal far away is approached by all joints in proportion: the limits of each are scaled by its share of the way.
+
+use super::bracket::largest_not_positive;
+use super::braking::longest_first;
+use super::moving_goal::{MovingGoal, Scales};
+use super::{Braking, JointState};
+use crate::objective::{Bounds, Point};
+
+/// Half width of the noise around the goal, in standard deviations of a sample.
+const EDGE: f64 = 4.0;
+
+/// A goal farther than this many changes, plus standard deviations of its noise, is approached in proportion.
+const FAR: f64 = 16.0;
+
+/// Smallest share of its limits that a joint keeps.
+const LEAST_SHARE: f64 = 0.1;
+
+/// A pursuit in one tick.
+#[derive(Debug)]
+pub(crate) struct Pursuit<'a> {
+    /// The goal at the end of the tick.
+    pub goal: &'a MovingGoal,
+    /// How the joints may brake.
+    pub braking: &'a [Braking],
+    /// Largest steps and changes.
+    pub scales: &'a Scales,
+    /// The reachable set.
+    pub reachable: &'a Bounds,
+}
+
+/// A joint, relative to its goal.
+struct Relative {
+    /// Distance before the tick.
+    distance: f64,
+    step: f64,
+    /// Admissible changes.
+    changes: [f64; 2],
+}
+
+impl Pursuit<'_> {
+    /// Writes the configuration at the end of the tick of an arm that is at `q` in `state`.
+    pub fn write(&self, q: &[f64], state: &JointState, out: &mut [f64]) {
+        let shares = self.shares(q);
+        let pole = 1.0 - 1.0 / self.goal.memory();
+        for j in 0..q.len() {
+            let goal_step = self.goal.step()[j];
+            // Far from the goal its acceleration does not count, but its noise would.
+            let goal_change = if shares.far { 0.0 } else { self.goal.change()[j] };
+            let straight = q[j] + state.step[j] + goal_change;
+            let relative = Relative {
+                distance: q[j] - (self.goal.q()[j] - goal_step),
+                step: state.step[j] - (goal_step - goal_change),
+                changes: [self.reachable.lower()[j] - straight, self.reachable.upper()[j] - straight],
+            };
+            let Braking { acceleration, jerk } = self.braking[j];
+            let acceleration = (shares.change[j] * acceleration - goal_change.abs()).max(LEAST_SHARE * acceleration);
+            let braking = Braking { acceleration, jerk: shares.jerk[j] * jerk };
+            let scale = self.scales.change[j];
+            let edge = if scale.is_finite() { EDGE * self.goal.uncertainty_of(j) * scale } else { 0.0 };
+            out[j] = straight + relative.change(&braking, pole, edge, shares.step[j] * self.scales.step[j]);
+        }
+        self.reachable.clip(out);
+    }
+
+    /// The share of its limits that each joint uses.
+    fn shares(&self, q: &[f64]) -> Shares {
+        let way = |j: usize| (self.goal.q()[j] - q[j]).abs();
+        let n = q.len();
+        let farthest = (0..n).map(|j| way(j) / self.scales.change[j]).fold(0.0, f64::max);
+        if farthest <= FAR * (1.0 + self.goal.noise()) {
+            let all = Point::from_elem(1.0, n);
+            return Shares { far: false, step: all.clone(), change: all.clone(), jerk: all };
+        }
+        let of = |limit: &dyn Fn(usize) -> f64| -> Point {
+            let longest = (0..n).map(|j| way(j) / limit(j)).fold(0.0, f64::max);
+            let share = |j: usize| if longest > 0.0 { (way(j) / limit(j) / longest).max(LEAST_SHARE) } else { 1.0 };
+            (0..n).map(share).collect()
+        };
+        Shares {
+            far: true,
+            step: of(&|j| self.scales.step[j]),
+            change: of(&|j| self.braking[j].acceleration),
+            jerk: of(&|j| self.braking[j].jerk),
+        }
+    }
+}
+
+/// Shares of the limits of each joint.
+struct Shares {
+    /// Whether the goal is far.
+    far: bool,
+    step: Point,
+    change: Point,
+    jerk: Point,
+}
+
+impl Relative {
+    /// The change of the joint, relative to the goal.
+    fn change(&self, braking: &Braking, pole: f64, edge: f64, fastest: f64) -> f64 {
+        let [least, most] = self.changes;
+        let toward = |speed: f64| if speed >= 0.0 { longest_first(speed, braking.jerk) } else { speed };
+        let [least, most] =
+            [least.max(-toward(fastest + self.step)).min(most), most.min(toward(fastest - self.step)).max(least)];
+        let linear = -(1.0 - pole).powi(2) * self.distance - (1.0 - pole * pole) * self.step;
+        let linear = linear.clamp(least.min(most), most);
+        let end = |change: f64| {
+            let step = self.step + change;
+            self.distance + step + braking.stop(step, change).end
+        };
+        // An arm that is still fast aims at the goal itself.
+        let edge = (edge - braking.stop(self.step, 0.0).end.abs()).max(0.0);
+        let there = end(linear);
+        if there > edge {
+            largest_not_positive([least, linear], |change| end(change) - edge).unwrap_or(least)
+        } else if there < -edge {
+            -largest_not_positive([-most, -linear], |change| -end(-change) - edge).unwrap_or(-most)
+        } else {
+            linear
+        }
+    }
+}

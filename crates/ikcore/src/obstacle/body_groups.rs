@@ -1,0 +1,321 @@
+//! The bodies of a robot in the lanes of the registers: is everything clear at a configuration?
+//!
+//! Bodies of one moving element form a group with a ball around it. Most balls are clear of most obstacles; only bodies of
+//! the others are tested one by one.
+
+use nalgebra::Vector3;
+use smallvec::SmallVec;
+
+use super::carried::Carried;
+use crate::math::Frame;
+use crate::math::arithmetic::{Arithmetic, NoFma, by_instructions};
+use crate::math::f64x4::F64x4;
+use crate::shape::{BodyBlock, Shape, ShapeIndex, clear_of_each_other};
+
+/// The bodies of a robot by moving element, and the pairs of them that must not touch.
+#[derive(Debug, Clone)]
+pub(super) struct BodyGroups {
+    groups: Vec<Group>,
+    /// Group, block and lane of each body.
+    places: Vec<[usize; 3]>,
+    pairs: Vec<GroupPair>,
+    /// Finds the obstacles near a ball, if there are many.
+    index: Option<ShapeIndex>,
+}
+
+/// All bodies of one moving element, in its frame.
+#[derive(Debug, Clone)]
+struct Group {
+    stages: usize,
+    center: [f64; 3],
+    radius: f64,
+    /// Number of bodies, four in a block.
+    count: usize,
+    blocks: Vec<BodyBlock>,
+}
+
+/// Two groups, and the pairs of their bodies that must not touch.
+#[derive(Debug, Clone)]
+struct GroupPair {
+    near: usize,
+    far: usize,
+    tests: Vec<BodyTest>,
+}
+
+/// One body of the near group against a block of the far one.
+#[derive(Debug, Clone)]
+struct BodyTest {
+    block: usize,
+    lane: usize,
+    far_block: usize,
+    /// 1 in lanes that may touch, else 0.
+    ignored: F64x4,
+}
+
+/// Groups of more blocks than this are placed on the heap.
+const BLOCKS: usize = 8;
+/// Groups beyond this many are placed on the heap.
+const GROUPS: usize = 12;
+type Placed = SmallVec<[BodyBlock; BLOCKS]>;
+type Balls = SmallVec<[BodyBlock; GROUPS / 4]>;
+
+impl BodyGroups {
+    /// Groups of `carried`. Bodies that no joint moves are not compared with `obstacles`.
+    pub fn new(carried: &[Carried], obstacles: &[Shape]) -> Self {
+        let mut stages: Vec<usize> = carried.iter().map(|body| body.stages).collect();
+        stages.sort_unstable_by(|one, other| other.cmp(one));
+        stages.dedup();
+        let members = |stage: usize| (0..carried.len()).filter(move |i| carried[*i].stages == stage);
+        let mut places = vec![[0; 3]; carried.len()];
+        let mut groups = vec![];
+        for stage in stages {
+            // Spheres first: blocks of spheres alone are cheaper.
+            let mut bodies: Vec<usize> = members(stage).collect();
+            bodies.sort_by_key(|i| carried[*i].ends[0] != carried[*i].ends[1]);
+            for (i, body) in bodies.iter().enumerate() {
+                places[*body] = [groups.len(), i / 4, i % 4];
+            }
+            groups.push(Group::new(stage, &bodies.iter().map(|i| &carried[*i]).collect::<Vec<_>>()));
+        }
+        Self { groups, places, pairs: vec![], index: ShapeIndex::of_many(obstacles) }
+    }
+
+    /// Forbids these pairs of bodies to touch, given by their indices in `carried`.
+    pub fn forbid_contacts(&mut self, pairs: impl Iterator<Item = [usize; 2]>) {
+        for [near, far] in pairs {
+            self.forbid(self.places[near], self.places[far]);
+        }
+    }
+
+    /// Allows all bodies to touch each other.
+    pub fn allow_contacts(&mut self) {
+        self.pairs.clear();
+    }
+
+    fn forbid(&mut self, [near, block, lane]: [usize; 3], [far, far_block, far_lane]: [usize; 3]) {
+        let found = self.pairs.iter().position(|pair| (pair.near, pair.far) == (near, far));
+        let index = found.unwrap_or_else(|| {
+            self.pairs.push(GroupPair { near, far, tests: vec![] });
+            self.pairs.len() - 1
+        });
+        let tests = &mut self.pairs[index].tests;
+        let same = |test: &BodyTest| (test.block, test.lane, test.far_block) == (block, lane, far_block);
+        let index = tests.iter().position(same).unwrap_or_else(|| {
+            tests.push(BodyTest { block, lane, far_block, ignored: F64x4::splat(1.0) });
+            tests.len() - 1
+        });
+        tests[index].ignored.0[far_lane] = 0.0;
+    }
+
+    /// Whether everything stays at least `margin` >= 0 (m) apart with the moving elements at `frames`.
+    pub fn are_clear(&self, frames: &[Frame], obstacles: &[Shape], margin: f64) -> bool {
+        are_clear(self, frames, obstacles, margin)
+    }
+
+    /// Whether one configuration at a time is faster: obstacles are then found by a tree.
+    pub fn has_index(&self) -> bool {
+        self.index.is_some()
+    }
+
+    /// In each lane 1 if everything is clear with the moving elements at `frames`, four configurations side by side, else 0.
+    pub fn four_are_clear(&self, frames: &[Frame<F64x4>], obstacles: &[Shape], margin: f64) -> F64x4 {
+        four_are_clear(self, frames, obstacles, margin)
+    }
+
+    /// The balls around all groups, four in a block.
+    #[inline(always)]
+    fn balls(&self, frames: &[Frame]) -> Balls {
+        let mut balls = Balls::new();
+        for (i, group) in self.groups.iter().enumerate() {
+            if i % 4 == 0 {
+                balls.push(BodyBlock::SPHERES);
+            }
+            let center = frames[group.stages].place::<NoFma>(&group.center);
+            let Some(block) = balls.last_mut() else { continue };
+            // Lanes after the last group repeat it.
+            for lane in i % 4..4 {
+                for k in 0..3 {
+                    block.start[k].0[lane] = center[k];
+                }
+                block.radius.0[lane] = group.radius;
+            }
+        }
+        balls
+    }
+}
+
+impl Group {
+    fn new(stages: usize, bodies: &[&Carried]) -> Self {
+        let ends = || bodies.iter().flat_map(|body| body.ends.map(Vector3::from));
+        let (low, high) = ends()
+            .fold((Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)), |(low, high), end| {
+                (low.inf(&end), high.sup(&end))
+            });
+        let center = 0.5 * (low + high);
+        let reach = |body: &&Carried| {
+            let far = body.ends.map(|end| (Vector3::from(end) - center).norm());
+            far[0].max(far[1]) + body.radius
+        };
+        // Rounded up: the ball holds its bodies wherever both are placed.
+        let radius = bodies.iter().map(reach).fold(0.0, f64::max) * (1.0 + 1e-12) + 1e-12;
+        let blocks = bodies.chunks(4).map(|four| {
+            // Lanes without a body repeat the first.
+            let body = |lane: usize| four.get(lane).unwrap_or(&four[0]);
+            let lanes = |value: &dyn Fn(&Carried) -> f64| F64x4(std::array::from_fn(|lane| value(body(lane))));
+            BodyBlock {
+                start: std::array::from_fn(|k| lanes(&|body| body.ends[0][k])),
+                along: std::array::from_fn(|k| lanes(&|body| body.ends[1][k] - body.ends[0][k])),
+                radius: lanes(&|body| body.radius),
+                spheres: four.iter().all(|body| body.ends[0] == body.ends[1]),
+            }
+        });
+        Self { stages, center: center.into(), radius, count: bodies.len(), blocks: blocks.collect() }
+    }
+
+    /// Block and lane of each body.
+    fn bodies(&self) -> impl Iterator<Item = (usize, usize)> {
+        (0..self.count).map(|i| (i / 4, i % 4))
+    }
+
+    /// Its blocks with the moving element at `frame`.
+    #[inline(always)]
+    fn placed<A: Arithmetic>(&self, frame: &Frame) -> Placed {
+        let mut placed = Placed::new();
+        for block in &self.blocks {
+            placed.push(block.placed::<A>(frame));
+        }
+        placed
+    }
+}
+
+/// Whether all lanes are 1; each is 1 or 0.
+#[inline(always)]
+fn all_clear(lanes: &F64x4) -> bool {
+    lanes.0[0] + lanes.0[1] + lanes.0[2] + lanes.0[3] == 4.0
+}
+
+/// Whether all lanes are 0; each is 1 or 0.
+#[inline(always)]
+fn none_clear(lanes: &F64x4) -> bool {
+    lanes.0[0] + lanes.0[1] + lanes.0[2] + lanes.0[3] == 0.0
+}
+
+/// The larger of each two lanes.
+#[inline(always)]
+fn larger_lanes<A: Arithmetic>(one: F64x4, other: F64x4) -> F64x4 {
+    A::choose_below_x4(one, other, other, one)
+}
+
+by_instructions! {
+    fn are_clear(all: &BodyGroups, frames: &[Frame], obstacles: &[Shape], margin: f64) -> bool {
+        let balls = all.balls(frames);
+        let ball = |i: usize| {
+            let block = &balls[i / 4];
+            let [x, y, z] = &block.start;
+            (Vector3::new(x.0[i % 4], y.0[i % 4], z.0[i % 4]), block.radius.0[i % 4])
+        };
+        // For each group the obstacles that its ball is near to.
+        let mut near: SmallVec<[(usize, usize); 32]> = SmallVec::new();
+        let moving = |group: usize| all.groups[group].stages > 0;
+        match &all.index {
+            Some(index) => {
+                for group in (0..all.groups.len()).filter(|group| moving(*group)) {
+                    let (center, radius) = ball(group);
+                    index.near_ball(&center, radius + margin, |obstacle| near.push((group, obstacle)));
+                }
+            }
+            None => {
+                for (obstacle, shape) in obstacles.iter().enumerate() {
+                    for (i, block) in balls.iter().enumerate() {
+                        let clear = shape.clear_lanes::<A>(block, margin);
+                        if all_clear(&clear) {
+                            continue;
+                        }
+                        for lane in 0..4 {
+                            let group = 4 * i + lane;
+                            if clear.0[lane] == 0.0 && group < all.groups.len() && moving(group) {
+                                near.push((group, obstacle));
+                            }
+                        }
+                    }
+                }
+                near.sort_unstable();
+            }
+        }
+        let mut placed = (usize::MAX, Placed::new());
+        for (group, obstacle) in near {
+            if placed.0 != group {
+                placed = (group, all.groups[group].placed::<A>(&frames[all.groups[group].stages]));
+            }
+            for block in &placed.1 {
+                if !all_clear(&obstacles[obstacle].clear_lanes::<A>(block, margin)) {
+                    return false;
+                }
+            }
+        }
+        for pair in &all.pairs {
+            let ((near, near_radius), (far, far_radius)) = (ball(pair.near), ball(pair.far));
+            let enough = near_radius + far_radius + margin;
+            if (near - far).norm_squared() > enough * enough * (1.0 + 1e-12) {
+                continue;
+            }
+            let (near, far) = (&all.groups[pair.near], &all.groups[pair.far]);
+            let (near, far) = (near.placed::<A>(&frames[near.stages]), far.placed::<A>(&frames[far.stages]));
+            for test in &pair.tests {
+                let clear = clear_of_each_other::<A>(&near[test.block].repeated(test.lane), &far[test.far_block], margin);
+                if !all_clear(&larger_lanes::<A>(clear, test.ignored)) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+}
+
+by_instructions! {
+    fn four_are_clear(all: &BodyGroups, frames: &[Frame<F64x4>], obstacles: &[Shape], margin: f64) -> F64x4 {
+        let mut clear = F64x4::splat(1.0);
+        let at = |group: &Group| frames[group.stages];
+        // Lanes that are not clear no longer matter.
+        let settled = |balls: F64x4, clear: &F64x4| {
+            let open = A::sub_x4(*clear, A::mul_x4(*clear, balls)).0;
+            open[0] + open[1] + open[2] + open[3] == 0.0
+        };
+        for group in all.groups.iter().filter(|group| group.stages > 0) {
+            let at = at(group);
+            let ball = BodyBlock::ball_at::<A>(&at, &group.center, group.radius);
+            for shape in obstacles {
+                if settled(shape.clear_lanes::<A>(&ball, margin), &clear) {
+                    continue;
+                }
+                for (block, lane) in group.bodies() {
+                    let body = group.blocks[block].body_at::<A>(lane, &at);
+                    clear = A::mul_x4(clear, shape.clear_lanes::<A>(&body, margin));
+                }
+                if none_clear(&clear) {
+                    return clear;
+                }
+            }
+        }
+        for pair in &all.pairs {
+            let (near, far) = (&all.groups[pair.near], &all.groups[pair.far]);
+            let (near_at, far_at) = (at(near), at(far));
+            let one = BodyBlock::ball_at::<A>(&near_at, &near.center, near.radius);
+            let other = BodyBlock::ball_at::<A>(&far_at, &far.center, far.radius);
+            if settled(clear_of_each_other::<A>(&one, &other, margin), &clear) {
+                continue;
+            }
+            for test in &pair.tests {
+                let body = near.blocks[test.block].body_at::<A>(test.lane, &near_at);
+                for lane in (0..4).filter(|lane| test.ignored.0[*lane] == 0.0) {
+                    let other = far.blocks[test.far_block].body_at::<A>(lane, &far_at);
+                    clear = A::mul_x4(clear, clear_of_each_other::<A>(&body, &other, margin));
+                }
+            }
+            if none_clear(&clear) {
+                return clear;
+            }
+        }
+        clear
+    }
+}

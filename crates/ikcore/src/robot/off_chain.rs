@@ -1,0 +1,97 @@
+//! What a robot has beside its chain: links that branch off it, and joints that are held.
+
+use std::collections::HashSet;
+
+use serde::{Deserialize, Serialize};
+
+use super::description::{Description, Element};
+use super::joint::Joint;
+use crate::error::{Error, Result, require_finite};
+use crate::kinematics::chain::{Chain, StageMotion};
+use crate::kinematics::link_tree::{LinkTree, LinkTreeFolder};
+use crate::math::pose;
+
+/// A link that is not on the chain.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct OffChainLink {
+    pub name: String,
+    /// Number of the link that it is fixed to or moves on: those of the chain come first, then the branches in order.
+    pub parent: usize,
+    /// From the parent to this link. Joints of [`Element::Moving`] from n on are the held ones.
+    pub elements: Vec<Element>,
+}
+
+/// A joint beside the chain, with its constant value.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HeldJoint {
+    /// The joint with its limits.
+    pub joint: Joint,
+    /// Its value (rad or m).
+    pub value: f64,
+}
+
+/// The links that branch off the chain, parents first, and the joints that are held among them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct OffChain {
+    pub links: Vec<OffChainLink>,
+    pub held: Vec<HeldJoint>,
+}
+
+impl OffChain {
+    /// All links of the robot, in the form used by the kernels; `chain` is folded from `description`.
+    pub fn folded(&self, description: &Description, chain: &Chain) -> LinkTree {
+        let dof = description.joints.len();
+        let mut tree = LinkTreeFolder::new(chain);
+        for link in &self.links {
+            tree.start_at(link.parent);
+            for element in &link.elements {
+                match element {
+                    Element::Fixed(transform) => tree.fixed(transform),
+                    Element::Link(_) => {}
+                    Element::Moving { axis, turns, joint, scale, offset } => {
+                        match self.held.get(joint.wrapping_sub(dof)) {
+                            Some(held) => {
+                                let value = scale * held.value + offset;
+                                let turned = || pose::rotation(*axis, value);
+                                let slid = || pose::translation(value * axis.x, value * axis.y, value * axis.z);
+                                tree.fixed(&if *turns { turned() } else { slid() });
+                            }
+                            None => {
+                                let motion = if *turns { StageMotion::turn } else { StageMotion::slide };
+                                tree.moving(axis, motion(*joint, *scale, *offset));
+                            }
+                        }
+                    }
+                }
+            }
+            tree.link();
+        }
+        tree.finish()
+    }
+
+    /// The independent joints, then the held ones.
+    fn all_joints<'a>(&'a self, description: &'a Description) -> impl Iterator<Item = &'a Joint> {
+        description.joints.iter().chain(self.held.iter().map(|held| &held.joint))
+    }
+
+    /// Checks all assumptions of [`folded`](Self::folded).
+    pub fn validate(&self, description: &Description) -> Result<()> {
+        let invalid = |problem: String| Error::InvalidRobot { robot: description.name.clone(), problem };
+        let mut names: HashSet<&str> = description.link_names().collect();
+        let on_chain = names.len();
+        let joints: Vec<&str> = self.all_joints(description).map(|joint| joint.name.as_str()).collect();
+        for (i, link) in self.links.iter().enumerate() {
+            if !names.insert(&link.name) {
+                return Err(invalid(format!("two links are named '{}'", link.name)));
+            }
+            if link.parent >= on_chain + i {
+                return Err(invalid(format!("link '{}' comes before its parent", link.name)));
+            }
+            let elements = &mut link.elements.iter();
+            elements.try_for_each(|element| element.validate(&description.name, |joint| joints.get(joint).copied()))?;
+        }
+        self.held.iter().try_for_each(|held| {
+            require_finite("held joints", &[held.value], |_| format!("joint '{}'", held.joint.name))
+        })
+    }
+}

@@ -1,0 +1,54 @@
+//! The parts that determine a robot; all else is derived from them. They are also its stored form.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::description::Description;
+use super::link_capsule::Bodies;
+use super::off_chain::OffChain;
+use super::pair_rule::PairRule;
+use super::stance::Stance;
+use crate::error::Result;
+use crate::math::Pose;
+
+/// Chain, branches, placement and bodies.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Parts {
+    pub description: Description,
+    pub off_chain: Arc<OffChain>,
+    /// Pose of the first link of the chain in the frame of the robot's base.
+    pub base: Pose,
+    /// Pose of the tool in the frame of the tip link.
+    pub tool: Pose,
+    pub bodies: Bodies,
+    /// Which links are tested against each other.
+    pub pairs: PairRule,
+    /// Pairs of links that may touch, whatever the rule.
+    pub may_touch: Vec<[String; 2]>,
+    /// Named configurations.
+    pub stances: Vec<Stance>,
+}
+
+impl Parts {
+    /// A chain with nothing else.
+    pub fn of(description: Description) -> Self {
+        let (base, tool) = (Pose::identity(), Pose::identity());
+        Self {
+            description,
+            off_chain: Arc::default(),
+            base,
+            tool,
+            bodies: Bodies::default(),
+            pairs: PairRule::default(),
+            may_touch: vec![],
+            stances: vec![],
+        }
+    }
+
+    /// Checks all assumptions of the kernels.
+    pub fn validate(&self) -> Result<()> {
+        self.description.validate()?;
+        self.off_chain.validate(&self.description)
+    }
+}

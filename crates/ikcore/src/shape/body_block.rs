@@ -1,0 +1,260 @@
+//! "Nearer than m?" for four bodies at once, one in each lane of the registers: capsules of one robot, or one capsule at four
+//! configurations.
+
+use nalgebra::Vector3;
+
+use super::checked_shape::{ROUNDING, Shape};
+use super::geometry::Geometry;
+use super::segment_lanes::{to_point, to_segment};
+use super::solid_lanes::{BoxLanes, CylinderLanes, SolidLanes, segment_bound};
+use crate::math::Frame;
+use crate::math::arithmetic::Arithmetic;
+use crate::math::f64x4::F64x4;
+use crate::math::real::{Four, Real};
+use crate::math::vec3::Vec3;
+
+/// Four capsules, one per lane (m).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BodyBlock {
+    /// Start of each axis.
+    pub start: [F64x4; 3],
+    /// From the start of each axis to its end.
+    pub along: [F64x4; 3],
+    /// Radius of each.
+    pub radius: F64x4,
+    /// Whether all four are spheres: `along` is zero.
+    pub spheres: bool,
+}
+
+impl BodyBlock {
+    /// Four points at the origin.
+    pub const SPHERES: Self =
+        Self { start: [F64x4::ZERO; 3], along: [F64x4::ZERO; 3], radius: F64x4::ZERO, spheres: true };
+
+    /// The same capsules, given in `frame`.
+    #[inline(always)]
+    pub fn placed<A: Arithmetic>(&self, frame: &Frame) -> Self {
+        let Frame { axes: [x, y, z], origin } = frame;
+        let axes = [Vec3::<Four<A>>::splat(x), Vec3::splat(y), Vec3::splat(z)];
+        Self::moved(axes, Vec3::splat(origin), Vec3::of(&self.start), Vec3::of(&self.along), self.radius, self.spheres)
+    }
+
+    /// The body in lane `lane` at four places, one per lane.
+    #[inline(always)]
+    pub fn body_at<A: Arithmetic>(&self, lane: usize, frames: &Frame<F64x4>) -> Self {
+        let [x, y, z] = &frames.axes;
+        let axes = [Vec3::<Four<A>>::of(x), Vec3::of(y), Vec3::of(z)];
+        let in_lane = |v: &[F64x4; 3]| Vec3::<Four<A>>::splat(&[v[0].0[lane], v[1].0[lane], v[2].0[lane]]);
+        let (start, along) = (in_lane(&self.start), in_lane(&self.along));
+        let radius = F64x4::splat(self.radius.0[lane]);
+        Self::moved(axes, Vec3::of(&frames.origin), start, along, radius, self.spheres)
+    }
+
+    /// A ball at four places, one per lane.
+    #[inline(always)]
+    pub fn ball_at<A: Arithmetic>(frames: &Frame<F64x4>, center: &[f64; 3], radius: f64) -> Self {
+        let start = [F64x4::splat(center[0]), F64x4::splat(center[1]), F64x4::splat(center[2])];
+        Self { start, radius: F64x4::splat(radius), ..Self::SPHERES }.body_at::<A>(0, frames)
+    }
+
+    /// The body in lane `lane` in all lanes.
+    #[inline(always)]
+    pub fn repeated(&self, lane: usize) -> Self {
+        let [[x, y, z], [u, v, w]] = [&self.start, &self.along];
+        let start = [F64x4::splat(x.0[lane]), F64x4::splat(y.0[lane]), F64x4::splat(z.0[lane])];
+        let along = [F64x4::splat(u.0[lane]), F64x4::splat(v.0[lane]), F64x4::splat(w.0[lane])];
+        Self { start, along, radius: F64x4::splat(self.radius.0[lane]), spheres: self.spheres }
+    }
+
+    #[inline(always)]
+    fn moved<A: Arithmetic>(
+        [x, y, z]: [Vec3<Four<A>>; 3],
+        origin: Vec3<Four<A>>,
+        start: Vec3<Four<A>>,
+        along: Vec3<Four<A>>,
+        radius: F64x4,
+        spheres: bool,
+    ) -> Self {
+        let start = x.mul_add(start.x, y.mul_add(start.y, z.mul_add(start.z, origin)));
+        let along = if spheres { along } else { x.mul_add(along.x, y.mul_add(along.y, z * along.z)) };
+        Self { start: start.stored(), along: along.stored(), radius, spheres }
+    }
+
+    /// Whether two lanes hold the same capsule, as do those that fill a block up.
+    fn is_same(&self, lane: usize, other: usize) -> bool {
+        (0..3)
+            .all(|k| self.start[k].0[lane] == self.start[k].0[other] && self.along[k].0[lane] == self.along[k].0[other])
+            && self.radius.0[lane] == self.radius.0[other]
+    }
+
+    /// The capsule in lane `lane`.
+    fn segment(&self, lane: usize) -> [Vector3<f64>; 2] {
+        let start = Vector3::from(self.start.map(|x| x.0[lane]));
+        [start, start + Vector3::from(self.along.map(|x| x.0[lane]))]
+    }
+}
+
+impl Shape {
+    /// In each lane 1 if the body stays at least `margin` >= 0 (m) away, else 0. Never 1 for a body that is nearer.
+    #[inline(always)]
+    pub(crate) fn clear_lanes<A: Arithmetic>(&self, block: &BodyBlock, margin: f64) -> F64x4 {
+        let start = Vec3::<Four<A>>::of(&block.start);
+        let along = Vec3::<Four<A>>::of(&block.along);
+        let far = largest::<A>(start).larger(largest::<A>(start + along)) * Four::splat(ROUNDING);
+        let rounding = Four::splat(self.rounding(0.0)).larger(far);
+        let enough = Four::of(block.radius) + Four::splat(margin) + rounding;
+        let bounds = self.bounding_ball();
+        if block.spheres {
+            // Most bodies are clear of the ball around the shape.
+            let offset = start - Vec3::splat(&bounds.center);
+            let clear = beyond_square(offset.dot(offset), enough + Four::splat(bounds.radius));
+            if clear.0[0] + clear.0[1] + clear.0[2] + clear.0[3] == 4.0 {
+                return clear;
+            }
+        }
+        match self.geometry() {
+            Geometry::Sphere { center, radius } => {
+                let nearest = to_point(start, along, Vec3::splat(center));
+                beyond_square(nearest.squared, enough + Four::splat(*radius))
+            }
+            Geometry::Capsule { a, b, radius } => {
+                let axis = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+                let nearest = to_segment(start, along, Vec3::splat(a), Vec3::splat(&axis));
+                beyond_square(nearest.squared, enough + Four::splat(*radius))
+            }
+            Geometry::HalfSpace { normal, offset } => {
+                let normal = Vec3::splat(normal);
+                let [first, last] = [start.dot(normal), (start + along).dot(normal)];
+                at_least(first.smaller(last) - Four::splat(*offset), enough)
+            }
+            Geometry::Box { pose, size } => {
+                solid_clear(&BoxLanes::new(pose, size), start, along, enough, block.spheres)
+            }
+            Geometry::Cylinder { center, axis, radius, length } => {
+                let cylinder = CylinderLanes::new(center, axis, *radius, *length);
+                solid_clear(&cylinder, start, along, enough, block.spheres)
+            }
+            _ => self.clear_one_by_one(block, &enough.stored()),
+        }
+    }
+
+    /// [`clear_lanes`](Self::clear_lanes) for shapes whose distances are found one by one.
+    #[inline(never)]
+    fn clear_one_by_one(&self, block: &BodyBlock, enough: &F64x4) -> F64x4 {
+        let mut clear = F64x4::ZERO;
+        for lane in 0..4 {
+            let repeats = (0..lane).find(|other| block.is_same(*other, lane));
+            clear.0[lane] = match repeats {
+                Some(other) => clear.0[other],
+                None => {
+                    let distance = self.distance_to_segment(&block.segment(lane), enough.0[lane]);
+                    f64::from(u8::from(distance >= enough.0[lane]))
+                }
+            };
+        }
+        clear
+    }
+}
+
+/// In each lane 1 if the bodies of both blocks stay at least `margin` >= 0 (m) apart, else 0.
+#[inline(always)]
+pub(crate) fn clear_of_each_other<A: Arithmetic>(one: &BodyBlock, other: &BodyBlock, margin: f64) -> F64x4 {
+    let [p, q] = [Vec3::<Four<A>>::of(&one.start), Vec3::of(&other.start)];
+    let [u, v] = [Vec3::<Four<A>>::of(&one.along), Vec3::of(&other.along)];
+    let squared = if one.spheres && other.spheres { (p - q).dot(p - q) } else { to_segment(p, u, q, v).squared };
+    let rounding = (largest::<A>(p) + largest::<A>(q) + Four::splat(2.0)) * Four::splat(ROUNDING);
+    beyond_square(squared, Four::of(one.radius) + Four::of(other.radius) + Four::splat(margin) + rounding)
+}
+
+#[inline(always)]
+fn solid_clear<A: Arithmetic, S: SolidLanes<Four<A>>>(
+    solid: &S,
+    start: Vec3<Four<A>>,
+    along: Vec3<Four<A>>,
+    enough: Four<A>,
+    spheres: bool,
+) -> F64x4 {
+    let start = solid.to_local(start);
+    if spheres {
+        let beyond = solid.beyond(start);
+        return beyond_square(beyond.dot(beyond), enough);
+    }
+    at_least(segment_bound(solid, start, solid.turned(along), enough), enough)
+}
+
+/// 1 where the square root of `squared` is at least `enough`, else 0.
+#[inline(always)]
+fn beyond_square<A: Arithmetic>(squared: Four<A>, enough: Four<A>) -> F64x4 {
+    at_least(squared, enough * enough)
+}
+
+#[inline(always)]
+fn at_least<A: Arithmetic>(value: Four<A>, enough: Four<A>) -> F64x4 {
+    // NaN counts as too near.
+    let near = value.choose_below(enough, Four::splat(0.0), Four::splat(1.0));
+    value.choose_equal(value, near, Four::splat(0.0)).stored()
+}
+
+/// The largest coordinate, without its sign.
+#[inline(always)]
+fn largest<A: Arithmetic>(v: Vec3<Four<A>>) -> Four<A> {
+    v.x.larger(-v.x).larger(v.y.larger(-v.y)).larger(v.z.larger(-v.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::arithmetic::by_instructions;
+    use crate::rng::{self, LazyRng};
+
+    by_instructions! {
+        fn clear(shape: &Shape, block: &BodyBlock, margin: f64) -> F64x4 {
+            shape.clear_lanes::<A>(block, margin)
+        }
+    }
+
+    fn shapes(rng: &mut LazyRng) -> Vec<Shape> {
+        let mut point = |reach: f64| -> [f64; 3] { std::array::from_fn(|_| rng.uniform_in(-reach, reach)) };
+        let turn = Some(*nalgebra::Rotation3::new(Vector3::from(point(2.0))).matrix());
+        let cloud: Vec<[f64; 3]> = (0..50).map(|_| point(0.5)).collect();
+        let size = point(0.3).map(|x| 0.02 + x.abs());
+        let shapes = [
+            Shape::sphere(point(0.5), size[0]),
+            Shape::capsule(point(0.5), point(0.5), size[0]),
+            Shape::cuboid(point(0.5), size, turn),
+            Shape::cylinder(point(0.5), point(1.0), size[0], size[1]),
+            Shape::half_space(point(1.0), point(1.0)[0]),
+            Shape::ellipsoid(point(0.5), size, turn),
+            Shape::point_cloud(cloud, 0.01),
+        ];
+        shapes.into_iter().map(Result::unwrap).collect()
+    }
+
+    #[test]
+    fn four_bodies_at_once_are_near_when_each_is() {
+        let mut rng = rng::stream(1, 0);
+        let (mut near, mut far) = (0, 0);
+        for case in 0..2000 {
+            let spheres = case % 2 == 0;
+            let mut lanes = |reach: f64| F64x4(std::array::from_fn(|_| rng.uniform_in(-reach, reach)));
+            let block = BodyBlock {
+                start: [lanes(1.0), lanes(1.0), lanes(1.0)],
+                along: if spheres { [F64x4::ZERO; 3] } else { [lanes(0.4), lanes(0.4), lanes(0.4)] },
+                radius: F64x4(lanes(0.1).0.map(f64::abs)),
+                spheres,
+            };
+            let margin = lanes(0.1).0[0].abs();
+            for shape in shapes(&mut rng) {
+                let clear = clear(&shape, &block, margin).0;
+                for lane in 0..4 {
+                    let radius = block.radius.0[lane];
+                    let gap = shape.distance_to_segment(&block.segment(lane), f64::INFINITY) - radius - margin;
+                    // Within rounding of the decision both answers are right.
+                    assert!(gap.abs() < 3e-9 || (gap > 0.0) == (clear[lane] == 1.0), "{}: {gap}", shape.name());
+                    *(if gap > 0.0 { &mut far } else { &mut near }) += 1;
+                }
+            }
+        }
+        assert!(near > 5000 && far > 5000, "{near} {far}");
+    }
+}

@@ -1,0 +1,245 @@
+//! A tree of boxes over many pieces of a shape. Each node holds four boxes, one per lane of the registers; each leaf holds
+//! four pieces.
+
+use nalgebra::Vector3;
+
+use crate::math::arithmetic::Arithmetic;
+use crate::math::f64x4::F64x4;
+use crate::math::real::{Four, Real};
+use crate::math::vec3::Vec3;
+
+/// An axis-parallel box (m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Aabb {
+    pub lower: Vector3<f64>,
+    pub upper: Vector3<f64>,
+}
+
+impl Aabb {
+    /// The smallest box around `points`.
+    pub fn around(points: impl IntoIterator<Item = Vector3<f64>>) -> Self {
+        let empty = Self { lower: Vector3::repeat(f64::INFINITY), upper: Vector3::repeat(f64::NEG_INFINITY) };
+        points.into_iter().fold(empty, |all, p| Self { lower: all.lower.inf(&p), upper: all.upper.sup(&p) })
+    }
+
+    fn with(self, other: &Self) -> Self {
+        Self { lower: self.lower.inf(&other.lower), upper: self.upper.sup(&other.upper) }
+    }
+}
+
+/// Four pieces of a leaf: their indices, or [`NONE`].
+pub(super) type Block = [u32; 4];
+/// No piece.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// This bit of a child marks a leaf.
+const LEAF: u32 = 1 << 31;
+/// Three children per level wait, and a tree of 2^31 pieces has at most 16 levels.
+const STACK: usize = 64;
+
+/// Four boxes and what they hold.
+#[derive(Debug, Clone)]
+struct Node {
+    center: [F64x4; 3],
+    half: [F64x4; 3],
+    child: [u32; 4],
+}
+
+/// A tree over pieces, each in a box.
+#[derive(Debug, Clone)]
+pub(super) struct BoundingTree {
+    nodes: Vec<Node>,
+    root: u32,
+    bounds: Aabb,
+}
+
+/// A segment, as the tree compares it with its boxes.
+pub(super) struct SegmentQuery {
+    center: [f64; 3],
+    half: [f64; 3],
+    /// Directions of unit length at right angles to the segment and to one axis; zero for a segment along that axis.
+    across: [[f64; 3]; 3],
+    /// A point has no direction, and its distance from a box is exact without the above.
+    is_point: bool,
+}
+
+/// The bound of a search for pieces nearer than `enough` (m). Its square root is at least `enough`.
+pub(super) fn squared_bound(enough: f64) -> f64 {
+    let enough = enough.max(0.0) * (1.0 + 4.0 * f64::EPSILON);
+    enough * enough
+}
+
+impl SegmentQuery {
+    pub fn new([a, b]: &[Vector3<f64>; 2]) -> Self {
+        let along = b - a;
+        let across = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| {
+            let normal = along.cross(&axis);
+            normal.try_normalize(1e-9 * along.norm()).unwrap_or_default().into()
+        });
+        let center = (0.5 * (a + b)).into();
+        Self { center, half: (0.5 * along.abs()).into(), across, is_point: along == Vector3::zeros() }
+    }
+}
+
+impl BoundingTree {
+    /// A tree over these boxes, at least one, and the pieces of its leaves.
+    pub fn new(boxes: &[Aabb]) -> (Self, Vec<Block>) {
+        let mut items: Vec<u32> = (0..boxes.len() as u32).collect();
+        let mut build = Build { boxes, nodes: vec![], blocks: vec![] };
+        let (root, bounds) = build.subtree(&mut items);
+        (Self { nodes: build.nodes, root, bounds }, build.blocks)
+    }
+
+    /// The box around everything.
+    pub fn bounds(&self) -> &Aabb {
+        &self.bounds
+    }
+
+    /// Visits leaves that may hold pieces within the square root of `bound` of the segment, nearest boxes first. `visit`
+    /// gets the index of a block and returns the new bound. Returns the last bound.
+    #[inline(always)]
+    pub fn search<A: Arithmetic>(
+        &self,
+        query: &SegmentQuery,
+        mut bound: f64,
+        mut visit: impl FnMut(usize, f64) -> f64,
+    ) -> f64 {
+        let mut stack = [(0.0, 0_u32); STACK];
+        stack[0] = (0.0, self.root);
+        let mut waiting = 1;
+        while waiting > 0 {
+            waiting -= 1;
+            let (nearest, item) = stack[waiting];
+            // Boxes at the bound may hold what is at the bound.
+            if nearest > bound {
+                continue;
+            }
+            if item & LEAF != 0 {
+                bound = visit((item & !LEAF) as usize, bound);
+                continue;
+            }
+            let node = &self.nodes[item as usize];
+            let distances = node.squared_distances::<A>(query).0;
+            let first = waiting;
+            for lane in 0..4 {
+                if distances[lane] <= bound && node.child[lane] != NONE {
+                    // Kept in order, the nearest on top.
+                    let mut place = waiting;
+                    while place > first && stack[place - 1].0 < distances[lane] {
+                        stack[place] = stack[place - 1];
+                        place -= 1;
+                    }
+                    stack[place] = (distances[lane], node.child[lane]);
+                    waiting += 1;
+                }
+            }
+        }
+        bound
+    }
+
+    /// Visits the leaves whose boxes reach over `point`, seen along the x axis, at or beyond its x.
+    pub fn along_x(&self, point: &Vector3<f64>, mut visit: impl FnMut(usize)) {
+        let mut stack = [0_u32; STACK];
+        stack[0] = self.root;
+        let mut waiting = 1;
+        while waiting > 0 {
+            waiting -= 1;
+            let item = stack[waiting];
+            if item & LEAF != 0 {
+                visit((item & !LEAF) as usize);
+                continue;
+            }
+            let node = &self.nodes[item as usize];
+            for lane in 0..4 {
+                let beside = |k: usize| (node.center[k].0[lane] - point[k]).abs() > node.half[k].0[lane];
+                let behind = node.center[0].0[lane] + node.half[0].0[lane] < point.x;
+                if node.child[lane] != NONE && !(behind || beside(1) || beside(2)) {
+                    stack[waiting] = node.child[lane];
+                    waiting += 1;
+                }
+            }
+        }
+    }
+}
+
+impl Node {
+    /// Lower bounds on the squared distances of a segment from the four boxes; exact for a point.
+    #[inline(always)]
+    fn squared_distances<A: Arithmetic>(&self, query: &SegmentQuery) -> F64x4 {
+        let offset = Vec3::<Four<A>>::of(&self.center) - Vec3::splat(&query.center);
+        let half = Vec3::<Four<A>>::of(&self.half);
+        let own = Vec3::splat(&query.half);
+        let x = gap(offset.x, half.x + own.x);
+        let y = gap(offset.y, half.y + own.y);
+        let z = gap(offset.z, half.z + own.z);
+        let mut squared = x * x + y * y + z * z;
+        if !query.is_point {
+            for normal in &query.across {
+                let across = Vec3::<Four<A>>::splat(normal);
+                let reach = Vec3::<Four<A>>::splat(&[normal[0].abs(), normal[1].abs(), normal[2].abs()]);
+                let apart = gap(across.dot(offset), reach.dot(half));
+                squared = squared.larger(apart * apart);
+            }
+        }
+        squared.stored()
+    }
+}
+
+/// Distance between intervals of this offset and half width, or 0.
+#[inline(always)]
+fn gap<R: Real>(offset: R, half: R) -> R {
+    (offset.larger(-offset) - half).larger(R::splat(0.0))
+}
+
+struct Build<'a> {
+    boxes: &'a [Aabb],
+    nodes: Vec<Node>,
+    blocks: Vec<Block>,
+}
+
+impl Build<'_> {
+    /// Builds the subtree of `items`; returns its child index and box.
+    fn subtree(&mut self, items: &mut [u32]) -> (u32, Aabb) {
+        if items.len() <= 4 {
+            let block = std::array::from_fn(|lane| items.get(lane).copied().unwrap_or(NONE));
+            self.blocks.push(block);
+            let bounds = items.iter().fold(Aabb::around([]), |all, i| all.with(&self.boxes[*i as usize]));
+            return ((self.blocks.len() - 1) as u32 | LEAF, bounds);
+        }
+        let index = self.nodes.len();
+        self.nodes.push(Node { center: [F64x4::ZERO; 3], half: [F64x4::ZERO; 3], child: [NONE; 4] });
+        let mut whole = Aabb::around([]);
+        let (left, right) = self.halves(items);
+        let mut lane = 0;
+        for half in [left, right] {
+            let (first, second) = if half.len() > 4 { self.halves(half) } else { (half, &mut [][..]) };
+            for quarter in [first, second] {
+                if quarter.is_empty() {
+                    continue;
+                }
+                let (child, bounds) = self.subtree(quarter);
+                let (center, half) = (0.5 * (bounds.lower + bounds.upper), 0.5 * (bounds.upper - bounds.lower));
+                let node = &mut self.nodes[index];
+                node.child[lane] = child;
+                for k in 0..3 {
+                    node.center[k].0[lane] = center[k];
+                    // The centre is rounded: the half extents must still reach both sides.
+                    node.half[k].0[lane] = half[k] * (1.0 + 1e-15) + 1e-15 * center[k].abs();
+                }
+                whole = whole.with(&bounds);
+                lane += 1;
+            }
+        }
+        (index as u32, whole)
+    }
+
+    /// Splits at the median along the longest extent, the first half into full leaves.
+    fn halves<'i>(&self, items: &'i mut [u32]) -> (&'i mut [u32], &'i mut [u32]) {
+        let middle = |i: u32| self.boxes[i as usize].lower + self.boxes[i as usize].upper;
+        let spread = Aabb::around(items.iter().map(|i| middle(*i)));
+        let axis = (spread.upper - spread.lower).imax();
+        let at = (items.len() / 2).next_multiple_of(4);
+        items.select_nth_unstable_by(at.min(items.len() - 1), |i, j| middle(*i)[axis].total_cmp(&middle(*j)[axis]));
+        items.split_at_mut(at.min(items.len()))
+    }
+}

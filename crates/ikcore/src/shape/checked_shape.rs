@@ -1,0 +1,273 @@
+//! A validated shape at its place.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::convex_hull::Hull;
+use super::geometry::Geometry;
+use super::grid::Grid;
+use super::mesh::Mesh;
+use super::point_cloud::PointCloud;
+use super::stored_shape::StoredShape;
+use crate::error::{Error, Result, require_finite, require_positive};
+use crate::math::{Pose, pose};
+
+/// A validated shape at its place: an obstacle in the frame of a robot's base, or a body in the frame of its link.
+/// Copies share the data of meshes, clouds and grids.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "StoredShape", into = "StoredShape")]
+pub struct Shape {
+    geometry: Geometry,
+    bounds: BoundingBall,
+    /// Allowance for rounding in distances from points near it (m).
+    rounding: f64,
+}
+
+/// What distances lose to rounding, for coordinates of 1 m (m).
+pub(super) const ROUNDING: f64 = 1e-12;
+
+/// A ball that holds a shape (m); its radius is infinite for a half-space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoundingBall {
+    /// Its centre.
+    pub center: [f64; 3],
+    /// Its radius.
+    pub radius: f64,
+}
+
+impl Shape {
+    fn made(geometry: Geometry, bounds: BoundingBall) -> Self {
+        let reach = if bounds.radius.is_finite() { bounds.radius } else { 0.0 };
+        let scale = bounds.center.iter().fold(1.0 + reach, |largest, x| largest.max(reach + x.abs()));
+        Self { geometry, bounds, rounding: ROUNDING * scale }
+    }
+
+    /// A ball about `center` (m).
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for a radius that is not positive.
+    pub fn sphere(center: [f64; 3], radius: f64) -> Result<Self> {
+        require_point("center", &center)?;
+        require_positive("radius of the sphere", radius)?;
+        Ok(Self::made(Geometry::Sphere { center, radius }, BoundingBall { center, radius }))
+    }
+
+    /// A box about `center` with these edges (m), turned by `rotation`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for an edge that is not positive, [`Error::NotRigid`].
+    pub fn cuboid(center: [f64; 3], size: [f64; 3], rotation: Option<Matrix3<f64>>) -> Result<Self> {
+        let pose = checked_pose(center, rotation)?;
+        require_sizes("size of the box", &size)?;
+        let bounds = BoundingBall { center, radius: 0.5 * Vector3::from(size).norm() };
+        Ok(Self::made(Geometry::Box { pose, size }, bounds))
+    }
+
+    /// All points within `radius` of the segment from `a` to `b` (m).
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for a radius that is not positive.
+    pub fn capsule(a: [f64; 3], b: [f64; 3], radius: f64) -> Result<Self> {
+        require_point("a", &a)?;
+        require_point("b", &b)?;
+        require_positive("radius of the capsule", radius)?;
+        let center = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
+        let bounds = BoundingBall { center, radius: 0.5 * (Vector3::from(a) - Vector3::from(b)).norm() + radius };
+        Ok(Self::made(Geometry::Capsule { a, b, radius }, bounds))
+    }
+
+    /// A cylinder of this radius and length (m) about `center`, along `axis` (of any length).
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for an axis of length zero, or a radius or length that is not positive.
+    pub fn cylinder(center: [f64; 3], axis: [f64; 3], radius: f64, length: f64) -> Result<Self> {
+        let axis = checked_direction("axis of the cylinder", axis)?.into();
+        require_point("center", &center)?;
+        require_positive("radius of the cylinder", radius)?;
+        require_positive("length of the cylinder", length)?;
+        let bounds = BoundingBall { center, radius: radius.hypot(0.5 * length) };
+        Ok(Self::made(Geometry::Cylinder { center, axis, radius, length }, bounds))
+    }
+
+    /// All points x with normal . x <= offset (m): a floor is `half_space([0, 0, 1], height)`. The normal may have any
+    /// length; `offset` counts along the normal of unit length.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for a normal of length zero.
+    pub fn half_space(normal: [f64; 3], offset: f64) -> Result<Self> {
+        let normal: [f64; 3] = checked_direction("normal of the half-space", normal)?.into();
+        require_finite("offset of the half-space", &[offset], |_| "it".into())?;
+        let center = normal.map(|n| n * offset);
+        let bounds = BoundingBall { center, radius: f64::INFINITY };
+        Ok(Self::made(Geometry::HalfSpace { normal, offset }, bounds))
+    }
+
+    /// An ellipsoid about `center` with these semi-axes (m), turned by `rotation`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for a semi-axis that is not positive, [`Error::NotRigid`].
+    pub fn ellipsoid(center: [f64; 3], semi_axes: [f64; 3], rotation: Option<Matrix3<f64>>) -> Result<Self> {
+        let pose = checked_pose(center, rotation)?;
+        require_sizes("semi-axes of the ellipsoid", &semi_axes)?;
+        let bounds = BoundingBall { center, radius: semi_axes.into_iter().fold(0.0, f64::max) };
+        Ok(Self::made(Geometry::Ellipsoid { pose, semi_axes }, bounds))
+    }
+
+    /// An ellipse in the plane z = 0 about `center` with these semi-axes (m), its first axis at `angle` (rad).
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for a semi-axis that is not positive.
+    pub fn ellipse(center: [f64; 2], semi_axes: [f64; 2], angle: f64) -> Result<Self> {
+        require_point("center", &center)?;
+        require_sizes("semi-axes of the ellipse", &semi_axes)?;
+        require_finite("angle of the ellipse", &[angle], |_| "it".into())?;
+        let bounds = BoundingBall { center: [center[0], center[1], 0.0], radius: semi_axes[0].max(semi_axes[1]) };
+        Ok(Self::made(Geometry::Ellipse { center, semi_axes, angle }, bounds))
+    }
+
+    /// The convex hull of `points` (m), at least four that do not lie in a plane.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::InvalidObstacle`] for fewer points or a flat body.
+    pub fn convex_mesh(points: &[[f64; 3]]) -> Result<Self> {
+        require_points("points of the convex mesh", points)?;
+        let hull = Hull::new(points).map_err(|problem| Error::InvalidObstacle { problem })?;
+        let bounds = hull.bounding_ball();
+        Ok(Self::made(Geometry::ConvexMesh(Arc::new(hull)), bounds))
+    }
+
+    /// A mesh of triangles, each given by three indices of `vertices` (m). It need not be convex. If every edge belongs to
+    /// exactly two triangles that run along it in opposite directions, the mesh is closed and its inside counts too.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::InvalidObstacle`] for no triangles, or an index that is not of a vertex.
+    pub fn mesh(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Result<Self> {
+        require_points("vertices of the mesh", &vertices)?;
+        let mesh = Mesh::new(vertices, faces).map_err(|problem| Error::InvalidObstacle { problem })?;
+        let bounds = ball_about(mesh.vertices(), 0.0);
+        Ok(Self::made(Geometry::Mesh(Arc::new(mesh)), bounds))
+    }
+
+    /// Balls of one `radius` about `points` (m), such as from a depth camera.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius, [`Error::InvalidObstacle`] for no points.
+    pub fn point_cloud(points: Vec<[f64; 3]>, radius: f64) -> Result<Self> {
+        require_points("points of the point cloud", &points)?;
+        if !(radius >= 0.0 && radius.is_finite()) {
+            return Err(Error::out_of_range("radius of the point cloud", "zero or more and finite", radius));
+        }
+        if points.is_empty() {
+            return Err(Error::InvalidObstacle { problem: "a point cloud needs at least one point, got none".into() });
+        }
+        let bounds = ball_about(&points, radius);
+        Ok(Self::made(Geometry::PointCloud(Arc::new(PointCloud::new(points, radius))), bounds))
+    }
+
+    /// The occupied voxels of a grid: cubes with edges of `voxel` (m), the first with its lowest corner at `origin`.
+    /// `occupied` has `counts[0] * counts[1] * counts[2]` entries, with z running fastest.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for an edge that is not positive, [`Error::WrongLength`],
+    /// [`Error::InvalidObstacle`] if nothing is occupied.
+    pub fn grid(origin: [f64; 3], voxel: f64, counts: [usize; 3], occupied: Vec<bool>) -> Result<Self> {
+        require_point("origin", &origin)?;
+        require_positive("voxel of the grid", voxel)?;
+        let expected = counts.iter().try_fold(1_usize, |product, count| product.checked_mul(*count));
+        if expected != Some(occupied.len()) {
+            let expected = format!("{} x {} x {} voxels", counts[0], counts[1], counts[2]);
+            return Err(Error::WrongLength { what: "occupied voxels".into(), expected, got: occupied.len() });
+        }
+        let far: [f64; 3] = std::array::from_fn(|k| origin[k] + voxel * counts[k] as f64);
+        require_point("far corner of the grid", &far)?;
+        let grid = Grid::new(origin, voxel, counts, occupied);
+        let Some(grid) = grid else {
+            return Err(Error::InvalidObstacle {
+                problem: "a grid needs at least one occupied voxel, got none".into(),
+            });
+        };
+        let corners: Vec<[f64; 3]> =
+            grid.blocks().iter().flat_map(|block| [block.lower.into(), block.upper.into()]).collect();
+        let bounds = ball_about(&corners, 0.0);
+        Ok(Self::made(Geometry::Grid(Arc::new(grid)), bounds))
+    }
+
+    /// The geometry.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// The name of its kind, such as "Sphere".
+    pub fn name(&self) -> &'static str {
+        self.geometry.name()
+    }
+
+    /// A ball that holds it.
+    pub fn bounding_ball(&self) -> BoundingBall {
+        self.bounds
+    }
+
+    /// Taken off each computed distance of it from something at most `reach` (m) from the origin, so that no rounding makes
+    /// the result larger than the truth.
+    pub(super) fn rounding(&self, reach: f64) -> f64 {
+        self.rounding.max(ROUNDING * reach)
+    }
+
+    /// Whether it is flat, in the plane z = 0, and so undefined for an arm that leaves that plane.
+    pub fn is_flat(&self) -> bool {
+        matches!(self.geometry, Geometry::Ellipse { .. })
+    }
+
+    /// Whether it can be a body of a robot: convex and bounded, in space.
+    pub fn can_be_carried(&self) -> bool {
+        use Geometry::{Box, Capsule, ConvexMesh, Cylinder, Ellipsoid, Sphere};
+        matches!(
+            self.geometry,
+            Sphere { .. } | Box { .. } | Capsule { .. } | Cylinder { .. } | Ellipsoid { .. } | ConvexMesh(_)
+        )
+    }
+}
+
+/// A ball about the middle of the box around `points` that holds this box, each point with `margin` (m) around it.
+fn ball_about(points: &[[f64; 3]], margin: f64) -> BoundingBall {
+    let (mut lower, mut upper) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+    for point in points {
+        lower = lower.inf(&Vector3::from(*point));
+        upper = upper.sup(&Vector3::from(*point));
+    }
+    let middle = 0.5 * (lower + upper);
+    BoundingBall { center: middle.into(), radius: 0.5 * (upper - lower).norm() + margin }
+}
+
+fn checked_pose(center: [f64; 3], rotation: Option<Matrix3<f64>>) -> Result<Pose> {
+    require_point("center", &center)?;
+    match rotation {
+        None => Ok(Pose::from_parts(center.into(), Rotation3::identity())),
+        Some(rotation) => pose::from_rotation_matrix("rotation", rotation, center),
+    }
+}
+
+fn checked_direction(what: &str, direction: [f64; 3]) -> Result<Vector3<f64>> {
+    require_point(what, &direction)?;
+    let direction = Vector3::from(direction);
+    let length = direction.norm();
+    require_positive(&format!("length of the {what}"), length)?;
+    // A direction of unit length keeps its bits when a shape is made again from its parts.
+    let is_unit = (length - 1.0).abs() <= 4.0 * f64::EPSILON;
+    Ok(if is_unit { direction } else { direction / length })
+}
+
+fn require_point(what: &str, point: &[f64]) -> Result<()> {
+    require_finite(what, point, |i| format!("coordinate {}", ["x", "y", "z"][i]))
+}
+
+fn require_points(what: &str, points: &[[f64; 3]]) -> Result<()> {
+    require_finite(what, points.as_flattened(), |i| format!("coordinate {} of point {}", ["x", "y", "z"][i % 3], i / 3))
+}
+
+fn require_sizes(what: &str, sizes: &[f64]) -> Result<()> {
+    let along = |i: usize| format!("{what} along {}", ["x", "y", "z"][i]);
+    sizes.iter().enumerate().try_for_each(|(i, size)| require_positive(&along(i), *size))
+}

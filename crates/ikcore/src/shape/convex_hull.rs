@@ -1,0 +1,98 @@
+//! Convex hulls of points.
+
+use nalgebra::Vector3;
+
+use super::checked_shape::BoundingBall;
+use super::collision_crate::Polyhedron;
+use super::tangent::Tangent;
+
+/// The convex hull of some points.
+#[derive(Debug, Clone)]
+pub struct Hull {
+    points: Vec<[f64; 3]>,
+    corners: Vec<Vector3<f64>>,
+    /// Outward normal n and offset d of each face: n . x <= d inside.
+    faces: Vec<(Vector3<f64>, f64)>,
+    polyhedron: Polyhedron,
+}
+
+impl PartialEq for Hull {
+    /// The rest follows from the points.
+    fn eq(&self, other: &Self) -> bool {
+        self.points == other.points
+    }
+}
+
+/// A body thinner than this, seen against its size, is flat.
+const THINNEST: f64 = 1e-6;
+
+impl Hull {
+    /// Err says what is wrong with the points.
+    pub(super) fn new(points: &[[f64; 3]]) -> Result<Self, String> {
+        let flat = || "the points of a convex mesh lie in a plane: it needs at least 4 that do not".to_string();
+        if points.len() < 4 {
+            return Err(format!(
+                "a convex mesh needs at least 4 points that do not lie in a plane, got {}",
+                points.len()
+            ));
+        }
+        if thinness(points) < THINNEST {
+            return Err(flat());
+        }
+        let polyhedron = Polyhedron::hull_of(points).ok_or_else(flat)?;
+        let corners = polyhedron.corners();
+        let with_offset = |normal: Vector3<f64>| (normal, support(&corners, &normal));
+        let faces = polyhedron.normals().into_iter().map(with_offset).collect();
+        Ok(Self { points: points.to_vec(), faces, corners, polyhedron })
+    }
+
+    /// The points as given (m).
+    pub fn points(&self) -> &[[f64; 3]] {
+        &self.points
+    }
+
+    /// Corners of the hull's triangles (m), for drawing.
+    pub fn triangles(&self) -> Vec<[[f64; 3]; 3]> {
+        self.polyhedron.triangles()
+    }
+
+    /// A ball that holds it.
+    pub(super) fn bounding_ball(&self) -> BoundingBall {
+        let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;
+        let radius = self.corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
+        BoundingBall { center: middle.into(), radius }
+    }
+
+    /// The crate proposes the nearest point; the plane through the corners bounds the distance regardless of its error.
+    pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
+        let beyond =
+            |(normal, offset): &(Vector3<f64>, f64)| Tangent { value: normal.dot(point) - offset, normal: *normal };
+        let of_face = self.faces.iter().map(beyond).fold(None, |best: Option<Tangent>, next| match best {
+            Some(best) if best.value >= next.value => Some(best),
+            _ => Some(next),
+        });
+        let of_face = of_face.unwrap_or(Tangent { value: f64::NEG_INFINITY, normal: Vector3::x() });
+        if of_face.value <= 0.0 {
+            return of_face;
+        }
+        let away = point - self.polyhedron.nearest_point(point);
+        let normal = away.normalize();
+        let value = normal.dot(point) - support(&self.corners, &normal);
+        if value > of_face.value { Tangent { value, normal } } else { of_face }
+    }
+}
+
+/// The farthest that the body reaches along `normal`.
+fn support(corners: &[Vector3<f64>], normal: &Vector3<f64>) -> f64 {
+    corners.iter().map(|corner| corner.dot(normal)).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Smallest over largest extent of the points, along their principal axes.
+fn thinness(points: &[[f64; 3]]) -> f64 {
+    let middle = points.iter().map(|p| Vector3::from(*p)).sum::<Vector3<f64>>() / points.len() as f64;
+    let spread: nalgebra::Matrix3<f64> =
+        points.iter().map(|p| Vector3::from(*p) - middle).map(|v| v * v.transpose()).sum();
+    let squared = spread.symmetric_eigenvalues();
+    let largest = squared.max();
+    if largest > 0.0 { (squared.min().max(0.0) / largest).sqrt() } else { 0.0 }
+}

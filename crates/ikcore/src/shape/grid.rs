@@ -1,0 +1,277 @@
+//! Occupied voxels, joined to blocks.
+
+use std::fmt;
+
+use nalgebra::Vector3;
+
+use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
+use super::segment_distance::{Approach, by_tangents};
+use super::segment_lanes::{TOUCHING, to_box};
+use super::tangent::Tangent;
+use crate::math::arithmetic::by_instructions;
+use crate::math::f64x4::F64x4;
+use crate::math::real::{Four, Real};
+use crate::math::vec3::Vec3;
+
+/// The occupied voxels of a grid: cubes in rows along x, y and z.
+///
+/// Neighbours are joined to blocks as large as possible; how deep something reaches inside is measured in its block.
+#[derive(Clone)]
+pub struct Grid {
+    origin: [f64; 3],
+    voxel: f64,
+    counts: [usize; 3],
+    occupied: Vec<bool>,
+    blocks: Vec<Aabb>,
+    tree: BoundingTree,
+    leaves: Vec<Leaf>,
+}
+
+/// Four blocks: centres, half edges, indices.
+#[derive(Debug, Clone)]
+struct Leaf {
+    center: [F64x4; 3],
+    half: [F64x4; 3],
+    blocks: Block,
+}
+
+/// The block that is nearest to a segment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearestBlock {
+    /// Squared distance (m^2).
+    pub squared: f64,
+    /// Fraction of the way along the segment.
+    pub share: f64,
+    /// Index of the block; `None` if none is within the bound.
+    pub block: Option<usize>,
+}
+
+impl PartialEq for Grid {
+    /// The rest follows from these.
+    fn eq(&self, other: &Self) -> bool {
+        let given = |grid: &Self| (grid.origin, grid.voxel, grid.counts);
+        given(self) == given(other) && self.occupied == other.occupied
+    }
+}
+
+impl fmt::Debug for Grid {
+    /// Without the voxels, of which there may be thousands.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (counts, blocks) = (self.counts, self.blocks.len());
+        write!(f, "Grid {{ origin: {:?}, voxel: {:?}, counts: {counts:?}, {blocks} blocks }}", self.origin, self.voxel)
+    }
+}
+
+impl Grid {
+    /// `None` if nothing is occupied; z runs fastest in `occupied`, which has an entry per voxel.
+    pub(super) fn new(origin: [f64; 3], voxel: f64, counts: [usize; 3], occupied: Vec<bool>) -> Option<Self> {
+        let at = |k: usize, i: usize| origin[k] + voxel * i as f64;
+        let place = |range: &[[usize; 2]; 3]| Aabb {
+            lower: Vector3::from_fn(|k, _| at(k, range[k][0])),
+            upper: Vector3::from_fn(|k, _| at(k, range[k][1])),
+        };
+        let blocks: Vec<Aabb> = joined(counts, &occupied).iter().map(place).collect();
+        if blocks.is_empty() {
+            return None;
+        }
+        let (tree, leaves) = BoundingTree::new(&blocks);
+        let leaves = leaves.into_iter().map(|block| Leaf::new(block, &blocks)).collect();
+        Some(Self { origin, voxel, counts, occupied, blocks, tree, leaves })
+    }
+
+    /// Lowest corner of the first voxel (m).
+    pub fn origin(&self) -> [f64; 3] {
+        self.origin
+    }
+
+    /// Edge of a voxel (m).
+    pub fn voxel(&self) -> f64 {
+        self.voxel
+    }
+
+    /// Number of voxels along x, y and z.
+    pub fn counts(&self) -> [usize; 3] {
+        self.counts
+    }
+
+    /// Whether each voxel is occupied; z runs fastest.
+    pub fn occupied(&self) -> &[bool] {
+        &self.occupied
+    }
+
+    /// The blocks of voxels.
+    pub(super) fn blocks(&self) -> &[Aabb] {
+        &self.blocks
+    }
+
+    /// The nearest block within the square root of `bound`; `overlapping` gets the blocks that it crosses.
+    pub(super) fn nearest_block(
+        &self,
+        segment: &[Vector3<f64>; 2],
+        bound: f64,
+        overlapping: &mut dyn FnMut(usize),
+    ) -> NearestBlock {
+        nearest_block(self, segment, bound, overlapping)
+    }
+
+    /// Signed distance of a point to the nearest block, and its gradient.
+    pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
+        let mut deepest: Option<Tangent> = None;
+        let nearest = self.nearest_block(&[*point; 2], f64::INFINITY, &mut |block| {
+            let tangent = self.blocks[block].tangent(point);
+            if deepest.is_none_or(|deepest| tangent.value < deepest.value) {
+                deepest = Some(tangent);
+            }
+        });
+        deepest.unwrap_or_else(|| self.blocks[nearest.block.unwrap_or(0)].tangent(point))
+    }
+
+    /// Where a segment is nearest, exact up to `enough`: inside, negative by the depth of its deepest point in a block.
+    pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> Approach {
+        let mut deepest: Option<Approach> = None;
+        let nearest = self.nearest_block(segment, squared_bound(enough).max(TOUCHING), &mut |block| {
+            let inside = by_tangents(segment, |point| self.blocks[block].tangent(point), f64::INFINITY);
+            if deepest.is_none_or(|deepest| inside.distance < deepest.distance) {
+                deepest = Some(inside);
+            }
+        });
+        deepest.unwrap_or(Approach { distance: nearest.squared.sqrt(), share: nearest.share })
+    }
+}
+
+impl Leaf {
+    fn new(block: Block, blocks: &[Aabb]) -> Self {
+        // A lane without a block repeats the first.
+        let aabb = |lane: usize| &blocks[block[if block[lane] == NONE { 0 } else { lane }] as usize];
+        let lanes = |value: &dyn Fn(&Aabb, usize) -> f64| {
+            std::array::from_fn(|k| F64x4(std::array::from_fn(|lane| value(aabb(lane), k))))
+        };
+        let center = lanes(&|aabb, k| 0.5 * (aabb.lower[k] + aabb.upper[k]));
+        Self { center, half: lanes(&|aabb, k| 0.5 * (aabb.upper[k] - aabb.lower[k])), blocks: block }
+    }
+}
+
+by_instructions! {
+    fn nearest_block(
+        grid: &Grid,
+        segment: &[Vector3<f64>; 2],
+        bound: f64,
+        overlapping: &mut dyn FnMut(usize),
+    ) -> NearestBlock {
+        let start = Vec3::<Four<A>>::splat(&segment[0].into());
+        let along = Vec3::<Four<A>>::splat(&(segment[1] - segment[0]).into());
+        let query = SegmentQuery::new(segment);
+        let mut best = NearestBlock { squared: bound, share: 0.0, block: None };
+        grid.tree.search::<A>(&query, bound, |leaf, bound| {
+            let leaf = &grid.leaves[leaf];
+            let nearest = to_box(start - Vec3::of(&leaf.center), along, Vec3::of(&leaf.half));
+            let squared = nearest.squared.stored().0;
+            for lane in 0..4 {
+                if leaf.blocks[lane] == NONE {
+                    continue;
+                }
+                let block = leaf.blocks[lane] as usize;
+                if squared[lane] <= TOUCHING {
+                    overlapping(block);
+                }
+                if squared[lane] < best.squared || (squared[lane] <= bound && best.block.is_none()) {
+                    best = NearestBlock { squared: squared[lane], share: nearest.share.lane(lane), block: Some(block) };
+                }
+            }
+            best.squared
+        });
+        best
+    }
+}
+
+/// Ranges of voxels that together are the occupied ones: each grown along z, then y, then x as far as all are occupied and
+/// not yet taken.
+fn joined([nx, ny, nz]: [usize; 3], occupied: &[bool]) -> Vec<[[usize; 2]; 3]> {
+    let index = |x: usize, y: usize, z: usize| (x * ny + y) * nz + z;
+    let mut free = occupied.to_vec();
+    let mut blocks = vec![];
+    for x in 0..nx {
+        for y in 0..ny {
+            for z in 0..nz {
+                if !free[index(x, y, z)] {
+                    continue;
+                }
+                let row = |free: &[bool], x: usize, y: usize, end: usize| (z..end).all(|z| free[index(x, y, z)]);
+                let z_end = (z..nz).take_while(|z| free[index(x, y, *z)]).count() + z;
+                let y_end = (y..ny).take_while(|y| row(&free, x, *y, z_end)).count() + y;
+                let slab = |x: &usize| (y..y_end).all(|y| row(&free, *x, y, z_end));
+                let x_end = (x..nx).take_while(slab).count() + x;
+                for i in x..x_end {
+                    for j in y..y_end {
+                        free[index(i, j, z)..index(i, j, z_end)].fill(false);
+                    }
+                }
+                blocks.push([[x, x_end], [y, y_end], [z, z_end]]);
+            }
+        }
+    }
+    blocks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::checked_shape::Shape;
+    use super::*;
+    use crate::rng::{self, LazyRng};
+
+    fn random_occupancy(rng: &mut LazyRng, counts: [usize; 3], share: f64) -> Vec<bool> {
+        (0..counts.iter().product()).map(|_| rng.uniform() < share).collect()
+    }
+
+    #[test]
+    fn blocks_hold_the_occupied_voxels_once() {
+        let mut rng = rng::stream(1, 0);
+        for share in [0.05, 0.5, 0.9, 1.0] {
+            let counts = [7, 5, 6];
+            let occupied = random_occupancy(&mut rng, counts, share);
+            let mut seen = vec![0; occupied.len()];
+            for [x, y, z] in joined(counts, &occupied) {
+                for i in x[0]..x[1] {
+                    for j in y[0]..y[1] {
+                        (z[0]..z[1]).for_each(|k| seen[(i * 5 + j) * 6 + k] += 1);
+                    }
+                }
+            }
+            assert!(seen.iter().zip(&occupied).all(|(count, occupied)| *count == i32::from(*occupied)));
+            assert!(share < 1.0 || joined(counts, &occupied).len() == 1);
+        }
+    }
+
+    #[test]
+    fn a_segment_is_as_far_from_a_grid_as_from_its_nearest_voxel() {
+        let mut rng = rng::stream(2, 0);
+        let (origin, voxel, counts) = ([-0.5, -0.4, -0.3], 0.1, [10, 8, 6]);
+        let occupied = random_occupancy(&mut rng, counts, 0.1);
+        let grid = Shape::grid(origin, voxel, counts, occupied.clone()).unwrap();
+        let cube = |i: usize| {
+            let place = [i / 48, i / 6 % 8, i % 6];
+            let center = std::array::from_fn(|k| origin[k] + voxel * (place[k] as f64 + 0.5));
+            Shape::cuboid(center, [voxel; 3], None).unwrap()
+        };
+        let cubes: Vec<Shape> = (0..480).filter(|i| occupied[*i]).map(cube).collect();
+        for _ in 0..300 {
+            let segment = [(); 2].map(|()| Vector3::from_fn(|_, _| rng.uniform_in(-1.0, 1.0)));
+            let exact = cubes.iter().map(|cube| cube.distance_to_segment(&segment, f64::INFINITY));
+            let exact = exact.fold(f64::INFINITY, f64::min);
+            let found = grid.distance_to_segment(&segment, f64::INFINITY);
+            // Inside, blocks may be deeper than their voxels.
+            let right = if exact > 0.0 { (found - exact).abs() < 1e-11 } else { found <= exact + 2e-9 };
+            assert!(right, "{found} for {exact}");
+        }
+    }
+
+    #[test]
+    fn mistakes_in_a_grid_are_named() {
+        let problem = |voxel: f64, count: usize| {
+            Shape::grid([0.0; 3], voxel, [2, 1, 1], vec![false; count]).unwrap_err().to_string()
+        };
+        assert_eq!(problem(0.1, 3), "occupied voxels: expected 2 x 1 x 1 voxels, got 3");
+        assert_eq!(problem(0.1, 2), "a grid needs at least one occupied voxel, got none");
+        assert_eq!(problem(0.0, 2), "voxel of the grid must be positive and finite, got 0");
+    }
+}

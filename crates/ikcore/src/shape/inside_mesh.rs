@@ -1,0 +1,54 @@
+//! Whether a mesh is closed, and whether a point is inside.
+//!
+//! A ray from the point along x crosses the surface; crossings outward and inward are counted with opposite signs. Seen
+//! along x, a triangle covers the point if its edges pass on the same side of it. An edge is always compared from its lower
+//! to its upper end, so that both triangles of an edge agree to the bit, and a point on an edge counts for exactly one.
+
+use std::collections::HashMap;
+
+use nalgebra::Vector3;
+
+/// Whether the triangles run along every edge as often in one direction as in the other. Vertices at one place count
+/// as one: STL files repeat them.
+pub(super) fn is_closed(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> bool {
+    let mut places: HashMap<[u64; 3], u32> = HashMap::new();
+    let place: Vec<u32> = (0..vertices.len())
+        // Adding zero makes -0 the same place as 0.
+        .map(|i| *places.entry(vertices[i].map(|x| (x + 0.0).to_bits())).or_insert(i as u32))
+        .collect();
+    let mut surplus: HashMap<(u32, u32), i32> = HashMap::new();
+    for face in faces {
+        let [a, b, c] = face.map(|i| place[i as usize]);
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            if from != to {
+                *surplus.entry((from.min(to), from.max(to))).or_default() += if from < to { 1 } else { -1 };
+            }
+        }
+    }
+    surplus.values().all(|count| *count == 0)
+}
+
+/// +1 or -1 if the ray from `point` along x crosses the triangle out of or into the surface, else 0.
+pub(super) fn winding(point: &Vector3<f64>, corners: &[Vector3<f64>; 3]) -> i32 {
+    let [a, b, c] = corners;
+    let sides = [side(point, a, b), side(point, b, c), side(point, c, a)];
+    // How often the triangle, seen along x, runs around the point.
+    let turns: i32 = sides.iter().sum();
+    if turns == 0 {
+        return 0;
+    }
+    let normal = (b - a).cross(&(c - a));
+    let beyond = (a - point).dot(&normal) * normal.x.signum();
+    if beyond > 0.0 { turns } else { 0 }
+}
+
+/// Seen along x: +1 if the edge passes upward in z on the positive y side of the point, -1 if downward, 0 else.
+fn side(point: &Vector3<f64>, from: &Vector3<f64>, to: &Vector3<f64>) -> i32 {
+    let above = |p: &Vector3<f64>| p.z > point.z;
+    if above(from) == above(to) {
+        return 0;
+    }
+    let (lower, upper, turn) = if above(to) { (from, to, 1) } else { (to, from, -1) };
+    let left = (upper.y - lower.y) * (point.z - lower.z) - (point.y - lower.y) * (upper.z - lower.z);
+    if left > 0.0 { turn } else { 0 }
+}

@@ -1,0 +1,382 @@
+//! Triangle meshes that need not be convex.
+
+use std::fmt;
+
+use nalgebra::Vector3;
+
+use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
+use super::inside_mesh::{is_closed, winding};
+use super::segment_distance::Approach;
+use super::segment_lanes::{NearestShare, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
+use super::tangent::Tangent;
+use super::triangle::nearest_on_triangle;
+use crate::math::arithmetic::{Arithmetic, by_instructions};
+use crate::math::f64x4::F64x4;
+use crate::math::real::{Four, Real};
+use crate::math::vec3::Vec3;
+
+/// A triangle mesh; if it is closed, also what it encloses.
+#[derive(Clone)]
+pub struct Mesh {
+    vertices: Vec<[f64; 3]>,
+    faces: Vec<[u32; 3]>,
+    closed: bool,
+    tree: BoundingTree,
+    leaves: Vec<Leaf>,
+}
+
+/// Four triangles: a corner and two edges of each, and their indices.
+#[derive(Debug, Clone)]
+struct Leaf {
+    corner: [F64x4; 3],
+    edges: [[F64x4; 3]; 2],
+    faces: Block,
+}
+
+/// The point of a mesh that is nearest to a segment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearestFace {
+    /// Squared distance (m^2).
+    pub squared: f64,
+    /// Fraction of the way along the segment.
+    pub share: f64,
+    /// Index of the triangle; `None` if none is within the bound.
+    pub face: Option<usize>,
+}
+
+/// Inside a closed mesh the depth of a segment is found to this fraction of it, ...
+const DEPTH_ACCURACY: f64 = 0.01;
+/// ... or to this length (m), ...
+const SMALLEST_DEPTH_ACCURACY: f64 = 1e-4;
+/// ... with at most this many points of the segment.
+const MOST_DEPTHS: usize = 400;
+
+impl PartialEq for Mesh {
+    /// The rest follows from these.
+    fn eq(&self, other: &Self) -> bool {
+        self.vertices == other.vertices && self.faces == other.faces
+    }
+}
+
+impl fmt::Debug for Mesh {
+    /// Without the pieces, of which there may be thousands.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (vertices, faces) = (self.vertices.len(), self.faces.len());
+        write!(f, "Mesh {{ {vertices} vertices, {faces} faces, closed: {} }}", self.closed)
+    }
+}
+
+impl Mesh {
+    /// Err says what is wrong.
+    pub(super) fn new(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Result<Self, String> {
+        if faces.is_empty() {
+            return Err("a mesh needs at least one triangle, got none".into());
+        }
+        for (i, face) in faces.iter().enumerate() {
+            if let Some(index) = face.iter().find(|index| **index as usize >= vertices.len()) {
+                let count = vertices.len();
+                return Err(format!("face {i} of the mesh names vertex {index}, but it has {count} (from 0)"));
+            }
+        }
+        let corner = |i: u32| Vector3::from(vertices[i as usize]);
+        let boxes: Vec<Aabb> = faces.iter().map(|face| Aabb::around(face.map(corner))).collect();
+        let (tree, blocks) = BoundingTree::new(&boxes);
+        let leaves = blocks.into_iter().map(|block| Leaf::new(block, &vertices, &faces)).collect();
+        let closed = is_closed(&vertices, &faces);
+        Ok(Self { vertices, faces, closed, tree, leaves })
+    }
+
+    /// Corners of the triangles (m).
+    pub fn vertices(&self) -> &[[f64; 3]] {
+        &self.vertices
+    }
+
+    /// Indices of the corners of each triangle.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// Whether the mesh encloses a volume: every edge belongs to two triangles that run along it in opposite directions.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// The volume that a closed mesh encloses (m^3); negative if its triangles are inside out.
+    pub fn volume(&self) -> f64 {
+        let origin = Vector3::from(self.vertices[self.faces[0][0] as usize]);
+        let cone = |i: usize| {
+            let [a, b, c] = self.triangle(i).map(|corner| corner - origin);
+            a.dot(&b.cross(&c)) / 6.0
+        };
+        (0..self.faces.len()).map(cone).sum()
+    }
+
+    /// The corners of face `i`.
+    pub(super) fn triangle(&self, i: usize) -> [Vector3<f64>; 3] {
+        self.faces[i].map(|corner| self.vertices[corner as usize].into())
+    }
+
+    /// Whether the mesh is closed and `point` inside.
+    pub(super) fn encloses(&self, point: &Vector3<f64>) -> bool {
+        let bounds = self.tree.bounds();
+        let within = (0..3).all(|k| (bounds.lower[k]..=bounds.upper[k]).contains(&point[k]));
+        if !(self.closed && within) {
+            return false;
+        }
+        let mut turns = 0;
+        self.tree.along_x(point, |leaf| {
+            let faces = self.leaves[leaf].faces;
+            let real = faces.into_iter().filter(|face| *face != NONE);
+            turns += real.map(|face| winding(point, &self.triangle(face as usize))).sum::<i32>();
+        });
+        turns != 0
+    }
+
+    /// The nearest point of the surface within the square root of `bound`.
+    pub(super) fn nearest_face(&self, segment: &[Vector3<f64>; 2], bound: f64) -> NearestFace {
+        nearest_face(self, segment, bound)
+    }
+
+    /// Signed distance of a point, and its gradient.
+    pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
+        let nearest = self.nearest_face(&[*point; 2], f64::INFINITY);
+        let [a, b, c] = self.triangle(nearest.face.unwrap_or(0));
+        let away = point - nearest_on_triangle(point, &[a, b, c]);
+        let distance = away.norm();
+        let sign = if self.encloses(point) { -1.0 } else { 1.0 };
+        let across = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or(Vector3::x());
+        let normal = if distance > 1e-12 { sign * away / distance } else { across };
+        Tangent { value: sign * distance, normal }
+    }
+
+    /// Signed distance of a segment: negative by the depth of its deepest point, if the mesh is closed. Outside exact up
+    /// to `enough`, inside at most the truth.
+    pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> Approach {
+        let surface = self.nearest_face(segment, squared_bound(enough).max(TOUCHING));
+        let touches = surface.face.is_some() && surface.squared <= TOUCHING;
+        if self.closed && (touches || self.encloses(&segment[0])) {
+            return self.depth(segment);
+        }
+        Approach { distance: surface.squared.sqrt(), share: surface.share }
+    }
+
+    /// A lower bound of the signed distance of the points of a segment. The signed distance changes along it no faster than
+    /// its length: between two points it lies above a wedge.
+    fn depth(&self, [a, b]: &[Vector3<f64>; 2]) -> Approach {
+        let length = (b - a).norm();
+        let at = |share: f64| Approach { distance: self.tangent(&(a + share * (b - a))).value, share };
+        let [first, last] = [at(0.0), at(1.0)];
+        let deeper = |one: Approach, other: Approach| if other.distance < one.distance { other } else { one };
+        let mut seen = deeper(first, last);
+        let mut wedges = vec![Wedge::between(first, last, length)];
+        for _ in 0..MOST_DEPTHS {
+            let accuracy = SMALLEST_DEPTH_ACCURACY.max(-DEPTH_ACCURACY * seen.distance);
+            let by_bound = |i: &usize, j: &usize| wedges[*i].bound.total_cmp(&wedges[*j].bound);
+            match (0..wedges.len()).min_by(by_bound) {
+                Some(lowest) if seen.distance - wedges[lowest].bound > accuracy => {
+                    let Wedge { left, right, .. } = wedges[lowest];
+                    let middle = at(0.5 * (left.share + right.share) + 0.5 * (left.distance - right.distance) / length);
+                    seen = deeper(seen, middle);
+                    wedges[lowest] = Wedge::between(left, middle, length);
+                    wedges.push(Wedge::between(middle, right, length));
+                }
+                _ => break,
+            }
+        }
+        let distance = wedges.iter().fold(seen.distance, |lowest, wedge| lowest.min(wedge.bound));
+        Approach { distance, ..seen }
+    }
+}
+
+/// A piece of a segment, with a lower bound of the signed distance in it.
+#[derive(Clone, Copy)]
+struct Wedge {
+    left: Approach,
+    right: Approach,
+    bound: f64,
+}
+
+impl Wedge {
+    fn between(left: Approach, right: Approach, length: f64) -> Self {
+        let bound = 0.5 * (left.distance + right.distance - length * (right.share - left.share));
+        Self { left, right, bound }
+    }
+}
+
+impl Leaf {
+    fn new(block: Block, vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Self {
+        let mut leaf = Self { corner: [F64x4::ZERO; 3], edges: [[F64x4::ZERO; 3]; 2], faces: block };
+        for lane in 0..4 {
+            // A lane without a triangle repeats the first.
+            let face = if block[lane] == NONE { block[0] } else { block[lane] };
+            let [a, b, c] = faces[face as usize].map(|i| vertices[i as usize]);
+            for k in 0..3 {
+                leaf.corner[k].0[lane] = a[k];
+                leaf.edges[0][k].0[lane] = b[k] - a[k];
+                leaf.edges[1][k].0[lane] = c[k] - a[k];
+            }
+        }
+        leaf
+    }
+
+    #[inline(always)]
+    fn nearest<A: Arithmetic>(&self, start: &[f64; 3], along: &[f64; 3], is_point: bool) -> NearestShare<Four<A>> {
+        let triangle = TriangleLanes::new(Vec3::of(&self.corner), Vec3::of(&self.edges[0]), Vec3::of(&self.edges[1]));
+        let start = Vec3::splat(start);
+        if is_point {
+            let squared = point_to_triangle(start, &triangle);
+            return NearestShare { squared, share: Four::splat(0.0) };
+        }
+        to_triangle(start, Vec3::splat(along), &triangle)
+    }
+}
+
+by_instructions! {
+    fn nearest_face(mesh: &Mesh, segment: &[Vector3<f64>; 2], bound: f64) -> NearestFace {
+        let [start, along] = [segment[0].into(), (segment[1] - segment[0]).into()];
+        let query = SegmentQuery::new(segment);
+        let is_point = along == [0.0; 3];
+        let mut best = NearestFace { squared: bound, share: 0.0, face: None };
+        mesh.tree.search::<A>(&query, bound, |leaf, bound| {
+            let leaf = &mesh.leaves[leaf];
+            let nearest = leaf.nearest::<A>(&start, &along, is_point);
+            let squared = nearest.squared.stored().0;
+            for lane in 0..4 {
+                if squared[lane] < best.squared || (squared[lane] <= bound && best.face.is_none()) {
+                    let face = if leaf.faces[lane] == NONE { leaf.faces[0] } else { leaf.faces[lane] };
+                    best = NearestFace {
+                        squared: squared[lane],
+                        share: nearest.share.lane(lane),
+                        face: Some(face as usize),
+                    };
+                }
+            }
+            best.squared
+        });
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::checked_shape::Shape;
+    use super::super::geometry::Geometry;
+    use super::super::triangle::nearest_on_triangle;
+    use super::*;
+    use crate::rng::{self, LazyRng};
+
+    fn point(rng: &mut LazyRng, reach: f64) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| rng.uniform_in(-reach, reach))
+    }
+
+    /// The triangles of `shape` as a mesh, each with its own corners.
+    fn mesh_of(shape: &Shape) -> Shape {
+        let triangles = shape.triangles();
+        let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Shape::mesh(triangles.as_flattened().to_vec(), faces).unwrap()
+    }
+
+    fn as_mesh(shape: &Shape) -> &Mesh {
+        match shape.geometry() {
+            Geometry::Mesh(mesh) => mesh,
+            _ => unreachable!(),
+        }
+    }
+
+    fn random_soup(rng: &mut LazyRng, count: u32) -> Shape {
+        let mut vertices = vec![];
+        for _ in 0..count {
+            let (corner, size) = (point(rng, 1.0), rng.uniform_in(0.01, 0.4));
+            vertices.extend((0..3).map(|_| <[f64; 3]>::from(corner + size * point(rng, 1.0))));
+        }
+        Shape::mesh(vertices, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()).unwrap()
+    }
+
+    #[test]
+    fn a_mesh_of_a_box_is_as_far_as_the_box() {
+        let mut rng = rng::stream(1, 0);
+        let turn = Some(*nalgebra::Rotation3::new(Vector3::new(0.4, -0.7, 0.2)).matrix());
+        let cuboid = Shape::cuboid([0.1, -0.2, 0.3], [0.5, 0.7, 0.9], turn).unwrap();
+        let mesh = mesh_of(&cuboid);
+        assert!(as_mesh(&mesh).is_closed());
+        let mut inside = 0;
+        for case in 0..4000 {
+            let a = point(&mut rng, 1.2);
+            let b = if case % 3 == 0 { a } else { point(&mut rng, 1.2) };
+            let segment = [a, b];
+            let exact = cuboid.distance_to_segment(&segment, f64::INFINITY);
+            let found = mesh.distance_to_segment(&segment, f64::INFINITY);
+            let slack = if exact > 0.0 { 2e-12 } else { 2.0 * SMALLEST_DEPTH_ACCURACY.max(-DEPTH_ACCURACY * exact) };
+            inside += usize::from(exact < 0.0);
+            assert!(found <= exact + 2e-9 && found >= exact - slack, "case {case}: {found} for {exact}");
+            // Whatever is enough for the caller, the answer is on the same side of it.
+            let enough = rng.uniform_in(-0.2, 0.6);
+            let short = mesh.distance_to_segment(&segment, enough);
+            assert!(short <= exact + 2e-9 && (short >= enough) == (found >= enough), "{short} {found} {enough}");
+        }
+        assert!(inside > 500, "{inside}");
+    }
+
+    #[test]
+    fn a_segment_is_as_far_from_a_soup_as_from_its_nearest_triangle() {
+        let mut rng = rng::stream(2, 0);
+        for count in [1, 2, 5, 37, 400] {
+            let soup = random_soup(&mut rng, count);
+            assert!(!as_mesh(&soup).is_closed());
+            for _ in 0..100 {
+                let segment = [point(&mut rng, 1.5), point(&mut rng, 1.5)];
+                let found = soup.distance_to_segment(&segment, f64::INFINITY);
+                let far = |i: usize| sampled(&segment, &as_mesh(&soup).triangle(i));
+                let nearest = (0..count as usize).map(far).fold(f64::INFINITY, f64::min);
+                assert!(found <= nearest && nearest - found < 0.03, "{found}, sampled {nearest}");
+            }
+        }
+    }
+
+    /// Distance of the triangle from points of the segment.
+    fn sampled([a, b]: &[Vector3<f64>; 2], triangle: &[Vector3<f64>; 3]) -> f64 {
+        let at = |i: usize| a + i as f64 / 100.0 * (b - a);
+        (0..=100).map(|i| (at(i) - nearest_on_triangle(&at(i), triangle)).norm()).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn points_on_rays_through_edges_and_corners_are_inside_or_not() {
+        let cuboid = mesh_of(&Shape::cuboid([0.0; 3], [2.0, 2.0, 2.0], None).unwrap());
+        let mesh = as_mesh(&cuboid);
+        // Rays along x through the diagonals of the faces, and through edges and corners of the box.
+        for (x, y, z) in [(0.0, 0.5, 0.5), (0.0, 0.5, -0.5), (0.0, 0.0, 0.0), (-0.9, 0.25, 0.25)] {
+            assert!(mesh.encloses(&Vector3::new(x, y, z)));
+            assert!(!mesh.encloses(&Vector3::new(-2.0, y, z)) && !mesh.encloses(&Vector3::new(2.0, y, z)));
+        }
+        for outside in [[-2.0, 1.0, 1.0], [-2.0, 1.0, 0.0], [-2.0, 0.0, 1.0], [0.0, 2.0, 0.0]] {
+            assert!(!mesh.encloses(&outside.into()));
+        }
+    }
+
+    #[test]
+    fn what_lies_in_one_of_two_overlapping_bodies_is_inside() {
+        let [one, other] = [[0.0; 3], [0.5, 0.0, 0.0]].map(|c| Shape::cuboid(c, [1.0; 3], None).unwrap().triangles());
+        let triangles: Vec<_> = one.into_iter().chain(other).collect();
+        let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let both = Shape::mesh(triangles.as_flattened().to_vec(), faces).unwrap();
+        // Just outside the first, but deep in the other.
+        assert!(as_mesh(&both).encloses(&Vector3::new(0.501, 0.0, 0.0)));
+        assert!(as_mesh(&both).encloses(&Vector3::zeros()) && !as_mesh(&both).encloses(&Vector3::new(1.1, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn mistakes_in_a_mesh_are_named() {
+        let problem = |vertices: &[[f64; 3]], faces: &[[u32; 3]]| {
+            Shape::mesh(vertices.to_vec(), faces.to_vec()).unwrap_err().to_string()
+        };
+        assert_eq!(problem(&[[0.0; 3]], &[]), "a mesh needs at least one triangle, got none");
+        assert_eq!(
+            problem(&[[0.0; 3]; 3], &[[0, 1, 2], [0, 3, 1]]),
+            "face 1 of the mesh names vertex 3, but it has 3 (from 0)"
+        );
+        assert_eq!(
+            problem(&[[0.0; 3], [0.0, f64::NAN, 0.0]], &[[0, 1, 1]]),
+            "vertices of the mesh must be finite, but coordinate y of point 1 is NaN"
+        );
+    }
+}

@@ -1,0 +1,60 @@
+//! Shapes and their distances; no robots.
+//!
+//! A distance is signed: outside it is the gap, inside it is negative. Every result is on the safe side: at most the true
+//! distance, with an allowance for rounding taken off (`ROUNDING` in `checked_shape`).
+//!
+//! | file | what |
+//! |---|---|
+//! | `geometry` | the kinds of shapes |
+//! | `checked_shape` | a validated shape with its bounding ball |
+//! | `stored_shape` | a shape as plain data, for storing |
+//! | `tangent` | signed distance of a point to a convex set, with a plane that bounds it from below |
+//! | `signed_distance` | tangents of the convex shapes |
+//! | `ellipsoid` | the nearest point of an ellipsoid |
+//! | `convex_hull` | convex hulls of points |
+//! | `collision_crate` | the only file that uses the types of the collision crate |
+//! | `segment_distance` | distance of a segment to a convex shape or another segment |
+//! | `bounding_tree` | four-way tree of boxes for thousands of pieces |
+//! | `segment_lanes`, `solid_lanes` | the same, for one number or four in the lanes of a register |
+//! | `body_block` | "nearer than m?" for four capsules at once |
+//! | `shape_index` | finds the shapes near a ball, among many |
+//! | `mesh`, `inside_mesh`, `triangle` | triangle meshes, closed or not |
+//! | `point_cloud`, `grid` | points with a radius, occupied voxels |
+//! | `cover` | covers of meshes by few spheres and capsules |
+//! | `separation` | where a capsule is nearest to a shape, and the normal there |
+//! | `triangles` | triangles for drawing |
+
+mod body_block;
+mod bounding_tree;
+mod checked_shape;
+mod collision_crate;
+mod convex_hull;
+mod cover;
+mod ellipsoid;
+mod geometry;
+mod grid;
+mod inside_mesh;
+mod mesh;
+mod point_cloud;
+mod segment_distance;
+mod segment_lanes;
+mod separation;
+mod shape_index;
+mod signed_distance;
+mod solid_lanes;
+mod stored_shape;
+mod tangent;
+mod triangle;
+mod triangles;
+
+pub(crate) use body_block::{BodyBlock, clear_of_each_other};
+pub use checked_shape::{BoundingBall, Shape};
+pub use convex_hull::Hull;
+pub use cover::Cover;
+pub use geometry::Geometry;
+pub use grid::Grid;
+pub use mesh::Mesh;
+pub use point_cloud::PointCloud;
+pub(crate) use segment_distance::{LineSegment, distance_between};
+pub(crate) use separation::capsules_nearest;
+pub(crate) use shape_index::ShapeIndex;

@@ -1,0 +1,153 @@
+//! Balls of one radius about many points.
+
+use std::fmt;
+
+use nalgebra::Vector3;
+
+use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
+use super::segment_distance::Approach;
+use super::segment_lanes::to_point;
+use super::tangent::Tangent;
+use crate::math::arithmetic::by_instructions;
+use crate::math::f64x4::F64x4;
+use crate::math::real::{Four, Real};
+use crate::math::vec3::Vec3;
+
+/// Balls of one radius about many points.
+#[derive(Clone)]
+pub struct PointCloud {
+    points: Vec<[f64; 3]>,
+    radius: f64,
+    tree: BoundingTree,
+    leaves: Vec<([F64x4; 3], Block)>,
+}
+
+/// The point of a cloud that is nearest to a segment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearestPoint {
+    /// Squared distance (m^2).
+    pub squared: f64,
+    /// Fraction of the way along the segment.
+    pub share: f64,
+    /// Index of the point; `None` if none is within the bound.
+    pub index: Option<usize>,
+}
+
+impl PartialEq for PointCloud {
+    /// The rest follows from these.
+    fn eq(&self, other: &Self) -> bool {
+        self.points == other.points && self.radius == other.radius
+    }
+}
+
+impl fmt::Debug for PointCloud {
+    /// Without the points, of which there may be thousands.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "PointCloud {{ {} points, radius: {:?} }}", self.points.len(), self.radius)
+    }
+}
+
+impl PointCloud {
+    /// Balls about `points`, at least one.
+    pub(super) fn new(points: Vec<[f64; 3]>, radius: f64) -> Self {
+        let boxes: Vec<Aabb> = points.iter().map(|point| Aabb::around([Vector3::from(*point)])).collect();
+        let (tree, blocks) = BoundingTree::new(&boxes);
+        let lanes = |block: &Block| {
+            // A lane without a point repeats the first.
+            let point = |lane: usize| points[block[if block[lane] == NONE { 0 } else { lane }] as usize];
+            std::array::from_fn(|k| F64x4(std::array::from_fn(|lane| point(lane)[k])))
+        };
+        let leaves = blocks.iter().map(|block| (lanes(block), *block)).collect();
+        Self { points, radius, tree, leaves }
+    }
+
+    /// The points (m).
+    pub fn points(&self) -> &[[f64; 3]] {
+        &self.points
+    }
+
+    /// Radius of the ball about each point (m).
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The nearest point within the square root of `bound`.
+    pub(super) fn nearest_point(&self, segment: &[Vector3<f64>; 2], bound: f64) -> NearestPoint {
+        nearest_point(self, segment, bound)
+    }
+
+    /// Signed distance of a point to the nearest ball, and its gradient.
+    pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
+        let nearest = self.nearest_point(&[*point; 2], f64::INFINITY);
+        let away = point - Vector3::from(self.points[nearest.index.unwrap_or(0)]);
+        Tangent { value: away.norm() - self.radius, normal: away.try_normalize(0.0).unwrap_or(Vector3::x()) }
+    }
+
+    /// Where a segment is nearest, exact up to `enough`: inside, negative by the depth in the ball it enters deepest.
+    pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> Approach {
+        let nearest = self.nearest_point(segment, squared_bound(enough + self.radius));
+        Approach { distance: nearest.squared.sqrt() - self.radius, share: nearest.share }
+    }
+}
+
+by_instructions! {
+    fn nearest_point(cloud: &PointCloud, segment: &[Vector3<f64>; 2], bound: f64) -> NearestPoint {
+        let start = Vec3::<Four<A>>::splat(&segment[0].into());
+        let along = Vec3::<Four<A>>::splat(&(segment[1] - segment[0]).into());
+        let query = SegmentQuery::new(segment);
+        let mut best = NearestPoint { squared: bound, share: 0.0, index: None };
+        cloud.tree.search::<A>(&query, bound, |leaf, bound| {
+            let (points, indices) = &cloud.leaves[leaf];
+            let nearest = to_point(start, along, Vec3::of(points));
+            let squared = nearest.squared.stored().0;
+            for lane in 0..4 {
+                if squared[lane] < best.squared || (squared[lane] <= bound && best.index.is_none()) {
+                    let index = indices[if indices[lane] == NONE { 0 } else { lane }] as usize;
+                    best = NearestPoint { squared: squared[lane], share: nearest.share.lane(lane), index: Some(index) };
+                }
+            }
+            best.squared
+        });
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::checked_shape::Shape;
+    use super::super::tangent::nearest_on_segment;
+    use super::*;
+    use crate::rng;
+
+    #[test]
+    fn a_segment_is_as_far_from_a_cloud_as_from_its_nearest_ball() {
+        let mut rng = rng::stream(1, 0);
+        for count in [1, 3, 4, 5, 17, 1000] {
+            let mut draw = || std::array::from_fn(|_| rng.uniform_in(-1.0, 1.0));
+            let points: Vec<[f64; 3]> = (0..count).map(|_| draw()).collect();
+            let cloud = Shape::point_cloud(points.clone(), 0.02).unwrap();
+            for case in 0..200 {
+                let (a, b) = (Vector3::from(draw()), Vector3::from(draw()));
+                let segment = if case % 2 == 0 { [a, a] } else { [2.0 * a, 2.0 * b] };
+                let far = |p: &[f64; 3]| {
+                    let point = Vector3::from(*p);
+                    (nearest_on_segment(&segment[0], &segment[1], &point) - point).norm() - 0.02
+                };
+                let exact = points.iter().map(far).fold(f64::INFINITY, f64::min);
+                let found = cloud.distance_to_segment(&segment, f64::INFINITY);
+                assert!(found <= exact && exact - found < 5e-12, "{count}: {found} for {exact}");
+                assert_eq!(cloud.distance_to_segment(&segment, 0.05) >= 0.05, found >= 0.05);
+            }
+        }
+    }
+
+    #[test]
+    fn mistakes_in_a_cloud_are_named() {
+        let problem = |points: Vec<[f64; 3]>, radius| Shape::point_cloud(points, radius).unwrap_err().to_string();
+        assert_eq!(problem(vec![], 0.1), "a point cloud needs at least one point, got none");
+        assert_eq!(
+            problem(vec![[0.0; 3]], -0.1),
+            "radius of the point cloud must be zero or more and finite, got -0.1"
+        );
+    }
+}

@@ -1,0 +1,60 @@
+//! Finds the shapes near a ball, among many.
+
+use nalgebra::Vector3;
+
+use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
+use super::checked_shape::Shape;
+use crate::math::arithmetic::by_instructions;
+
+/// A tree over the bounding balls of shapes.
+#[derive(Debug, Clone)]
+pub(crate) struct ShapeIndex {
+    tree: BoundingTree,
+    blocks: Vec<Block>,
+    /// Shapes without bounds, near to everything.
+    unbounded: Vec<usize>,
+    /// Index of each bounded shape.
+    bounded: Vec<usize>,
+}
+
+/// With fewer shapes a look at each is as fast.
+const FEW: usize = 24;
+
+impl ShapeIndex {
+    /// `None` for few shapes.
+    pub fn of_many(shapes: &[Shape]) -> Option<Self> {
+        let (bounded, unbounded): (Vec<usize>, Vec<usize>) =
+            (0..shapes.len()).partition(|i| shapes[*i].bounding_ball().radius.is_finite());
+        if bounded.len() < FEW {
+            return None;
+        }
+        let around = |i: &usize| {
+            let ball = shapes[*i].bounding_ball();
+            let (center, reach) = (Vector3::from(ball.center), ball.radius + shapes[*i].rounding(0.0));
+            Aabb::around([center.add_scalar(reach), center.add_scalar(-reach)])
+        };
+        let boxes: Vec<Aabb> = bounded.iter().map(around).collect();
+        let (tree, blocks) = BoundingTree::new(&boxes);
+        Some(Self { tree, blocks, unbounded, bounded })
+    }
+
+    /// Visits all shapes that may be within `reach` (m) of `center`, and some others.
+    pub fn near_ball(&self, center: &Vector3<f64>, reach: f64, mut visit: impl FnMut(usize)) {
+        self.unbounded.iter().for_each(|i| visit(*i));
+        near_ball(self, center, reach, &mut |i| visit(self.bounded[i]));
+    }
+}
+
+by_instructions! {
+    fn near_ball(index: &ShapeIndex, center: &Vector3<f64>, reach: f64, visit: &mut dyn FnMut(usize)) {
+        let query = SegmentQuery::new(&[*center; 2]);
+        index.tree.search::<A>(&query, squared_bound(reach), |block, bound| {
+            for item in index.blocks[block] {
+                if item != NONE {
+                    visit(item as usize);
+                }
+            }
+            bound
+        });
+    }
+}

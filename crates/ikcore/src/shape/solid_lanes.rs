@@ -1,0 +1,178 @@
+//! Boxes and cylinders in the registers: the nearest point to a point, and a bound for a segment.
+
+use super::segment_lanes::excess;
+use crate::math::Pose;
+use crate::math::real::Real;
+use crate::math::vec3::Vec3;
+
+/// A convex body with a frame of its own.
+pub(super) trait SolidLanes<R: Real> {
+    /// A point in the body's frame.
+    fn to_local(&self, point: Vec3<R>) -> Vec3<R>;
+
+    /// A vector in the body's frame.
+    fn turned(&self, vector: Vec3<R>) -> Vec3<R>;
+
+    /// The vector from the body's nearest point to a point, both in its frame; zero inside.
+    fn beyond(&self, point: Vec3<R>) -> Vec3<R>;
+}
+
+/// Axes and origin, the same in all lanes.
+struct FrameLanes<R> {
+    axes: [Vec3<R>; 3],
+    origin: Vec3<R>,
+}
+
+impl<R: Real> FrameLanes<R> {
+    #[inline(always)]
+    fn new(pose: &Pose) -> Self {
+        let (m, t) = (pose.rotation.matrix(), &pose.translation.vector);
+        let axis = [[m.m11, m.m21, m.m31], [m.m12, m.m22, m.m32], [m.m13, m.m23, m.m33]];
+        let axes = [Vec3::splat(&axis[0]), Vec3::splat(&axis[1]), Vec3::splat(&axis[2])];
+        Self { axes, origin: Vec3::splat(&[t.x, t.y, t.z]) }
+    }
+
+    #[inline(always)]
+    fn turned(&self, v: Vec3<R>) -> Vec3<R> {
+        let [x, y, z] = self.axes;
+        Vec3 { x: x.dot(v), y: y.dot(v), z: z.dot(v) }
+    }
+}
+
+/// A box.
+pub(super) struct BoxLanes<R> {
+    frame: FrameLanes<R>,
+    half: Vec3<R>,
+}
+
+impl<R: Real> BoxLanes<R> {
+    #[inline(always)]
+    pub fn new(pose: &Pose, size: &[f64; 3]) -> Self {
+        let half = [0.5 * size[0], 0.5 * size[1], 0.5 * size[2]];
+        Self { frame: FrameLanes::new(pose), half: Vec3::splat(&half) }
+    }
+}
+
+impl<R: Real> SolidLanes<R> for BoxLanes<R> {
+    #[inline(always)]
+    fn to_local(&self, point: Vec3<R>) -> Vec3<R> {
+        self.frame.turned(point - self.frame.origin)
+    }
+
+    #[inline(always)]
+    fn turned(&self, vector: Vec3<R>) -> Vec3<R> {
+        self.frame.turned(vector)
+    }
+
+    #[inline(always)]
+    fn beyond(&self, point: Vec3<R>) -> Vec3<R> {
+        let h = self.half;
+        Vec3 { x: excess(point.x, h.x), y: excess(point.y, h.y), z: excess(point.z, h.z) }
+    }
+}
+
+/// A cylinder; its frame has its origin at the centre.
+pub(super) struct CylinderLanes<R> {
+    center: Vec3<R>,
+    axis: Vec3<R>,
+    radius: R,
+    half_length: R,
+}
+
+impl<R: Real> CylinderLanes<R> {
+    #[inline(always)]
+    pub fn new(center: &[f64; 3], axis: &[f64; 3], radius: f64, length: f64) -> Self {
+        let [center, axis] = [Vec3::splat(center), Vec3::splat(axis)];
+        Self { center, axis, radius: R::splat(radius), half_length: R::splat(0.5 * length) }
+    }
+}
+
+impl<R: Real> SolidLanes<R> for CylinderLanes<R> {
+    #[inline(always)]
+    fn to_local(&self, point: Vec3<R>) -> Vec3<R> {
+        point - self.center
+    }
+
+    #[inline(always)]
+    fn turned(&self, vector: Vec3<R>) -> Vec3<R> {
+        vector
+    }
+
+    #[inline(always)]
+    fn beyond(&self, point: Vec3<R>) -> Vec3<R> {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let along = self.axis.dot(point);
+        let outward = self.axis.mul_add(-along, point);
+        let from_axis = outward.dot(outward).sqrt();
+        let safe = zero.choose_below(from_axis, from_axis, one);
+        let share = (from_axis - self.radius).larger(zero) / safe;
+        self.axis.mul_add(excess(along, self.half_length), outward * share)
+    }
+}
+
+/// Enough for every segment that is not within a hair of the decision.
+const STEPS: usize = 24;
+
+/// A lower bound of the distance of the segment from `start` along `along`, in the frame of `solid`, which is good enough to
+/// compare the distance with `enough`. The distance is convex along the segment: where two tangents meet is the lowest
+/// that it can be between them.
+#[inline(always)]
+pub(super) fn segment_bound<R: Real, S: SolidLanes<R>>(solid: &S, start: Vec3<R>, along: Vec3<R>, enough: R) -> R {
+    let (zero, one) = (R::splat(0.0), R::splat(1.0));
+    let mut left = Touch::at(solid, start, along, zero);
+    let mut right = Touch::at(solid, start, along, one);
+    let mut seen = left.value.smaller(right.value);
+    let mut bound = zero;
+    for _ in 0..STEPS {
+        let steepness = left.slope - right.slope;
+        let safe = steepness.choose_below(zero, steepness, -one);
+        let rest = right.value - left.value + left.slope * left.share - right.slope * right.share;
+        let meeting = (rest / safe).larger(left.share).smaller(right.share);
+        bound = left.value + left.slope * (meeting - left.share);
+        // At an end where the distance rises inward, that end is the nearest.
+        bound = left.slope.choose_below(zero, bound, left.value);
+        bound = zero.choose_below(right.slope, bound, right.value.choose_below(left.value, right.value, bound));
+        let open = bound.choose_below(enough, seen.choose_below(enough, zero, one), zero);
+        let mut undecided = false;
+        for lane in 0..R::LANES {
+            undecided |= open.lane(lane) > 0.0;
+        }
+        if !undecided {
+            break;
+        }
+        let next = Touch::at(solid, start, along, meeting);
+        seen = seen.smaller(next.value);
+        right = next.where_below(next.slope, zero, right, next);
+        left = next.where_below(next.slope, zero, next, left);
+    }
+    bound
+}
+
+/// Distance and its slope at `share` of a segment.
+#[derive(Clone, Copy)]
+struct Touch<R> {
+    share: R,
+    value: R,
+    slope: R,
+}
+
+impl<R: Real> Touch<R> {
+    #[inline(always)]
+    fn at<S: SolidLanes<R>>(solid: &S, start: Vec3<R>, along: Vec3<R>, share: R) -> Self {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let beyond = solid.beyond(along.mul_add(share, start));
+        let value = beyond.dot(beyond).sqrt();
+        let slope = beyond.dot(along) / zero.choose_below(value, value, one);
+        Self { share, value, slope }
+    }
+
+    /// `then` in lanes with value < limit, else `otherwise`.
+    #[inline(always)]
+    fn where_below(self, value: R, limit: R, then: Self, otherwise: Self) -> Self {
+        Self {
+            share: value.choose_below(limit, then.share, otherwise.share),
+            value: value.choose_below(limit, then.value, otherwise.value),
+            slope: value.choose_below(limit, then.slope, otherwise.slope),
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! The motion of an arm under acceleration or jerk limits: what it did in the last ticks, and what it may do next.
+
+use crate::error::{Error, Result};
+use crate::limits::{Limits, TickBox};
+use crate::motion::{Braking, JointState, ReachableSet, Scales};
+use crate::objective::Point;
+use crate::wording::number;
+
+/// Motion under acceleration or jerk limits.
+#[derive(Debug)]
+pub(super) struct LimitedMotion {
+    reachable: ReachableSet,
+    state: JointState,
+    scales: Scales,
+    dt: f64,
+}
+
+impl LimitedMotion {
+    /// At rest; `None` without acceleration and jerk limits.
+    pub fn new(limits: &Limits, dt: f64) -> Option<Self> {
+        let reachable = ReachableSet::new(limits, dt)?;
+        let steps = (0..limits.dof()).map(|j| dt * limits.velocity_of(j).at(0.0));
+        let scales = Scales::new(reachable.braking(), steps);
+        Some(Self { state: JointState::at_rest(limits.dof()), reachable, scales, dt })
+    }
+
+    /// How the joints may brake.
+    pub fn braking(&self) -> &[Braking] {
+        self.reachable.braking()
+    }
+
+    /// Steps and changes of the last tick.
+    pub fn state(&self) -> &JointState {
+        &self.state
+    }
+
+    /// Largest steps and changes.
+    pub fn scales(&self) -> &Scales {
+        &self.scales
+    }
+
+    /// Narrows the box of the tick that begins at `time` (s) to what leaves a full stop. Returns false if a joint cannot
+    /// keep its limits.
+    pub fn narrow(&mut self, q: &[f64], time: f64, limits: &Limits, tick: &mut TickBox) -> bool {
+        for (most, velocity) in self.scales.step.iter_mut().zip(&tick.velocity) {
+            *most = velocity * self.dt;
+        }
+        self.reachable.narrow(q, &self.state, time, limits, tick)
+    }
+
+    /// Moves on from `before` to `q`.
+    pub fn advance(&mut self, before: &[f64], q: &[f64]) {
+        self.state.advance(q.iter().zip(before).map(|(q, before)| q - before));
+    }
+
+    /// Sets velocities (rad/s, m/s) and accelerations (rad/s^2, m/s^2) of an arm at `q`, at t = 0.
+    ///
+    /// # Errors
+    /// [`Error::Contradiction`] names a joint that could not stop inside its limits; the motion is then as before.
+    pub fn set(&mut self, q: &[f64], [qd, qdd]: [&[f64]; 2], limits: &Limits) -> Result<()> {
+        let step = qd.iter().map(|velocity| velocity * self.dt).collect();
+        let change = qdd.iter().map(|acceleration| acceleration * self.dt * self.dt).collect();
+        let state = JointState { step, change };
+        if let Some(j) = self.reachable.first_unstoppable(q, &state, limits) {
+            let problem = format!(
+                "joint '{}' at {} with velocity {} and acceleration {} cannot stop inside its limits; start slower or \
+                 farther inside",
+                limits.joint_name(j),
+                number(q[j]),
+                number(qd[j]),
+                number(qdd[j])
+            );
+            return Err(Error::Contradiction { problem });
+        }
+        self.state = state;
+        Ok(())
+    }
+
+    /// The next configuration of the fastest stop from `q`.
+    pub fn stopping(&self, q: &[f64]) -> Point {
+        let mut out = Point::from_elem(0.0, q.len());
+        self.state.brake(self.braking(), &mut out);
+        out.iter_mut().zip(q).for_each(|(out, q)| *out += q);
+        out
+    }
+
+    /// How long the fastest stop takes (s).
+    pub fn time_to_stop(&self) -> f64 {
+        self.dt * self.state.ticks_to_stop(self.braking())
+    }
+}

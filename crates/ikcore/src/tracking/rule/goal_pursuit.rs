@@ -1,0 +1,158 @@
+//! The model-based rule under acceleration and jerk limits: it keeps a goal, the moving configuration that meets the target,
+//! and pursues it inside the reachable set of the tick.
+//!
+//! Each target gives a sample of the goal: Gauss-Newton steps from where the goal was expected, within the position limits
+//! alone. [`MovingGoal`] filters the samples by their noise; [`Pursuit`] chooses the changes of the joints. Without noise the arm
+//! meets a target that moves smoothly exactly, with one Jacobian and one tip a tick.
+
+use super::tick::{Tick, TickResult};
+use crate::math::box_step::{BoxStep, least_damping};
+use crate::motion::{GoalSample, MovingGoal, Pursuit};
+use crate::objective::{Bounds, Differentiable, Linearization, Point};
+use crate::problem::Problem;
+use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
+use crate::tracking::limited_motion::LimitedMotion;
+
+/// Steps that Gauss-Newton may take in a tick; they converge quadratically.
+const MOST_STEPS: usize = 6;
+
+/// A step this short (rad, m) leaves an error of its square, which is below every tolerance.
+const SHORT: f64 = 1e-5;
+
+/// Evaluations of a tick in which Gauss-Newton fails: at singularities and out of reach. The next tick continues.
+const MOST_EVALUATIONS: usize = 60;
+
+/// State of the rule between ticks.
+#[derive(Debug, Default)]
+pub(crate) struct GoalPursuit {
+    goal: Option<MovingGoal>,
+    /// Ticks since the start.
+    now: f64,
+    expected: Point,
+    sample: Point,
+    linearization: Box<Linearization>,
+}
+
+impl GoalPursuit {
+    /// Drops the goal.
+    pub(crate) fn forget(&mut self) {
+        self.goal = None;
+    }
+
+    /// Runs one tick from `q`. A target counts as a sample if `tick.sampled_ago` is given: its age at the end of the tick, in
+    /// ticks.
+    pub(super) fn advance(&mut self, q: &[f64], mut tick: Tick<'_>) -> TickResult {
+        let mut found = TickResult::at(q);
+        let Some(motion) = tick.limited else { return found };
+        if let Some(ago) = tick.sampled_ago.filter(|_| self.goal.is_none()) {
+            self.goal = Some(MovingGoal::of_arm(q, motion.state(), self.now, self.now + 1.0 - ago));
+        }
+        self.now += 1.0;
+        if let Some(goal) = &mut self.goal {
+            goal.advance(motion.scales());
+        }
+        if let Some(ago) = tick.sampled_ago {
+            self.take_sample(ago, &mut found, &mut tick, motion);
+        }
+        match &self.goal {
+            Some(goal) if !found.interrupted => {
+                let (braking, scales, reachable) = (motion.braking(), motion.scales(), tick.tick_box);
+                Pursuit { goal, braking, scales, reachable }.write(q, motion.state(), &mut found.q);
+            }
+            _ => {
+                found.q = motion.stopping(q);
+                tick.tick_box.clip(&mut found.q);
+            }
+        }
+        found.set_tip(&tick.robot.tip(&found.q), tick.target, tick.criterion);
+        found.evaluations += 1;
+        found
+    }
+
+    /// Corrects the goal by the target, of the given age in ticks.
+    fn take_sample(&mut self, ago: f64, found: &mut TickResult, tick: &mut Tick<'_>, motion: &LimitedMotion) {
+        let time = self.now - ago;
+        let positions = positions(tick, tick.velocity_limit.len());
+        if let Some(goal) = &self.goal {
+            goal.expected(time, &mut self.expected);
+        }
+        self.solve(time, &positions, found, tick);
+        if let Some(goal) = &mut self.goal {
+            goal.correct(GoalSample { q: &self.sample, time }, &self.expected, motion.scales());
+        }
+    }
+
+    /// Sets `sample` to the configuration nearest to the expected one that meets the target of `time` (in ticks).
+    fn solve(&mut self, time: f64, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
+        let n = self.expected.len();
+        self.sample = Point::from_slice(&self.expected);
+        positions.clip(&mut self.sample);
+        let mut begin = self.sample.clone();
+        let mut lowest = f64::INFINITY;
+        for i in 0..MOST_STEPS {
+            let value = self.linearize(found, tick);
+            if value > lowest {
+                break;
+            }
+            (lowest, begin) = (value, self.sample.clone());
+            let preferred = (i == 0).then(|| self.preferred(time, positions, tick));
+            let Linearization { columns, residual } = &*self.linearization;
+            let lambda = least_damping(&columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
+            let (lower, upper) = (positions.lower(), positions.upper());
+            let step = BoxStep { columns, residual, lambda, x: &begin, lower, upper };
+            match preferred {
+                Some(preferred) => step.write_near(&preferred, &mut self.sample),
+                None => step.write(&mut self.sample),
+            }
+            let longest = self.sample.iter().zip(&begin).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
+            if longest <= SHORT {
+                return;
+            }
+        }
+        self.sample = begin;
+        self.descend(positions, found, tick);
+    }
+
+    /// Residual and Jacobian at `sample`; returns the squared error.
+    fn linearize(&mut self, found: &mut TickResult, tick: &Tick<'_>) -> f64 {
+        found.evaluations += 1;
+        found.iterations += 1;
+        let tip = tick.robot.tip_and_jacobian(&self.sample, &mut self.linearization.columns);
+        let n = self.sample.len();
+        tick.target.linearize_tip(&tip, n, tick.criterion, &mut self.linearization).score.value
+    }
+
+    /// Where the joints should be at `time` as far as the target leaves them free: where the goal was one sample before, moved
+    /// as the goals in the null space ask. The motion of the goal is not extrapolated there, since no target would ever stop
+    /// it.
+    fn preferred(&self, time: f64, positions: &Bounds, tick: &mut Tick<'_>) -> Point {
+        let mut preferred = self.sample.clone();
+        if let Some(goal) = &self.goal {
+            goal.expected(time - goal.interval(), &mut preferred);
+        }
+        if !tick.goals.is_empty() {
+            let mut slope = preferred.clone();
+            tick.goals.cost(tick.robot, &self.sample, &mut slope);
+            preferred.iter_mut().zip(&slope).for_each(|(preferred, slope)| *preferred -= tick.dt * slope);
+        }
+        positions.clip(&mut preferred);
+        preferred
+    }
+
+    /// Lowers the error as far as one tick allows, where Gauss-Newton fails.
+    fn descend(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
+        let mut problem = Problem::new(tick.robot, tick.target, *tick.criterion);
+        let objective: &mut dyn Differentiable = &mut problem;
+        let stop = Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() };
+        let mut evaluator = Evaluator::new(objective, positions, stop, tick.rng, tick.monitor);
+        run(&LevenbergMarquardt::default(), &mut evaluator, &self.sample);
+        found.evaluations += evaluator.evaluations();
+        found.iterations += evaluator.iterations();
+        self.sample.copy_from_slice(&evaluator.best().x);
+    }
+}
+
+/// The position limits of the tick.
+fn positions(tick: &Tick<'_>, n: usize) -> Bounds {
+    Bounds::from_ranges((0..n).map(|j| tick.limits.position_range(j, tick.time, tick.time + tick.dt).into()))
+}

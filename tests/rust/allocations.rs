@@ -1,0 +1,80 @@
+//! A tracker in a real-time loop allocates nothing, whatever its options and targets.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should say so")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use ikcore::limits::{Field, Limits, Profile, Sinusoid};
+use ikcore::math::Frame;
+use ikcore::rng;
+use ikcore::robot::Robot;
+use ikcore::solver::Unattended;
+use ikcore::task::{Goal, Target};
+use ikcore::tracking::{Arrival, OneEuro, Session, TargetFilter, TrackOptions};
+
+/// The system's allocator, with a counter for each thread.
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: both calls are passed on unchanged to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps the contract of `dealloc`.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+const START: [f64; 7] = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8];
+
+/// A million ticks in a release build; fewer where debug builds are slow.
+const TICKS: usize = if cfg!(debug_assertions) { 100_000 } else { 1_000_000 };
+
+#[test]
+fn a_step_allocates_nothing() {
+    let arm = Robot::named("panda").unwrap();
+    let wave = Sinusoid { mean: 1.2, amplitude: 0.5, angular_frequency: 2.0, phase: 0.0 };
+    let limits = Limits::of(&arm)
+        .replace(Field::Velocity, vec![Profile::Sinusoid(wave)])
+        .and_then(|limits| limits.replace(Field::Acceleration, vec![Profile::Constant(5.0)]))
+        .and_then(|limits| limits.replace(Field::Jerk, vec![Profile::Constant(80.0)]))
+        .unwrap();
+    let options = TrackOptions {
+        limits: Some(limits),
+        goals: vec![Goal::Centring { weight: 0.1 }],
+        target_filter: Some(TargetFilter::OneEuro(OneEuro { min_cutoff: 5.0, beta: 5.0 })),
+        timeout: Some(0.2),
+        ..TrackOptions::default()
+    };
+    let mut session = Session::new(&arm, &START, 0.001, &options).unwrap();
+    let tip = arm.tip(&START);
+    let mut draws = rng::stream(2, 0);
+    let mut step = |tick: usize, session: &mut Session| {
+        let mut origin = tip.origin.map(|x| x + 1e-3 * draws.uniform_in(-1.0, 1.0));
+        // Jumps, targets out of reach, and pauses that end in a stop.
+        origin[1] += [0.0, 0.2, 3.0, -0.1][(tick / 500) % 4];
+        let target = Target::Pose(Frame { origin, ..tip });
+        let arrives = tick % 5 == 0 && (tick / 2500) % 3 != 2;
+        let stamp = Some((session.time() - 0.02).max(0.0));
+        let arrival = arrives.then_some(Arrival { target, velocity: None, stamp });
+        session.advance(arrival, &mut Unattended).unwrap();
+    };
+    step(0, &mut session);
+    let before = ALLOCATIONS.with(Cell::get);
+    for tick in 1..TICKS {
+        step(tick, &mut session);
+    }
+    assert_eq!(ALLOCATIONS.with(Cell::get) - before, 0);
+}

@@ -1,0 +1,237 @@
+//! `solve` by closed form: which solution it takes, that it is one, and what happens where there is none.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use crate::closed_form::{geared, jaco2, puma560};
+use crate::common::{bits, configurations, pose_at, robot};
+use ikcore::ik::{AllOptions, Solution, SolveOptions, solve, solve_all};
+use ikcore::math::{Frame, pose};
+use ikcore::robot::Robot;
+use ikcore::solver::{AnySolver, Status, Stop, Unattended};
+use ikcore::task::{Target, Tolerance};
+
+const SIX: [&str; 4] = ["ur5e", "ur10", "kr210", "ur3e"];
+const SEVEN: [&str; 4] = ["panda", "iiwa14", "gen3", "iiwa7"];
+
+fn solved(robot: &Robot, target: &Target, options: &SolveOptions) -> Solution {
+    solve(robot, target, options, &mut Unattended).unwrap()
+}
+
+fn from(start: &[f64]) -> SolveOptions {
+    SolveOptions { start: Some(start.to_vec()), ..SolveOptions::default() }
+}
+
+fn by_search() -> SolveOptions {
+    SolveOptions { solver: Some(AnySolver::default()), ..SolveOptions::default() }
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}
+
+/// Within the limits, and within `most` (m, and difference of matrix entries) of the pose.
+#[track_caller]
+fn assert_reaches(robot: &Robot, target: &Target, solution: &Solution, most: f64) {
+    let Target::Pose(wanted) = target else { panic!("a pose") };
+    assert_eq!(solution.status, Status::Solved, "{}: {}", robot.name(), solution.message());
+    let tip = robot.tip(&solution.q);
+    let off = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let missed = off(&tip.origin, &wanted.origin).max(off(tip.axes.as_flattened(), wanted.axes.as_flattened()));
+    assert!(missed < most, "{}: off by {missed:e}", robot.name());
+    for (q, joint) in solution.q.iter().zip(robot.joints()) {
+        assert!(joint.lower <= *q && *q <= joint.upper, "{}: {:?}", robot.name(), solution.q);
+    }
+}
+
+#[test]
+fn the_nearest_branch_to_the_start_is_taken() {
+    for robot in SIX.map(robot) {
+        let qs = configurations(&robot, 60);
+        for (q, start) in qs.iter().zip(qs.iter().rev()) {
+            let target = pose_at(&robot, q);
+            let solution = solved(&robot, &target, &from(start));
+            assert_reaches(&robot, &target, &solution, 2e-10);
+            let all = AllOptions { each: from(start), ..AllOptions::default() };
+            let all = solve_all(&robot, &target, &all, &mut Unattended).unwrap();
+            let nearest = all.solutions.iter().map(|one| distance(one.q, start)).fold(f64::INFINITY, f64::min);
+            assert!((distance(&solution.q, start) - nearest).abs() < 1e-9, "{}", robot.name());
+            assert_eq!(solution.iterations, 0);
+        }
+    }
+}
+
+#[test]
+fn without_a_start_the_most_central_branch_is_taken() {
+    for robot in SIX.map(robot) {
+        let off_centre = |q: &[f64]| -> f64 {
+            let share = |(q, joint): (&f64, &ikcore::robot::Joint)| {
+                let (lower, upper) = joint.sampling_range();
+                ((q - 0.5 * (lower + upper)) / (upper - lower)).powi(2)
+            };
+            q.iter().zip(robot.joints()).map(share).sum()
+        };
+        for q in configurations(&robot, 60) {
+            let target = pose_at(&robot, &q);
+            let solution = solved(&robot, &target, &SolveOptions::default());
+            assert_reaches(&robot, &target, &solution, 2e-10);
+            let all = solve_all(&robot, &target, &AllOptions::default(), &mut Unattended).unwrap();
+            let least = all.solutions.iter().map(|one| off_centre(one.q)).fold(f64::INFINITY, f64::min);
+            assert!(off_centre(&solution.q) < least + 1e-9, "{}", robot.name());
+        }
+    }
+}
+
+#[test]
+fn a_named_solver_searches() {
+    for robot in ["ur5e", "panda"].map(robot) {
+        for q in configurations(&robot, 20) {
+            let target = pose_at(&robot, &q);
+            assert_eq!(solved(&robot, &target, &SolveOptions::default()).iterations, 0);
+            let searched = solved(&robot, &target, &by_search());
+            assert!(searched.iterations > 0 && searched.status == Status::Solved);
+        }
+    }
+}
+
+#[test]
+fn redundant_arms_seldom_need_a_search() {
+    for robot in SEVEN.map(robot) {
+        let mut searched = 0;
+        for q in configurations(&robot, 300) {
+            let target = pose_at(&robot, &q);
+            let solution = solved(&robot, &target, &SolveOptions::default());
+            assert_reaches(&robot, &target, &solution, if solution.iterations == 0 { 2e-10 } else { 1e-5 });
+            searched += usize::from(solution.iterations > 0);
+        }
+        assert!(searched < 6, "{}: {searched} of 300", robot.name());
+    }
+}
+
+#[test]
+fn redundant_arms_stay_near_their_start() {
+    for robot in SEVEN.map(robot) {
+        for q in configurations(&robot, 50) {
+            let nearly: Vec<f64> = q.iter().map(|q| q + 1e-3).collect();
+            let start: Vec<f64> =
+                nearly.iter().zip(robot.joints()).map(|(q, joint)| q.clamp(joint.lower, joint.upper)).collect();
+            let solution = solved(&robot, &pose_at(&robot, &q), &from(&start));
+            assert_eq!(solution.status, Status::Solved);
+            assert!(distance(&solution.q, &start) < 0.05, "{}: {:?} {start:?}", robot.name(), solution.q);
+        }
+    }
+}
+
+#[test]
+fn joints_at_a_limit_do_not_hide_a_solution() {
+    for robot in SIX.into_iter().chain(SEVEN).map(robot) {
+        for (i, mut q) in configurations(&robot, 60).into_iter().enumerate() {
+            let joint = &robot.joints()[i % robot.dof()];
+            q[i % robot.dof()] = if i % 2 == 0 { joint.lower.max(-PI) } else { joint.upper.min(PI) };
+            let target = pose_at(&robot, &q);
+            assert_reaches(&robot, &target, &solved(&robot, &target, &SolveOptions::default()), 1e-5);
+        }
+    }
+}
+
+#[test]
+fn tight_limits_leave_the_solution_inside_them() {
+    for robot in SIX.into_iter().chain(SEVEN).map(robot) {
+        for q in configurations(&robot, 30) {
+            let narrow = robot.with_limits(|j, joint| (joint.lower, joint.upper) = (q[j] - 0.02, q[j] + 0.03)).unwrap();
+            let target = pose_at(&robot, &q);
+            assert_reaches(&narrow, &target, &solved(&narrow, &target, &SolveOptions::default()), 1e-5);
+        }
+    }
+}
+
+#[test]
+fn singular_poses_are_solved() {
+    for robot in ["ur5e", "kr210", "panda", "iiwa14"].map(robot) {
+        let middle = |joint: &ikcore::robot::Joint| 0.5 * (joint.sampling_range().0 + joint.sampling_range().1);
+        let mut q: Vec<f64> = robot.joints().iter().map(middle).collect();
+        for bend in [0.0, 1e-12, 1e-8, 1e-4] {
+            // The wrist is straight; the arm of a UR is stretched, too.
+            q[robot.dof() - 2] = bend;
+            let target = pose_at(&robot, &q);
+            assert_reaches(&robot, &target, &solved(&robot, &target, &SolveOptions::default()), 1e-5);
+        }
+    }
+}
+
+#[test]
+fn base_and_tool_far_away_and_geared_joints() {
+    let shift = pose::from_parts([200.0, -50.0, 3.0], *pose::from_rpy([0.3, -0.8, 2.0], [0.0; 3]).rotation.matrix());
+    for robot in ["ur10", "iiwa14"].map(robot) {
+        let far = robot.with_base(shift).unwrap().with_tool(pose::translation(0.5, 3.0, -1.0)).unwrap();
+        for q in configurations(&far, 40) {
+            let target = pose_at(&far, &q);
+            assert_reaches(&far, &target, &solved(&far, &target, &SolveOptions::default()), 1e-6);
+        }
+    }
+    for (scale, offset) in [(-1.0, 0.4), (2.0, 0.3), (0.5, -1.0)] {
+        let robot = geared(scale, offset, false);
+        for q in configurations(&robot, 40) {
+            let target = pose_at(&robot, &q);
+            assert_reaches(&robot, &target, &solved(&robot, &target, &from(&q)), 1e-6);
+        }
+    }
+}
+
+#[test]
+fn arms_without_limits_and_general_ones_are_solved() {
+    for robot in [puma560(), jaco2()] {
+        for q in configurations(&robot, 60) {
+            let target = pose_at(&robot, &q);
+            assert_reaches(&robot, &target, &solved(&robot, &target, &SolveOptions::default()), 1e-5);
+        }
+    }
+}
+
+#[test]
+fn poses_out_of_reach_are_proven_so_at_once() {
+    for robot in ["ur5e", "kr210"].map(robot) {
+        let q = configurations(&robot, 1).remove(0);
+        let mut far = robot.tip(&q);
+        far.origin = far.origin.map(|x| 5.0 * x);
+        let solution = solved(&robot, &Target::Pose(far), &SolveOptions::default());
+        assert_eq!(solution.status, Status::OutOfReach, "{}", solution.message());
+        assert!(solution.message().contains("out of reach by at least"), "{}", solution.message());
+        assert!(solution.evaluations < 1000, "{}", solution.evaluations);
+    }
+    // Near enough, but turned where the wrist cannot bring it.
+    let ur = robot("ur5e");
+    let stretched = ur.tip(&[0.0, 0.0, 0.0, -FRAC_PI_2, 0.0, 0.0]);
+    let turned = Frame { axes: [stretched.axes[1], stretched.axes[2], stretched.axes[0]], ..stretched };
+    let solution = solved(&ur, &Target::Pose(turned), &SolveOptions::default());
+    assert_eq!(solution.status, Status::OutOfReach, "{}", solution.message());
+    assert!(solution.message().contains("(no configuration has this pose)"), "{}", solution.message());
+    assert!(solution.evaluations < 1000 && ur.check("q", &solution.q).is_ok());
+}
+
+#[test]
+fn budgets_hold_and_tolerances_beyond_rounding_end() {
+    for robot in ["ur5e", "panda"].map(robot) {
+        let q = configurations(&robot, 1).remove(0);
+        let target = pose_at(&robot, &q);
+        for max_evaluations in [1, 2, 10, 100] {
+            let stop = Stop { max_evaluations, ..Stop::default() };
+            let solution = solved(&robot, &target, &SolveOptions { stop, ..SolveOptions::default() });
+            assert!(solution.evaluations <= max_evaluations, "{}", solution.evaluations);
+        }
+        let tolerance = Tolerance { position: 1e-17, rotation: 1e-17 };
+        let stop = Stop { max_evaluations: 2000, ..Stop::default() };
+        let solution = solved(&robot, &target, &SolveOptions { tolerance, stop, ..SolveOptions::default() });
+        assert!(solution.error.position < 1e-12, "{}", solution.message());
+    }
+}
+
+#[test]
+fn the_same_call_gives_the_same_bits() {
+    for robot in ["ur5e", "kr210", "panda", "iiwa14"].map(robot) {
+        for q in configurations(&robot, 20) {
+            let target = pose_at(&robot, &q);
+            let solution = |seed| solved(&robot, &target, &SolveOptions { seed, ..SolveOptions::default() });
+            assert_eq!(bits(&solution(1).q), bits(&solution(2).q));
+        }
+    }
+}
