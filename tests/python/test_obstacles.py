@@ -205,3 +205,33 @@ def test_obstacles_and_capsules_are_drawn() -> None:
     figure = bik.plot.robot(PANDA, CENTRE, obstacles=[CRATE, bik.obstacles.Sphere([0, 0.5, 0.5], 0.1)])
     assert len(figure.axes[0].collections) == 2 + len(PANDA.capsules)
     plt.close(figure)
+
+
+@pytest.mark.parametrize("seed", [2, 3, 5, 9, 11])
+def test_no_objective_finds_a_better_motion_for_another(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    arm = bik.Robot.named("ur5").with_capsules(radius=0.05)
+    limits = bik.Limits(velocity=2.0, acceleration=5.0)
+    start, end = ([0.4, y, 0.35] + 0.1 * rng.uniform(-1, 1, 3) for y in (-0.35, 0.35))
+    ball = bik.obstacles.Sphere((0.45, 0.0, 0.3), radius=0.08 + 0.1 * rng.random())
+
+    def facing_down(position: np.ndarray) -> np.ndarray:
+        pose = np.diag([1.0, -1.0, -1.0, 1.0])
+        pose[:3, 3] = position
+        return pose
+
+    def costs(motion: bik.Trajectory) -> dict[str, float]:
+        q, _, _ = motion.at(np.linspace(0.0, motion.duration, 4001))
+        tips = np.linalg.norm(np.diff(arm.fk(q)[:, :3, 3], axis=0), axis=1)
+        return {"time": motion.duration, "joint_travel": np.abs(np.diff(q, axis=0)).sum(), "tip_travel": tips.sum()}
+
+    found = {
+        objective: bik.plan_point_to_point(
+            arm, facing_down(start), facing_down(end), limits=limits, obstacles=[ball], objective=objective, seed=seed
+        )
+        for objective in ("time", "joint_travel", "tip_travel")
+    }
+    measured = {objective: costs(plan.trajectory) for objective, plan in found.items()}
+    for objective in found:
+        assert found[objective].success
+        assert measured[objective][objective] <= 1.001 * min(cost[objective] for cost in measured.values())

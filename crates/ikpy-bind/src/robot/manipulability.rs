@@ -88,7 +88,7 @@ impl PyRobot {
             }
             Rows::Many(q, _) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                let values = in_pieces(py, q, robot.dof(), QUICK_ROWS, |q| manipulability_all(robot, motion, q))?;
+                let values = in_pieces(py, q, robot.dof(), QUICK_ROWS / 4, |q| manipulability_all(robot, motion, q))?;
                 Ok(row(py, values).into_any())
             }
         }
