@@ -3,21 +3,19 @@
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use serde::{Deserialize, Serialize};
 
+use super::bounding_ball::BoundingBall;
 use super::convex_hull::Hull;
 use super::geometry::Geometry;
 use super::grid::Grid;
 use super::mesh::Mesh;
 use super::point_cloud::PointCloud;
-use super::stored_shape::StoredShape;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::{Pose, pose};
 
 /// A validated shape at its place: an obstacle in the frame of a robot's base, or a body in the frame of its link.
 /// Copies share the data of meshes, clouds and grids.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "StoredShape", into = "StoredShape")]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
     geometry: Geometry,
     bounds: BoundingBall,
@@ -27,15 +25,6 @@ pub struct Shape {
 
 /// What distances lose to rounding, for coordinates of 1 m (m).
 pub(super) const ROUNDING: f64 = 1e-12;
-
-/// A ball that holds a shape (m); its radius is infinite for a half-space.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BoundingBall {
-    /// Its centre.
-    pub center: [f64; 3],
-    /// Its radius.
-    pub radius: f64,
-}
 
 impl Shape {
     fn made(geometry: Geometry, bounds: BoundingBall) -> Self {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::checked_shape::BoundingBall;
+use super::bounding_ball::BoundingBall;
 use super::collision_crate::Polyhedron;
 use super::tangent::Tangent;
 

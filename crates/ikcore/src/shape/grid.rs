@@ -4,8 +4,8 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
+use super::along_segment::{SegmentDistance, by_tangents};
 use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
-use super::segment_distance::{Approach, by_tangents};
 use super::segment_lanes::{TOUCHING, to_box};
 use super::tangent::Tangent;
 use crate::math::arithmetic::by_instructions;
@@ -127,15 +127,15 @@ impl Grid {
     }
 
     /// Where a segment is nearest, exact up to `enough`: inside, negative by the depth of its deepest point in a block.
-    pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> Approach {
-        let mut deepest: Option<Approach> = None;
+    pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
+        let mut deepest: Option<SegmentDistance> = None;
         let nearest = self.nearest_block(segment, squared_bound(enough).max(TOUCHING), &mut |block| {
             let inside = by_tangents(segment, |point| self.blocks[block].tangent(point), f64::INFINITY);
             if deepest.is_none_or(|deepest| inside.distance < deepest.distance) {
                 deepest = Some(inside);
             }
         });
-        deepest.unwrap_or(Approach { distance: nearest.squared.sqrt(), share: nearest.share })
+        deepest.unwrap_or(SegmentDistance { distance: nearest.squared.sqrt(), share: nearest.share })
     }
 }
 

@@ -4,9 +4,9 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
+use super::along_segment::SegmentDistance;
 use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
 use super::inside_mesh::{is_closed, winding};
-use super::segment_distance::Approach;
 use super::segment_lanes::{NearestShare, TOUCHING, TriangleLanes, point_to_triangle, to_triangle};
 use super::tangent::Tangent;
 use super::triangle::nearest_on_triangle;
@@ -151,22 +151,23 @@ impl Mesh {
 
     /// Signed distance of a segment: negative by the depth of its deepest point, if the mesh is closed. Outside exact up
     /// to `enough`, inside at most the truth.
-    pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> Approach {
+    pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
         let surface = self.nearest_face(segment, squared_bound(enough).max(TOUCHING));
         let touches = surface.face.is_some() && surface.squared <= TOUCHING;
         if self.closed && (touches || self.encloses(&segment[0])) {
             return self.depth(segment);
         }
-        Approach { distance: surface.squared.sqrt(), share: surface.share }
+        SegmentDistance { distance: surface.squared.sqrt(), share: surface.share }
     }
 
     /// A lower bound of the signed distance of the points of a segment. The signed distance changes along it no faster than
     /// its length: between two points it lies above a wedge.
-    fn depth(&self, [a, b]: &[Vector3<f64>; 2]) -> Approach {
+    fn depth(&self, [a, b]: &[Vector3<f64>; 2]) -> SegmentDistance {
         let length = (b - a).norm();
-        let at = |share: f64| Approach { distance: self.tangent(&(a + share * (b - a))).value, share };
+        let at = |share: f64| SegmentDistance { distance: self.tangent(&(a + share * (b - a))).value, share };
         let [first, last] = [at(0.0), at(1.0)];
-        let deeper = |one: Approach, other: Approach| if other.distance < one.distance { other } else { one };
+        let deeper =
+            |one: SegmentDistance, other: SegmentDistance| if other.distance < one.distance { other } else { one };
         let mut seen = deeper(first, last);
         let mut wedges = vec![Wedge::between(first, last, length)];
         for _ in 0..MOST_DEPTHS {
@@ -184,20 +185,20 @@ impl Mesh {
             }
         }
         let distance = wedges.iter().fold(seen.distance, |lowest, wedge| lowest.min(wedge.bound));
-        Approach { distance, ..seen }
+        SegmentDistance { distance, ..seen }
     }
 }
 
 /// A piece of a segment, with a lower bound of the signed distance in it.
 #[derive(Clone, Copy)]
 struct Wedge {
-    left: Approach,
-    right: Approach,
+    left: SegmentDistance,
+    right: SegmentDistance,
     bound: f64,
 }
 
 impl Wedge {
-    fn between(left: Approach, right: Approach, length: f64) -> Self {
+    fn between(left: SegmentDistance, right: SegmentDistance, length: f64) -> Self {
         let bound = 0.5 * (left.distance + right.distance - length * (right.share - left.share));
         Self { left, right, bound }
     }

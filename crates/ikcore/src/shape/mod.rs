@@ -6,14 +6,15 @@
 //! | file | what |
 //! |---|---|
 //! | `geometry` | the kinds of shapes |
-//! | `checked_shape` | a validated shape with its bounding ball |
+//! | `checked_shape`, `bounding_ball` | a validated shape with a ball that holds it |
 //! | `stored_shape` | a shape as plain data, for storing |
 //! | `tangent` | signed distance of a point to a convex set, with a plane that bounds it from below |
 //! | `signed_distance` | tangents of the convex shapes |
 //! | `ellipsoid` | the nearest point of an ellipsoid |
 //! | `convex_hull` | convex hulls of points |
 //! | `collision_crate` | the only file that uses the types of the collision crate |
-//! | `segment_distance` | distance of a segment to a convex shape or another segment |
+//! | `along_segment` | the lowest signed distance along a segment |
+//! | `segment_distance` | distance of a segment to a shape or another segment |
 //! | `bounding_tree` | four-way tree of boxes for thousands of pieces |
 //! | `segment_lanes`, `solid_lanes` | the same, for one number or four in the lanes of a register |
 //! | `body_block` | "nearer than m?" for four capsules at once |
@@ -24,7 +25,9 @@
 //! | `separation` | where a capsule is nearest to a shape, and the normal there |
 //! | `triangles` | triangles for drawing |
 
+mod along_segment;
 mod body_block;
+mod bounding_ball;
 mod bounding_tree;
 mod checked_shape;
 mod collision_crate;
@@ -47,14 +50,16 @@ mod tangent;
 mod triangle;
 mod triangles;
 
+pub(crate) use along_segment::LineSegment;
 pub(crate) use body_block::{BodyBlock, clear_of_each_other};
-pub use checked_shape::{BoundingBall, Shape};
+pub use bounding_ball::BoundingBall;
+pub use checked_shape::Shape;
 pub use convex_hull::Hull;
 pub use cover::Cover;
 pub use geometry::Geometry;
 pub use grid::Grid;
 pub use mesh::Mesh;
 pub use point_cloud::PointCloud;
-pub(crate) use segment_distance::{LineSegment, distance_between};
+pub(crate) use segment_distance::distance_between;
 pub(crate) use separation::capsules_nearest;
 pub(crate) use shape_index::ShapeIndex;

@@ -4,8 +4,8 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
+use super::along_segment::SegmentDistance;
 use super::bounding_tree::{Aabb, Block, BoundingTree, NONE, SegmentQuery, squared_bound};
-use super::segment_distance::Approach;
 use super::segment_lanes::to_point;
 use super::tangent::Tangent;
 use crate::math::arithmetic::by_instructions;
@@ -84,9 +84,9 @@ impl PointCloud {
     }
 
     /// Where a segment is nearest, exact up to `enough`: inside, negative by the depth in the ball it enters deepest.
-    pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> Approach {
+    pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
         let nearest = self.nearest_point(segment, squared_bound(enough + self.radius));
-        Approach { distance: nearest.squared.sqrt() - self.radius, share: nearest.share }
+        SegmentDistance { distance: nearest.squared.sqrt() - self.radius, share: nearest.share }
     }
 }
 

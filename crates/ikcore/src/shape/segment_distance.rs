@@ -1,42 +1,15 @@
 //! Distance of a segment from a shape.
-//!
-//! Along a segment the signed distance of a convex shape is a convex function of one variable, which lies above all its
-//! tangents and below all its chords.
 
 use nalgebra::Vector3;
 
+use super::along_segment::{LineSegment, SegmentDistance, by_tangents};
 use super::checked_shape::{ROUNDING, Shape};
 use super::geometry::Geometry;
 use super::segment_lanes::{TOUCHING, to_box};
-use super::tangent::{Tangent, nearest_on_segment, nearest_share};
+use super::tangent::{nearest_on_segment, nearest_share};
 use crate::math::arithmetic::NoFma;
 use crate::math::real::{One, Real};
 use crate::math::vec3::Vec3;
-
-/// A segment between two points (m).
-pub(crate) type LineSegment = [Vector3<f64>; 2];
-
-/// How far below the true distance an answer by tangents may lie (m).
-const ACCURACY: f64 = 1e-9;
-/// Far more steps than the search for the minimum takes, but for degenerate numbers.
-const MOST_STEPS: usize = 60;
-
-/// Where a segment is nearest to a shape.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Approach {
-    /// Signed distance (m).
-    pub distance: f64,
-    /// Fraction of the way along the segment.
-    pub share: f64,
-}
-
-/// One tangent of the signed distance along the segment: value and slope at `share` of its length.
-#[derive(Clone, Copy)]
-struct Touch {
-    share: f64,
-    value: f64,
-    slope: f64,
-}
 
 impl Shape {
     /// Signed distance (m) of the segment, negative by the depth of its deepest point. Never more than the truth; where it is
@@ -58,23 +31,23 @@ impl Shape {
 
 impl Geometry {
     /// Where a segment is nearest: exact only below `enough`.
-    pub(super) fn approach(&self, segment: &LineSegment, enough: f64) -> Approach {
+    pub(super) fn approach(&self, segment: &LineSegment, enough: f64) -> SegmentDistance {
         let [a, b] = segment;
         match self {
             Self::Sphere { center, radius } => {
                 let share = nearest_share(a, b, &Vector3::from(*center));
-                Approach { distance: (a + share * (b - a) - Vector3::from(*center)).norm() - radius, share }
+                SegmentDistance { distance: (a + share * (b - a) - Vector3::from(*center)).norm() - radius, share }
             }
             Self::Capsule { a: start, b: end, radius } => {
                 let nearest = between(segment, &[(*start).into(), (*end).into()]);
-                Approach { distance: nearest.distance - radius, ..nearest }
+                SegmentDistance { distance: nearest.distance - radius, ..nearest }
             }
             Self::HalfSpace { normal, offset } => {
                 let [first, last] = [a, b].map(|end| Vector3::from(*normal).dot(end) - offset);
                 if first <= last {
-                    Approach { distance: first, share: 0.0 }
+                    SegmentDistance { distance: first, share: 0.0 }
                 } else {
-                    Approach { distance: last, share: 1.0 }
+                    SegmentDistance { distance: last, share: 1.0 }
                 }
             }
             Self::Box { pose, size } => {
@@ -83,7 +56,7 @@ impl Geometry {
                 let nearest = to_box(vector(local[0]), vector(local[1] - local[0]), vector(0.5 * Vector3::from(*size)));
                 match nearest.squared.stored() {
                     squared if squared <= TOUCHING => by_tangents(segment, |point| self.tangent(point), enough),
-                    squared => Approach { distance: squared.sqrt(), share: nearest.share.stored() },
+                    squared => SegmentDistance { distance: squared.sqrt(), share: nearest.share.stored() },
                 }
             }
             Self::Mesh(mesh) => mesh.approach(segment, enough),
@@ -96,45 +69,6 @@ impl Geometry {
     }
 }
 
-/// Where the signed distance of a convex set with these tangents is lowest: never more than the truth, and at most
-/// [`ACCURACY`] less unless it is at least `enough`.
-pub(super) fn by_tangents([a, b]: &LineSegment, tangent: impl Fn(&Vector3<f64>) -> Tangent, enough: f64) -> Approach {
-    let along = b - a;
-    let touch = |share: f64| {
-        let tangent = tangent(&(a + share * along));
-        Touch { share, value: tangent.value, slope: tangent.normal.dot(&along) }
-    };
-    let at = |touch: Touch| Approach { distance: touch.value, share: touch.share };
-    let (mut left, mut right) = (touch(0.0), touch(1.0));
-    if left.slope >= 0.0 {
-        return at(left);
-    }
-    if right.slope <= 0.0 {
-        return at(right);
-    }
-    let mut lowest_seen = left.value.min(right.value);
-    for _ in 0..MOST_STEPS {
-        // Where the two tangents meet is the lowest that the distance can be.
-        let meeting = (right.value - left.value + left.slope * left.share - right.slope * right.share)
-            / (left.slope - right.slope);
-        let bound = left.value + left.slope * (meeting - left.share);
-        if bound >= enough || lowest_seen - bound <= ACCURACY {
-            return Approach { distance: bound, share: meeting.clamp(left.share, right.share) };
-        }
-        let inside = meeting > left.share && meeting < right.share;
-        let next = touch(if inside { meeting } else { 0.5 * (left.share + right.share) });
-        lowest_seen = lowest_seen.min(next.value);
-        if next.slope < 0.0 {
-            left = next;
-        } else if next.slope > 0.0 {
-            right = next;
-        } else {
-            return at(next);
-        }
-    }
-    Approach { distance: left.value + left.slope * (right.share - left.share), share: left.share }
-}
-
 /// Distance between two segments, less an allowance for rounding.
 pub(crate) fn distance_between(one: &LineSegment, other: &LineSegment) -> f64 {
     let reach = [one, other].into_iter().flatten().fold(1.0, |reach, end| f64::max(reach, end.amax()));
@@ -142,7 +76,7 @@ pub(crate) fn distance_between(one: &LineSegment, other: &LineSegment) -> f64 {
 }
 
 /// Where `one` is nearest to `other`.
-pub(super) fn between(one: &LineSegment, other: &LineSegment) -> Approach {
+pub(super) fn between(one: &LineSegment, other: &LineSegment) -> SegmentDistance {
     let ([p, p_end], [q, q_end]) = (one, other);
     let (u, v, w) = (p_end - p, q_end - q, p - q);
     let (uu, uv, vv, uw, vw) = (u.dot(&u), u.dot(&v), v.dot(&v), u.dot(&w), v.dot(&w));
@@ -154,14 +88,16 @@ pub(super) fn between(one: &LineSegment, other: &LineSegment) -> Approach {
     let mut t = share_of(uv * s + vw, vv);
     s = share_of(uv * t - uw, uu);
     t = share_of(uv * s + vw, vv);
-    let crossing = Approach { distance: (w + s * u - t * v).norm(), share: s };
+    let crossing = SegmentDistance { distance: (w + s * u - t * v).norm(), share: s };
     // Nearly parallel segments are nearest at an end, where the division above says little.
     let to_one = |end: &Vector3<f64>| {
         let share = nearest_share(p, p_end, end);
-        Approach { distance: (p + share * u - end).norm(), share }
+        SegmentDistance { distance: (p + share * u - end).norm(), share }
     };
-    let of_one =
-        |end: &Vector3<f64>, share: f64| Approach { distance: (nearest_on_segment(q, q_end, end) - end).norm(), share };
+    let of_one = |end: &Vector3<f64>, share: f64| SegmentDistance {
+        distance: (nearest_on_segment(q, q_end, end) - end).norm(),
+        share,
+    };
     let ends = [of_one(p, 0.0), of_one(p_end, 1.0), to_one(q), to_one(q_end)];
     ends.into_iter().fold(crossing, |best, next| if next.distance < best.distance { next } else { best })
 }

@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
+use super::along_segment::LineSegment;
 use super::checked_shape::Shape;
-use super::segment_distance::{LineSegment, between};
+use super::segment_distance::between;
 use super::tangent::nearest_on_segment;
 
 impl Shape {

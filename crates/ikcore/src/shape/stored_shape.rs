@@ -1,6 +1,6 @@
 //! A shape as plain data, checked again when it is read.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::checked_shape::Shape;
 use super::geometry::Geometry;
@@ -9,7 +9,7 @@ use crate::math::Pose;
 
 /// What a shape was made from.
 #[derive(Serialize, Deserialize)]
-pub(super) enum StoredShape {
+enum StoredShape {
     Sphere([f64; 3], f64),
     Box(Pose, [f64; 3]),
     Capsule([f64; 3], [f64; 3], f64),
@@ -23,8 +23,20 @@ pub(super) enum StoredShape {
     Grid([f64; 3], f64, [usize; 3], Vec<bool>),
 }
 
-impl From<Shape> for StoredShape {
-    fn from(shape: Shape) -> Self {
+impl Serialize for Shape {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        StoredShape::from(self).serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Shape {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        StoredShape::deserialize(deserializer)?.try_into().map_err(serde::de::Error::custom)
+    }
+}
+
+impl From<&Shape> for StoredShape {
+    fn from(shape: &Shape) -> Self {
         match shape.geometry() {
             Geometry::Sphere { center, radius } => Self::Sphere(*center, *radius),
             Geometry::Box { pose, size } => Self::Box(*pose, *size),

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use nalgebra::{Matrix4, Point3, Rotation3, Unit, Vector3};
 use roxmltree::{Document, Node};
 
-use super::{Parsed, Triangles, number};
+use super::parsed::{Parsed, Triangles, number};
 
 type Problem<T> = Result<T, String>;
 

@@ -5,31 +5,13 @@
 
 mod collada;
 mod obj;
+mod parsed;
 mod stl;
 
 use std::path::Path;
 
 use crate::error::{Error, Result, shortened};
 use crate::shape::Shape;
-
-/// Corners and triangles of a file, or what is wrong with it.
-type Parsed = std::result::Result<Triangles, String>;
-
-/// Corners (m) and the triangles between them.
-#[derive(Debug, Default, PartialEq)]
-struct Triangles {
-    vertices: Vec<[f64; 3]>,
-    faces: Vec<[u32; 3]>,
-}
-
-impl Triangles {
-    /// Adds a polygon by indices of its corners, as a fan of triangles.
-    fn add_polygon(&mut self, corners: &[u32]) {
-        for i in 1..corners.len().saturating_sub(1) {
-            self.faces.push([corners[0], corners[i], corners[i + 1]]);
-        }
-    }
-}
 
 /// Files larger than this (bytes) are refused.
 const LARGEST: u64 = 1 << 30;
@@ -82,16 +64,9 @@ fn as_text(bytes: &[u8]) -> std::result::Result<String, String> {
     Ok(String::from_utf8_lossy(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)).into_owned())
 }
 
-/// Reads a finite number.
-fn number(text: &str) -> std::result::Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("'{}' is not a finite number", shortened(text))),
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::parsed::{Parsed, Triangles};
     use super::*;
     use crate::shape::Geometry;
 

@@ -1,6 +1,6 @@
 //! OBJ: corners, and polygons between them; all else is not geometry.
 
-use super::{Parsed, Triangles, number};
+use super::parsed::{Parsed, Triangles, number};
 
 pub(super) fn parse(text: &str) -> Parsed {
     let mut read = Triangles::default();

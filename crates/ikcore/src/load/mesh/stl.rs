@@ -1,6 +1,6 @@
 //! STL: triangles with corners of their own, as text or binary.
 
-use super::{Parsed, Triangles, number};
+use super::parsed::{Parsed, Triangles, number};
 
 /// Bytes before the triangles of a binary file: a comment, and their number.
 const HEADER: usize = 84;

@@ -13,7 +13,7 @@ use super::checked_shape::Shape;
 use super::mesh::Mesh;
 use crate::error::Result;
 use fit::{FittedCapsule, rough_volume, smallest_capsule};
-use parts::Part;
+use parts::CoveredPart;
 
 /// Few spheres and capsules that hold a mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,7 +36,7 @@ impl Mesh {
     /// # Errors
     /// [`Error::OutOfRange`](crate::Error::OutOfRange) for coordinates that are too large for a volume.
     pub fn cover(&self, most: usize) -> Result<Cover> {
-        let mut pieces = vec![Piece::of(Part::of(self))];
+        let mut pieces = vec![Piece::of(CoveredPart::of(self))];
         // The next cut of each piece is found once.
         let mut cuts = vec![pieces[0].best_cut()];
         let mut best = (f64::INFINITY, vec![]);
@@ -67,7 +67,7 @@ impl Mesh {
 
 /// A part of the mesh, and the capsule that holds it.
 struct Piece {
-    part: Part,
+    part: CoveredPart,
     capsule: FittedCapsule,
 }
 
@@ -78,15 +78,16 @@ struct Cut {
 }
 
 impl Piece {
-    fn of(part: Part) -> Self {
+    fn of(part: CoveredPart) -> Self {
         Self { capsule: smallest_capsule(&part.corners()), part }
     }
 
     /// The cut that seems to save most by roughly fitted capsules.
     fn best_cut(&self) -> Option<Cut> {
         let planes = self.part.candidate_planes();
-        let cuts = planes.iter().map(|plane| self.part.cut(plane)).filter(|halves| !halves.iter().any(Part::is_empty));
-        let rough = |halves: &[Part; 2]| halves.iter().map(|half| rough_volume(&half.corners())).sum::<f64>();
+        let cuts =
+            planes.iter().map(|plane| self.part.cut(plane)).filter(|halves| !halves.iter().any(CoveredPart::is_empty));
+        let rough = |halves: &[CoveredPart; 2]| halves.iter().map(|half| rough_volume(&half.corners())).sum::<f64>();
         let best = cuts.map(|halves| (rough(&halves), halves)).min_by(|one, other| one.0.total_cmp(&other.0));
         let halves = best?.1.map(Self::of);
         let gain = self.capsule.volume() - halves.iter().map(|half| half.capsule.volume()).sum::<f64>();

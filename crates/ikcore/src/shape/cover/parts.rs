@@ -6,13 +6,13 @@ use crate::shape::mesh::Mesh;
 
 /// Polygons of a mesh on one side of the planes that cut it.
 #[derive(Debug, Clone)]
-pub(super) struct Part {
+pub(super) struct CoveredPart {
     polygons: Vec<Vec<Vector3<f64>>>,
 }
 
 /// All points x with normal . x = offset.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Plane {
+pub(super) struct CuttingPlane {
     normal: Vector3<f64>,
     offset: f64,
 }
@@ -20,7 +20,7 @@ pub(super) struct Plane {
 /// Where planes are tried, as fractions of the extent of a part.
 const PLACES: [f64; 7] = [0.15, 0.27, 0.38, 0.5, 0.62, 0.73, 0.85];
 
-impl Part {
+impl CoveredPart {
     /// All of `mesh`.
     pub fn of(mesh: &Mesh) -> Self {
         Self { polygons: (0..mesh.faces().len()).map(|i| mesh.triangle(i).to_vec()).collect() }
@@ -42,18 +42,18 @@ impl Part {
     }
 
     /// Planes across the principal axes of the corners.
-    pub fn candidate_planes(&self) -> Vec<Plane> {
+    pub fn candidate_planes(&self) -> Vec<CuttingPlane> {
         let corners = self.corners();
         let axes = principal_axes(&corners);
         let planes = axes.iter().flat_map(|axis| {
             let (low, high) = extent(&corners, axis);
-            PLACES.map(|place| Plane { normal: *axis, offset: low + place * (high - low) })
+            PLACES.map(|place| CuttingPlane { normal: *axis, offset: low + place * (high - low) })
         });
         planes.collect()
     }
 
     /// The parts below and above `plane`; polygons that it crosses are cut, and both parts have the new corners.
-    pub fn cut(&self, plane: &Plane) -> [Self; 2] {
+    pub fn cut(&self, plane: &CuttingPlane) -> [Self; 2] {
         [-1.0, 1.0].map(|side| {
             let halves = self.polygons.iter().map(|polygon| clipped(polygon, plane, side));
             Self { polygons: halves.filter(|polygon| polygon.len() > 2).collect() }
@@ -62,7 +62,7 @@ impl Part {
 }
 
 /// The part of a convex polygon on the side of the plane.
-fn clipped(polygon: &[Vector3<f64>], plane: &Plane, side: f64) -> Vec<Vector3<f64>> {
+fn clipped(polygon: &[Vector3<f64>], plane: &CuttingPlane, side: f64) -> Vec<Vector3<f64>> {
     let height = |p: &Vector3<f64>| side * (plane.normal.dot(p) - plane.offset);
     if polygon.iter().all(|p| height(p) >= 0.0) {
         return polygon.to_vec();

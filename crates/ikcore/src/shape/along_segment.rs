@@ -1,0 +1,76 @@
+//! The lowest signed distance along a segment.
+//!
+//! Along a segment the signed distance of a convex shape is a convex function of one variable, which lies above all its
+//! tangents and below all its chords.
+
+use nalgebra::Vector3;
+
+use super::tangent::Tangent;
+
+/// A segment between two points (m).
+pub(crate) type LineSegment = [Vector3<f64>; 2];
+
+/// How far below the true distance an answer by tangents may lie (m).
+const ACCURACY: f64 = 1e-9;
+/// Far more steps than the search for the minimum takes, but for degenerate numbers.
+const MOST_STEPS: usize = 60;
+
+/// Where a segment is nearest to a shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SegmentDistance {
+    /// Signed distance (m).
+    pub distance: f64,
+    /// Fraction of the way along the segment.
+    pub share: f64,
+}
+
+/// One tangent of the signed distance along the segment: value and slope at `share` of its length.
+#[derive(Clone, Copy)]
+struct Touch {
+    share: f64,
+    value: f64,
+    slope: f64,
+}
+
+/// Where the signed distance of a convex set with these tangents is lowest: never more than the truth, and at most
+/// [`ACCURACY`] less unless it is at least `enough`.
+pub(super) fn by_tangents(
+    [a, b]: &LineSegment,
+    tangent: impl Fn(&Vector3<f64>) -> Tangent,
+    enough: f64,
+) -> SegmentDistance {
+    let along = b - a;
+    let touch = |share: f64| {
+        let tangent = tangent(&(a + share * along));
+        Touch { share, value: tangent.value, slope: tangent.normal.dot(&along) }
+    };
+    let at = |touch: Touch| SegmentDistance { distance: touch.value, share: touch.share };
+    let (mut left, mut right) = (touch(0.0), touch(1.0));
+    if left.slope >= 0.0 {
+        return at(left);
+    }
+    if right.slope <= 0.0 {
+        return at(right);
+    }
+    let mut lowest_seen = left.value.min(right.value);
+    for _ in 0..MOST_STEPS {
+        // Where the two tangents meet is the lowest that the distance can be.
+        let meeting = (right.value - left.value + left.slope * left.share - right.slope * right.share)
+            / (left.slope - right.slope);
+        let bound = left.value + left.slope * (meeting - left.share);
+        if bound >= enough || lowest_seen - bound <= ACCURACY {
+            return SegmentDistance { distance: bound, share: meeting.clamp(left.share, right.share) };
+        }
+        let inside = meeting > left.share && meeting < right.share;
+        let next = touch(if inside { meeting } else { 0.5 * (left.share + right.share) });
+        lowest_seen = lowest_seen.min(next.value);
+        if next.slope < 0.0 {
+            left = next;
+        } else if next.slope > 0.0 {
+            right = next;
+        } else {
+            return at(next);
+        }
+    }
+    SegmentDistance { distance: left.value + left.slope * (right.share - left.share), share: left.share }
+}
