@@ -250,7 +250,7 @@ fn a_configuration_is_clear_when_its_nearest_pair_is() {
         Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap(),
         with_random_bodies("iiwa14", &mut rng),
     ] {
-        for count in [0, 3, 60] {
+        for count in [0, 20, 60] {
             let mut obstacles: Vec<Shape> = (0..count).map(|k| distant_obstacle(&mut rng, k)).collect();
             if count > 0 {
                 obstacles.push(Shape::half_space([0.0, 0.0, 1.0], -0.3).unwrap());
@@ -268,7 +268,7 @@ fn a_configuration_is_clear_when_its_nearest_pair_is() {
                 assert_eq!(found, as_four);
                 *(if found { &mut clear } else { &mut near }) += 1;
             }
-            assert!(clear > 20 && (near > 20 || count == 0), "{count}: {clear} {near}");
+            assert!(clear > 5 && (near > 5 || count == 0), "{count}: {clear} {near}");
         }
     }
 }
